@@ -18,34 +18,34 @@
  *
  * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a
  * pc_error, or NULL. There it writes NULL if all went well, and otherwise a new error, which you
- * free; what stood there before is not looked at. PC_STOPPED and PC_EVENT are no failures: an
+  * free; what the place held before does not matter. PC_STOPPED and PC_EVENT are no failures: an
  * observer, or a terminal event, has ended an integration. Results are written unless the call
- * fails, except that a new handle or text is NULL after a failure, and that arrays for results may
- * hold anything then.
+  * fails; after a failure a new handle or text is NULL, and arrays for results may
+  * hold anything.
  *
- * Ownership. What a function of the name ..._new, ..._clone, pc_model_parse, pc_model_from_file,
+  * Ownership. What a function named ..._new, ..._clone, pc_model_parse, pc_model_from_file,
  * pc_model_builtin, pc_solver_restore or pc_solver_run_dense gives, you free with the ..._free of
  * its type; `char *` you free with pc_string_free, bytes with pc_bytes_free; `const char *`
  * belongs to the handle it came from and lives as long, or is static. All ..._free allow NULL.
  * Handles are independent: a model can be freed while its system lives, and a system while its
  * solvers and kernels do.
  *
- * Arrays. Each comes with its length, which has to be the right one, not only large enough. They
- * are `double`, aligned as such, and an array that is written shares no memory with another one;
+  * Arrays. Each comes with its length, which must be exact, not merely large enough. They
+  * are `double`, aligned as such, and an array that is written must not overlap another one;
  * this is checked. NULL goes with the length 0. Matrices are dense and column-major,
  * A[i + j*rows], unless the function says otherwise. Text is UTF-8 and zero-terminated.
  *
  * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a
  * time: a second one at the same time returns PC_BUSY and does nothing; only of pc_system_rhs many
  * may succeed side by side, as it says. (Freeing a handle while another thread uses it is not
- * safe, as ever.) Different handles are independent; to evaluate on many threads, give each its
+  * safe.) Different handles are independent; to evaluate on many threads, give each its
  * own by pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second
  * call. Names and sizes may be read at any time, by any number of threads, and a pc_cancel used.
- * That a function takes a handle as `const` says that what it computes stays, no more.
+  * A `const` handle says only that the call does not change what the handle computes.
  *
- * Not for signal handlers, but for pc_cancel_request. A fault of the library is PC_INTERNAL and
- * does not end your program; memory that is exhausted does, and a stack: a thread needs 128 KiB,
- * whatever the model; what goes deeper takes a stack of its own, of 8 MiB, while it derives.
+  * Signal handlers may call pc_cancel_request only. A fault of the library is PC_INTERNAL and
+  * does not end your program; exhausted memory or an exhausted stack does: a thread needs 128 KiB,
+  * whatever the model; deeper work takes a stack of its own, of 8 MiB, while it derives.
  */
 
 #ifndef PC_H
@@ -102,15 +102,15 @@ typedef enum {
    */
   PC_INCONSISTENT_MODEL = 3,
   /**
-   * What is asked for cannot be done, or not of this system.
+   * The request cannot be met, or not for this system.
    */
   PC_UNSUPPORTED = 4,
   /**
-   * There is nothing of this name, such as a file.
+   * Nothing has this name: no file, no component, no event.
    */
   PC_NOT_FOUND = 5,
   /**
-   * A file that there is could not be read.
+   * A file exists but could not be read.
    */
   PC_IO = 6,
   /**
@@ -118,8 +118,8 @@ typedef enum {
    */
   PC_EVALUATION = 7,
   /**
-   * The integration could not begin or go on. Events that occur ever more closely, as a ball's
-   * that comes to rest, are such an end.
+   * The integration could not begin or go on. Events that accumulate, such as the bounces
+   * of a ball that comes to rest, end it so.
    */
   PC_INTEGRATION = 8,
   /**
@@ -132,8 +132,8 @@ typedef enum {
    */
   PC_BUSY = 10,
   /**
-   * A fault of the library, after which the handle can only be freed; or threads or memory for
-   * a solver are not to be had, and the handle is as it was.
+   * A fault of the library, after which the handle can only be freed; or threads or memory
+   * for a solver are not available, and the handle is unchanged.
    */
   PC_INTERNAL = 11,
   /**
@@ -141,7 +141,7 @@ typedef enum {
    */
   PC_EVENT = 12,
   /**
-   * The bytes are no checkpoint, or one of which a part is missing or changed.
+   * The bytes are not a checkpoint, or part of it is missing or changed.
    */
   PC_INVALID_CHECKPOINT = 13,
   /**
@@ -149,12 +149,11 @@ typedef enum {
    */
   PC_DISAGREEMENT = 14,
   /**
-   * The equations of the model, or an integration, would take more memory or time than they
-   * may, or somebody cancelled the work.
+   * The derivation or an integration would exceed its limit of memory or time, or was cancelled.
    */
   PC_LIMIT = 15,
   /**
-   * None.
+   * Not a status.
    */
   PC_STATUS_LAST = 2147483647,
 } pc_status;
@@ -164,12 +163,12 @@ typedef enum {
  */
 typedef enum {
   /**
-   * Poincaré's, of quasi-velocities: independent ones if constraints say that the others
+   * Poincaré's, in quasi-velocities: independent ones if constraints make the others
    * vanish, all of them with multipliers otherwise.
    */
   PC_POINCARE = 0,
   /**
-   * Chetaev's canonical equations, of momenta.
+   * Chetaev's canonical equations, in momenta.
    */
   PC_CANONICAL = 1,
   /**
@@ -184,11 +183,11 @@ typedef enum {
    */
   PC_LIE_POISSON = 3,
   /**
-   * Poincaré's of quasi-velocities that are orthonormal in the kinetic metric.
+   * Poincaré's, in quasi-velocities that are orthonormal in the kinetic metric.
    */
   PC_ORTHONORMAL = 4,
   /**
-   * Hamel's, of the quasi-velocities that pc_model_give_quasi_velocity gives.
+   * Hamel's, in the quasi-velocities of pc_model_give_quasi_velocity.
    */
   PC_HAMEL = 5,
 } pc_form;
@@ -249,7 +248,7 @@ typedef enum {
 } pc_linear_solver;
 
 /**
- * How equations are printed.
+ * The format in which equations are printed.
  */
 typedef enum {
   /**
@@ -267,7 +266,7 @@ typedef enum {
 } pc_format;
 
 /**
- * In which direction the function of an event passes through zero, as the integration goes.
+ * The direction in which the function of an event passes through zero, along the integration.
  */
 typedef enum {
   /**
@@ -285,8 +284,9 @@ typedef enum {
 } pc_direction;
 
 /**
- * Ends derivations of systems that were given it in pc_system_options, and integrations of these.
- * Any number of threads may use it at the same time. Free it with pc_cancel_free.
+ * Ends the derivations of systems whose pc_system_options have this handle, and integrations
+ * of these systems. Any number of threads may use it at the same time. Free it with
+ * pc_cancel_free.
  */
 typedef struct pc_cancel pc_cancel;
 
@@ -303,11 +303,11 @@ typedef struct pc_dense pc_dense;
 typedef struct pc_error pc_error;
 
 /**
- * f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian.
+ * f(t, y) for an integrator of your own: the context of pc_kernel_rhs and pc_kernel_jacobian.
  * Free it with pc_kernel_free.
  *
- * It has room to compute in, so each thread needs its own, and two calls at the same time are
- * not safe; in return there are no locks.
+ * It holds workspace, so each thread needs its own, and two calls at the same time are not
+ * safe; in return there are no locks.
  */
 typedef struct pc_kernel pc_kernel;
 
@@ -317,7 +317,7 @@ typedef struct pc_kernel pc_kernel;
 typedef struct pc_model pc_model;
 
 /**
- * An integration, which stands at a time with a state. Free it with pc_solver_free.
+ * An integration, with its current time and state. Free it with pc_solver_free.
  */
 typedef struct pc_solver pc_solver;
 
@@ -343,9 +343,9 @@ typedef struct {
    */
   int reserved;
   /**
-   * Most bytes that the expressions of a derivation may take, as they are estimated; 0, the
-   * default, for 4 GiB. Beyond it, PC_LIMIT. It holds for pc_system_new, and for each later
-   * call that derives by itself, as do the next two.
+   * Most bytes that the expressions of a derivation may take, by estimate; 0, the default,
+   * for 4 GiB. Beyond it, PC_LIMIT. It applies to pc_system_new and to each later call that
+   * derives, each by itself; so do the next two.
    */
   uint64_t memory_limit;
   /**
@@ -354,8 +354,8 @@ typedef struct {
    */
   double time_limit;
   /**
-   * By which derivations and integrations are ended; NULL, the default, for none. It may be
-   * freed when pc_system_new has returned.
+   * The handle by which derivations and integrations can be ended; NULL, the default, for
+   * none. It may be freed when pc_system_new has returned.
    */
   const pc_cancel *cancel;
 } pc_system_options;
@@ -381,7 +381,7 @@ typedef struct {
    */
   int linear_solver;
   /**
-   * Highest order of the method; 0, the default, for all it has.
+   * Highest order of the method; 0, the default, for the highest it has.
    */
   int max_order;
   /**
@@ -397,7 +397,7 @@ typedef struct {
    */
   const double *absolute_tolerances;
   /**
-   * Their number, 0 without.
+   * Their number, 0 with NULL.
    */
   size_t absolute_tolerances_length;
   /**
@@ -418,7 +418,7 @@ typedef struct {
    */
   double max_step;
   /**
-   * A time beyond which the equations are never evaluated; infinite, the default, for none.
+   * A time beyond which the equations are never evaluated; infinity, the default, for none.
    */
   double stop_time;
   /**
@@ -431,8 +431,9 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * Events that follow each other ever faster are an error once what is left of the first of
-   * their distances is this part, from 0, for never, to less than 1; 1e-5 by default.
+   * Events that follow each other ever faster are an error once the time left until they
+   * accumulate is this fraction of their first interval, at least 0 (never) and less than
+   * 1; 1e-5 by default.
    */
   double accumulation;
 } pc_solver_options;
@@ -441,8 +442,8 @@ typedef struct {
  * Writes the external forces at (t, y) to q: one for each that was declared, in that order, so
  * `q_length` is pc_system_force_count. y is the state of the system; in the canonical form it
  * has momenta. Returns 0; a positive number where the forces are not defined, so that a smaller
- * step may help; a negative one to give up. What is left unwritten is not a number, and treated
- * as a positive answer. It must return: no exceptions, no longjmp.
+ * step may help; a negative one to give up. A force left unwritten is NaN, and treated like a
+ * positive return value. It must return: no exceptions, no longjmp.
  */
 typedef int (*pc_force_function)(double t,
                                  const double *y,
@@ -469,17 +470,17 @@ typedef int (*pc_force_jacobian)(double t,
 typedef void (*pc_destroy)(void *user);
 
 /**
- * Is given the state at each output time. Returns 0 to go on; anything else ends the run with
- * PC_STOPPED. It may call any function on other handles, and must return: no exceptions, no
- * longjmp.
+ * Receives the state at each output time. Returns 0 to continue; anything else ends the run
+ * with PC_STOPPED. It may call any function on other handles, and must return: no exceptions,
+ * no longjmp.
  */
 typedef int (*pc_observer)(double t, const double *y, size_t y_length, void *user);
 
 /**
- * Is given each event where it occurs, by its number among the events of the solver, with the
- * states before and after it, which are valid during the call. Of simultaneous events each has
- * the state that it found and the one that it left. Returns 0 to go on; anything else ends the
- * call with PC_STOPPED, or with PC_EVENT where a terminal event does so too. Otherwise as
+ * Receives each event where it occurs, by its number among the events of the solver, with the
+ * states before and after it, which are valid during the call. Among simultaneous events each
+ * has the state that it found and the one that it left. Returns 0 to continue; anything else
+ * ends the call with PC_STOPPED, or with PC_EVENT where the event is terminal. Otherwise as
  * pc_observer.
  */
 typedef int (*pc_event_observer)(size_t event,
@@ -491,9 +492,9 @@ typedef int (*pc_event_observer)(size_t event,
 
 /**
  * Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else
- * ends the integration with PC_INTEGRATION, as a value does that is not finite or not written.
- * It should depend on nothing but its arguments and be smooth. It must return: no exceptions, no
- * longjmp.
+ * ends the integration with PC_INTEGRATION, as does a value that is not finite or not
+ * written. It should depend on nothing but its arguments and be smooth. It must return: no
+ * exceptions, no longjmp.
  */
 typedef int (*pc_event_function)(double t,
                                  const double *y,
@@ -507,7 +508,8 @@ typedef int (*pc_event_function)(double t,
 typedef int (*pc_event_reset)(double t, double *y, size_t y_length, void *user);
 
 /**
- * Counts since the start of an integration, and its last internal step. It may grow at the end.
+ * Counts since the start of an integration, and its last internal step. The structure may
+ * grow at the end.
  */
 typedef struct {
   /**
@@ -551,7 +553,7 @@ typedef struct {
    */
   double last_step;
   /**
-   * Length that the next step will be tried with.
+   * Length with which the next step is tried.
    */
   double next_step;
   /**
@@ -559,14 +561,14 @@ typedef struct {
    */
   double step_time;
   /**
-   * Steps that were to end no later than where the explicit dependence on time shows something
-   * that the motion up to there does not let expect: the beginning of a pulse, a jump.
+   * Steps shortened to end where the explicit dependence on time shows something that the
+   * motion so far gives no hint of: the beginning of a pulse, a jump.
    */
   uint64_t limited_steps;
 } pc_statistics;
 
 /**
- * What has come of a member of an ensemble. It may grow at the end.
+ * The result of a member of an ensemble. The structure may grow at the end.
  */
 typedef struct {
   /**
@@ -587,12 +589,12 @@ typedef struct {
    */
   const double *times;
   /**
-   * The states at these, one after the other, each of `dim` numbers. As `times`, NULL where
-   * there are none.
+   * The states at these times, one after the other, each of `dim` numbers. Like `times`,
+   * NULL where there are none.
    */
   const double *states;
   /**
-   * How many these are, also if it failed.
+   * How many there are, also if the member failed.
    */
   size_t rows;
   /**
@@ -602,9 +604,9 @@ typedef struct {
 } pc_member;
 
 /**
- * Is given each member in order, on the thread of the call; what it points to is valid during
- * the call. Returns 0 to go on; anything else ends the ensemble with PC_STOPPED. Otherwise as
- * pc_observer.
+ * Receives each member in order, on the thread of the call; what the member points to is
+ * valid during the call. Returns 0 to continue; anything else ends the ensemble with
+ * PC_STOPPED. Otherwise as pc_observer.
  */
 typedef int (*pc_member_observer)(const pc_member *member, void *user);
 
@@ -619,50 +621,50 @@ const char *pc_version(void);
 uint32_t pc_abi_version(void);
 
 /**
- * The name of a status, such as "PC_OK"; "unknown status" of a number that is none. Static.
+ * The name of a status, such as "PC_OK"; "unknown status" for any other number. Static.
  */
 const char *pc_status_name(int status);
 
 /**
- * Its status, never PC_OK; PC_OK of null.
+ * Its status, never PC_OK; PC_OK for NULL.
  */
 pc_status pc_error_status(const pc_error *error);
 
 /**
  * The message, in UTF-8, never null; it lives as long as the error. For a model it shows the
- * line at fault and what would be right, over several lines of text. The empty text of null.
+ * line at fault and what would be right, over several lines of text. Empty for NULL.
  */
 const char *pc_error_message(const pc_error *error);
 
 /**
- * The line of the model text at fault, from 1; 0 if there is none, or of null.
+ * The line of the model text at fault, from 1; 0 if there is none, and for NULL.
  */
 size_t pc_error_line(const pc_error *error);
 
 /**
- * The column at which the text at fault begins, in characters from 1; 0 if there is none, or of
- * null.
+ * The column at which the text at fault begins, in characters from 1; 0 if there is none, and
+ * for NULL.
  */
 size_t pc_error_column(const pc_error *error);
 
 /**
- * The byte at which the text at fault begins, from 0; 0 if there is none, or of null.
+ * The byte at which the text at fault begins, from 0; 0 if there is none, and for NULL.
  */
 size_t pc_error_offset(const pc_error *error);
 
 /**
- * The number of bytes of the text at fault; 0 if there is none, or of null.
+ * The number of bytes of the text at fault; 0 if there is none, and for NULL.
  */
 size_t pc_error_length(const pc_error *error);
 
 /**
- * The code that CVODES returned (cvodes.h), where it is the reason; else 0, as of null.
+ * The code that CVODES returned (cvodes.h), where it is the reason; else 0, and for NULL.
  */
 int pc_error_integrator_code(const pc_error *error);
 
 /**
- * 1 if the status is PC_EVALUATION and another state near by may do, so that an integrator
- * should try a smaller step; else 0, as of null.
+ * 1 if the status is PC_EVALUATION and a nearby state may do, so that an integrator should
+ * try a smaller step; else 0, and for NULL.
  */
 int pc_error_is_recoverable(const pc_error *error);
 
@@ -672,7 +674,7 @@ int pc_error_is_recoverable(const pc_error *error);
 void pc_error_free(pc_error *error);
 
 /**
- * Frees a text that a function of this library has returned to be freed. Null is allowed.
+ * Frees a text that a function of this library returned for the caller to free. NULL is allowed.
  */
 void pc_string_free(char *text);
 
@@ -707,7 +709,7 @@ size_t pc_builtin_count(void);
 const char *pc_builtin_name(size_t index);
 
 /**
- * A copy that can be changed by itself.
+ * A copy, which can be changed independently.
  */
 pc_status pc_model_clone(const pc_model *model, pc_model **copy, pc_error **error);
 
@@ -722,58 +724,58 @@ void pc_model_free(pc_model *model);
 pc_status pc_model_set(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
- * Has states projected to the value that this integral, or "energy", has at the start: after
- * each step of a solver, and by pc_system_project. An unknown name is found by pc_system_new.
+ * Keeps this integral, or "energy", at its value at the start, by projection: after each step
+ * of a solver, and in pc_system_project. An unknown name is reported by pc_system_new.
  */
 pc_status pc_model_keep(pc_model *model, const char *integral, pc_error **error);
 
 /**
- * Whether the start is moved to where the constraints are satisfied (else a start off them is
- * refused). Not 0 is yes.
+ * Whether the start is moved onto the constraints (otherwise a start off them is refused).
+ * Any value but 0 means yes.
  */
 pc_status pc_model_project_start(pc_model *model, int yes, pc_error **error);
 
 /**
- * Has a start that is moved to where the constraints are satisfied keep the value of this
- * coordinate or quasi-velocity: the others follow. Without pc_model_project_start it says
- * nothing. An unknown name is found by pc_system_new, with PC_NOT_FOUND.
+ * Holds the start value of this coordinate or quasi-velocity fixed where the start is moved
+ * onto the constraints: the others follow. Without pc_model_project_start it has no effect.
+ * An unknown name is reported by pc_system_new, with PC_NOT_FOUND.
  */
 pc_status pc_model_hold_start(pc_model *model, const char *name, pc_error **error);
 
 /**
  * Whether the reactions of the constraints are observed, each called `λ_` and the name of its
- * constraint. Not 0 is yes.
+ * constraint. Any value but 0 means yes.
  */
 pc_status pc_model_observe_reactions(pc_model *model, int yes, pc_error **error);
 
 /**
  * Whether systems of the model are derived with their derivatives by parameters, which
- * pc_solver_add_sensitivity takes. Not 0 is yes.
+ * pc_solver_add_sensitivity needs. Any value but 0 means yes.
  */
 pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
 
 /**
- * The text of the model, to be freed with pc_string_free. That of a model built by calls is the
- * text that these wrote; lines and columns of errors are counted in it. What no text says is not
- * in it: pc_model_set of parameters, pc_model_set_start of a model that was read, pc_model_keep,
- * pc_model_project_start, pc_model_hold_start, pc_model_observe_reactions,
- * pc_model_differentiate, pc_model_add_external_force, pc_model_give_quasi_velocity,
- * pc_model_add_independent.
+ * The text of the model, to be freed with pc_string_free. For a model built by calls it is
+ * the text that the calls wrote; errors refer to its lines and columns. Settings that the
+ * text format does not have are not in it: pc_model_set of parameters, pc_model_set_start of
+ * a model that was read, pc_model_keep, pc_model_project_start, pc_model_hold_start,
+ * pc_model_observe_reactions, pc_model_differentiate, pc_model_add_external_force,
+ * pc_model_give_quasi_velocity, pc_model_add_independent.
  */
 pc_status pc_model_text(const pc_model *model, char **text, pc_error **error);
 
 /**
- * A model without anything, to be built by the calls below, in any order between sorts of
- * entries; the order of coordinates, quasi-velocities, parameters and so on is that of their
- * calls. Expressions are those of the text model, where `x'` is the velocity of the coordinate
- * x, and `t` the time. What is said is understood as a whole by pc_model_check and
- * pc_system_new, whose errors name the entry and show its expression.
+ * An empty model, to be built by the calls below. Kinds of entries may come in any order;
+ * coordinates, quasi-velocities, parameters and so on keep the order of their calls.
+ * Expressions are those of the text model, where `x'` is the velocity of the coordinate x and
+ * `t` the time. The model is read as a whole by pc_model_check and pc_system_new, whose
+ * errors name the entry and show its expression.
  */
 pc_status pc_model_new(const char *name, pc_model **model, pc_error **error);
 
 /**
- * Reads what has been said as a whole: PC_OK if all names are known and all expressions well
- * formed, and the frame and the start are in order. Whether equations can be derived is found by
+ * Reads the model as a whole: PC_OK if all names are known, all expressions are well formed,
+ * and the frame and the start are valid. Whether equations can be derived is found by
  * pc_system_new.
  */
 pc_status pc_model_check(const pc_model *model, pc_error **error);
@@ -787,8 +789,8 @@ pc_status pc_model_add_parameter(pc_model *model,
                                  pc_error **error);
 
 /**
- * Adds a parameter that is an expression in those before it, which it follows until it is set
- * itself.
+ * Adds a parameter that is an expression in the parameters before it. It follows them until
+ * it is itself set.
  */
 pc_status pc_model_add_parameter_expression(pc_model *model,
                                             const char *name,
@@ -796,16 +798,16 @@ pc_status pc_model_add_parameter_expression(pc_model *model,
                                             pc_error **error);
 
 /**
- * Adds an input: a value that is constant until it is set, as parameters are, after all of which
- * it comes. Forces, rates of states, events and what is watched may contain it, but nothing that
- * velocities or momenta depend on.
+ * Adds an input: a value that is constant until it is set, as a parameter is. Inputs come
+ * after all parameters. Forces, rates of states, events, integrals and outputs may contain
+ * it, but nothing that velocities or momenta depend on.
  */
 pc_status pc_model_add_input(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
- * Adds an input that is a function of time: `length` values at rising times, between them
- * "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the times.
- * Its values are not set otherwise.
+ * Adds an input that is a function of time: `length` values at increasing times, interpolated
+ * by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the
+ * times. Its values cannot be set in any other way.
  */
 pc_status pc_model_add_input_table(pc_model *model,
                                    const char *name,
@@ -816,10 +818,10 @@ pc_status pc_model_add_input_table(pc_model *model,
                                    pc_error **error);
 
 /**
- * Adds an input whose table is a column of a file of numbers with commas between them, below a
- * line of names; otherwise as pc_model_add_input_table. `time` is the name of the column of
- * times, NULL for "t" or else the first. The path is taken from the working directory as it is
- * now.
+ * Adds an input whose table is a column of a file of comma-separated numbers below a line of
+ * names; otherwise as pc_model_add_input_table. `time` is the name of the column of times,
+ * NULL for "t" or, without one, the first column. The path is relative to the working
+ * directory at the time of the call.
  */
 pc_status pc_model_add_input_file(pc_model *model,
                                   const char *name,
@@ -832,7 +834,7 @@ pc_status pc_model_add_input_file(pc_model *model,
 /**
  * Adds a first-order state with its value at the start and its rate: an expression of time,
  * coordinates, velocities and states. It is integrated with the motion and comes after the
- * velocities in the state; no frame knows it.
+ * velocities in the state; it is no part of the frame.
  */
 pc_status pc_model_add_state(pc_model *model,
                              const char *name,
@@ -905,8 +907,8 @@ pc_status pc_model_set_bracket(pc_model *model,
                                pc_error **error);
 
 /**
- * Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is not
- * affine in the velocities is said to be so by pc_model_set_constraint_kind.
+ * Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is
+ * not affine in the velocities is declared so by pc_model_set_constraint_kind.
  */
 pc_status pc_model_add_constraint(pc_model *model,
                                   const char *name,
@@ -914,10 +916,11 @@ pc_status pc_model_add_constraint(pc_model *model,
                                   pc_error **error);
 
 /**
- * Sets the Lagrangian L(t, x, η), in which x' may stand too. Excludes kinetic and potential
- * energy.
+ * Sets the Lagrangian L(t, x, η), which may contain x' too. Excludes kinetic and potential energy.
  */
-pc_status pc_model_set_lagrangian(pc_model *model, const char *expression, pc_error **error);
+pc_status pc_model_set_lagrangian(pc_model *model,
+                                  const char *expression,
+                                  pc_error **error);
 
 /**
  * Sets the kinetic energy.
@@ -943,7 +946,7 @@ pc_status pc_model_add_force(pc_model *model,
                              pc_error **error);
 
 /**
- * Adds an expression that should stay constant, to be watched.
+ * Adds an integral: an expression that should stay constant, observed along the motion.
  */
 pc_status pc_model_add_integral(pc_model *model,
                                 const char *name,
@@ -951,7 +954,7 @@ pc_status pc_model_add_integral(pc_model *model,
                                 pc_error **error);
 
 /**
- * Adds an expression to be watched.
+ * Adds an output: an expression observed along the motion.
  */
 pc_status pc_model_add_output(pc_model *model,
                               const char *name,
@@ -959,9 +962,9 @@ pc_status pc_model_add_output(pc_model *model,
                               pc_error **error);
 
 /**
- * Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of its
- * mass centre or of a point of it that is at rest, as expressions of coordinates. Energy and
- * forces follow from bodies; no Lagrangian is needed beside them.
+ * Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of
+ * its mass centre or of a point of the body that is at rest, as expressions in the
+ * coordinates. Energy and forces follow from the bodies; no Lagrangian is needed as well.
  */
 pc_status pc_model_add_body(pc_model *model,
                             const char *name,
@@ -1003,8 +1006,8 @@ pc_status pc_model_set_body_angular_velocity(pc_model *model,
                                              pc_error **error);
 
 /**
- * Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions Ixx,
- * Iyy, Izz, or 6, which go on with Ixy, Iyz, Ixz.
+ * Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions
+ * Ixx, Iyy, Izz, or 6, which continue with Ixy, Iyz, Ixz.
  */
 pc_status pc_model_set_body_inertia(pc_model *model,
                                     const char *body,
@@ -1013,8 +1016,8 @@ pc_status pc_model_set_body_inertia(pc_model *model,
                                     pc_error **error);
 
 /**
- * Sets how a rigid body is turned: the 9 entries of the matrix R from axes of the body to those
- * of space, row by row.
+ * Sets the rotation of a rigid body: the 9 entries of the matrix R from axes of the body to
+ * axes in space, row by row.
  */
 pc_status pc_model_set_body_rotation(pc_model *model,
                                      const char *body,
@@ -1171,14 +1174,14 @@ pc_status pc_model_set_loop_length(pc_model *model,
                                    pc_error **error);
 
 /**
- * Sets a function S of time, coordinates and constants that is said to solve Hamilton–Jacobi's
- * equation, which pc_system_theory looks at. No motion needs it.
+ * Sets a function S of time, coordinates and constants that is claimed to solve
+ * Hamilton–Jacobi's equation; pc_system_theory examines the claim. No motion depends on it.
  */
 pc_status pc_model_set_action(pc_model *model, const char *expression, pc_error **error);
 
 /**
- * Adds a constant of the action, with a value near which the action is defined: where it is not
- * proved to solve the equation, numbers are tried there.
+ * Adds a constant of the action, with a value near which the action is defined: where there
+ * is no proof that it solves the equation, it is tested numerically there.
  */
 pc_status pc_model_add_action_constant(pc_model *model,
                                        const char *name,
@@ -1186,23 +1189,23 @@ pc_status pc_model_add_action_constant(pc_model *model,
                                        pc_error **error);
 
 /**
- * Says what the model is.
+ * Sets the description of the model.
  */
 pc_status pc_model_set_description(pc_model *model, const char *description, pc_error **error);
 
 /**
- * Says where the model comes from.
+ * Sets the reference from which the model comes.
  */
 pc_status pc_model_set_reference(pc_model *model, const char *reference, pc_error **error);
 
 /**
- * Sets the value at the start of a coordinate, of a quasi-velocity, or of a velocity `x'` where
- * there are no quasi-velocities, to another number.
+ * Changes the start value of a coordinate, of a quasi-velocity, or of a velocity `x'` where
+ * there are no quasi-velocities, to a number.
  */
 pc_status pc_model_set_start(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
- * Sets the same to an expression of parameters.
+ * Changes it to an expression in parameters.
  */
 pc_status pc_model_set_start_expression(pc_model *model,
                                         const char *name,
@@ -1210,8 +1213,8 @@ pc_status pc_model_set_start_expression(pc_model *model,
                                         pc_error **error);
 
 /**
- * Says of what kind a constraint is: "holonomic" or "nonholonomic", which is checked, or
- * "nonlinear" of one that is not affine in the velocities and obeys Chetaev's condition.
+ * Sets the kind of a constraint: "holonomic" or "nonholonomic", which is checked, or
+ * "nonlinear" for one that is not affine in the velocities and obeys Chetaev's condition.
  */
 pc_status pc_model_set_constraint_kind(pc_model *model,
                                        const char *constraint,
@@ -1224,13 +1227,13 @@ pc_status pc_model_set_constraint_kind(pc_model *model,
 pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
 
 /**
- * Sets the time to which the program `pc` runs the model. It is written to the text, as are the
- * next five; a solver is told by its own options.
+ * Sets the time to which the program `pc` runs the model. It is written to the text, as are
+ * the next five; a solver has options of its own.
  */
 pc_status pc_model_set_end_time(pc_model *model, double t, pc_error **error);
 
 /**
- * Sets the number of rows, from 2, that the program `pc` writes.
+ * Sets the number of rows, at least 2, that the program `pc` writes.
  */
 pc_status pc_model_set_samples(pc_model *model, size_t samples, pc_error **error);
 
@@ -1249,9 +1252,9 @@ pc_status pc_model_set_tolerances(pc_model *model,
 pc_status pc_model_set_max_step(pc_model *model, double length, pc_error **error);
 
 /**
- * Sets how zeros of event functions are looked for by the program `pc`: at `samples_per_step`
- * places of each step, from 1, and events whose distances shrink geometrically to less than
- * `accumulation` of the first are taken for accumulated.
+ * Sets how the program `pc` looks for zeros of event functions: at `samples_per_step` places
+ * of each step, at least 1; events whose intervals shrink until the time left is less than
+ * `accumulation` of the first interval count as accumulated.
  */
 pc_status pc_model_set_event_search(pc_model *model,
                                     size_t samples_per_step,
@@ -1275,18 +1278,18 @@ pc_status pc_cancel_new(pc_cancel **cancel, pc_error **error);
 
 /**
  * Ends the derivations and integrations under way with PC_LIMIT, soon, and those that begin later
- * at once. It takes no lock and allocates nothing, so that a handler of signals may call it,
- * which is all that one may. NULL is allowed.
+ * at once. It takes no lock and allocates nothing: it is the one function that a signal
+ * handler may call. NULL is allowed.
  */
 void pc_cancel_request(const pc_cancel *cancel);
 
 /**
- * 1 after pc_cancel_request, else 0, as of NULL.
+ * 1 after pc_cancel_request, else 0; 0 for NULL.
  */
 int pc_cancel_is_requested(const pc_cancel *cancel);
 
 /**
- * Frees a handle; what was given it goes on. Null is allowed.
+ * Frees a handle; systems that have it continue without. NULL is allowed.
  */
 void pc_cancel_free(pc_cancel *cancel);
 
@@ -1302,8 +1305,8 @@ void pc_solver_options_init(pc_solver_options *options, size_t size);
 
 /**
  * Derives and compiles the equations of a model. `options` may be NULL. This takes from
- * milliseconds to, for a hundred bodies, seconds; everything else is fast, except where it says
- * that it derives.
+ * milliseconds to seconds (for a hundred bodies); other functions are fast unless they say
+ * that they derive.
  */
 pc_status pc_system_new(const pc_model *model,
                         const pc_system_options *options,
@@ -1312,56 +1315,56 @@ pc_status pc_system_new(const pc_model *model,
 
 /**
  * A copy for another thread, with the parameters as they are now. It shares the machine code
- * there is: that of f, and that of each derivative which the original has evaluated before (the
- * first evaluation of each compiles it).
+ * that exists: that of f, and that of each derivative which the original has evaluated before
+ * (its first evaluation compiles it).
  */
 pc_status pc_system_clone(const pc_system *system, pc_system **copy, pc_error **error);
 
 /**
- * Frees a system. Null is allowed. In a function that is called by a call of this system it does
- * nothing.
+ * Frees a system. NULL is allowed. Called from a function that a call of this system runs it
+ * does nothing.
  */
 void pc_system_free(pc_system *system);
 
 /**
- * The length of the state y: coordinates, quasi-velocities or momenta, first-order states. 0 of
- * NULL.
+ * The length of the state y: coordinates, quasi-velocities or momenta, first-order states; 0
+ * for NULL.
  */
 size_t pc_system_dim(const pc_system *system);
 
 /**
- * The number of coordinates, which come first in the state. 0 of NULL.
+ * The number of coordinates, which come first in the state; 0 for NULL.
  */
 size_t pc_system_coordinate_count(const pc_system *system);
 
 /**
- * The number of first-order states, which come last in the state. 0 of NULL.
+ * The number of first-order states, which come last in the state; 0 for NULL.
  */
 size_t pc_system_state_count(const pc_system *system);
 
 /**
- * The number of parameters. 0 of NULL.
+ * The number of parameters; 0 for NULL.
  */
 size_t pc_system_parameter_count(const pc_system *system);
 
 /**
- * The number of observables: the integrals, "energy", the outputs. 0 of NULL.
+ * The number of observables: the integrals, "energy", the outputs; 0 for NULL.
  */
 size_t pc_system_observable_count(const pc_system *system);
 
 /**
- * The number of observables, the first ones, that should stay constant: integrals and energy. 0
- * of NULL.
+ * The number of observables that should stay constant, integrals and energy, which come
+ * first; 0 for NULL.
  */
 size_t pc_system_conserved_count(const pc_system *system);
 
 /**
- * The number of constraints that are kept by projection. 0 of NULL.
+ * The number of constraints that are kept by projection; 0 for NULL.
  */
 size_t pc_system_constraint_count(const pc_system *system);
 
 /**
- * The number of reactions; 0 unless pc_model_observe_reactions was asked, and of NULL.
+ * The number of reactions; 0 without pc_model_observe_reactions, and for NULL.
  */
 size_t pc_system_reaction_count(const pc_system *system);
 
@@ -1408,9 +1411,9 @@ pc_status pc_system_parameters(const pc_system *system,
                                pc_error **error);
 
 /**
- * Sets all parameters; cheap, nothing is derived again. The start stays, and solvers and kernels
- * made before keep their values. Inputs come after the parameters; those with a table are read
- * from it whatever they are set to.
+ * Sets all parameters; cheap, since nothing is derived again. The start stays, and solvers
+ * and kernels made before keep their values. Inputs come after the parameters; one with a
+ * table follows its table whatever it is set to.
  */
 pc_status pc_system_set_parameters(pc_system *system,
                                    const double *values,
@@ -1418,14 +1421,14 @@ pc_status pc_system_set_parameters(pc_system *system,
                                    pc_error **error);
 
 /**
- * Sets one parameter, by its place; those that are expressions in it follow, unless they have
- * been set themselves. Otherwise as pc_system_set_parameters.
+ * Sets one parameter, by its index; parameters that are expressions in it follow, unless they
+ * have themselves been set. Otherwise as pc_system_set_parameters.
  */
 pc_status pc_system_set_parameter(pc_system *system, size_t index, double value, pc_error **error);
 
 /**
- * Writes the place of a component of the state, from 0, by its name. PC_NOT_FOUND if there is
- * none of it.
+ * Writes the index of a component of the state, from 0, by its name. PC_NOT_FOUND if no
+ * component has this name.
  */
 pc_status pc_system_find(const pc_system *system,
                          const char *name,
@@ -1433,7 +1436,7 @@ pc_status pc_system_find(const pc_system *system,
                          pc_error **error);
 
 /**
- * Writes the place of a parameter or input, from 0, by its name, as pc_system_find.
+ * Writes the index of a parameter or input, from 0, by its name, as pc_system_find.
  */
 pc_status pc_system_find_parameter(const pc_system *system,
                                    const char *name,
@@ -1441,7 +1444,7 @@ pc_status pc_system_find_parameter(const pc_system *system,
                                    pc_error **error);
 
 /**
- * Writes the place of an observable, from 0, by its name, as pc_system_find.
+ * Writes the index of an observable, from 0, by its name, as pc_system_find.
  */
 pc_status pc_system_find_observable(const pc_system *system,
                                     const char *name,
@@ -1449,15 +1452,15 @@ pc_status pc_system_find_observable(const pc_system *system,
                                     pc_error **error);
 
 /**
- * Declares that a force which a function of yours computes acts on a quasi-velocity; on a
- * coordinate if the model declares no quasi-velocities. It adds to what else acts there. The
- * function belongs to the system, not to the model: pc_system_set_force. An unknown name is
- * found by pc_model_check and pc_system_new.
+ * Declares that a force computed by a function of yours acts on a quasi-velocity; on a
+ * coordinate if the model declares no quasi-velocities. It adds to the other forces there.
+ * The function belongs to the system, not to the model: pc_system_set_force. An unknown name
+ * is reported by pc_model_check and pc_system_new.
  */
 pc_status pc_model_add_external_force(pc_model *model, const char *on, pc_error **error);
 
 /**
- * The number of external forces. 0 of NULL.
+ * The number of external forces; 0 for NULL.
  */
 size_t pc_system_force_count(const pc_system *system);
 
@@ -1488,10 +1491,10 @@ pc_status pc_system_set_force(pc_system *system,
                               pc_error **error);
 
 /**
- * Gives a quasi-velocity beside those of the model, for systems of the form PC_HAMEL: a linear
- * form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where those
- * given are fewer than the independent ones, quasi-velocities of the model complete them. Each
- * is an output too. What is wrong with it is found by pc_model_check and pc_system_new.
+ * Adds a quasi-velocity to those of the model, for systems of the form PC_HAMEL: a linear
+ * form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where fewer
+ * are given than there are independent ones, quasi-velocities of the model complete them.
+ * Each is an output too. Errors in it are reported by pc_model_check and pc_system_new.
  */
 pc_status pc_model_give_quasi_velocity(pc_model *model,
                                        const char *name,
@@ -1499,11 +1502,11 @@ pc_status pc_model_give_quasi_velocity(pc_model *model,
                                        pc_error **error);
 
 /**
- * Asks for a velocity as one of the independent ones, as many as the constraints leave free:
- * where multipliers would hold these, systems then have the equations in which they are
- * eliminated. The name is that of a quasi-velocity; x' where there are none. Without any,
- * equations in print and in source are those of the velocities that make them shortest. A wrong
- * choice is found by pc_system_new.
+ * Chooses a velocity as one of the independent ones, of which there are as many as the
+ * constraints leave free: where multipliers would hold the constraints, systems then have
+ * equations in which these are eliminated. The name is that of a quasi-velocity, or x' where
+ * there are none. Without a choice, printed equations and source are in the velocities that
+ * make them shortest. A wrong choice is reported by pc_system_new.
  */
 pc_status pc_model_add_independent(pc_model *model, const char *name, pc_error **error);
 
@@ -1512,9 +1515,10 @@ pc_status pc_model_add_independent(pc_model *model, const char *name, pc_error *
  *
  * After the first call it takes no lock where f is one piece of machine code: where no function
  * of the program computes forces, M is not factorised in numbers, and no velocities are solved
- * for. Any number of threads may then call it at the same time and get its rates, those of the
- * parameters before or after where another one sets them. It is PC_BUSY, with anything in ydot,
- * only where that happens during its evaluation, and where it fails while the handle is in use.
+ * for. Any number of threads may then call it at the same time; while another thread sets
+ * parameters, the rates are those of the parameters before or after. It returns PC_BUSY, with
+ * ydot undefined, only where parameters are set during its evaluation, and where it fails
+ * while the handle is in use.
  */
 pc_status pc_system_rhs(const pc_system *system,
                         double t,
@@ -1536,10 +1540,10 @@ pc_status pc_system_jacobian(const pc_system *system,
                              pc_error **error);
 
 /**
- * Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column
- * j, ascending, are the numbers of row_indices from place column_starts(j) up to but without
- * place column_starts(j + 1). Gives pointers to dim + 1 and `entries` numbers that belong to the
- * system and its copies. Each of the three places may be NULL.
+ * The entries of ∂f/∂y that may be nonzero, in compressed columns: the rows of the entries of
+ * column j, ascending, are `row_indices[column_starts[j]]` up to, but not including,
+ * `row_indices[column_starts[j + 1]]`. Gives pointers to dim + 1 and `entries` numbers that
+ * belong to the system and its copies. Each of the three arguments may be NULL.
  */
 pc_status pc_system_jacobian_pattern(const pc_system *system,
                                      size_t *entries,
@@ -1572,9 +1576,9 @@ pc_status pc_system_jvp(const pc_system *system,
                         pc_error **error);
 
 /**
- * Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their product:
- * by each parameter while the others, also those that follow it, stay; by an input with a table
- * that by its values. PC_UNSUPPORTED unless pc_model_differentiate was asked, or there are
+ * Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their
+ * product: by each parameter with all others fixed, also those that follow it; by the value
+ * of an input with a table. PC_UNSUPPORTED unless pc_model_differentiate was called, and with
  * external forces.
  */
 pc_status pc_system_parameter_jacobian(const pc_system *system,
@@ -1588,7 +1592,7 @@ pc_status pc_system_parameter_jacobian(const pc_system *system,
 /**
  * Writes ∂f/∂t, as long as the state, as Rosenbrock's methods take it. The first call derives, as
  * pc_system_new does, unless no expression of the model has t. PC_UNSUPPORTED with external
- * forces, of which it is not known, and with inputs that have tables.
+ * forces, whose ∂/∂t is unknown, and with inputs that have tables.
  */
 pc_status pc_system_time_derivative(const pc_system *system,
                                     double t,
@@ -1599,9 +1603,9 @@ pc_status pc_system_time_derivative(const pc_system *system,
                                     pc_error **error);
 
 /**
- * Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and
- * the integrals of pc_model_keep to their values at the start of the model, or where
- * pc_system_keep_from said. Where there is nothing to be kept it stays.
+ * Moves the state, in place, onto the constraints by the shortest way in the kinetic metric,
+ * and the integrals of pc_model_keep to their values at the start of the model, or at the
+ * state of pc_system_keep_from. Without either the state stays as it is.
  */
 pc_status pc_system_project(const pc_system *system,
                             double t,
@@ -1610,8 +1614,9 @@ pc_status pc_system_project(const pc_system *system,
                             pc_error **error);
 
 /**
- * Has pc_system_project keep the integrals of pc_model_keep at their values at (t, y), moved to
- * the constraints, also after the parameters are set. Solvers keep those at their own start.
+ * Makes pc_system_project keep the integrals of pc_model_keep at their values at (t, y),
+ * moved onto the constraints, also after parameters are set. Solvers keep the values at their
+ * own start.
  */
 pc_status pc_system_keep_from(pc_system *system,
                               double t,
@@ -1623,8 +1628,8 @@ pc_status pc_system_keep_from(pc_system *system,
  * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
  * energy, the outputs.
  *
- * An observable is not finite where the model has no value for it; one with accelerations in it,
- * also where external forces cannot be computed.
+ * An observable without a value here is not finite; nor is one that contains accelerations
+ * where external forces cannot be computed.
  */
 pc_status pc_system_observe(const pc_system *system,
                             double t,
@@ -1635,8 +1640,8 @@ pc_status pc_system_observe(const pc_system *system,
                             pc_error **error);
 
 /**
- * Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what
- * should stay constant, which are the first of the observables.
+ * Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: the
+ * first of the observables, which should stay constant.
  */
 pc_status pc_system_integrals(const pc_system *system,
                               double t,
@@ -1657,8 +1662,9 @@ pc_status pc_system_energy(const pc_system *system,
                            pc_error **error);
 
 /**
- * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: what
- * they add to the forces Q_s is the sum of each times the derivative of its constraint by η_s.
+ * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count:
+ * together they add to the force Q_s the sum of each times the derivative of its constraint
+ * by η_s.
  */
 pc_status pc_system_reactions(const pc_system *system,
                               double t,
@@ -1669,7 +1675,7 @@ pc_status pc_system_reactions(const pc_system *system,
                               pc_error **error);
 
 /**
- * Writes what should be zero of each constraint that is kept by projection, as many as
+ * Writes the residual of each constraint that is kept by projection, as many as
  * pc_system_constraint_count.
  */
 pc_status pc_system_constraint_residuals(const pc_system *system,
@@ -1681,9 +1687,9 @@ pc_status pc_system_constraint_residuals(const pc_system *system,
                                          pc_error **error);
 
 /**
- * Adds an event: `when`, an expression, passes through zero in a direction, a pc_direction. A
- * `terminal` one, not 0, ends an integration with PC_EVENT. Simultaneous ones are dealt with in
- * the order in which they were added.
+ * Adds an event: the expression `when` passes through zero in a direction, a pc_direction. If
+ * `terminal` is not 0 it ends an integration with PC_EVENT. Simultaneous events are handled
+ * in the order in which they were added.
  */
 pc_status pc_model_add_event(pc_model *model,
                              const char *name,
@@ -1693,9 +1699,9 @@ pc_status pc_model_add_event(pc_model *model,
                              pc_error **error);
 
 /**
- * Gives an event that has been added a reset: where it occurs, the coordinate, quasi-velocity or
- * velocity `x'` that is called `variable` takes the value of the expression. All resets of an
- * event take effect together, from the state before it.
+ * Adds a reset to an event: where the event occurs, the coordinate, quasi-velocity or
+ * velocity `x'` called `variable` takes the value of the expression. All resets of an event
+ * take effect together, from the state before it.
  */
 pc_status pc_model_add_event_reset(pc_model *model,
                                    const char *event,
@@ -1704,7 +1710,7 @@ pc_status pc_model_add_event_reset(pc_model *model,
                                    pc_error **error);
 
 /**
- * The number of events of the model. 0 of NULL.
+ * The number of events of the model; 0 for NULL.
  */
 size_t pc_system_event_count(const pc_system *system);
 
@@ -1731,8 +1737,8 @@ int pc_system_event_resets(const pc_system *system, size_t index);
 
 /**
  * Writes the functions of the events at (t, y), as many as pc_system_event_count: an event
- * occurs where its own passes through zero. They are not finite where the model has no value for
- * them.
+ * occurs where its function passes through zero. A function without a value here is not
+ * finite.
  */
 pc_status pc_system_events(const pc_system *system,
                            double t,
@@ -1756,8 +1762,8 @@ pc_status pc_system_event_reset(const pc_system *system,
 /**
  * Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state,
  * so `length` is k*k; k is pc_system_dim less pc_system_coordinate_count and
- * pc_system_state_count. With multipliers their rows are not among it. The first call derives,
- * as pc_system_new does.
+ * pc_system_state_count. Rows of multipliers are not part of it. The first call derives, as
+ * pc_system_new does.
  */
 pc_status pc_system_mass_matrix(const pc_system *system,
                                 double t,
@@ -1768,9 +1774,9 @@ pc_status pc_system_mass_matrix(const pc_system *system,
                                 pc_error **error);
 
 /**
- * Writes the right-hand side r of M η̇ = r at (t, y), k numbers, k and M as of
- * pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions of multipliers.
- * The first call derives, as pc_system_new does.
+ * Writes the right-hand side r of M η̇ = r at (t, y), k numbers, with k and M as in
+ * pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions of
+ * multipliers. The first call derives, as pc_system_new does.
  */
 pc_status pc_system_right_hand_side(const pc_system *system,
                                     double t,
@@ -1781,8 +1787,9 @@ pc_status pc_system_right_hand_side(const pc_system *system,
                                     pc_error **error);
 
 /**
- * Solves M w = v at (t, y), M as of pc_system_mass_matrix, and writes w = M⁻¹ v; both have k
- * numbers. The first call derives, as pc_system_new does. PC_EVALUATION where M is singular.
+ * Solves M w = v at (t, y), with M as in pc_system_mass_matrix, and writes w = M⁻¹ v; both
+ * have k numbers. The first call derives, as pc_system_new does. PC_EVALUATION where M is
+ * singular.
  */
 pc_status pc_system_solve_mass_matrix(const pc_system *system,
                                       double t,
@@ -1795,9 +1802,9 @@ pc_status pc_system_solve_mass_matrix(const pc_system *system,
                                       pc_error **error);
 
 /**
- * Writes the number K of operators X_1 … X_K between which there are structure coefficients: one
- * for each quasi-velocity of the state, then those that constraints say vanish, if any. The
- * first call derives, as pc_system_new does.
+ * Writes the number K of operators X_1 … X_K that have structure coefficients: one for each
+ * quasi-velocity of the state, then one for each that constraints make vanish. The first call
+ * derives, as pc_system_new does.
  */
 pc_status pc_system_operator_count(const pc_system *system, size_t *operators, pc_error **error);
 
@@ -1815,10 +1822,10 @@ pc_status pc_system_structure_coefficients(const pc_system *system,
                                            pc_error **error);
 
 /**
- * Writes the residual of the equations for ydot, as codes for implicit equations F(t, y, ẏ) = 0
- * take it: ẋ − b η − b_0, then M η̇ − r, where nothing is divided by M. With multipliers, whose
- * reactions are eliminated, the second part is M times the difference of η̇ from what it should
- * be; in the canonical form all is ẏ − f. The first call derives, as pc_system_new does.
+ * Writes the residual of the equations for ydot, as codes for implicit equations F(t, y, ẏ) =
+ * 0 take it: ẋ − b η − b_0, then M η̇ − r, without dividing by M. With multipliers, whose
+ * reactions are eliminated, the second part is M times the error of η̇; in the canonical form
+ * the residual is ẏ − f. The first call derives, as pc_system_new does.
  */
 pc_status pc_system_residual(const pc_system *system,
                              double t,
@@ -1836,9 +1843,10 @@ pc_status pc_system_residual(const pc_system *system,
  *   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
  *
  * so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no
- * forces. The functions are expressions of the model, of coordinates and velocities; the momenta
- * y_s = ∂L/∂η_s are put in. Under nonholonomic constraints it is the almost-Poisson bracket of
- * the independent momenta. Each call derives, as pc_system_new does.
+ * forces. The functions are expressions of the model in coordinates and velocities; the
+ * momenta y_s = ∂L/∂η_s are substituted. Under nonholonomic constraints it is the
+ * almost-Poisson bracket of the independent momenta. Each call derives, as pc_system_new
+ * does.
  */
 pc_status pc_system_bracket(const pc_system *system,
                             const char *f,
@@ -1884,12 +1892,12 @@ pc_status pc_system_print(const pc_system *system, int format, char **text, pc_e
 
 /**
  * Writes the equations as C source that depends on nothing of this library: the text of NAME.h
- * and of NAME.c, where NAME is `name`, spelt as an identifier: Greek letters by their names,
- * other signs as `_`, one at a time and not at the ends, `n_` before a digit at the beginning,
- * `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass matrix, the
+ * and of NAME.c, where NAME is `name`, made an identifier: Greek letters by their names, runs
+ * of other characters as one `_`, none at the ends, `n_` before a leading digit, `_` after a
+ * keyword of C. The source has the right-hand side, its Jacobian, the mass matrix, the
  * energy, the integrals and the outputs of independent quasi-velocities, those of its momenta
  * where the system has these, and says at its head how it is used. External forces are
- * parameters of it, after the others, called `Q_` and the name of their quasi-velocity, and stay
+ * parameters of it, after the others, called `Q_` and the name of their quasi-velocity, and
  * zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
  * capitals) to a program that integrates from the start of the model to that time. Free both
  * texts with pc_string_free.
@@ -1904,12 +1912,12 @@ pc_status pc_system_emit_c(const pc_system *system,
 /**
  * Prints what can be said of the motions without integrating them, as `pc theory` does: momenta
  * and their brackets, Casimirs, integrals, cyclic displacements, invariant measure, Chaplygin's
- * multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. What is claimed is
- * said to be proved, disproved or open. Integrals are looked for that are polynomials of a
- * `degree` from 1 to 6 in the velocities, whose coefficients are polynomials of the coordinates
- * times 1 or one of the `functions`, expressions of the model; there may be none of these.
- * `format` is a pc_format. Parameters have the values of the model. Everything is derived anew,
- * which takes longer than pc_system_print. Free the text with pc_string_free.
+ * multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each claim is
+ * marked proved, disproved or open. Integrals are sought that are polynomials of a `degree`
+ * from 1 to 6 in the velocities, whose coefficients are polynomials in the coordinates times
+ * 1 or one of the `functions`, expressions of the model; the list may be empty. `format` is a
+ * pc_format. Parameters have the values of the model. Everything is derived again, which
+ * takes longer than pc_system_print. Free the text with pc_string_free.
  */
 pc_status pc_system_theory(const pc_system *system,
                            int format,
@@ -1923,11 +1931,11 @@ pc_status pc_system_theory(const pc_system *system,
  * Derives the model a second time, by a route that shares only its text with the first, and
  * compares both at `states` random states on the constraints, for the parameters as they are
  * now: velocities, accelerations or rates of momenta, reactions, the energy and its rate,
- * integrals and outputs. 0 states are 100. `text` says how closely they agree and what was not
- * compared, in lines; it may be NULL, and is freed with pc_string_free. External forces are
- * taken for 0. PC_DISAGREEMENT, with the quantity and both its values, if one of the two is
- * wrong, which is a defect of the library; PC_UNSUPPORTED if the second cannot be made of this
- * model. It takes as long as pc_system_new.
+ * integrals and outputs. 0 states mean 100. `text` says how closely they agree and what was
+ * not compared, in lines; it may be NULL, and is freed with pc_string_free. External forces
+ * are taken to be 0. PC_DISAGREEMENT, with the quantity and both its values, if the two
+ * differ, which is a defect of the library; PC_UNSUPPORTED if this model has no second
+ * derivation. It takes as long as pc_system_new.
  */
 pc_status pc_system_verify(const pc_system *system, size_t states, char **text, pc_error **error);
 
@@ -1950,12 +1958,12 @@ pc_status pc_kernel_set_parameters(pc_kernel *kernel,
                                    pc_error **error);
 
 /**
- * Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they share no
- * memory. `kernel` is a pc_kernel of this thread's.
+ * Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they must not
+ * share memory. `kernel` is a pc_kernel of this thread.
  *
- * Returns 0; 1 where f cannot be evaluated, so that a smaller step may help; −1 for what no step
- * helps. pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2 takes,
- * with the kernel as `params`.
+ * Returns 0; 1 where f cannot be evaluated and a smaller step may help; −1 where no step
+ * helps. pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2
+ * takes, with the kernel as `params`.
  */
 int pc_kernel_rhs(double t, const double *y, double *ydot, void *kernel);
 
@@ -1970,23 +1978,23 @@ int pc_kernel_jacobian(double t,
 
 /**
  * Writes f(t, y) of `count` states, which stand one after the other in `states`, to `rates`, in
- * the same order. Otherwise as pc_kernel_rhs: 1 if some cannot be evaluated, whose rates are not
- * numbers then; −1 for what no step helps, and the rates of those after it are not written.
+ * the same order. Otherwise as pc_kernel_rhs: 1 if some cannot be evaluated, whose rates are
+ * then NaN; −1 where no step helps, and the rates of the states after it are not written.
  */
 int pc_kernel_rhs_many(double t, const double *states, size_t count, double *rates, void *kernel);
 
 /**
- * The dimension of a kernel's state. 0 of NULL.
+ * The dimension of a kernel's state; 0 for NULL.
  */
 size_t pc_kernel_dim(const pc_kernel *kernel);
 
 /**
- * An integration of the system from the state y at the time t, with the parameters as they are
- * now; from the start of the model if y is NULL, of length 0, and then t is not looked at.
- * `options` may be NULL. States stay on the constraints, and keep what pc_model_keep says, by
- * projection after each step; what is kept then are the values at this start. The events of the
- * model are followed: where one occurs, the state is reset as the model says, and a terminal one
- * ends the call with PC_EVENT.
+ * An integration of the system from the state y at the time t, with the parameters as they
+ * are now; from the start of the model if y is NULL, of length 0, and then t is ignored.
+ * `options` may be NULL. Projection after each step keeps states on the constraints, and the
+ * integrals of pc_model_keep at their values at this start. The events of the model are
+ * followed: where one occurs, the state is reset as the model says, and a terminal one ends
+ * the call with PC_EVENT.
  */
 pc_status pc_solver_new(const pc_system *system,
                         const pc_solver_options *options,
@@ -1997,23 +2005,25 @@ pc_status pc_solver_new(const pc_system *system,
                         pc_error **error);
 
 /**
- * Frees a solver. Null is allowed. In its own observers and functions it does nothing.
+ * Frees a solver. NULL is allowed. Called from the solver's own observers and functions it
+ * does nothing.
  */
 void pc_solver_free(pc_solver *solver);
 
 /**
- * Has a solver go on with the parameters and inputs of the system as they are now, from where it
- * stands: it begins anew there, at order 1. So inputs are changed between two calls of
- * pc_solver_advance. The system is that of the solver, or one of the same model. PC_UNSUPPORTED
- * with events of pc_solver_add_event.
+ * Makes a solver continue with the parameters and inputs of the system as they are now: it
+ * restarts from where it stands, at order 1. This is how inputs change between two calls of
+ * pc_solver_advance. The system is that of the solver, or one of the same model.
+ * PC_UNSUPPORTED with events of pc_solver_add_event.
  */
 pc_status pc_solver_take_parameters(pc_solver *solver, const pc_system *system, pc_error **error);
 
 /**
- * Integrates to the time t, in the direction of the first step, and writes the state there. With
- * PC_EVENT and PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the
- * next call goes on from there. After a failure pc_solver_time and pc_solver_state tell what was
- * reached; one of them is PC_LIMIT, by the time limit or the pc_cancel of the system's options.
+ * Integrates to the time t, in the direction of the first step, and writes the state there.
+ * With PC_EVENT and PC_STOPPED it is the state where the integration ended, and
+ * pc_solver_time gives the time; the next call continues from there. After a failure
+ * pc_solver_time and pc_solver_state give what was reached. PC_LIMIT is such a failure, by
+ * the time limit or the pc_cancel of the system's options.
  */
 pc_status pc_solver_advance(pc_solver *solver,
                             double t,
@@ -2022,8 +2032,9 @@ pc_status pc_solver_advance(pc_solver *solver,
                             pc_error **error);
 
 /**
- * Takes one internal step in the direction of `towards`, or the part of it before an event, and
- * writes its end, which may lie beyond, and the state there, also with PC_EVENT and PC_STOPPED.
+ * Takes one internal step in the direction of `towards`, or the part of it before an event,
+ * and writes the time of its end, which may lie beyond `towards`, and the state there, also
+ * with PC_EVENT and PC_STOPPED.
  */
 pc_status pc_solver_step(pc_solver *solver,
                          double towards,
@@ -2033,10 +2044,10 @@ pc_status pc_solver_step(pc_solver *solver,
                          pc_error **error);
 
 /**
- * Integrates through the times, which go one way, and calls `observer` at each with the state,
- * which is valid during the call, and with `user`. PC_STOPPED if the observer stops it. At the
- * time of an event it is given the state after it; a terminal event is the last thing it is
- * given, at the time of that, and PC_EVENT is returned.
+ * Integrates through the times, which increase or decrease throughout, and calls `observer`
+ * at each with the state, which is valid during the call, and with `user`. PC_STOPPED if the
+ * observer stops it. At the time of an event it receives the state after the event; a
+ * terminal event is the last call, at the time of the event, and PC_EVENT is returned.
  */
 pc_status pc_solver_run(pc_solver *solver,
                         const double *times,
@@ -2046,19 +2057,19 @@ pc_status pc_solver_run(pc_solver *solver,
                         pc_error **error);
 
 /**
- * Writes the time at which the integration stands.
+ * Writes the current time of the integration.
  */
 pc_status pc_solver_time(const pc_solver *solver, double *t, pc_error **error);
 
 /**
- * Writes the state at which the integration stands.
+ * Writes the current state of the integration.
  */
 pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, pc_error **error);
 
 /**
- * Has an observer told of each event from now on, instead of the one before; of none if it is
- * NULL. `user` has to live until there is another one, or the solver is freed. It is called
- * within the calls that integrate, on their thread.
+ * Sets the observer that is called for each event from now on, in place of the one before;
+ * NULL for none. `user` has to live until another observer is set or the solver is freed. It
+ * is called within the calls that integrate, on their thread.
  */
 pc_status pc_solver_observe_events(pc_solver *solver,
                                    pc_event_observer observer,
@@ -2068,7 +2079,7 @@ pc_status pc_solver_observe_events(pc_solver *solver,
 /**
  * The same with a `user` that the solver owns: `destroy`, unless NULL, is called with it exactly
  * once: by this call if it fails or `observer` is NULL, else when another observer takes its
- * place or the solver is freed. It must not use the solver while that is being freed.
+ * place or the solver is freed. It must not use the solver while the solver is being freed.
  */
 pc_status pc_solver_set_event_observer(pc_solver *solver,
                                        pc_event_observer observer,
@@ -2079,8 +2090,9 @@ pc_status pc_solver_set_event_observer(pc_solver *solver,
 /**
  * Follows an event of the program's own, after those of the model and those added before:
  * `function` passes through zero in a direction, a pc_direction. There `reset`, unless NULL,
- * changes the state, which is then projected to the constraints; a `terminal` event, not 0, ends
- * the call with PC_EVENT. Comes before the first step. `name` is for messages.
+ * changes the state, which is then projected onto the constraints; if `terminal` is not 0 the
+ * event ends the call with PC_EVENT. Must be called before the first step. `name` is for
+ * messages.
  *
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
  * pc_solver_free. It must not use the solver.
@@ -2096,7 +2108,7 @@ pc_status pc_solver_add_event(pc_solver *solver,
                               pc_error **error);
 
 /**
- * The number of events that a solver follows: those of the model, then those added. 0 of NULL.
+ * The number of events that a solver follows: those of the model, then those added; 0 for NULL.
  */
 size_t pc_solver_event_count(const pc_solver *solver);
 
@@ -2114,7 +2126,7 @@ pc_status pc_solver_event_occurrences(const pc_solver *solver,
                                       pc_error **error);
 
 /**
- * Writes when an event occurred last, and the states before and after. PC_NOT_FOUND if it has
+ * Writes when an event last occurred, and the states before and after. PC_NOT_FOUND if it has
  * not occurred. Only the last occurrence is kept; an observer sees all. `before` and `after` may
  * be NULL, of length 0.
  */
@@ -2128,16 +2140,16 @@ pc_status pc_solver_last_occurrence(const pc_solver *solver,
                                     pc_error **error);
 
 /**
- * Writes the number of the terminal event that ended the last call which integrated;
- * PC_NOT_FOUND if none did.
+ * Writes the number of the terminal event that ended the last integrating call; PC_NOT_FOUND
+ * if none did.
  */
 pc_status pc_solver_terminal_event(const pc_solver *solver, size_t *event, pc_error **error);
 
 /**
- * Writes the derivative of the start of the model by parameter number `parameter`, from 0: its
+ * Writes the derivative of the start of the model by parameter number `parameter`, from 0:
  * start values may be expressions in parameters. It derives the equations twice.
- * PC_INCONSISTENT_MODEL where there is no start for parameters near by, for an input with a
- * table, and for a parameter in whose expression others are.
+ * PC_INCONSISTENT_MODEL where nearby parameters have no start, for an input with a table, and
+ * for a parameter that is an expression in others.
  */
 pc_status pc_system_start_by_parameter(const pc_system *system,
                                        size_t parameter,
@@ -2146,13 +2158,13 @@ pc_status pc_system_start_by_parameter(const pc_system *system,
                                        pc_error **error);
 
 /**
- * Has a solver integrate one more sensitivity with the motion, before the first step: the
- * derivative of the state by parameter number `parameter`, from 0, of a start with the
- * derivative `start`, as pc_system_start_by_parameter gives it for that of the model; NULL, of
- * length 0, for a start that does not depend on the parameter. The model has to be one of
- * pc_model_differentiate. Sensitivities jump where an event of the model resets the state;
- * PC_INVALID_ARGUMENT where an event of the program does. By an input with a table they are the
- * change when all its values are raised alike.
+ * Adds a sensitivity that a solver integrates with the motion, before the first step: the
+ * derivative of the state by parameter number `parameter`, from 0. `start` is the derivative
+ * of the start, which pc_system_start_by_parameter gives for that of the model; NULL, of
+ * length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
+ * Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where
+ * an event of the program does. For an input with a table it is the derivative by a shift of
+ * all its values.
  */
 pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     size_t parameter,
@@ -2161,8 +2173,8 @@ pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     pc_error **error);
 
 /**
- * Writes sensitivity number `number`, from 0 in the order in which they were added, where the
- * integration stands, as long as the state.
+ * Writes sensitivity number `number`, from 0 in the order in which they were added, at the
+ * time of the solver; it is as long as the state.
  */
 pc_status pc_solver_sensitivity(const pc_solver *solver,
                                 size_t number,
@@ -2174,8 +2186,8 @@ pc_status pc_solver_sensitivity(const pc_solver *solver,
  * Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal
  * step, from the polynomial of the method, whose degree is the order of that step. The step
  * reaches from step_time − last_step to step_time of pc_statistics, but not beyond an event;
- * there is none before the first, nor after a reset. y is on the constraints, its derivatives
- * are those of the polynomial.
+ * before the first step and after a reset there is none. y is on the constraints; its
+ * derivatives are those of the polynomial.
  */
 pc_status pc_solver_interpolate(pc_solver *solver,
                                 double t,
@@ -2185,16 +2197,16 @@ pc_status pc_solver_interpolate(pc_solver *solver,
                                 pc_error **error);
 
 /**
- * Integrates to the time t, which is not that of the solver, as pc_solver_advance does, and
- * keeps the motion from where it stood: (order + 2) × dim numbers for each internal step.
- * `dense` is made also with PC_EVENT and PC_STOPPED, and then ends there.
+ * Integrates to the time t, which must differ from that of the solver, as pc_solver_advance
+ * does, and keeps the motion from where the solver stood: (order + 2) × dim numbers for each
+ * internal step. With PC_EVENT and PC_STOPPED `dense` is made too, and ends there.
  */
 pc_status pc_solver_run_dense(pc_solver *solver, double t, pc_dense **dense, pc_error **error);
 
 /**
- * Writes y(t). At an event that is the state after it, but at the very end the limit from
- * before. Between the ends of steps it is off the constraints by the error of a step;
- * pc_system_project moves it there.
+ * Writes y(t). At an event this is the state after it, except at the very end, where it is
+ * the limit from before. Between the ends of steps it is off the constraints by the error of
+ * a step; pc_system_project moves it onto them.
  */
 pc_status pc_dense_eval(const pc_dense *dense,
                         double t,
@@ -2203,7 +2215,7 @@ pc_status pc_dense_eval(const pc_dense *dense,
                         pc_error **error);
 
 /**
- * Writes the rate of y at t, which may jump by the error of a step from one step to the next.
+ * Writes the rate of y at t. It may jump by the error of a step where one step meets the next.
  */
 pc_status pc_dense_rate(const pc_dense *dense,
                         double t,
@@ -2212,17 +2224,17 @@ pc_status pc_dense_rate(const pc_dense *dense,
                         pc_error **error);
 
 /**
- * The length of the state. 0 of NULL.
+ * The length of the state; 0 for NULL.
  */
 size_t pc_dense_dim(const pc_dense *dense);
 
 /**
- * Where the motion begins; NaN of NULL.
+ * The time at which the motion begins; NaN for NULL.
  */
 double pc_dense_t_begin(const pc_dense *dense);
 
 /**
- * Where the motion ends, before its beginning if it goes back in time; NaN of NULL.
+ * The time at which the motion ends, before its beginning if it goes back in time; NaN for NULL.
  */
 double pc_dense_t_end(const pc_dense *dense);
 
@@ -2232,12 +2244,12 @@ double pc_dense_t_end(const pc_dense *dense);
 void pc_dense_free(pc_dense *dense);
 
 /**
- * Writes time and state of a solver as bytes, to be freed with pc_bytes_free and taken up by
- * pc_solver_restore, in another run of the program if you like. `label` says what it is a
+ * Writes time and state of a solver as bytes, to be freed with pc_bytes_free and read by
+ * pc_solver_restore, possibly in another run of the program. `label` says what it is a
  * checkpoint of; NULL for the empty text.
  *
- * A method rests on the steps before, so that this solver, too, begins anew there, at order 1:
- * from a checkpoint on, it and those restored go through the same numbers to the last bit.
+ * A multistep method depends on earlier steps, so this solver restarts here too, at order 1:
+ * from a checkpoint on, it and the restored ones go through the same numbers to the last bit.
  * Events of the model are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
  */
 pc_status pc_solver_checkpoint(pc_solver *solver,
@@ -2247,11 +2259,11 @@ pc_status pc_solver_checkpoint(pc_solver *solver,
                                pc_error **error);
 
 /**
- * An integration from a checkpoint, with the parameters of the system as they are now. It goes
- * on as the one did that was written if system, parameters and options are the same. `options`
- * may be NULL. PC_INVALID_CHECKPOINT unless the bytes are all that pc_solver_checkpoint wrote,
- * unchanged, and of a model with the same names and equations; values of parameters may differ.
- * The work of the solver is counted from there.
+ * An integration from a checkpoint, with the parameters of the system as they are now. It
+ * continues as the checkpointed one did if system, parameters and options are the same.
+ * `options` may be NULL. PC_INVALID_CHECKPOINT unless the bytes are exactly what
+ * pc_solver_checkpoint wrote, for a model with the same names and equations; values of
+ * parameters may differ. Statistics of the solver count from here.
  */
 pc_status pc_solver_restore(const pc_system *system,
                             const pc_solver_options *options,
@@ -2262,17 +2274,17 @@ pc_status pc_solver_restore(const pc_system *system,
 
 /**
  * Writes the label of a checkpoint, to be freed with pc_string_free. PC_INVALID_CHECKPOINT as
- * pc_solver_restore.
+ * for pc_solver_restore.
  */
 pc_status pc_checkpoint_label(const void *data, size_t length, char **label, pc_error **error);
 
 /**
- * Frees bytes that a function of this library has written to be freed. Null is allowed.
+ * Frees the bytes of a checkpoint. NULL is allowed.
  */
 void pc_bytes_free(void *data);
 
 /**
- * Writes the work so far. `size` is sizeof(pc_statistics).
+ * Writes the statistics so far. `size` is sizeof(pc_statistics).
  */
 pc_status pc_solver_statistics(const pc_solver *solver,
                                pc_statistics *statistics,
@@ -2284,14 +2296,15 @@ pc_status pc_solver_statistics(const pc_solver *solver,
  * as a solver of its own would: the numbers are the same for any number of threads. The events
  * of the model are followed.
  *
- * `states` has members × dim numbers, member by member, at the time t; NULL for the start of the
- * model, and then t is not looked at. `parameters` has members × pc_system_parameter_count
- * numbers; NULL for those of the system as they are now. A length is 0 with NULL. `options` may
- * be NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
- * returns. A member that fails is told as any other, with what it reached, and the others go on.
- * What is the same for all, such as the times, is found by each. PC_STOPPED if the observer
- * stops it; PC_LIMIT, after those members that were finished, if the time limit or the pc_cancel
- * of the system's options ends it. The system may be used meanwhile.
+ * `states` has members × dim numbers, member by member, at the time t; NULL for the start of
+ * the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
+ * numbers; NULL for those of the system as they are now. The length that goes with NULL is 0.
+ * `options` may be NULL. `threads` is the number of threads, 0 for one on each core; they
+ * have ended when this returns. A member that fails is passed to the observer like any other,
+ * with what it reached, and the others continue. An error that all share, such as one in the
+ * times, is reported by each. PC_STOPPED if the observer stops the ensemble; PC_LIMIT, after
+ * the members that were finished, if the time limit or the pc_cancel of the system's options
+ * ends it. The system may be used meanwhile.
  */
 pc_status pc_ensemble_run(const pc_system *system,
                           const pc_solver_options *options,

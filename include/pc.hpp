@@ -7,7 +7,7 @@
 //
 // Each header below stands by itself. Objects move and do not copy, but for what has a clone(). What pc.h says of
 // threads holds here: objects are independent, and each is used by one call at a time. get() gives the handle, for
-// calls of C. Functions of the program may throw: catching.hpp says what becomes of that.
+// calls of C. Functions of the program may throw: catching.hpp says where the exception comes out.
 
 #ifndef PC_HPP
 #define PC_HPP

@@ -14,7 +14,7 @@
 
 namespace pc::detail {
 
-/// What C has made, to be freed.
+/// An object that C has made, to be freed.
 template <class Handle, void (*Free)(Handle *)> class owned {
 public:
     owned() noexcept = default;
@@ -28,7 +28,7 @@ public:
     ~owned() { Free(raw_); }
 
     Handle *get() const noexcept { return raw_; }
-    /// Where C puts it, once.
+    /// The place where C puts it, once.
     Handle **place() noexcept { return &raw_; }
 
 private:
@@ -49,7 +49,7 @@ template <class Function, class... Arguments> pc_status call(Function function, 
     return status;
 }
 
-/// What a function makes.
+/// The object that a function makes.
 template <class Owned, class Function, class... Arguments> Owned make(Function function, Arguments... arguments)
 {
     Owned made;

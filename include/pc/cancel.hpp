@@ -15,7 +15,7 @@ class cancel {
 public:
     cancel() : handle_(detail::make<handle>(pc_cancel_new)) {}
 
-    /// Ends those under way, and those that begin later.
+    /// Ends those under way and those that begin later.
     void request() const noexcept { pc_cancel_request(get()); }
     bool is_requested() const noexcept { return pc_cancel_is_requested(get()) != 0; }
     const pc_cancel *get() const noexcept { return handle_.get(); }
@@ -30,9 +30,9 @@ private:
 struct limits {
     /// Bytes of the expressions; 0 for 4 GiB.
     std::uint64_t memory = 0;
-    /// Seconds of each; 0 for any time.
+    /// Seconds for each; 0 for no limit.
     double time = 0.0;
-    /// Ends them, unless null; it may be gone when the system is there.
+    /// Ends them, unless null; it may be destroyed once the system is made.
     const cancel *by = nullptr;
 };
 

@@ -12,16 +12,16 @@ namespace pc {
 ///
 /// Forces, events, resets and observers are called by C, through which nothing may be thrown. What they throw is kept by
 /// the youngest catching of the thread, and no such function is called again before it is rethrown: each counts as
-/// failed. So an exception is no answer; where a force or an event has no value, its function says so by NaN.
+/// failed. So an exception is not a value; where a force or an event has none, its function writes NaN.
 ///
-/// Every call of these headers has a catching of its own, and throws what that has kept, also where C did without.
-/// Another is needed where a program has C in between by itself, such as an integrator that is given pc_kernel_rhs:
+/// Every call of these headers has a catching of its own, and throws what it has kept, even where C succeeded without it.
+/// Another is needed where a program puts C in between, such as an integrator that is given pc_kernel_rhs:
 ///
 ///     pc::catching thrown;
 ///     const int status = gsl_odeiv2_driver_apply(driver, &t, 1.0, y);
 ///     thrown.rethrow();
 ///
-/// Where there is none, the function of C fails, and why is not kept.
+/// Without one, the function of C fails and the exception is lost.
 class catching {
 public:
     catching() noexcept : outer_(std::exchange(youngest(), this)) {}
@@ -29,7 +29,7 @@ public:
     catching(const catching &) = delete;
     catching &operator=(const catching &) = delete;
 
-    /// Throws what is kept, if anything is.
+    /// Throws the exception that is kept, if any.
     void rethrow()
     {
         if (thrown_) {
@@ -37,7 +37,7 @@ public:
         }
     }
 
-    /// What `body` answers to C; `otherwise` if it throws, or if something has been thrown before.
+    /// What `body` returns to C; `otherwise` if it throws, or if something has been thrown before.
     template <class Body> static int guard(int otherwise, Body body) noexcept
     {
         catching *const call = youngest();

@@ -1,4 +1,4 @@
-// Integrations that are taken up again.
+// Checkpoints, from which integrations are resumed.
 
 #ifndef PC_CHECKPOINT_HPP
 #define PC_CHECKPOINT_HPP

@@ -18,8 +18,8 @@
  * N_VGetArrayPointer gives, such as N_VNew_Serial's, of the length pc_system_dim.
  *
  * The functions return what CVODE expects: 0; 1 where the equations cannot be evaluated, so that CVODE tries a smaller step;
- * -1 for what no step helps. Then `error` of the pc_cvode says why; it is NULL if a vector, a matrix or the roots do not fit, or
- * a root is no number.
+ * -1 where no step helps. Then `error` of the pc_cvode says why; it is NULL if a vector, a matrix or the roots do not fit, or
+ * a root is NaN.
  */
 
 #ifndef PC_CVODE_H

@@ -18,10 +18,10 @@
 
 namespace pc {
 
-/// What has come of a member of an ensemble, while its observer is called.
+/// The result of a member of an ensemble, valid while its observer is called.
 struct member {
     std::size_t number;
-    /// PC_OK, PC_EVENT, or why it failed, of which the message tells.
+    /// PC_OK, PC_EVENT, or why it failed, which the message explains.
     pc_status status;
     std::string_view message;
     /// The output times that it reached, and the states at these, one after the other.
@@ -35,7 +35,7 @@ struct member {
     }
 };
 
-/// Is told of a member; false stops the ensemble.
+/// Receives a member; returning false stops the ensemble.
 using member_observer = std::function<bool(const member &of)>;
 
 namespace detail {
@@ -69,8 +69,8 @@ struct told_elsewhere {
 /// there are none, and with `parameters`, member by member, or those of the system if there are none. Calls `observe`
 /// for each in order until it answers false; whether it never did. `threads` is 0 for one on each core.
 ///
-/// What `observe` throws stops the ensemble and comes out. A member whose forces throw has failed and is told as such,
-/// the others go on, and the first exception comes out at the end.
+/// What `observe` throws stops the ensemble and comes out. A member whose forces throw has failed and is reported so,
+/// the others continue, and the first exception comes out at the end.
 inline bool run_ensemble(const system &of, double t, view<const double> states, view<const double> parameters,
                          view<const double> times, const member_observer &observe, std::size_t threads = 0,
                          const solver_options &options = {})

@@ -13,7 +13,7 @@ namespace pc {
 /// A call that failed; what() is the message, of which that of a model shows the line at fault and what would be right.
 class error : public std::runtime_error {
 public:
-    /// Of a status that is a failure, and what the call has said of it, which may be null.
+    /// From a status that is a failure, and the error of the call, which may be null.
     error(pc_status status, const pc_error *said)
         : std::runtime_error(said ? pc_error_message(said) : pc_status_name(status)),
           status_(status),
@@ -35,7 +35,7 @@ public:
     std::size_t length() const noexcept { return length_; }
     /// The code of CVODES, or 0.
     int integrator_code() const noexcept { return integrator_code_; }
-    /// Whether another state near by may do.
+    /// Whether a nearby state may do.
     bool is_recoverable() const noexcept { return recoverable_; }
 
 private:

@@ -1,4 +1,4 @@
-// What happens on the way of an integration.
+// Events and observers of an integration.
 
 #ifndef PC_EVENT_HPP
 #define PC_EVENT_HPP
@@ -26,14 +26,14 @@ struct occurrence {
 using event_function = std::function<double(double t, view<const double> y)>;
 /// Turns the state before an event into the one after it.
 using event_reset = std::function<void(double t, view<double> y)>;
-/// Is told of an event; false stops the call.
+/// Receives an event; returning false stops the call.
 using event_observer = std::function<bool(const occurrence &event)>;
-/// Is told of a state; false stops the call.
+/// Receives a state; returning false stops the call.
 using observer = std::function<bool(double t, view<const double> y)>;
 
 namespace detail {
 
-/// What any of these answers to C if it throws.
+/// What any of these returns to C if it throws.
 constexpr int stop = 1;
 
 /// An event of the program's own, for C.

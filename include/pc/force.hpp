@@ -18,7 +18,7 @@
 namespace pc {
 
 /// Writes the external forces at (t, y) to q, as many as were declared, in that order. What it leaves unwritten is NaN,
-/// which says that a force is not defined there: a smaller step is tried.
+/// which means that a force is not defined there: a smaller step is tried.
 using force_function = std::function<void(double t, view<const double> y, view<double> q)>;
 /// Writes their derivatives, ∂q_i/∂y_j to dq[i + j*e] for e forces.
 using force_jacobian = std::function<void(double t, view<const double> y, view<double> dq)>;
@@ -54,7 +54,7 @@ private:
     std::exception_ptr thrown_;
 };
 
-/// What C is given: the functions, and who keeps what they throw if it is not the catching of their thread.
+/// The argument given to C: the functions, and what keeps their exceptions if it is not the catching of their thread.
 struct force_user {
     std::shared_ptr<const forces> functions;
     first_thrown *elsewhere;
@@ -92,7 +92,7 @@ private:
     }
 };
 
-/// Has a system call the functions. Without any, C says so.
+/// Sets the functions of a system. Without any, C reports it.
 inline void set_force(pc_system *system, std::shared_ptr<const forces> functions, first_thrown *elsewhere = nullptr)
 {
     const auto force = functions->function ? &force_user::force : nullptr;

@@ -1,4 +1,4 @@
-// The right-hand side for an integrator of one's own.
+// The right-hand side for an integrator of your own.
 
 #ifndef PC_KERNEL_HPP
 #define PC_KERNEL_HPP
@@ -30,7 +30,7 @@ public:
     {
         detail::call(pc_kernel_set_parameters, get(), values.data(), values.size());
     }
-    /// Writes f(t, y). 0; 1 where it cannot be evaluated, so that a smaller step may help; -1 for what no step helps.
+    /// Writes f(t, y). 0; 1 where it cannot be evaluated and a smaller step may help; -1 where no step helps.
     int operator()(double t, view<const double> y, view<double> ydot)
     {
         return at(pc_kernel_rhs, dim_, t, y, ydot);

@@ -1,4 +1,4 @@
-// Models: a text, or what is said call by call.
+// Models: a text, or built call by call.
 
 #ifndef PC_MODEL_HPP
 #define PC_MODEL_HPP
@@ -24,7 +24,7 @@ public:
     /// The entries of a matrix, row by row.
     using matrix = std::array<std::string, 9>;
 
-    /// Without anything, to be built.
+    /// An empty model, to be built.
     explicit model(const std::string &name) : handle_(make(pc_model_new, name.c_str())) {}
     static model parse(const std::string &text, const std::string &name = "model")
     {
@@ -133,7 +133,7 @@ public:
         return say(pc_model_give_quasi_velocity, name.c_str(), definition.c_str());
     }
 
-    /// Asks for a velocity as one of the independent ones.
+    /// Chooses a velocity as one of the independent ones.
     model &independent(const std::string &name) { return say(pc_model_add_independent, name.c_str()); }
 
     /// A force that a function will compute: system::set_force.
@@ -294,7 +294,7 @@ public:
     model &method(const std::string &method) { return say(pc_model_set_method, method.c_str()); }
     model &form(const std::string &form) { return say(pc_model_set_form, form.c_str()); }
 
-    /// Throws unless all that has been said is well formed.
+    /// Throws unless the whole model is well formed.
     void check() const { detail::call(pc_model_check, get()); }
     std::string text() const { return detail::text(pc_model_text, get()); }
     pc_model *get() const noexcept { return handle_.get(); }

@@ -1,4 +1,4 @@
-// How to integrate.
+// Options of an integration.
 
 #ifndef PC_OPTIONS_HPP
 #define PC_OPTIONS_HPP

@@ -22,10 +22,10 @@
 
 namespace pc {
 
-/// An integration, which stands at a time with a state.
+/// An integration, with its current time and state.
 ///
 /// What a function or observer throws ends the call that called it, and comes out there; so does what the forces of the
-/// system throw. The integration then stands where it came to, as time() and state() tell.
+/// system throw. The integration then stays at what it reached, given by time() and state().
 class solver {
 public:
     /// From the start of the model.
@@ -49,7 +49,7 @@ public:
                       of.dim());
     }
 
-    /// Follows an event of one's own; before the first step.
+    /// Follows an event of your own; to be called before the first step.
     void add_event(const std::string &name, pc_direction direction, bool terminal, event_function function,
                    event_reset reset = nullptr)
     {
@@ -60,7 +60,7 @@ public:
         detail::call(pc_solver_add_event, get(), name.c_str(), direction, terminal, value, change, event.release(),
                      &user::destroy);
     }
-    /// Has `observe` told of each event from now on, or, if it is none, nobody.
+    /// Calls `observe` for each event from now on; for none if it is empty.
     void observe_events(event_observer observe)
     {
         const auto told = observe ? &detail::tell_event : nullptr;
@@ -69,7 +69,7 @@ public:
         event_observer_ = std::move(kept);
     }
 
-    /// Goes on with the parameters and inputs of the system as they are now.
+    /// Continues with the parameters and inputs of the system as they are now.
     void take_parameters(const system &from) { detail::call(pc_solver_take_parameters, get(), from.get()); }
 
     /// Integrates the derivative of the state by a parameter too, of a start that has this derivative, or 0 if it is empty.
@@ -77,7 +77,7 @@ public:
     {
         detail::call(pc_solver_add_sensitivity, get(), parameter, start.empty() ? nullptr : start.data(), start.size());
     }
-    /// Such a derivative where the integration stands.
+    /// Such a derivative at the current time.
     vector sensitivity(std::size_t number) const
     {
         vector column(dim_);
@@ -85,7 +85,7 @@ public:
         return column;
     }
 
-    /// The state at t, or where an event or its observer ended the call: ended_by() and time() tell.
+    /// The state at t, or where an event or its observer ended the call: see ended_by() and time().
     vector advance(double t)
     {
         vector y(dim_);
@@ -97,7 +97,7 @@ public:
     {
         return detail::call(pc_solver_advance, get(), t, y.data(), y.size());
     }
-    /// The state at the end of one step of the method in the direction of `towards`, which time() tells.
+    /// The state at the end, time(), of one step of the method in the direction of `towards`.
     vector step(double towards)
     {
         vector y(dim_);
@@ -109,7 +109,7 @@ public:
         double t = 0.0;
         return detail::call(pc_solver_step, get(), towards, &t, y.data(), y.size());
     }
-    /// Calls `observe` at each time until it answers false; whether all times were reached.
+    /// Calls `observe` at each time until it returns false; whether all times were reached.
     bool run(view<const double> times, const observer &observe)
     {
         const auto told = observe ? &detail::tell_state : nullptr;

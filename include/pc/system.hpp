@@ -22,8 +22,8 @@ namespace detail {
 struct told_elsewhere;
 }
 
-/// Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column j are those from place
-/// column_starts[j] up to but without column_starts[j + 1]. It belongs to the system and its copies.
+/// The entries of ∂f/∂y that may be nonzero, in compressed columns: the rows of column j stand from place
+/// column_starts[j] up to, but not including, column_starts[j + 1]. It belongs to the system and its copies.
 struct sparsity {
     view<const std::size_t> column_starts, row_indices;
 };
@@ -35,7 +35,7 @@ struct c_source {
 
 /// Equations of motion, compiled: ẏ = f(t, y). Matrices are column-major.
 ///
-/// What is evaluated in loops can be written to numbers that are there.
+/// Functions that are evaluated in loops can write to existing arrays.
 class system {
 public:
     explicit system(const model &of, pc_form form = PC_POINCARE, const limits &within = {})
@@ -61,7 +61,7 @@ public:
     std::size_t state_count() const noexcept { return pc_system_state_count(get()); }
     std::size_t parameter_count() const noexcept { return pc_system_parameter_count(get()); }
     std::size_t observable_count() const noexcept { return pc_system_observable_count(get()); }
-    /// The number of observables, the first ones, that should stay constant.
+    /// The number of observables that should stay constant, which come first.
     std::size_t conserved_count() const noexcept { return pc_system_conserved_count(get()); }
     std::size_t constraint_count() const noexcept { return pc_system_constraint_count(get()); }
     std::size_t reaction_count() const noexcept { return pc_system_reaction_count(get()); }
@@ -82,7 +82,7 @@ public:
     std::vector<std::string> force_names() const { return list(pc_system_force_name, force_count()); }
     std::vector<std::string> event_names() const { return list(pc_system_event_name, event_count()); }
 
-    /// The places of a component of the state, of a parameter and of an observable, by name.
+    /// The index of a component of the state, of a parameter and of an observable, by name.
     std::size_t find(const std::string &name) const { return place(pc_system_find, name); }
     std::size_t find_parameter(const std::string &name) const { return place(pc_system_find_parameter, name); }
     std::size_t find_observable(const std::string &name) const { return place(pc_system_find_observable, name); }
@@ -123,10 +123,11 @@ public:
         detail::call(pc_system_set_parameter, get(), index, value);
     }
 
-    /// Sets what computes the external forces, and, if given, their derivatives, which else are difference quotients.
+    /// Sets the function that computes the external forces, and, if given, that of their derivatives, which are difference
+    /// quotients otherwise.
     /// Copies, solvers and kernels made from now on share the functions; used on several threads, they call them there.
     ///
-    /// What these throw ends the call that called them, be it of the system, a copy, a solver or a kernel, and comes
+    /// An exception ends the call that called them, whether of the system, a copy, a solver or a kernel, and comes
     /// out there. See catching for calls in C, and run_ensemble, whose members have threads of their own.
     void set_force(force_function function, force_jacobian jacobian = nullptr)
     {
@@ -215,17 +216,17 @@ public:
     {
         detail::call(pc_system_event_reset, get(), event, t, y.data(), y.size());
     }
-    /// Has project() keep the integrals of model::keep() at their values at (t, y).
+    /// Makes project() keep the integrals of model::keep() at their values at (t, y).
     void keep_from(double t, view<const double> y)
     {
         detail::call(pc_system_keep_from, get(), t, y.data(), y.size());
     }
-    /// Moves the state to the constraints, and to the integrals that are kept.
+    /// Moves the state onto the constraints, and the kept integrals to their values.
     void project(double t, view<double> y)
     {
         detail::call(pc_system_project, get(), t, y.data(), y.size());
     }
-    /// What should be zero of each constraint.
+    /// The residual of each constraint.
     vector constraint_residuals(double t, view<const double> y)
     {
         return at(pc_system_constraint_residuals, constraint_count(), t, y);
@@ -317,7 +318,7 @@ private:
         detail::call(find, get(), name.c_str(), &index);
         return index;
     }
-    /// Has a function write to the target what it has at (t, y), and of further numbers.
+    /// Lets a function write its values at (t, y), and of further numbers, to the target.
     template <class Function, class... Further>
     void to(view<double> target, Function function, double t, view<const double> y, Further... further)
     {

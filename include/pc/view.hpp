@@ -1,4 +1,4 @@
-// Numbers that belong to somebody else, as functions take and fill them.
+// Views of numbers that another object owns, which functions take and fill.
 
 #ifndef PC_VIEW_HPP
 #define PC_VIEW_HPP
@@ -12,7 +12,7 @@
 
 namespace pc {
 
-/// Numbers of one's own: what functions give.
+/// Owned numbers: what functions return.
 using vector = std::vector<double>;
 
 /// A pointer and a length. It owns nothing, and is good for as long as what it was made of: a vector, an array, an

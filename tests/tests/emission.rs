@@ -344,7 +344,7 @@ fn compare_end(name: &str, end: &[f64]) {
 const OUT_OF_REACH: [&str; 2] = ["stiff-sleigh", "vertical-disk"];
 
 #[test]
-fn main_of_emitted_c_arrives() {
+fn main_of_emitted_c_reaches_the_end_time() {
     let path = directory("main_c");
     for &name in MODELS.iter().filter(|name| !OUT_OF_REACH.contains(name)) {
         let source = Case::builtin(name, 0).emitted;
@@ -358,7 +358,7 @@ fn main_of_emitted_c_arrives() {
 }
 
 #[test]
-fn main_of_emitted_rust_arrives() {
+fn main_of_emitted_rust_reaches_the_end_time() {
     let path = directory("main_rust");
     for name in ["heavy-top-lagrange", "euler-top"] {
         let source = Case::builtin(name, 0).emitted;
@@ -445,7 +445,7 @@ fn a_bicycle_is_short_source_with_its_jacobian() {
 }
 
 #[test]
-fn a_jacobian_is_left_out_if_it_is_not_wanted() {
+fn a_jacobian_is_left_out_on_request() {
     let model = Model::new(Builtin::named("heavy-top-euler").unwrap().document().unwrap());
     let graph = Graph::new();
     let equations = model.assemble(&graph).unwrap().equations().unwrap();
@@ -498,7 +498,7 @@ fn long() -> Case {
 }
 
 #[test]
-fn the_chain_rule_knows_all_its_functions() {
+fn the_chain_rule_has_a_rule_for_each_function() {
     let cases = [long()];
     assert!(cases[0].emitted.file(".c").unwrap().text.contains("masses_code[]"), "it goes through a table");
     let program = emitted::compile_c(&directory("long-c"), "cc", C_FLAGS, &sources(&cases));

@@ -98,7 +98,7 @@ fn mutant<'g>(system: &System<'g>, left: f64) -> StructureCoefficients<'g> {
 
 /// The rate of the energy, and η̇ = M⁻¹ (… + c_01 p), would both be wrong by more than any tolerance.
 #[test]
-fn a_forgotten_rate_of_b_is_seen() {
+fn a_missing_rate_of_b_is_detected() {
     for (name, left) in WITHOUT_RATE_OF_B {
         with_model(name, |assembly, t_end| {
             let system = &assembly.system;
@@ -140,7 +140,7 @@ fn with_structure<'g>(
 
 /// Given to the library, such coefficients contradict the frame.
 #[test]
-fn a_forgotten_rate_of_b_is_refused() {
+fn a_missing_rate_of_b_is_refused() {
     for (name, left) in WITHOUT_RATE_OF_B {
         with_model(name, |assembly, _| {
             let system = &assembly.system;

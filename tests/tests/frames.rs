@@ -61,8 +61,8 @@ fn a_rank_deficient_frame_without_constant_brackets_is_refused() {
     assert_eq!(error, AlgebraError::RankDeficient { rank: 1, operators: 2, pair: (1, 2) }.into());
     assert_eq!(
         error.to_string(),
-        "the frame has rank 1 with 2 operators, so its structure coefficients must be constant to be found, and \
-         [X_1, X_2] is no constant combination of the X_m: the algebra must be given"
+        "the frame has rank 1 with 2 operators, so its structure coefficients can be found only if they are constant, and \
+         [X_1, X_2] is not a constant combination of the X_m: the algebra must be given"
     );
 }
 

@@ -323,7 +323,7 @@ fn end(model: &Model, variables: Variables, t: f64) -> Result<BTreeMap<String, f
 
 /// Whatever velocities are taken for independent ones, and with multipliers, the motion is the same.
 #[test]
-fn any_choice_of_independent_velocities_tells_the_same_motion() {
+fn any_choice_of_independent_velocities_gives_the_same_motion() {
     let disk = builtin("vertical-disk").document().source.text().to_owned();
     let cases: [(&str, &[&[&str]]); 2] =
         [(PENDULUM, &[&["x'"], &["y'"]]), (&disk, &[&["φ'", "θ'"], &["φ'", "X'"]])];
@@ -382,11 +382,11 @@ fn a_choice_ends_where_it_does_not_determine_the_motion() {
     assert!(!error.is_empty());
     model.choose_independent(["y'"]);
     let error = end(&model, Variables::QuasiVelocities, 1.0).unwrap_err();
-    assert!(error.contains("`y'` cannot be taken for the independent quasi-velocities"), "{error}");
+    assert!(error.contains("`y'` cannot be the independent quasi-velocities"), "{error}");
 }
 
 #[test]
-fn what_is_asked_for_wrongly_is_refused() {
+fn wrong_requests_are_refused() {
     let refused = |change: &dyn Fn(&mut Model), variables: Variables| {
         let mut model = parsed(PENDULUM);
         change(&mut model);
@@ -395,9 +395,9 @@ fn what_is_asked_for_wrongly_is_refused() {
     let error = refused(&|model| model.choose_independent(["x'", "y'"]), Variables::QuasiVelocities);
     assert!(error.contains("the constraints leave 1 of x', y' free"), "{error}");
     let error = refused(&|model| model.choose_independent(["z"]), Variables::QuasiVelocities);
-    assert!(error.contains("`z` is none; they are x', y'"), "{error}");
+    assert!(error.contains("`z` is not among them; they are x', y'"), "{error}");
     let error = refused(&|_| {}, Variables::Orthonormal);
-    assert!(error.contains("choose these by --independent"), "{error}");
+    assert!(error.contains("choose these with --independent"), "{error}");
     let error = refused(&|model| model.choose_independent(["x'"]), Variables::Given);
     assert!(error.contains("no quasi-velocities are given"), "{error}");
     let mut model = builtin("chaplygin-sleigh");

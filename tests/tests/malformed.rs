@@ -4,7 +4,7 @@
 
 use pc_mech::Graph;
 use pc_model::{Category, Document, Model, ModelError};
-use pc_tests::malformed::{MALFORMED, Malformed, deeply_nested};
+use pc_tests::malformed::{Malformed, deeply_nested, malformed};
 
 /// Goes as far as the first evaluation of the equations of motion.
 fn start(name: &str, bytes: &[u8]) -> Result<bool, ModelError> {
@@ -40,8 +40,7 @@ fn complaints(case: &Malformed) -> Vec<String> {
 
 #[test]
 fn malformed_models_are_refused() {
-    let found: Vec<String> = MALFORMED
-        .iter()
+    let found: Vec<String> = malformed()
         .flat_map(|case| {
             complaints(case).into_iter().map(move |c| format!("{} ({}): {c}", case.file, case.fault))
         })
@@ -50,12 +49,12 @@ fn malformed_models_are_refused() {
 }
 
 #[test]
-fn the_cure_makes_them_run() {
-    for case in MALFORMED {
-        let Some((wrong, right)) = case.cure else { continue };
+fn corrected_models_run() {
+    for case in malformed() {
+        let Some((wrong, right)) = case.correction else { continue };
         let text = String::from_utf8_lossy(&std::fs::read(case.path()).unwrap()).replace(wrong, right);
         if let Err(error) = start(case.file, text.as_bytes()) {
-            panic!("{} with the cure in is still refused:\n{error}", case.file);
+            panic!("{} is still refused when corrected:\n{error}", case.file);
         }
     }
 }

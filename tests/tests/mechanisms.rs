@@ -167,7 +167,7 @@ fn a_bicycle_weaves_as_the_benchmark_says() {
 
 /// The state at t = 0.03 is that of the Test Set for IVP Solvers [Andrews' squeezing mechanism; Hairer and Wanner II, VII.7].
 #[test]
-fn the_squeezer_is_where_it_should_be_whichever_rate_is_chosen() {
+fn the_squeezer_reaches_its_reference_for_any_choice_of_rate() {
     let expected = [
         ("β", 15.810_771_196_299_04),
         ("Θ", -15.756_371_059_842_98),
@@ -306,7 +306,7 @@ fn two_cranks_on_one_pin_swing_as_one() {
 
 /// A reset of a quasi-velocity that the constraints leave free: it has that value, and the velocities follow.
 #[test]
-fn a_kick_is_given_to_the_velocity_that_is_defined() {
+fn a_kick_changes_the_defined_velocity() {
     let kicked = |is: &str, start: f64| {
         let text = format!(
             "[coordinates]\nx = 0.6\ny = -0.8\n[quasi_velocities]\nw = {{ is = \"{is}\", start = {start} }}\n[constraints]\n\

@@ -179,7 +179,7 @@ const TURNED: [&str; 2] = [
 /// Where masses are alike in the plane the nearest point of a circle is on the ray from its centre. z' is 0 before and after,
 /// and its coupling with x' does no more than take up a reaction.
 #[test]
-fn a_reset_comes_to_the_nearest_velocities_in_every_frame() {
+fn a_reset_reaches_the_nearest_velocities_in_every_frame() {
     let to_ordinary = |eta: &[f64]| [(3.0 * eta[0] - eta[1]) / 4.0, (eta[0] + eta[1]) / 4.0];
     for masses in [[1.0, 1.0], [1.0, 4.0], [5.0, 0.7]] {
         let [a, b] = masses;

@@ -223,7 +223,7 @@ fn mechanisms() -> Vec<(String, Model)> {
 }
 
 #[test]
-fn pages_of_built_in_models_say_what_they_were_written_from() {
+fn pages_of_built_in_models_agree_with_their_equations() {
     let mut compared = 0;
     for builtin in BUILTIN {
         let model = Model::new(builtin.document().unwrap());
@@ -233,7 +233,7 @@ fn pages_of_built_in_models_say_what_they_were_written_from() {
 }
 
 #[test]
-fn pages_of_mechanisms_say_what_they_were_written_from() {
+fn pages_of_mechanisms_agree_with_their_equations() {
     for (name, model) in mechanisms() {
         for form in FORMS {
             assert!(compare(&name, &model, form, 20), "{name} has no form {form:?}");

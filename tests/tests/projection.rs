@@ -90,7 +90,7 @@ fn slope(method: Method, kept: &[&str]) -> (f64, f64) {
 }
 
 #[test]
-fn the_order_of_accuracy_is_unharmed() {
+fn the_order_of_accuracy_is_preserved() {
     for method in [Method::Adams, Method::Bdf] {
         let (plain, error) = slope(method, &[]);
         for kept in [&["norm"][..], &["norm", "area", "energy"]] {

@@ -83,7 +83,7 @@ fn integrals_of_all_models_are_kept_at_random_states() {
 
 /// What is said to change does.
 #[test]
-fn a_function_that_changes_is_seen_to_change() {
+fn a_function_that_changes_is_found_to_change() {
     let graph = Graph::new();
     let model = Model::new(pc_model::Builtin::named("euler-top").unwrap().document().unwrap());
     let equations = model.assemble(&graph).unwrap().equations().unwrap();

@@ -1,4 +1,4 @@
-//! What can be wrong with a frame or an algebra.
+//! Errors of frames and algebras.
 
 use pc_expr::ExprError;
 
@@ -36,15 +36,15 @@ pub enum AlgebraError {
         "the definitions of the quasi-velocities cannot be solved for the velocities: their matrix is singular everywhere"
     )]
     SingularDefinitions,
-    /// The operators have no coordinates to act on, so only the user knows their brackets.
+    /// The operators have no coordinates to act on, so their brackets must be given.
     #[error(
         "a frame without coordinates does not determine its structure coefficients: the algebra must be given"
     )]
     AlgebraNeeded,
     /// Operators that are linearly dependent at each point and have no constant structure coefficients.
     #[error(
-        "the frame has rank {rank} with {operators} operators, so its structure coefficients must be constant to be \
-         found, and [X_{}, X_{}] is no constant combination of the X_m: the algebra must be given",
+        "the frame has rank {rank} with {operators} operators, so its structure coefficients can be found only if they are \
+         constant, and [X_{}, X_{}] is not a constant combination of the X_m: the algebra must be given",
         pair.0, pair.1
     )]
     RankDeficient {
@@ -147,7 +147,7 @@ pub enum AlgebraError {
         /// The constant.
         value: String,
     },
-    /// A structure constant that no small rational holds.
+    /// A structure constant whose numerator or denominator is too large.
     #[error("c_{r}{s}^{m} = {value} has a numerator or denominator above 2^53")]
     TooLarge {
         /// First lower index.
@@ -171,12 +171,12 @@ pub enum AlgebraError {
         /// The entry.
         value: String,
     },
-    /// A change of basis that is none.
+    /// A change of basis with a singular matrix.
     #[error("the matrix of the change of basis is singular")]
     SingularBasis,
     /// Matrices ρ(X_s) that do not represent the algebra.
     #[error(
-        "this is no representation: ρ([X_{r}, X_{s}]) and ρ(X_{r})ρ(X_{s}) − ρ(X_{s})ρ(X_{r}) differ in \
+        "this is not a representation: ρ([X_{r}, X_{s}]) and ρ(X_{r})ρ(X_{s}) − ρ(X_{s})ρ(X_{r}) differ in \
          entry ({row}, {column})",
         r = pair.0, s = pair.1
     )]
@@ -201,7 +201,7 @@ pub enum AlgebraError {
         pair: (usize, usize),
     },
     /// A member of a family with more structure constants than are sensibly kept.
-    #[error("{family}(n) is kept up to n = {largest}, not for n = {n}")]
+    #[error("{family}(n) is available up to n = {largest}, not for n = {n}")]
     TooLargeFamily {
         /// Name of the family.
         family: &'static str,
@@ -222,20 +222,19 @@ pub enum AlgebraError {
     },
     /// Three axes that are no sequence of Euler angles.
     #[error(
-        "`{axes}` is no sequence of Euler angles: three letters x, y, z are needed, neighbours \
-         different, as in zxz"
+        "`{axes}` is not a sequence of Euler angles: three letters x, y, z are needed, neighbours different, as in zxz"
     )]
     EulerSequence {
         /// The text.
         axes: String,
     },
-    /// Numbers that no element of a group is nearest to.
+    /// Numbers without a nearest element of the group.
     #[error("{element:?} has no nearest element of the group")]
     NoNearestElement {
         /// The numbers.
         element: Vec<f64>,
     },
-    /// Frames with other coordinates or another time.
+    /// Frames with different coordinates or times.
     #[error("the two frames do not have the same coordinates and time")]
     DifferentSpaces,
     /// Operators that are linearly dependent at each point, so that quasi-velocities do not follow from
@@ -260,7 +259,7 @@ pub enum AlgebraError {
     Expr(#[from] ExprError),
 }
 
-/// Which combination of operators acts as zero on the coordinates, in words; `name` gives the name of an operator.
+/// Says which combination of operators acts as zero on the coordinates; `name` gives the name of an operator.
 pub fn acts_as_zero(combination: &[(usize, String)], name: impl Fn(usize) -> String) -> String {
     let term = |(s, coefficient): &(usize, String)| match coefficient.as_str() {
         "1" => format!("+ {}", name(*s)),

@@ -1,6 +1,6 @@
 //! Lie groups in coordinates: numbers for integrators, expressions for frames.
 //!
-//! In goes a group, out come its invariant frames, exp and log, composition and projection. Read `group` (the interface),
+//! A group gives its invariant frames, exp and log, composition and projection. Read `group` (the interface),
 //! then a group: rotations of the plane and of space, motions of both, Heisenberg's groups, products. `rotation`,
 //! `exponential` and `stumpff` are what several of them compute with.
 

@@ -1,7 +1,7 @@
-//! What is known of identities that the graph does not settle: proved, open, disproved.
+//! Verdicts on identities that the graph does not settle: proved, open, disproved.
 //!
-//! `identity` is the verdict; `sample` evaluates at pseudo-random points near a state, and `running_error` tells a small
-//! number from what rounding left of zero.
+//! `identity` is the verdict; `sample` evaluates at pseudo-random points near a state, and `running_error`
+//! distinguishes a small number from the rounding error of zero.
 
 pub(crate) mod identity;
 pub(crate) mod running_error;

@@ -55,7 +55,7 @@
 //! # Lie algebra
 //!
 //! Where the c_rs^m are constants, X_1..X_k span a [`LieAlgebra`]; those with a name are in the
-//! [`CATALOGUE`]. Its constants are exact, and so is what is said of it:
+//! [`CATALOGUE`]. Its constants are exact, and so are its properties:
 //! [series](LieAlgebra::derived_series), [centre](LieAlgebra::centre), [Killing
 //! form](LieAlgebra::killing_form), [rank](LieAlgebra::rank), [index](LieAlgebra::index) (the number of
 //! Casimirs), [invariant forms](LieAlgebra::invariant_quadratic_forms).

@@ -1,9 +1,9 @@
-//! Lie algebras by their structure constants, exact, with what is said of an algebra as a whole.
+//! Lie algebras by their exact structure constants, and the properties of an algebra as a whole.
 //!
-//! In go c_rs^m as rational numbers, out come verdicts. Read `structure_constants` and `lie_algebra` first; `subspace`
-//! is what `series` (centre, derived, lower central), `killing`, `rank` and `invariant_forms` speak about. Algebras come
-//! from a `catalogue`, `families`, `matrix_algebra`, or from others by `product` and `representation`; `bianchi` names
-//! those of three dimensions.
+//! The c_rs^m are rational numbers, and every property is exact. Read `structure_constants` and `lie_algebra` first;
+//! `series` (centre, derived, lower central), `killing`, `rank` and `invariant_forms` give a `subspace` or a number.
+//! Algebras come from a `catalogue`, `families`, `matrix_algebra`, or from others by `product` and `representation`;
+//! `bianchi` names those of three dimensions.
 
 pub(crate) mod bianchi;
 pub(crate) mod catalogue;

@@ -220,7 +220,7 @@ fn representations_and_semidirect_products() {
     let error = Representation::new(LieAlgebra::heisenberg(1), 2, wrong).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "this is no representation: ρ([X_1, X_2]) and ρ(X_1)ρ(X_2) − ρ(X_2)ρ(X_1) differ in entry (2, 2)"
+        "this is not a representation: ρ([X_1, X_2]) and ρ(X_1)ρ(X_2) − ρ(X_2)ρ(X_1) differ in entry (2, 2)"
     );
 }
 
@@ -238,7 +238,7 @@ fn real_constants_are_refused_where_exactness_is_needed() {
 }
 
 #[test]
-fn a_change_of_basis_says_what_is_wrong() {
+fn errors_of_a_change_of_basis_are_named() {
     let so3 = LieAlgebra::so3();
     let singular = integers([[1, 2, 3], [2, 4, 6], [0, 0, 1]]);
     assert_eq!(so3.change_of_basis(&singular), Err(AlgebraError::SingularBasis));
@@ -327,7 +327,7 @@ proptest! {
     }
 
     #[test]
-    fn there_and_back_is_the_same_algebra((algebra, p) in changed()) {
+    fn a_change_of_basis_and_its_inverse_give_the_same_algebra((algebra, p) in changed()) {
         let k = algebra.dim();
         let rows = |m: &Matrix<Number>| nalgebra::DMatrix::from_fn(k, k, |i, j| m[(i, j)].to_f64());
         // The inverse of a unimodular matrix is whole.

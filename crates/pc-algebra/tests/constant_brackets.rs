@@ -39,7 +39,7 @@ fn turning<'g>(graph: &'g Graph, scale: [Expr<'g>; 3], drift: [Expr<'g>; 3]) -> 
 
 /// Sixteen places around the sphere, some near its poles: the brackets are the same everywhere.
 #[test]
-fn the_start_does_not_matter() {
+fn brackets_do_not_depend_on_the_start() {
     let graph = Graph::new();
     let frame = turning(&graph, [Expr::ONE; 3], [Expr::ZERO; 3]);
     for start in 0..16 {

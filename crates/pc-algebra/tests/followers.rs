@@ -62,7 +62,7 @@ fn brackets_do_not_depend_on_what_rounding_hides() {
 }
 
 #[test]
-fn nor_do_they_where_coordinates_are_functions_of_several() {
+fn brackets_do_not_depend_on_rounding_where_coordinates_are_functions_of_several() {
     assert_brackets_without_x(0.3, 0.7);
 }
 
@@ -70,7 +70,7 @@ fn nor_do_they_where_coordinates_are_functions_of_several() {
 /// another, with S = (1 + x²) η_2 + 0.92 (1 + u²) η_1, T = (1 + p²) η_3 + √(1.15 u) η_1, x' = √x η_1:
 /// [X_1, X_3] = −2 √(1.15 u) p s/(1 + p²) X_3, which is written without x, but not at x = 0.
 #[test]
-fn nor_on_curves() {
+fn brackets_do_not_depend_on_rounding_on_curves() {
     let graph = Graph::new();
     let [t, x, u, v, p, s] = graph.symbols(["t", "x", "u", "v", "p", "s"]);
     let eta = graph.symbols(["w1", "w2", "w3"]);

@@ -83,7 +83,7 @@ fn a_polynomial_quasi_coordinate_with_time() {
 }
 
 #[test]
-fn a_quasi_coordinate_that_is_not_elementary_is_only_stated() {
+fn a_quasi_coordinate_that_is_not_found_is_reported_without_a_formula() {
     let graph = Graph::new();
     let [t, x, dx] = graph.symbols(["t", "x", "dx"]);
     for (definition, coordinate) in [(x.cos(), Some(x.sin())), (x.square().exp(), None)] {
@@ -158,7 +158,7 @@ fn with_redundant_coordinates() {
 }
 
 #[test]
-fn frames_that_do_not_belong_together() {
+fn frames_of_different_spaces_are_refused() {
     let graph = Graph::new();
     let [t, x, y, u, v] = graph.symbols(["t", "x", "y", "u", "v"]);
     let zero = Expr::ZERO;

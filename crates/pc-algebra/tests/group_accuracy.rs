@@ -178,5 +178,5 @@ fn sequences_are_three_axes_with_different_neighbours() {
         assert!(EulerAngles::about(wrong).is_err(), "{wrong}");
     }
     let message = EulerAngles::about("zzx").unwrap_err().to_string();
-    assert!(message.starts_with("`zzx` is no sequence of Euler angles"), "{message}");
+    assert!(message.starts_with("`zzx` is not a sequence of Euler angles"), "{message}");
 }

@@ -76,7 +76,7 @@ proptest! {
 
     /// X_1 = a ∂_q, X_2 = r ∂_q + ∂_h, and z = f(q) is carried along: [X_1, X_2] = (r' − r a'/a) X_1.
     #[test]
-    fn brackets_are_those_of_difference_quotients(
+    fn brackets_agree_with_difference_quotients(
         (a, r, f) in (functions(), functions(), functions()),
         at in prop_oneof![-0.9..-0.2, 0.2..0.9],
     ) {

@@ -19,7 +19,7 @@ const SCALES: [[f64; 3]; 6] =
 
 /// ż = y u is not closed, whatever it is measured in.
 #[test]
-fn a_frame_that_is_not_closed_is_so_in_all_units() {
+fn a_frame_that_is_not_closed_is_refused_in_all_units() {
     for units in SCALES {
         let graph = Graph::new();
         let frame = frame(&graph, units, |[_, y, _, u, _]| y * u);
@@ -39,7 +39,7 @@ fn a_frame_that_is_not_closed_is_so_in_all_units() {
 
 /// log(xy) − log x − log y is zero, though nothing that the graph knows.
 #[test]
-fn a_frame_that_is_closed_up_to_rounding_is_so_in_all_units() {
+fn a_frame_that_is_closed_up_to_rounding_is_accepted_in_all_units() {
     for units in SCALES {
         let graph = Graph::new();
         let frame = frame(&graph, units, |[x, y, _, u, w]| {
@@ -79,7 +79,7 @@ fn a_small_part_is_seen_beside_a_large_one() {
 
 /// Of so(3) with brackets made larger as a coordinate grows, Jacobi's identity fails by its derivatives.
 #[test]
-fn the_defect_of_jacobis_identity_depends_on_no_unit() {
+fn the_defect_of_jacobis_identity_does_not_depend_on_units() {
     for unit in [1.0, 1e-10, 1e10] {
         let graph = Graph::new();
         let [t, x, y, z] = graph.symbols(["t", "x", "y", "z"]);
@@ -94,7 +94,7 @@ fn the_defect_of_jacobis_identity_depends_on_no_unit() {
 
 /// Time is an operator, too: [X_1, X_2] = X_2 and [X_0, X_1] = 2 X_1 leave 2 X_2.
 #[test]
-fn a_drift_that_is_no_derivation_is_refused() {
+fn a_drift_that_is_not_a_derivation_is_refused() {
     for unit in [1, 1_000_000_000] {
         let unit = pc_expr::Number::ratio(1, unit);
         let algebra = LieAlgebra::from_brackets(2, &[(0, 1, 1, unit)]).unwrap();

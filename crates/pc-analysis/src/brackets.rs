@@ -1,7 +1,7 @@
-//! Poisson brackets and what commutes with everything.
+//! Poisson brackets, and the functions that commute with everything.
 //!
-//! In go a system, an algebra or constraints, out come brackets (12) and their Casimirs. `poisson_bracket` is the bracket of a
-//! system, `almost_poisson` that of constrained ones, `casimirs` searches either.
+//! A system, an algebra or constraints give brackets (12) and their Casimirs. `poisson_bracket` is the bracket of a
+//! system, `almost_poisson` that of a constrained one, `casimirs` searches either.
 
 pub(crate) mod almost_poisson;
 pub(crate) mod casimirs;

@@ -1,4 +1,4 @@
-//! What can be wrong with a question about motions.
+//! Errors of questions about motions.
 
 use pc_expr::{Expr, ExprError, Failure, Graph, readable};
 use pc_mech::{MechError, ShapeError};
@@ -32,7 +32,7 @@ pub enum AnalysisError {
         /// The names of the components.
         known: Vec<String>,
     },
-    /// A component called cyclic on which a rate depends.
+    /// A component named as cyclic on which a rate depends.
     #[error("`{coordinate}` is not cyclic: the rate of `{component}` depends on it")]
     NotCyclic {
         /// The component called cyclic.
@@ -41,7 +41,7 @@ pub enum AnalysisError {
         component: String,
     },
     /// A function that should be an integral changes along the motion.
-    #[error("`{name}` is not a first integral free of time, so that it proves no stability")]
+    #[error("`{name}` is not a first integral free of time, so it does not prove stability")]
     NotConserved {
         /// Its name.
         name: String,
@@ -83,7 +83,7 @@ pub enum AnalysisError {
         /// Names and values of the coordinates where the residual was least.
         coordinates: Vec<(String, f64)>,
     },
-    /// A function of something that does not belong to it.
+    /// A function of a symbol that is not a variable here.
     #[error("`{symbol}` stands in {what}, which can contain {}", quoted(known))]
     NotAVariable {
         /// What it is a function of.

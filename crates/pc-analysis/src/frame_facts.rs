@@ -1,32 +1,32 @@
-//! What the frame and its brackets say before any Lagrangian does.
+//! Properties of the frame and its brackets, without a Lagrangian.
 
 use pc_algebra::{Holonomy, Integrability};
 use pc_mech::{Expr, Neighbourhood, System};
 
-/// Quasi-velocities that are velocities of something, and functions that no motion changes.
+/// Quasi-velocities that are rates of functions, and functions that no motion changes.
 #[derive(Clone, Debug)]
 pub struct FrameFacts<'g> {
-    /// Of each quasi-velocity, if the frame determines it: rank b = k.
+    /// The kind of each quasi-velocity, if the frame determines it: rank b = k.
     pub holonomy: Vec<(String, QuasiVelocityKind<'g>)>,
     /// Whether η = ẋ.
     pub lagrangian: bool,
-    /// What holds by the frame alone, if n > rank b.
+    /// The constraints that hold by the frame alone, if n > rank b.
     pub constraints: Option<FrameConstraints>,
 }
 
 /// Whether a quasi-velocity is dπ/dt.
 #[derive(Clone, Debug)]
 pub enum QuasiVelocityKind<'g> {
-    /// Of this π, or of one that is not elementary to find.
+    /// It is the rate of this π, or of one that is not found.
     RateOf(Option<Expr<'g>>),
-    /// Of nothing, because of the bracket of this pair.
+    /// It is the rate of no function, because of the bracket of this pair.
     RateOfNothing([String; 2]),
 }
 
 /// The n − rank b constraints that a frame stands for.
 #[derive(Clone, Debug)]
 pub enum FrameConstraints {
-    /// So many can be written f = const.
+    /// All can be written f = const.
     Integrable {
         /// How many.
         count: usize,
@@ -41,7 +41,7 @@ pub enum FrameConstraints {
 }
 
 impl<'g> FrameFacts<'g> {
-    /// What the frame of a system says near a point.
+    /// The properties of the frame of a system near a point.
     pub fn of(system: &System<'g>, near: &Neighbourhood<'g>) -> FrameFacts<'g> {
         let (frame, structure, eta) = (system.frame(), system.structure(), system.quasi_velocities());
         let (n, k, rank) = (frame.coordinates().len(), eta.len(), frame.rank());

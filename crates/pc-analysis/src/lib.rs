@@ -1,13 +1,13 @@
-//! What can be said of motions without integrating them: what they keep, where they rest, and what happens near by.
+//! Analysis of motions without integrating them: integrals, steady motions, stability, invariant measures.
 //!
 //! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
-//! corrected; conventions are those of [`pc_mech`]. Questions are put to its [`System`](pc_mech::System), to its
-//! [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical) equations (10), (11), and to the
-//! [`Motion`](pc_mech::Motion) that these are compiled to. What is found is proved unless it is said to be open.
+//! corrected; conventions are those of [`pc_mech`]. Questions are asked of its [`System`](pc_mech::System), of its
+//! [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical) equations (10), (11), and of the
+//! [`Motion`](pc_mech::Motion) that these are compiled to. Results are proved unless they are marked open.
 //!
 //! # Frames
 //!
-//! [`FrameFacts::of`] says of each quasi-velocity whether it is dπ/dt, and which constraints hold by the frame alone.
+//! [`FrameFacts::of`] says whether each quasi-velocity is dπ/dt, and which constraints hold by the frame alone.
 //!
 //! # Brackets
 //!
@@ -61,12 +61,13 @@
 //!
 //! # Integrals
 //!
-//! [`System::energy_rate`](pc_mech::System::energy_rate) is dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s. [`CyclicDisplacement::all`] finds the
-//! a_s X_s whose momentum a_s y_s the motion keeps; for η = ẋ they are above all the cyclic coordinates, in other
-//! frames others. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on any function, and
-//! [finds](Rates::integrals) integrals of the form of an [`Ansatz`]. What is found is proved.
-//! [`Integrals::find`] asks all of these, and Casimirs, for what a system keeps; [`Integrals::add_polynomials`] adds those of a
-//! [`PolynomialAnsatz`], with parameters in their coefficients. To one that is linear in the momenta belongs a [`NoetherField`].
+//! [`System::energy_rate`](pc_mech::System::energy_rate) is dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s.
+//! [`CyclicDisplacement::all`] finds the a_s X_s whose momentum a_s y_s the motion keeps; for η = ẋ they are in
+//! particular the cyclic coordinates. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on
+//! any function, and [finds](Rates::integrals) integrals of the form of an [`Ansatz`]; these are proved.
+//! [`Integrals::find`] combines all of these, and Casimirs; [`Integrals::add_polynomials`] adds those of a
+//! [`PolynomialAnsatz`], with parameters in their coefficients. To one that is linear in the momenta belongs a
+//! [`NoetherField`].
 //!
 //! ```
 //! use pc_analysis::{Conservation, CyclicDisplacement, Rates};
@@ -100,8 +101,9 @@
 //!
 //! # Hamilton–Jacobi
 //!
-//! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along (11). [`hamilton_jacobi`] puts S in and
-//! proves it, [`ProposedAction::check`] says what is known where it does not; from a [`CompleteIntegral`] S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
+//! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along (11). [`hamilton_jacobi`] substitutes S and
+//! proves the equation, [`ProposedAction::check`] gives a verdict where there is no proof; from a [`CompleteIntegral`]
+//! S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
 //!
 //! ```
 //! use pc_analysis::CompleteIntegral;
@@ -123,11 +125,10 @@
 //!
 //! [`SteadyMotion::near`] finds states where all but the cyclic coordinates rest, with their first approximation. Its
 //! [`Spectrum`] shows instability, or asymptotic stability; the [`SecondVariation`] of the energy under constant
-//! integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], undecided where it decides
-//! nothing.
-//! [`SteadySearch::near`] finds the steady motion near a start that has the same integrals, and asks both;
-//! [`SteadyMotions::search`] those from many starts, and the equilibria.
-//! [`Variation`] is a motion with the deviations from it, δ̇ = (∂f/∂y) δ.
+//! integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], which may be undecided.
+//! [`SteadySearch::near`] finds the steady motion near a start that has the same integrals, and applies both;
+//! [`SteadyMotions::search`] finds those from many starts, and the equilibria. [`Variation`] is a motion with the
+//! deviations from it, δ̇ = (∂f/∂y) δ.
 //!
 //! ```
 //! use pc_analysis::{SecondVariation, Spectrum, Verdict, first_approximation};
@@ -155,7 +156,8 @@
 //!
 //! # Reduction
 //!
-//! A [`Routhian`] is the Lagrangian of what is left when coordinates that are cyclic have gone, with their momenta as constants.
+//! A [`Routhian`] is the Lagrangian of the remaining coordinates when cyclic ones are eliminated, with their momenta
+//! as constants.
 //!
 //! # Invariant measures
 //!
@@ -163,7 +165,7 @@
 //! is by every system with potential forces, and by some under nonholonomic constraints. Those have a bracket as well, the
 //! [almost-Poisson](PoissonBracket::almost_poisson) one, and some of Chaplygin's systems a time in which they are Lagrangian,
 //! by a [`ReducingMultiplier`].
-//! [`MeasureSearch::of`] asks for all that is known of a motion.
+//! [`MeasureSearch::of`] gives all that is known for a motion.
 
 mod brackets;
 mod error;

@@ -1,7 +1,7 @@
 //! Phase volume and the measures that a motion keeps.
 //!
-//! In goes a system, constrained or not, out comes the density of an invariant measure. `invariant_measure` finds it,
-//! `phase_measure` says of any motion what is known, Liouville's theorem first, and `reducing_multiplier` takes
+//! A system, constrained or not, gives the density of an invariant measure. `invariant_measure` finds it,
+//! `phase_measure` says what is known for any motion, by Liouville's theorem first, and `reducing_multiplier` derives
 //! Chaplygin's new time from it.
 
 pub(crate) mod invariant_measure;

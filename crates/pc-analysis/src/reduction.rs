@@ -1,6 +1,6 @@
-//! Fewer equations by symmetry.
+//! Reduction by symmetry.
 //!
-//! In goes a system, out comes one of the coordinates that are left. `routhian` has Routh's reduction by cyclic coordinates;
-//! that by a group is [`System::reduced`](pc_mech::System::reduced).
+//! A system becomes one in the coordinates that are left. `routhian` is Routh's reduction by cyclic coordinates;
+//! reduction by a group is [`System::reduced`](pc_mech::System::reduced).
 
 pub(crate) mod routhian;

@@ -1,9 +1,9 @@
-//! Steady motions and what can be said of motions near them.
+//! Steady motions and their stability.
 //!
-//! In go compiled equations and a guess, out come a steady motion and verdicts on its stability. `steady_motion` finds it with
+//! Compiled equations and a guess give a steady motion and verdicts on its stability. `steady_motion` finds it with
 //! its first approximation, `spectrum` judges by eigenvalues, `second_variation` by integrals, for which `definite` looks for
-//! a definite combination of quadratic forms; `steady_search` asks all of them about the steady motion near a start, `steady_motions` about
-//! all that are found from many.
+//! a definite combination of quadratic forms; `steady_search` applies all of them to the steady motion near a start,
+//! `steady_motions` to those found from many starts.
 
 pub(crate) mod definite;
 pub(crate) mod second_variation;

@@ -172,7 +172,7 @@ fn a_moving_frame() {
 }
 
 #[test]
-fn what_is_no_complete_integral_is_refused() {
+fn an_incomplete_integral_is_refused() {
     let graph = Graph::new();
     let canonical = falling(&graph);
     let [t, x, c] = graph.symbols(["t", "x", "c"]);

@@ -58,7 +58,7 @@ fn a_triaxial_top_has_three() {
 
 /// (ω1² − ω2² − μγ1)² + (2ω1ω2 − μγ2)² with A = B = 2C, μ = m_1/C: S. V. Kovalevskaya's integral.
 #[test]
-fn kovalevskayas_top_has_hers() {
+fn kovalevskayas_top_has_her_integral() {
     let graph = Graph::new();
     let system = top(&graph, [2.0, 2.0, 1.0], [1.0, 0.0, 0.0]);
     let [g1, g2, w1, w2] = graph.symbols(["γ1", "γ2", "ω1", "ω2"]);

@@ -101,7 +101,7 @@ fn keplers_problem_keeps_the_vector_of_runge_and_lenz() {
 }
 
 #[test]
-fn what_is_not_of_the_motion_is_refused() {
+fn functions_of_foreign_symbols_are_refused() {
     let graph = Graph::new();
     let equations = oscillator(&graph, [1.0, 2.0]);
     let near = Neighbourhood::default();

@@ -10,7 +10,7 @@ fn near<'g>(graph: &'g Graph, values: &[(&str, f64)]) -> Neighbourhood<'g> {
 /// S = x r/2 + (E/ω) arctan(ω x/r) − E t, r² = 2E − ω² x²; by an arc sine it has roots of products, of which the graph knows
 /// less; and with another E beside t it is none.
 #[test]
-fn an_oscillators_is_proved_or_agrees_or_is_refuted() {
+fn an_oscillators_action_is_proved_or_agrees_or_is_refuted() {
     let graph = Graph::new();
     let [omega, t, x, e] = graph.symbols(["ω", "t", "x", "E"]);
     let oscillator = System::builder(&graph)
@@ -42,7 +42,7 @@ fn an_oscillators_is_proved_or_agrees_or_is_refuted() {
 
 /// Kepler's in polar coordinates, S = l φ − E t + q + (mk/√a) arctan(…) − l arctan(…), q² = 2mE r² + 2mk r − l², a = −2mE.
 #[test]
-fn keplers_is_proved() {
+fn keplers_action_is_proved() {
     let graph = Graph::new();
     let [m, k, t, r, phi, e, l] = graph.symbols(["m", "k", "t", "r", "φ", "E", "l"]);
     let planet = System::builder(&graph)

@@ -56,7 +56,7 @@ fn verdicts_on_the_top() {
 
 /// A potential that jumps gives no force, yet the energy jumps with it.
 #[test]
-fn derivatives_do_not_prove_what_jumps() {
+fn a_vanishing_rate_does_not_prove_a_jumping_function_conserved() {
     let graph = Graph::new();
     let [depth, x, v] = graph.symbols(["U", "x", "x'"]);
     let builder = || System::builder(&graph).parameter(depth, 5.0).coordinates(["x"]);
@@ -201,7 +201,7 @@ fn cyclic_coordinates_are_cyclic_displacements() {
 
 /// Lagrange's top in body axes: X_3 does not commute with X_1 and X_2, but A = B.
 #[test]
-fn lagranges_top_has_one_by_its_symmetry() {
+fn lagranges_top_has_a_cyclic_displacement_by_its_symmetry() {
     let graph = Graph::new();
     let lagrange = top(&graph, [1.0, 1.0, 0.5], [0.0, 0.0, 1.0]);
     assert_eq!(cyclic(&lagrange), []);

@@ -69,7 +69,7 @@ fn two_degrees_of_freedom_become_lagrangian() {
 }
 
 #[test]
-fn more_degrees_of_freedom_are_proved_or_none() {
+fn with_more_degrees_of_freedom_a_multiplier_is_proved_or_absent() {
     let graph = Graph::new();
     let names = ["x", "y", "s", "w"];
     // ẇ = 2 x ẋ is a surface, and its motions Lagrangian as they are; N is constant.
@@ -113,7 +113,7 @@ fn the_multiplier_is_a_root_of_the_density() {
 }
 
 #[test]
-fn there_is_none_without_a_measure_or_symmetry_or_with_forces() {
+fn there_is_no_multiplier_without_a_measure_or_symmetry_or_with_forces() {
     let graph = Graph::new();
     // Chaplygin's sleigh, ẏ = tan φ ẋ: a Chaplygin system without invariant measure.
     let sleigh = System::builder(&graph)
@@ -151,7 +151,7 @@ fn there_is_none_without_a_measure_or_symmetry_or_with_forces() {
 
 /// The particle with 3 ż, a total derivative, in its Lagrangian: nothing moves otherwise, and no multiplier of ż is right.
 #[test]
-fn terms_linear_in_the_velocities_are_not_passed_over() {
+fn terms_linear_in_the_velocities_are_taken_into_account() {
     let graph = Graph::new();
     let system = System::builder(&graph)
         .coordinates(["x", "y", "z"])

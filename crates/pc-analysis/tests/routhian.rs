@@ -24,7 +24,7 @@ fn top(graph: &Graph) -> System<'_> {
 
 /// R = ½ A θ̇² − (p_ψ − p_φ cos θ)²/(2 A sin² θ) − p_φ²/(2 C) − mgl cos θ
 #[test]
-fn of_a_heavy_top_nutation_is_left() {
+fn the_routhian_of_a_heavy_top_describes_its_nutation() {
     let graph = Graph::new();
     let system = top(&graph);
     let names = ["t", "ψ", "θ", "φ", "ψ'", "θ'", "φ'"];
@@ -67,7 +67,7 @@ fn of_a_heavy_top_nutation_is_left() {
 
 /// Forces along a coordinate, or that depend on it, let its momentum change.
 #[test]
-fn what_is_pushed_is_not_cyclic() {
+fn a_coordinate_with_a_force_is_not_cyclic() {
     let graph = Graph::new();
     let build = |on_s: bool| {
         System::builder(&graph)
@@ -84,7 +84,7 @@ fn what_is_pushed_is_not_cyclic() {
 
 /// A force on the other coordinate that depends on the rate of the cyclic one: this is put in.
 #[test]
-fn forces_on_the_others_are_kept() {
+fn forces_on_other_coordinates_are_kept() {
     let graph = Graph::new();
     let system = System::builder(&graph)
         .coordinates(["r", "φ"])
@@ -101,7 +101,7 @@ fn forces_on_the_others_are_kept() {
 }
 
 #[test]
-fn a_free_particle_has_nothing_left() {
+fn a_free_particle_has_only_cyclic_coordinates() {
     let graph = Graph::new();
     let particle = System::builder(&graph)
         .coordinates(["x", "y"])

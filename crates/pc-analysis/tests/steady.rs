@@ -281,7 +281,7 @@ fn a_pendulum_hangs_and_does_not_stand() {
 /// A block of n zeros, turned so that its zeros are not seen: eigenvalue routines answer ε^(1/n), some of it
 /// growth.
 #[test]
-fn blocks_of_zeros_are_no_growth() {
+fn jordan_blocks_of_zero_do_not_count_as_growth() {
     let (c, s) = (0.6, 0.8);
     let turn = |i: usize, j: usize| match (i, j) {
         (0, 0) | (3, 3) => c,
@@ -300,7 +300,7 @@ fn blocks_of_zeros_are_no_growth() {
 }
 
 #[test]
-fn what_cannot_be_found_is_named() {
+fn failures_of_the_search_are_named() {
     let graph = Graph::new();
     let falling = System::builder(&graph)
         .coordinates(["x"])
@@ -336,7 +336,7 @@ fn what_cannot_be_found_is_named() {
     let changing = SecondVariation::at(&spun.poincare().unwrap(), &[0.0, 0.0, 1.0]).unwrap_err();
     assert_eq!(
         message(changing),
-        "`spin` is not a first integral free of time, so that it proves no stability"
+        "`spin` is not a first integral free of time, so it does not prove stability"
     );
 }
 

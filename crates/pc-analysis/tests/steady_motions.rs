@@ -101,7 +101,7 @@ fn a_planet_has_one_circle_of_its_area() {
 }
 
 #[test]
-fn motions_driven_by_time_have_none() {
+fn motions_driven_by_time_have_no_steady_motions() {
     let graph = Graph::new();
     let driven = System::builder(&graph)
         .coordinates(["x"])

@@ -74,7 +74,7 @@ fn the_bracket_generates_the_motion() {
 }
 
 #[test]
-fn jacobis_identity_tells_integrable_constraints() {
+fn jacobis_identity_holds_for_integrable_constraints_only() {
     let graph = Graph::new();
     assert!(PoissonBracket::almost_poisson(&surface(&graph)).unwrap().jacobi_violation().is_none());
     for constrained in [knife(&graph), sleigh(&graph)] {

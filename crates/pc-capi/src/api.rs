@@ -1,9 +1,11 @@
 //! The functions of pc.h, a file for each group of them.
 //!
-//! In go numbers and pointers, which `ffi` checks, out come those of the crates below; what is remembered between two calls
-//! stands in `machinery`. Models: `model`, `builder`, `bodies`, `joints`, `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
-//! `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`, `cancel`, `solver`, `observe`, `events`, `occurrences`,
-//! `force`, `dense`, `checkpoint`, `statistics`, `ensemble`. The library: `version`.
+//! Numbers and pointers come in, which `ffi` checks; the crates below compute the results;
+//! what is remembered between two calls is in `machinery`. Models: `model`, `builder`,
+//! `bodies`, `joints`, `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
+//! `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`,
+//! `cancel`, `solver`, `observe`, `events`, `occurrences`, `force`, `dense`, `checkpoint`,
+//! `statistics`, `ensemble`. The library: `version`.
 
 pub(crate) mod action;
 pub(crate) mod bodies;

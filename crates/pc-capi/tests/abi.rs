@@ -39,7 +39,7 @@ macro_rules! places {
 
 #[cfg(target_pointer_width = "64")]
 #[test]
-fn members_stand_where_the_interface_says() {
+fn members_have_the_offsets_of_the_interface() {
     let places = places! {
         pc_system_options { size, form, reserved, memory_limit, time_limit, cancel }
         pc_solver_options {
@@ -109,7 +109,7 @@ void pc_thing_free(pc_thing *)
 }
 
 #[test]
-fn what_is_added_breaks_no_program_and_what_goes_or_changes_does() {
+fn additions_are_compatible_and_removals_and_changes_are_not() {
     let old = interface(HEADER, 7);
     let with = |from: &str, to: &str| {
         assert!(HEADER.contains(from));

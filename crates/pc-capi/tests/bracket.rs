@@ -84,7 +84,7 @@ fn momenta_follow_the_bracket() {
 
 /// Independent momenta of the particle on ż = y ẋ: p = (1 + y²) ẋ has ṗ = (p, H).
 #[test]
-fn the_almost_poisson_bracket_has_the_momenta_that_vanish() {
+fn the_almost_poisson_bracket_includes_the_vanishing_momenta() {
     let system = Model::text(POINT).unwrap().system(PC_POINCARE).unwrap();
     let y = [0.2, 0.7, -0.3, 0.5, -0.4, 0.35];
     let rates = rates(&system, 0.0, &y);
@@ -94,7 +94,7 @@ fn the_almost_poisson_bracket_has_the_momenta_that_vanish() {
 }
 
 #[test]
-fn what_is_no_function_of_the_state_is_refused() {
+fn a_text_that_is_not_a_function_of_the_state_is_refused() {
     let system = System::of("heavy-top-lagrange");
     let (t, y) = system.start();
     let refusal = bracket(&system, "γ1*(ω1 + w2)", "γ2", t, &y).unwrap_err();

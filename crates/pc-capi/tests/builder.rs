@@ -69,7 +69,7 @@ fn the_heavy_top_is_that_of_the_text() {
 }
 
 #[test]
-fn every_sort_of_entry_arrives() {
+fn every_kind_of_entry_reaches_the_text() {
     let sleigh = empty("A \"sleigh\"\\\n\u{7f}");
     say!(sleigh, pc_model_add_parameter, "m"; 1.0).unwrap();
     say!(sleigh, pc_model_add_definition, "a", "1/2").unwrap();
@@ -116,7 +116,7 @@ fn brackets_are_those_of_the_algebra() {
 }
 
 #[test]
-fn faults_name_the_entry() {
+fn errors_name_the_entry() {
     let top = heavy_top();
     say!(top, pc_model_set_potential, "mg*r4*γ3").unwrap();
     let refusal = top.system(pc_form::PC_POINCARE).err().unwrap();

@@ -231,7 +231,7 @@ fn there_is_a_call_for_every_key_of_the_text() {
 
 /// The pendulum on a cart of bodies is that of the text.
 #[test]
-fn bodies_arrive() {
+fn bodies_reach_the_text() {
     let by_calls = empty("A pendulum on a cart");
     for (name, value) in [("M", 2.0), ("m", 1.0), ("l", 0.5), ("g", 9.81), ("J", 0.3)] {
         say!(by_calls, pc_model_add_parameter, name; value).unwrap();
@@ -351,7 +351,7 @@ fn starts_are_set_as_numbers_and_expressions() {
 
 /// x'^2 + z'^2 = 1 is kept by Chetaev's condition only where it is said to be nonlinear.
 #[test]
-fn kinds_of_constraints_arrive() {
+fn kinds_of_constraints_reach_the_text() {
     let particle = empty("A particle of given speed");
     for name in ["x", "z"] {
         say!(particle, pc_model_add_coordinate, name; 0.0).unwrap();
@@ -378,7 +378,7 @@ fn kinds_of_constraints_arrive() {
 }
 
 #[test]
-fn events_arrive_as_text() {
+fn events_reach_the_text() {
     let ball = empty("A ball");
     say!(ball, pc_model_add_coordinate, "y"; 1.0).unwrap();
     say!(ball, pc_model_set_lagrangian, "y'^2/2 - 9.81*y").unwrap();

@@ -21,7 +21,7 @@ fn assert_near(found: &[f64], expected: &[f64], tolerance: f64) {
 }
 
 #[test]
-fn a_motion_as_a_function_is_the_run_at_its_times() {
+fn dense_output_agrees_with_a_run_at_its_times() {
     for name in ["heavy-top-lagrange", "bouncing-ball"] {
         let system = System::of(name);
         let (solver, other) = (Solver::of(&system, &sharp()), Solver::of(&system, &sharp()));
@@ -104,7 +104,7 @@ fn label(bytes: &[u8]) -> Result<String, Refusal> {
 }
 
 #[test]
-fn a_motion_taken_up_again_is_the_same_to_the_last_bit() {
+fn a_resumed_motion_is_the_same_to_the_last_bit() {
     let stiff = pc_solver_options { method: pc_method::PC_BDF as i32, ..Default::default() };
     for name in [
         "heavy-top-lagrange",
@@ -180,7 +180,7 @@ fn wrong_calls_are_refused() {
     assert_eq!(refusal.status, PC_INVALID_CHECKPOINT, "{}", refusal.message);
     let latin = [b'\xff', 0];
     let refusal = checkpoint(&solver, latin.as_ptr().cast()).unwrap_err();
-    assert_eq!(refusal.message, "label is not UTF-8 text: byte number 0 (from 0) does not fit");
+    assert_eq!(refusal.message, "label is not UTF-8 text: byte number 0 (from 0) is invalid");
 
     let (mut made, mut text, mut data, mut length) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut(), 0);
     let (mut dense, mut y) = (ptr::null_mut(), [0.0; 6]);
@@ -229,8 +229,8 @@ fn wrong_calls_are_refused() {
     }
     // SAFETY: null.
     unsafe {
-        assert_eq!(pc_dense_dim(ptr::null()), 0);
-        assert!(pc_dense_t_begin(ptr::null()).is_nan() && pc_dense_t_end(ptr::null()).is_nan());
+        assert_eq!(pc_dense_dim(None), 0);
+        assert!(pc_dense_t_begin(None).is_nan() && pc_dense_t_end(None).is_nan());
         pc_dense_free(ptr::null_mut());
         pc_bytes_free(ptr::null_mut());
         assert!((*made).is_null() && (*text).is_null() && (*data).is_null() && (*dense).is_null());
@@ -249,7 +249,7 @@ fn a_checkpoint_of_another_model_is_refused() {
     let solver = Solver::of(&system, &sharp());
     solver.advance(1.0).0.unwrap();
     let bytes = checkpoint(&solver, c"x".as_ptr()).unwrap();
-    let said = "the checkpoint is of another model: its names, their number or its equations are not those of the system";
+    let said = "the checkpoint belongs to another model: its names, their number or its equations differ from the system's";
     // Other equations, other names, another number of components, another form.
     for (from, to) in [("k*x^2/2", "k*x^4/2"), ("x", "z"), ("k", "c"), ("x'^2/2", "x'^2/3")] {
         let other = oscillator(&text.replace("kinetic", "T").replace(from, to).replace("T =", "kinetic ="));

@@ -31,7 +31,7 @@ extern "C" fn watch(member: *const pc_member, user: *mut c_void) -> c_int {
     // SAFETY: what `run` passes; arrays and text as documented.
     unsafe {
         let (watch, member) = (&mut *user.cast::<Watch>(), &*member);
-        assert_eq!((member.number, member.dim), (watch.seen.len(), pc_system_dim(watch.system)));
+        assert_eq!((member.number, member.dim), (watch.seen.len(), pc_system_dim(watch.system.as_ref())));
         let message =
             (!member.message.is_null()).then(|| CStr::from_ptr(member.message).to_str().unwrap().into());
         assert_eq!((member.times.is_null(), member.states.is_null()), (member.rows == 0, member.rows == 0));
@@ -43,7 +43,7 @@ extern "C" fn watch(member: *const pc_member, user: *mut c_void) -> c_int {
         let states = numbers(member.states, member.rows * member.dim);
         watch.seen.push(Seen { status: member.status, message, times, states });
         // The system is not in use.
-        let mut values = vec![0.0; pc_system_parameter_count(watch.system)];
+        let mut values = vec![0.0; pc_system_parameter_count(watch.system.as_ref())];
         let (data, length) = (values.as_mut_ptr(), values.len());
         assert_eq!(pc_system_parameters(watch.system, data, length, ptr::null_mut()), PC_OK);
         c_int::from(watch.seen.len() >= watch.stop_after)
@@ -100,7 +100,7 @@ impl Case<'_> {
             call(|error| pc_system_clone(self.system.0, &raw mut copy, error)).unwrap();
             let system = System(copy);
             if let Some(all) = &self.parameters {
-                let count = pc_system_parameter_count(system.0);
+                let count = pc_system_parameter_count(system.0.as_ref());
                 let values = all[member * count..].as_ptr();
                 call(|error| pc_system_set_parameters(system.0, values, count, error)).unwrap();
             }
@@ -139,9 +139,9 @@ extern "C" fn output(t: f64, y: *const f64, y_length: usize, user: *mut c_void) 
 fn spread(system: &System, members: usize) -> (f64, Vec<f64>, Vec<f64>) {
     let (t, y) = system.start();
     // SAFETY: a live system.
-    let count = unsafe { pc_system_parameter_count(system.0) };
+    let count = unsafe { pc_system_parameter_count(system.0.as_ref()) };
     let mut values = vec![0.0; count];
-    // SAFETY: as above, and room as said.
+    // SAFETY: a live system and room as said.
     call(|error| unsafe { pc_system_parameters(system.0, values.as_mut_ptr(), count, error) }).unwrap();
     let by = |member: usize, part: f64| 1.0 + part * member as f64;
     let states = (0..members).flat_map(|m| y.iter().map(move |y| y * by(m, 0.01))).collect();
@@ -175,7 +175,7 @@ fn members_are_single_runs_to_the_last_bit_for_any_number_of_threads() {
 }
 
 #[test]
-fn a_bad_member_is_told_and_the_others_go_on() {
+fn a_failing_member_is_reported_and_the_others_continue() {
     let system = System::of("heavy-top-lagrange");
     let members = 8;
     let (t, mut states, mut parameters) = spread(&system, members);

@@ -32,7 +32,7 @@ extern "C" fn tell(
     unsafe {
         let told = &mut *user.cast::<Told>();
         let state = |y| std::slice::from_raw_parts(y, y_length).to_vec();
-        assert_eq!(CStr::from_ptr(pc_solver_event_name(told.solver, event)), c"bounce");
+        assert_eq!(CStr::from_ptr(pc_solver_event_name(told.solver.as_ref(), event)), c"bounce");
         let mut now = 0.0;
         assert_eq!(pc_solver_time(told.solver, &raw mut now, ptr::null_mut()), PC_BUSY);
         pc_solver_free(told.solver); // of no effect
@@ -123,7 +123,7 @@ fn an_observer_of_events_stops_the_integration() {
 }
 
 #[test]
-fn bounces_without_end_are_an_error() {
+fn accumulating_bounces_are_an_error() {
     let solver = Solver::of(&System::of("bouncing-ball"), &sharp());
     let refusal = solver.advance(5.0).0.unwrap_err();
     assert_eq!(refusal.status, PC_INTEGRATION);
@@ -136,7 +136,7 @@ fn bounces_without_end_are_an_error() {
 }
 
 #[test]
-fn events_are_said_call_by_call() {
+fn events_are_declared_call_by_call() {
     let mut model = ptr::null_mut();
     let [name, y, dy, one, kinetic, potential, when, low, reset] =
         ["ball", "y", "y'", "e", "y'^2/2", "9.81*y", "y", "low \"one\"", "-e*y'"].map(c);
@@ -164,9 +164,15 @@ fn events_are_said_call_by_call() {
         assert_eq!(refusal.message, "2 is not a value of pc_direction");
 
         let system = model.system(pc_form::PC_POINCARE).unwrap();
-        assert_eq!((pc_system_event_count(system.0), pc_system_event_direction(system.0, 0)), (1, -1));
-        assert_eq!((pc_system_event_is_terminal(system.0, 0), pc_system_event_resets(system.0, 0)), (0, 1));
-        assert_eq!(CStr::from_ptr(pc_system_event_name(system.0, 0)), c"low \"one\"");
+        assert_eq!(
+            (pc_system_event_count(system.0.as_ref()), pc_system_event_direction(system.0.as_ref(), 0)),
+            (1, -1)
+        );
+        assert_eq!(
+            (pc_system_event_is_terminal(system.0.as_ref(), 0), pc_system_event_resets(system.0.as_ref(), 0)),
+            (0, 1)
+        );
+        assert_eq!(CStr::from_ptr(pc_system_event_name(system.0.as_ref(), 0)), c"low \"one\"");
         let solver = Solver::of(&system, &sharp());
         solver.advance(3.0).0.unwrap();
         assert_eq!(solver.occurrences(0), bounces(0.8, 3.0).len() as u64);

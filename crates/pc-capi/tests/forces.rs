@@ -70,7 +70,7 @@ unsafe extern "C" fn slopes(
     e: usize,
     user: *mut c_void,
 ) -> c_int {
-    // SAFETY: as above.
+    // SAFETY: a law, and arrays as long as said.
     let (law, y, dq) =
         unsafe { (&*user.cast::<Law>(), slice::from_raw_parts(y, n), slice::from_raw_parts_mut(dq, e)) };
     law.slopes.map_or(-7, |slopes| slopes(t, y, dq, 0))
@@ -125,9 +125,9 @@ fn written(name: &str, forces: &[(&str, &str)], form: pc_form) -> System {
     model.system(form).unwrap()
 }
 
-fn count(system: &System, count: unsafe extern "C" fn(*const pc_system) -> usize) -> usize {
+fn count(system: &System, count: extern "C" fn(Option<&pc_system>) -> usize) -> usize {
     // SAFETY: a live system.
-    unsafe { count(system.0) }
+    count(unsafe { system.0.as_ref() })
 }
 
 fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
@@ -230,7 +230,7 @@ fn a_force_of_a_function_is_that_of_the_text() {
         // The residual of the rates vanishes.
         let (rates, mut residual) = (system.at(pc_system_rhs, t, &y, n).unwrap(), vec![1.0; n]);
         call(|error| unsafe {
-            // SAFETY: as above.
+            // SAFETY: a live system and arrays as said.
             pc_system_residual(system.0, t, y.as_ptr(), n, rates.as_ptr(), n, residual.as_mut_ptr(), n, error)
         })
         .unwrap();
@@ -268,7 +268,7 @@ fn reached(solver: *mut pc_solver) -> f64 {
 }
 
 #[test]
-fn integrations_agree_and_projections_go_on() {
+fn integrations_agree_and_states_stay_projected() {
     for case in &cases() {
         for method in [pc_method::PC_ADAMS, pc_method::PC_BDF] {
             let ((system, text, law), what) = (pair(case), label(case));
@@ -330,11 +330,10 @@ fn derivatives_are_those_of_the_function() {
 }
 
 #[test]
-fn without_a_function_nothing_moves_but_the_energy_is_known() {
+fn without_a_force_function_rates_fail_but_the_energy_is_known() {
     let system = forced("tilted-disk", &["ω3"], PC_POINCARE);
     let (t, y) = system.start();
-    let said =
-        "the external force on `ω3` failed at t = 0: no function was set for it; pc_system_set_force does";
+    let said = "the external force on `ω3` failed at t = 0: no function has been set for it; pc_system_set_force sets one";
     for (function, length) in [(pc_system_rhs as At, 8), (pc_system_jacobian, 64), (pc_system_reactions, 2)] {
         let refusal = system.at(function, t, &y, length).unwrap_err();
         assert_eq!((refusal.status, refusal.message.as_str()), (PC_EVALUATION, said));
@@ -373,14 +372,14 @@ fn names_and_numbers_of_the_forces_are_known() {
     let system = forced("vertical-disk", &["φ", "X", "φ"], PC_POINCARE);
     // SAFETY: a live system, or null.
     unsafe {
-        assert_eq!(pc_system_force_count(system.0), 2);
-        let name = |i| CStr::from_ptr(pc_system_force_name(system.0, i)).to_str().unwrap();
+        assert_eq!(pc_system_force_count(system.0.as_ref()), 2);
+        let name = |i| CStr::from_ptr(pc_system_force_name(system.0.as_ref(), i)).to_str().unwrap();
         assert_eq!([name(0), name(1)], ["φ'", "X'"]);
         assert!(
-            pc_system_force_name(system.0, 2).is_null() && pc_system_force_name(ptr::null(), 0).is_null()
+            pc_system_force_name(system.0.as_ref(), 2).is_null() && pc_system_force_name(None, 0).is_null()
         );
-        assert_eq!(pc_system_force_count(ptr::null()), 0);
-        assert_eq!(pc_system_parameter_count(system.0), 4); // the forces are none
+        assert_eq!(pc_system_force_count(None), 0);
+        assert_eq!(pc_system_parameter_count(system.0.as_ref()), 4); // the forces are none
     }
     let model = Model::text(&text_of("tilted-disk")).unwrap();
     declare(&model, &["u2"]);
@@ -399,7 +398,7 @@ fn names_and_numbers_of_the_forces_are_known() {
 
 /// Returns 1 at the first call after t = 1, so that the step is tried again.
 #[test]
-fn a_recoverable_answer_shortens_the_step() {
+fn a_recoverable_failure_of_a_force_shortens_the_step() {
     static FAILED: AtomicUsize = AtomicUsize::new(0);
     let system = forced("pendulum", &["θ"], PC_POINCARE);
     let law = Law::new(|t, _, q, _| {
@@ -421,7 +420,7 @@ fn a_recoverable_answer_shortens_the_step() {
 }
 
 #[test]
-fn an_answer_that_gives_up_leaves_what_was_reached() {
+fn a_force_that_gives_up_leaves_the_state_reached() {
     /// Answers after t = 1, no force before.
     fn after_one(t: f64, q: &mut [f64], code: c_int) -> c_int {
         q[0] = 0.0;
@@ -474,14 +473,14 @@ fn constant(_: f64, _: &[f64], q: &mut [f64], _: usize) -> c_int {
 }
 
 #[test]
-fn what_belongs_to_the_function_is_freed_once() {
+fn user_data_of_a_force_is_freed_once() {
     let system = forced("pendulum", &["θ"], PC_POINCARE);
     let (first, second) = (Law::new(constant), Law::new(constant));
     first.set(&system).unwrap();
     let (mut copy, mut kernel) = (ptr::null_mut(), ptr::null_mut());
     // SAFETY: a live system and places for handles.
     call(|error| unsafe { pc_system_clone(system.0, &raw mut copy, error) }).unwrap();
-    // SAFETY: as above.
+    // SAFETY: a live system and a place for the handle.
     call(|error| unsafe { pc_kernel_new(system.0, &raw mut kernel, error) }).unwrap();
     let solver = solver(&system, pc_method::PC_ADAMS).unwrap();
     second.set(&system).unwrap();
@@ -503,11 +502,11 @@ fn what_belongs_to_the_function_is_freed_once() {
 }
 
 #[test]
-fn a_function_that_is_refused_is_freed_too() {
+fn user_data_of_a_refused_force_is_freed_too() {
     let (unforced, system) = (System::of("euler-top"), forced("pendulum", &["θ"], PC_POINCARE));
     let law = Law::new(constant);
     let refusal = law.set(&unforced).unwrap_err();
-    let said = "an external force is not known of this system: the model declares none; \
+    let said = "an external force is not available for this system: the model declares none; \
                 pc_model_add_external_force does";
     assert_eq!((refusal.status, refusal.message.as_str(), law.destroyed()), (PC_UNSUPPORTED, said, 1));
     // SAFETY: null, or a live system; functions that take the law.
@@ -653,7 +652,7 @@ fn keeping(integral: &str, on: &str) -> Result<System, Refusal> {
 }
 
 #[test]
-fn only_what_forces_leave_alone_is_kept() {
+fn only_integrals_that_forces_do_not_change_are_kept() {
     for (kept, on) in [("energy", "x"), ("area", "y"), ("along", "x")] {
         let refusal = keeping(kept, on).err().unwrap();
         assert!(refusal.message.contains(kept), "{}", refusal.message);

@@ -83,7 +83,7 @@ fn all_forms_of_a_sleigh() {
 }
 
 #[test]
-fn what_is_asked_for_wrongly_is_refused() {
+fn wrong_requests_are_refused() {
     let disk = Model::named("vertical-disk");
     let refusal = disk.system(PC_ORTHONORMAL).err().unwrap();
     assert!(format!("{refusal:?}").contains("held by multipliers"), "{refusal:?}");

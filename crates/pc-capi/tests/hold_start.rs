@@ -34,7 +34,7 @@ fn moved(held: &[&str]) -> Result<Vec<f64>, Refusal> {
 }
 
 #[test]
-fn what_is_held_is_not_moved() {
+fn held_components_are_not_moved() {
     // Newton's method ends at roundings of numbers near 1.
     let near = |found: Vec<f64>, expected: [f64; 2]| {
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?}");

@@ -79,7 +79,7 @@ fn another_thread_cancels() {
     // SAFETY: a place for a handle.
     call(|error| unsafe { pc_cancel_new(&raw mut cancel, error) }).unwrap();
     // SAFETY: a live handle.
-    assert_eq!(unsafe { pc_cancel_is_requested(cancel) }, 0);
+    assert_eq!(unsafe { pc_cancel_is_requested(cancel.as_ref()) }, 0);
     struct Shared(*mut pc_cancel);
     // SAFETY: any number of threads may use the handle, as its documentation says.
     unsafe impl Send for Shared {}
@@ -88,7 +88,7 @@ fn another_thread_cancels() {
         let Shared(cancel) = { shared };
         std::thread::sleep(Duration::from_millis(100));
         // SAFETY: a live handle, freed after this thread has ended.
-        unsafe { pc_cancel_request(cancel) };
+        unsafe { pc_cancel_request(cancel.as_ref()) };
         Instant::now()
     });
     let model = dense(9);
@@ -99,20 +99,20 @@ fn another_thread_cancels() {
     assert!(refusal.message.contains("cancelled"), "{}", refusal.message);
     assert!(ended.saturating_duration_since(requested) < Duration::from_secs(1));
     // SAFETY: a live handle.
-    assert_eq!(unsafe { pc_cancel_is_requested(cancel) }, 1);
+    assert_eq!(unsafe { pc_cancel_is_requested(cancel.as_ref()) }, 1);
     // It does not begin again.
     assert_eq!(refused(&Model::named("euler-top"), &options).status, pc_status::PC_LIMIT);
     // SAFETY: ours, freed once; null is allowed.
     unsafe {
         pc_cancel_free(cancel);
         pc_cancel_free(ptr::null_mut());
-        pc_cancel_request(ptr::null());
-        assert_eq!(pc_cancel_is_requested(ptr::null()), 0);
+        pc_cancel_request(None);
+        assert_eq!(pc_cancel_is_requested(None), 0);
     }
 }
 
 #[test]
-fn what_is_derived_goes_on_without_the_handle() {
+fn systems_continue_without_the_cancel_handle() {
     let mut cancel = ptr::null_mut();
     // SAFETY: a place for a handle.
     call(|error| unsafe { pc_cancel_new(&raw mut cancel, error) }).unwrap();
@@ -165,7 +165,7 @@ fn integrations_are_cancelled() {
     extern "C" fn request(t: f64, _: *const f64, _: usize, cancel: *mut c_void) -> c_int {
         if t >= 2.0 {
             // SAFETY: the handle of the test.
-            unsafe { pc_cancel_request(cancel.cast()) };
+            unsafe { pc_cancel_request(cancel.cast::<pc_cancel>().as_ref()) };
         }
         0
     }
@@ -204,7 +204,7 @@ fn an_ensemble_ends_with_the_members_that_were_finished() {
         unsafe {
             assert_eq!((*member).status, pc_status::PC_OK);
             if (*member).number == 3 {
-                pc_cancel_request(cancel.cast());
+                pc_cancel_request(cancel.cast::<pc_cancel>().as_ref());
             }
         }
         0

@@ -17,7 +17,7 @@ fn of_text(text: &str) -> System {
 }
 
 #[test]
-fn places_where_no_numbers_can_stand_are_refused() {
+fn misaligned_arrays_are_refused() {
     let system = System::of("heavy-top-lagrange");
     let (y, mut ydot) = ([0.5; 8], [0.0; 8]);
     let off = y.as_ptr().cast::<u8>().wrapping_add(1).cast::<f64>();
@@ -31,9 +31,9 @@ fn places_where_no_numbers_can_stand_are_refused() {
     let refusal = rhs(off, out).unwrap_err();
     assert_eq!(
         (refusal.status, refusal.message.as_str()),
-        (PC_INVALID_ARGUMENT, "y does not stand at a multiple of 8 bytes, as its type does")
+        (PC_INVALID_ARGUMENT, "y is misaligned: its address must be a multiple of 8 bytes")
     );
-    assert!(rhs(y.as_ptr(), off_out).unwrap_err().message.starts_with("ydot does not stand"));
+    assert!(rhs(y.as_ptr(), off_out).unwrap_err().message.starts_with("ydot is misaligned"));
     let mut kernel = ptr::null_mut();
     // SAFETY: a live system, then its kernel, which is freed once.
     unsafe {
@@ -46,7 +46,7 @@ fn places_where_no_numbers_can_stand_are_refused() {
 }
 
 #[test]
-fn minus_one_is_no_length() {
+fn minus_one_is_refused_as_a_length() {
     let (mut model, text) = (ptr::null_mut(), c"[coordinates]");
     // SAFETY: a text; the length is refused.
     let refusal = call(|error| unsafe {
@@ -56,7 +56,7 @@ fn minus_one_is_no_length() {
     assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
     assert_eq!(
         refusal.message,
-        "text: 18446744073709551615 numbers are more than any memory has, which is 9223372036854775807; is it −1?"
+        "text: 18446744073709551615 numbers are more than memory can hold, 9223372036854775807 at most; is the length −1?"
     );
     let solver = Solver::of(&System::of("euler-top"), &sharp());
     let times = [1.0];
@@ -68,7 +68,7 @@ fn minus_one_is_no_length() {
 }
 
 #[test]
-fn an_array_that_there_is_not_has_no_length() {
+fn a_null_array_has_length_zero() {
     let (system, mut solver) = (System::of("euler-top"), ptr::null_mut());
     // SAFETY: live objects; what is refused is not looked at.
     unsafe {
@@ -126,7 +126,7 @@ extern "C" fn destroy(user: *mut c_void) {
     // SAFETY: the destroyer below, which lives; its system is being freed.
     unsafe {
         let Destroyer { system, statuses, named } = &mut *user.cast();
-        *named = !pc_system_name(*system, 0).is_null();
+        *named = !pc_system_name((*system).as_ref(), 0).is_null();
         let mut energy = 0.0;
         let y = [0.0; 2];
         statuses.push(pc_system_energy(*system, 0.0, y.as_ptr(), 2, &raw mut energy, ptr::null_mut()));
@@ -151,14 +151,14 @@ fn a_system_that_is_being_freed_is_busy() {
 }
 
 #[test]
-fn an_output_called_as_a_reaction_is_none() {
+fn an_output_named_like_a_reaction_is_not_one() {
     let text = common::ROD.to_owned() + "[outputs]\n\"λ_rod\" = \"7*x\"\n";
     let model = Model::text(&text).unwrap();
     // SAFETY: a live model.
     call(|error| unsafe { pc_model_observe_reactions(model.0, 1, error) }).unwrap();
     let system = model.system(PC_POINCARE).unwrap();
     // SAFETY: a live system.
-    assert_eq!(unsafe { pc_system_reaction_count(system.0) }, 1);
+    assert_eq!(unsafe { pc_system_reaction_count(system.0.as_ref()) }, 1);
     let (t, y) = system.start();
     // The rod of length 1 holds a bob of mass 1 by λ = −v² + 10 z = −1.5² − 8, counted along (x, y, z).
     let reaction = system.at(pc_system_reactions, t, &y, 1).unwrap()[0];
@@ -166,7 +166,7 @@ fn an_output_called_as_a_reaction_is_none() {
 }
 
 #[test]
-fn where_there_is_no_energy_none_is_written() {
+fn no_energy_is_written_where_there_is_none() {
     let system = of_text(
         "[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"sqrt(x)\"\n\
          [integrals]\nroot = \"sqrt(x)\"\n",
@@ -177,7 +177,7 @@ fn where_there_is_no_energy_none_is_written() {
     // SAFETY: a live system, arrays as long as said, an error that is freed once.
     unsafe {
         let status = pc_system_energy(system.0, 0.0, y.as_ptr(), 2, &raw mut energy, &raw mut error);
-        assert_eq!((status, pc_error_is_recoverable(error)), (PC_EVALUATION, 1));
+        assert_eq!((status, pc_error_is_recoverable(error.as_ref())), (PC_EVALUATION, 1));
         pc_error_free(error);
     }
     let refusal = system.at(pc_system_integrals, 0.0, &y, 2).unwrap_err();

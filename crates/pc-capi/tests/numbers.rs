@@ -103,7 +103,7 @@ fn a_kernel_is_the_right_hand_side() {
     // SAFETY: a live system and places for results; the kernel is freed once.
     unsafe {
         call(|error| pc_kernel_new(system.0, &raw mut kernel, error)).unwrap();
-        assert_eq!(pc_kernel_dim(kernel), dim);
+        assert_eq!(pc_kernel_dim(kernel.as_ref()), dim);
         let mut ydot = vec![0.0; dim];
         assert_eq!(pc_kernel_rhs(t, y.as_ptr(), ydot.as_mut_ptr(), kernel.cast()), 0);
         assert_eq!(system.at(pc_system_rhs, t, &y, dim), Ok(ydot.clone()));
@@ -193,7 +193,7 @@ fn observers_see_stop_and_are_refused() {
 }
 
 #[test]
-fn momenta_go_there_and_back() {
+fn momenta_and_quasi_velocities_are_converted_both_ways() {
     let model = Model::named("heavy-top-lagrange");
     let forms = [pc_form::PC_POINCARE, pc_form::PC_CANONICAL].map(|form| model.system(form).unwrap());
     let ((t, y), (_, p)) = (forms[0].start(), forms[1].start());
@@ -211,7 +211,7 @@ fn momenta_go_there_and_back() {
 }
 
 #[test]
-fn the_parts_make_the_equations() {
+fn the_parts_of_the_equations_fit_together() {
     let model = Model::named("heavy-top-lagrange");
     for form in [pc_form::PC_POINCARE, pc_form::PC_CANONICAL] {
         let system = model.system(form).unwrap();
@@ -235,7 +235,7 @@ fn the_residual_vanishes_on_the_rates_and_grows_by_the_mass_matrix() {
         let system = System::of(name);
         let ((t, y), dim) = (system.start(), system.dim());
         // SAFETY: a live system.
-        let n = unsafe { pc_system_coordinate_count(system.0) };
+        let n = unsafe { pc_system_coordinate_count(system.0.as_ref()) };
         let k = dim - n;
         let residual = |rates: &[f64]| {
             let mut r = vec![0.0; dim];
@@ -262,13 +262,17 @@ fn reactions_are_observed_where_asked() {
     let silent = model.system(pc_form::PC_POINCARE).unwrap();
     // SAFETY: live handles.
     unsafe {
-        assert_eq!(pc_system_reaction_count(silent.0), 0);
+        assert_eq!(pc_system_reaction_count(silent.0.as_ref()), 0);
         call(|error| pc_model_observe_reactions(model.0, 1, error)).unwrap();
     }
     let system = model.system(pc_form::PC_POINCARE).unwrap();
     // SAFETY: a live system; its name lives as long.
-    let (count, name) =
-        unsafe { (pc_system_reaction_count(system.0), CStr::from_ptr(pc_system_reaction_name(system.0, 0))) };
+    let (count, name) = unsafe {
+        (
+            pc_system_reaction_count(system.0.as_ref()),
+            CStr::from_ptr(pc_system_reaction_name(system.0.as_ref(), 0)),
+        )
+    };
     assert_eq!((count, name.to_str()), (1, Ok("λ_blade")));
     // λ = v ω (m − m² a²/(m a² + J)), m = J = 1 and a = 1/2: 4/5 v ω.
     let state: Vec<f64> = (0..system.dim()).map(|i| if system.name(i) == "v" { 2.0 } else { 3.0 }).collect();
@@ -283,7 +287,7 @@ fn projection_brings_a_state_to_the_constraints() {
     let system = System::of("rod");
     let (t, mut y) = system.start();
     // SAFETY: a live system and arrays as said.
-    let count = unsafe { pc_system_constraint_count(system.0) };
+    let count = unsafe { pc_system_constraint_count(system.0.as_ref()) };
     let residual = |y: &[f64]| {
         let residuals = system.at(pc_system_constraint_residuals, t, y, count).unwrap();
         residuals.iter().fold(0.0_f64, |max, r| max.max(r.abs()))
@@ -292,13 +296,13 @@ fn projection_brings_a_state_to_the_constraints() {
     assert!(residual(&y) < 1e-12, "{}", residual(&y));
     y[0] += 1e-3;
     assert!(residual(&y) > 1e-4);
-    // SAFETY: as above.
+    // SAFETY: a live system and an array as long as its state.
     call(|error| unsafe { pc_system_project(system.0, t, y.as_mut_ptr(), y.len(), error) }).unwrap();
     assert!(residual(&y) < 1e-12); // a few ulps of numbers of order 1 after Newton's iteration
 }
 
 #[test]
-fn integrals_are_kept_at_their_values_of_the_parameters_that_hold() {
+fn integrals_are_kept_at_their_values_for_the_current_parameters() {
     let model = Model::named("heavy-top-lagrange");
     // SAFETY: a live model and a text.
     call(|error| unsafe { pc_model_keep(model.0, c"energy".as_ptr(), error) }).unwrap();
@@ -307,7 +311,7 @@ fn integrals_are_kept_at_their_values_of_the_parameters_that_hold() {
     let mut y = start.clone();
     // SAFETY: a live system and arrays as said.
     unsafe {
-        let count = pc_system_parameter_count(system.0);
+        let count = pc_system_parameter_count(system.0.as_ref());
         for i in 0..count {
             call(|error| pc_system_set_parameter(system.0, i, 1.5 + i as f64, error)).unwrap();
         }
@@ -317,7 +321,7 @@ fn integrals_are_kept_at_their_values_of_the_parameters_that_hold() {
 }
 
 #[test]
-fn integrals_are_kept_at_their_values_where_one_says() {
+fn integrals_are_kept_at_their_values_at_a_given_state() {
     let model = Model::named("heavy-top-lagrange");
     // SAFETY: a live model and a text.
     call(|error| unsafe { pc_model_keep(model.0, c"energy".as_ptr(), error) }).unwrap();
@@ -331,7 +335,7 @@ fn integrals_are_kept_at_their_values_where_one_says() {
         y
     };
     assert_ne!(projected(&there), there); // the start of the model has another energy
-    // SAFETY: as above.
+    // SAFETY: a live system and arrays as long as its state.
     unsafe {
         call(|error| pc_system_keep_from(system.0, t, there.as_ptr(), there.len(), error)).unwrap();
         assert_eq!(projected(&there), there);

@@ -108,13 +108,13 @@ fn functions_of_the_program_are_in_no_checkpoint() {
     assert_eq!((refusal.status, data.is_null()), (PC_UNSUPPORTED, true));
     assert_eq!(
         refusal.message,
-        "a checkpoint is not known of this system: there are events of the program's own"
+        "a checkpoint is not available for this system: there are events of the program's own"
     );
     drop(solver); // while there is what its function is given
 }
 
 #[test]
-fn no_event_is_added_on_the_way() {
+fn no_event_is_added_after_the_first_step() {
     let (mut own, solver) = (Own::default(), Solver::of(&System::of("bouncing-ball"), &sharp()));
     solver.advance(0.6).0.unwrap();
     let (mut data, mut length) = (ptr::null_mut(), 0);
@@ -127,7 +127,7 @@ fn no_event_is_added_on_the_way() {
     // Also where it has begun anew, at a checkpoint.
     let refusal = add(&solver, &mut own, false, false).unwrap_err();
     assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
-    assert_eq!(refusal.message, "an event comes before the first step, and there has been one");
+    assert_eq!(refusal.message, "an event must come before the first step, and one has been taken");
     assert_eq!(own.destroyed, 1);
 }
 
@@ -202,7 +202,7 @@ fn a_terminal_event_ends_each_kind_of_call_and_the_next_goes_on() {
 }
 
 #[test]
-fn functions_that_fail_are_heard_of() {
+fn failures_of_functions_are_reported() {
     let system = System::of("bouncing-ball");
     let refused = |own: &mut Own, reset| {
         let solver = Solver::of(&system, &sharp());
@@ -238,17 +238,17 @@ fn functions_that_fail_are_heard_of() {
         refusal.message
     );
     // SAFETY: a live solver.
-    assert_eq!(unsafe { pc_solver_event_count(solver.0) }, 1);
+    assert_eq!(unsafe { pc_solver_event_count(solver.0.as_ref()) }, 1);
     solver.advance(1.0).0.unwrap();
     // Nor after the first step.
     let mut late = Own::default();
     let refusal = add(&solver, &mut late, false, false).unwrap_err();
     assert_eq!((refusal.status, late.destroyed, infinite.destroyed), (PC_INVALID_ARGUMENT, 1, 1));
-    assert_eq!(refusal.message, "an event comes before the first step, and there has been one");
+    assert_eq!(refusal.message, "an event must come before the first step, and one has been taken");
 }
 
 #[test]
-fn what_there_is_not_is_refused() {
+fn missing_events_are_refused() {
     let (model, system) = (Model::named("bouncing-ball"), System::of("bouncing-ball"));
     let solver = Solver::of(&system, &sharp());
     let (name, null) = (c"x".as_ptr(), ptr::null());
@@ -298,7 +298,7 @@ fn what_there_is_not_is_refused() {
         pc_system_events(system.0, 0.0, y, 2, y, 1);
         pc_solver_last_occurrence(solver.0, 0, z, y, 2, y, 2);
     }
-    refused! { PC_INVALID_ARGUMENT, "the events: there is no number 7, there are 1";
+    refused! { PC_INVALID_ARGUMENT, "the events: index 7 is not below 1";
         pc_system_event_reset(system.0, 7, 0.0, y, 2);
         pc_solver_event_occurrences(solver.0, 7, number);
         pc_solver_last_occurrence(solver.0, 7, z, y, 2, z, 2);
@@ -313,10 +313,31 @@ fn what_there_is_not_is_refused() {
     }
     // SAFETY: null, or live handles.
     unsafe {
-        assert_eq!((pc_system_event_count(no_system), pc_solver_event_count(no_solver)), (0, 0));
-        assert!(pc_system_event_name(no_system, 0).is_null() && pc_system_event_name(system.0, 1).is_null());
-        assert!(pc_solver_event_name(no_solver, 0).is_null() && pc_solver_event_name(solver.0, 1).is_null());
-        assert_eq!((pc_system_event_direction(no_system, 0), pc_system_event_direction(system.0, 1)), (0, 0));
-        assert_eq!((pc_system_event_resets(no_system, 0), pc_system_event_is_terminal(system.0, 1)), (0, 0));
+        assert_eq!(
+            (pc_system_event_count(no_system.as_ref()), pc_solver_event_count(no_solver.as_ref())),
+            (0, 0)
+        );
+        assert!(
+            pc_system_event_name(no_system.as_ref(), 0).is_null()
+                && pc_system_event_name(system.0.as_ref(), 1).is_null()
+        );
+        assert!(
+            pc_solver_event_name(no_solver.as_ref(), 0).is_null()
+                && pc_solver_event_name(solver.0.as_ref(), 1).is_null()
+        );
+        assert_eq!(
+            (
+                pc_system_event_direction(no_system.as_ref(), 0),
+                pc_system_event_direction(system.0.as_ref(), 1)
+            ),
+            (0, 0)
+        );
+        assert_eq!(
+            (
+                pc_system_event_resets(no_system.as_ref(), 0),
+                pc_system_event_is_terminal(system.0.as_ref(), 1)
+            ),
+            (0, 0)
+        );
     }
 }

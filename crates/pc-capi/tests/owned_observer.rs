@@ -46,7 +46,7 @@ fn set(solver: *mut pc_solver, observer: pc_event_observer, count: &Count) -> Re
 }
 
 #[test]
-fn what_belongs_to_an_observer_is_destroyed_once() {
+fn user_data_of_an_observer_is_destroyed_once() {
     let (first, second, third) = (Count::default(), Count::default(), Count::default());
     let destroyed = || [&first, &second, &third].map(|count| count.destroyed.get());
     let solver = Solver::of(&System::of("bouncing-ball"), &pc_solver_options::default());

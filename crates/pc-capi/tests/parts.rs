@@ -70,7 +70,7 @@ fn the_right_hand_side_and_its_derivatives() {
     assert!((right[0] + k * y[0]).abs() < 1e-15 && (right[1] - (t * c).cos()).abs() < 1e-15, "{right:?}");
     let refusal = plain.at(pc_system_parameter_jacobian, t, &y, 8).unwrap_err();
     assert_eq!(refusal.status, PC_UNSUPPORTED);
-    assert!(refusal.message.ends_with("pc_model_differentiate was not asked"), "{}", refusal.message);
+    assert!(refusal.message.ends_with("pc_model_differentiate was not called"), "{}", refusal.message);
 
     // SAFETY: a live model.
     call(|error| unsafe { pc_model_differentiate(model.0, 1, error) }).unwrap();

@@ -126,10 +126,10 @@ fn nulls_are_refused_everywhere() {
         pc_string_free(ptr::null_mut());
         pc_system_options_init(ptr::null_mut(), 16);
         pc_solver_options_init(ptr::null_mut(), 16);
-        assert_eq!(pc_system_dim(ptr::null()), 0);
-        assert!(pc_system_name(ptr::null(), 0).is_null() && pc_system_name(of.0, 99).is_null());
-        assert!(pc_system_reaction_name(of.0, 0).is_null() && pc_builtin_name(usize::MAX).is_null());
-        assert_eq!(CStr::from_ptr(pc_error_message(ptr::null())), c"");
+        assert_eq!(pc_system_dim(None), 0);
+        assert!(pc_system_name(None, 0).is_null() && pc_system_name(of.0.as_ref(), 99).is_null());
+        assert!(pc_system_reaction_name(of.0.as_ref(), 0).is_null() && pc_builtin_name(usize::MAX).is_null());
+        assert_eq!(CStr::from_ptr(pc_error_message(None)), c"");
         // Without a place for the error there is the status alone.
         assert_eq!(pc_model_check(ptr::null(), ptr::null_mut()), PC_INVALID_ARGUMENT);
     }
@@ -202,12 +202,12 @@ fn a_wrong_text_is_shown_with_its_place() {
     // SAFETY: zero-terminated, and a place for the handle.
     let named = |error| unsafe { pc_model_builtin(name.as_ptr().cast(), &raw mut model, error) };
     let refusal = call(named).unwrap_err();
-    assert_eq!(refusal.message, "name is not UTF-8 text: byte number 0 (from 0) does not fit");
+    assert_eq!(refusal.message, "name is not UTF-8 text: byte number 0 (from 0) is invalid");
     assert!(model.is_null());
 }
 
 #[test]
-fn what_there_is_not_is_not_found() {
+fn missing_things_are_not_found() {
     let model = Model::named("euler-top");
     let (name, mut other) = (c("no-such-thing"), ptr::null_mut());
     let name = name.as_ptr();

@@ -72,13 +72,13 @@ fn a_bouncing_ball_by_its_height() {
 }
 
 #[test]
-fn what_has_no_sensitivities_is_refused() {
+fn sensitivities_that_do_not_exist_are_refused() {
     let system = differentiated("bouncing-ball", pc_form::PC_POINCARE);
     let solver = Solver::of(&system, &sharp());
     let refusal = column(&solver, 0, 2).unwrap_err();
     assert_eq!(
         (refusal.status, refusal.message.as_str()),
-        (PC_INVALID_ARGUMENT, "sensitivity: there is no number 0, there are 0")
+        (PC_INVALID_ARGUMENT, "sensitivity: index 0 is not below 0")
     );
     assert_eq!(add(&solver, 4, &[]).unwrap_err().status, PC_INVALID_ARGUMENT);
     assert_eq!(add(&solver, 1, &[0.0]).unwrap_err().status, PC_INVALID_ARGUMENT);
@@ -89,7 +89,7 @@ fn what_has_no_sensitivities_is_refused() {
     assert!(column(&solver, 1, 2).is_err());
     solver.advance(0.1).0.unwrap();
     let refusal = add(&solver, 1, &[]).unwrap_err();
-    assert_eq!(refusal.message, "a sensitivity comes before the first step, and there has been one");
+    assert_eq!(refusal.message, "a sensitivity must come before the first step, and one has been taken");
     // SAFETY: a live handle, and arrays as long as said.
     let refusal = call(|error| unsafe { pc_solver_take_parameters(solver.0, system.0, error) }).unwrap_err();
     assert_eq!(refusal.status, PC_UNSUPPORTED);

@@ -45,11 +45,11 @@ fn on_small_stack(potential: &str, formats: i32) {
 }
 
 #[test]
-fn functions_nest_as_deep_as_they_may() {
+fn functions_nest_up_to_the_limit() {
     on_small_stack(&format!("{}x{}", "sin(".repeat(199), ")".repeat(199)), 3);
 }
 
 #[test]
-fn sums_are_long() {
+fn long_sums_are_handled() {
     on_small_stack(&(1..5000).map(|i| format!("sin({i}*x)")).collect::<Vec<_>>().join(" + "), 1);
 }

@@ -22,7 +22,7 @@ fn a_state_comes_last_and_is_part_of_everything() {
     for (form, moving) in [(PC_POINCARE, 1.0), (PC_CANONICAL, 4.0)] {
         let system = Model::text(CART).unwrap().system(form).unwrap();
         // SAFETY: a live system.
-        assert_eq!(unsafe { pc_system_state_count(system.0) }, 1);
+        assert_eq!(unsafe { pc_system_state_count(system.0.as_ref()) }, 1);
         assert_eq!(system.name(2), "F");
 
         let y = [0.0, 0.5 * moving, 2.0];
@@ -41,7 +41,7 @@ fn a_state_comes_last_and_is_part_of_everything() {
 }
 
 #[test]
-fn what_is_set_is_followed() {
+fn set_values_are_followed() {
     let system = Model::text(CART).unwrap().system(PC_POINCARE).unwrap();
     assert_eq!(system.parameters(), [2.0, 4.0, 3.0]);
     set(&system, 0, 5.0).unwrap();
@@ -76,7 +76,7 @@ fn inputs_change_between_steps() {
 }
 
 #[test]
-fn a_table_is_not_set() {
+fn an_input_with_a_table_is_not_set() {
     let text = CART.replace("u = 3", "u = { times = [0, 2], values = [0, 8] }");
     let system = Model::text(&text).unwrap().system(PC_POINCARE).unwrap();
     let refusal = set(&system, 2, 1.0).unwrap_err();

@@ -63,7 +63,7 @@ fn formats_are_those_of_the_equations() {
 }
 
 #[test]
-fn an_action_set_by_calls_is_looked_at() {
+fn an_action_set_by_calls_is_checked() {
     let (name, mut model) = (c("A free particle"), ptr::null_mut());
     // SAFETY: a text and a place for the handle.
     call(|error| unsafe { pc_model_new(name.as_ptr(), &raw mut model, error) }).unwrap();
@@ -81,7 +81,7 @@ fn an_action_set_by_calls_is_looked_at() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused() {
+fn senseless_requests_are_refused() {
     let system = System::of("euler-top");
     for (format, degree, functions, status, message) in [
         (3, 2, [].as_slice(), PC_INVALID_ARGUMENT, "3 is not a value of pc_format"),
@@ -96,7 +96,7 @@ fn what_makes_no_sense_is_refused() {
 
 /// Within the limits of the system.
 #[test]
-fn it_takes_no_more_than_the_limits() {
+fn the_theory_stays_within_the_limits() {
     let options = pc_system_options { memory_limit: 1 << 20, ..Default::default() };
     let model = Model::named("heavy-top-euler");
     let mut system = ptr::null_mut();

@@ -153,7 +153,7 @@ fn rates_are_of_the_parameters_before_or_after_a_change() {
 }
 
 #[test]
-fn parameters_are_looked_at_again_where_they_make_m_singular() {
+fn parameters_that_make_m_singular_are_detected_after_a_change() {
     let text = "[parameters]\nm = 2\nr = 0\n[coordinates]\nx = 0.5\nz = 0\n[quasi_velocities]\n\"x'\" = 1\n\
                 [lagrangian]\nkinetic = \"(m*x'^2 + (1 + r*x^2)*z'^2)/2\"\npotential = \"3*x\"\n";
     let system = Model::text(text).unwrap().system(pc_form::PC_POINCARE).unwrap();

@@ -40,7 +40,7 @@ fn a_system_agrees_with_a_second_derivation() {
 }
 
 #[test]
-fn a_system_that_is_none_is_refused() {
+fn a_null_system_is_refused() {
     let mut error = ptr::null_mut();
     // SAFETY: null is allowed, and the error is freed.
     unsafe {

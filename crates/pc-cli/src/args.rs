@@ -1,8 +1,8 @@
-//! What stands on the command line, and the model it leads to.
+//! The command line, and the model it names.
 //!
-//! In goes a command line, out come the arguments of a command, and a model. Read `options` first, the options of the commands with the `forms` of equations,
-//! with those of a `sweep` and those for a `checkpoint`; `command_line` is all of them, and `input` makes of MODEL a model and
-//! its equations.
+//! In goes a command line, out come the arguments of a command, and a model. Read `options` first, the options of the
+//! commands with the `forms` of equations, with those of a `sweep` and those for a `checkpoint`; `command_line` is all
+//! of them, and `input` turns MODEL into a model and its equations.
 
 pub mod checkpoint;
 pub mod command_line;

@@ -1,8 +1,8 @@
 //! The commands, a file each; sweeps have a room of their own.
 //!
-//! In go the arguments of a command, out comes what it was asked for, or an error. `models` lists those that come with the
-//! program, `check` says whether one holds together, `derive` prints its equations, `theory` what can be said of its motions, `run` integrates it, `emit` writes its
-//! equations as source, and `import` makes models of files in other formats.
+//! Each takes its arguments and gives a result or an error. `models` lists the built-in models, `check` checks a
+//! model, `derive` prints its equations, `theory` the analysis of its motions, `run` integrates it, `emit` writes its
+//! equations as source, and `import` makes models from files in other formats.
 
 pub mod check;
 pub mod derive;

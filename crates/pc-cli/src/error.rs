@@ -52,7 +52,7 @@ pub enum CliError {
     #[error("--keep: {0}")]
     UnknownStart(#[from] UnknownStart),
     /// Quasi-velocities that are given and not asked for.
-    #[error("`{name}` is given, which is for --form hamel only; behind the model stand no other names")]
+    #[error("`{name}` is a definition, which only --form hamel takes; give nothing else after the model")]
     Definitions {
         /// The first of them.
         name: String,
@@ -73,7 +73,7 @@ pub enum CliError {
         /// The parameters of the model.
         known: Vec<String>,
     },
-    /// Nobody says how long to integrate.
+    /// Neither the command line nor the model gives an end time.
     #[error(
         "{model}: no end time: give `--t-end T`, or `t_end = T` in the section [simulation] of the model"
     )]
@@ -97,7 +97,7 @@ pub enum CliError {
         /// The endings there are.
         expected: &'static str,
     },
-    /// A file of which is seen in advance that it cannot be written.
+    /// A file that cannot be written, found before anything is computed.
     #[error("cannot write {}; nothing was computed", path.display())]
     Place {
         /// The file.
@@ -118,7 +118,7 @@ pub enum CliError {
     /// More rows than there is memory for.
     #[error(
         "{rows} rows of {numbers} numbers would take {} MiB, more than the limit of {} MiB; ask for fewer, give \
-         --limit-memory {}M, or of one motion -o FILE.csv alone, whose rows are written as they come",
+         --limit-memory {}M, or for a single motion only -o FILE.csv, whose rows are written as they are computed",
         bytes.div_ceil(1 << 20),
         limit >> 20,
         bytes.div_ceil(1 << 20)
@@ -143,7 +143,7 @@ pub enum CliError {
     #[error(transparent)]
     Urdf(#[from] UrdfError),
     /// The equations are not those of a second derivation: one of the two is wrong, by a defect of this program.
-    #[error("{0}; nothing is returned, since one of them is wrong by a defect of this program")]
+    #[error("{0}; no result is returned, because one of them is wrong through a defect of this program")]
     Verify(Box<VerifyError>),
     /// Something wrong with checkpoints.
     #[error(transparent)]

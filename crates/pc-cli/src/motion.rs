@@ -1,9 +1,9 @@
-//! How a motion is computed: the way from a plan to a finished run.
+//! The computation of a motion, from a plan to a finished run.
 //!
 //! In go a model and a command line, out comes a [`Run`](run::Run). Read `plan` first, what was asked for, and
 //! `memory`, whether its rows have room; `follow` integrates
-//! it, or `given` where its rows are written at once, with a `progress` bar, an `interrupt`, and a `checkpoint` now and then, which is known by its `identity` and has a
-//! `checkpoint_error`; `table` and `run` are what comes out.
+//! it, or `given` where its rows are written at once, with a `progress` bar, an `interrupt`, and a `checkpoint` now
+//! and then, which is known by its `identity` and has a `checkpoint_error`; `table` and `run` are what comes out.
 
 pub mod checkpoint;
 pub mod checkpoint_error;

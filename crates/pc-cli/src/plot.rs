@@ -1,7 +1,7 @@
 //! The picture of a motion.
 //!
-//! In goes a finished run, out come vector graphics or a bitmap. `picture` says what is in it, `canvas` draws it, and what
-//! can go wrong is in `error`.
+//! A finished run becomes vector graphics or a bitmap. `picture` is its contents, `canvas` draws it, and `error` lists
+//! its errors.
 
 pub(crate) mod canvas;
 pub mod error;

@@ -1,7 +1,7 @@
-//! What is said to people.
+//! Reports for readers.
 //!
-//! In goes what a command has found, out come lines. `text` sets numbers and lines; `notes` are said of constraints beside the
-//! equations, `verification` of the second derivation, `summary` of a run.
+//! The results of a command become lines. `text` formats numbers and lines; `notes` are remarks on constraints,
+//! `verification` reports the second derivation, `summary` a run.
 
 pub mod notes;
 pub mod summary;

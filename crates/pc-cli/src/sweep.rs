@@ -1,8 +1,8 @@
-//! `pc sweep`: many motions of one model, of other parameters and starts, in one table.
+//! `pc sweep`: many motions of one model, over parameters and starts, in one table.
 //!
-//! In go a model and what is varied, out comes a file. Read `design` first, which values members have; `member` is the motion
-//! of one, `record` what is kept of it, in a `journal` on disk until the `output` is made, row by row of a `sheet`. `command`
-//! is the whole, with its `progress`, and `error` what can go wrong.
+//! A model and the values to vary become a file. Read `design` first, the values of the members; `member` is the
+//! motion of one, `record` its result, kept in a `journal` on disk until the `output` is made, row by row of a
+//! `sheet`. `command` is the whole, with its `progress`, and `error` lists its errors.
 
 pub mod command;
 pub(crate) mod design;

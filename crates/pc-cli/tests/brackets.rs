@@ -250,7 +250,7 @@ fn an_algebra_that_cannot_be_is_refused_at_its_name() {
     refused(
         &named("so17"),
         4,
-        "pc: <stdin>:11:8: [algebra] name: so(n) is kept up to n = 12, not for n = 17\n",
+        "pc: <stdin>:11:8: [algebra] name: so(n) is available up to n = 12, not for n = 17\n",
     );
     refused(
         &named("so3"),

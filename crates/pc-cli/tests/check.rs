@@ -288,7 +288,7 @@ fn a_pendulum_with_drag_is_steady_upright() {
 }
 
 #[test]
-fn no_steady_motion_is_claimed_where_there_is_none() {
+fn no_steady_motion_is_reported_where_there_is_none() {
     let none = "  steady motion      none found near the start\n";
     // Near the vertical Euler's angles are singular, and eigenvalues there mean nothing.
     assert!(check("heavy-top-euler-symmetric").ends_with(none));

@@ -107,7 +107,7 @@ fn a_run_killed_again_and_again_gives_the_same_bytes() {
 /// Momenta are solved for velocities by iterations that begin at the last ones; a projection moves the states.
 #[cfg(unix)]
 #[test]
-fn nothing_but_the_checkpoint_is_remembered() {
+fn a_resumed_run_depends_only_on_the_checkpoint() {
     let held = "[coordinates]\nx = 1.0\ny = 0.0\n[constraints]\nrod = \"x^2 + y^2 - 1\"\n[lagrangian]\n\
                 kinetic = \"(x'^2 + y'^2)/2\"\npotential = \"y\"\n";
     let implicit = "[coordinates]\nx = 1.0\n[lagrangian]\nlagrangian = \"x'^2/2 + x'^4/4 - x^2/2\"\n";
@@ -167,7 +167,7 @@ fn checkpoints_change_a_run_within_its_tolerance() {
 }
 
 #[test]
-fn what_is_not_a_checkpoint_of_this_run_is_refused() {
+fn foreign_checkpoints_are_refused() {
     let run = Run::new("heavy-top-lagrange", &["--t-end", "30", "--samples", "5"]);
     let undisturbed = run.whole("a.csv", "--checkpoint", "a.check", &["--every", "60"]);
     let bytes = fs::read(run.at("a.check")).expect("a checkpoint");
@@ -180,11 +180,11 @@ fn what_is_not_a_checkpoint_of_this_run_is_refused() {
             damaged[place] ^= 1 << (k % 8);
         }
         fs::write(run.at("b.check"), &damaged).expect("written");
-        run.refused("b.check", &[], "begin anew without --resume");
+        run.refused("b.check", &[], "start afresh without --resume");
     }
     fs::write(run.at("b.check"), "t,x\n0,1\n").expect("written");
     run.refused("b.check", &[], "it is not a checkpoint");
-    run.refused("missing.check", &[], "it cannot be read");
+    run.refused("missing.check", &[], "the file cannot be read");
     for (more, mention) in [
         (["--rtol", "1e-6"], "--rtol 1e-9, where now it is 1e-6"),
         (["--every", "61"], "--every 60, where now it is 61"),
@@ -196,7 +196,7 @@ fn what_is_not_a_checkpoint_of_this_run_is_refused() {
     }
     let other = Run::new("heavy-top-euler", &["--t-end", "30", "--samples", "5"]);
     fs::copy(run.at("a.check"), other.at("a.check")).expect("copied");
-    other.refused("a.check", &[], "it is of a run with");
+    other.refused("a.check", &[], "the checkpoint is from a run with");
     let nowhere = Run::new("euler-top", &["--every", "10"]);
     let output = pc(&nowhere.options).output().expect("pc runs");
     assert!(output.status.code() == Some(2) && stderr(&output).contains("--checkpoint FILE"));
@@ -273,7 +273,7 @@ fn a_run_with_events_killed_again_and_again_gives_the_same_bytes() {
 }
 
 #[test]
-fn what_is_not_a_checkpoint_of_this_run_with_events_is_refused() {
+fn foreign_checkpoints_of_runs_with_events_are_refused() {
     let run = Run::new("rocking-block", &["--every", "20"]);
     let undisturbed = run.whole("a.csv", "--checkpoint", "a.check", &[]);
     let bytes = fs::read(run.at("a.check")).expect("a checkpoint");
@@ -286,7 +286,7 @@ fn what_is_not_a_checkpoint_of_this_run_with_events_is_refused() {
             damaged[place] ^= 1 << (k % 8);
         }
         fs::write(run.at("b.check"), &damaged).expect("written");
-        run.refused("b.check", &[], "begin anew without --resume");
+        run.refused("b.check", &[], "start afresh without --resume");
     }
     // That of the version before this one, which knew nothing of jumps.
     let old = [b"pc checkpoint 2\n", &bytes[16..]].concat();
@@ -294,17 +294,17 @@ fn what_is_not_a_checkpoint_of_this_run_with_events_is_refused() {
     run.refused(
         "b.check",
         &[],
-        "it is a checkpoint of version 2 of the format, not 4; begin anew without --resume",
+        "it is a checkpoint of version 2 of the format, not 4; start afresh without --resume",
     );
     let other = Run::new("bouncing-ball", &["--every", "20"]);
     fs::copy(run.at("a.check"), other.at("a.check")).expect("copied");
-    other.refused("a.check", &[], "it is of a run with");
+    other.refused("a.check", &[], "the checkpoint is from a run with");
     assert!(run.whole("b.csv", "--resume", "a.check", &[]) == undisturbed);
 }
 
 /// A run that events bring to an end, good or bad, ends so again.
 #[test]
-fn a_run_that_events_end_ends_so_again() {
+fn a_resumed_run_that_an_event_ended_ends_in_the_same_way() {
     let fall = "[coordinates]\ny = 1.0\n[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"y\"\n\
                 [events.floor]\nwhen = \"y\"\nterminal = true\n[simulation]\nt_end = 3.0\n";
     let file = tempfile::NamedTempFile::new().expect("a file");
@@ -351,7 +351,7 @@ fn energies(csv: &[u8]) -> Vec<(f64, f64)> {
 
 /// An integral that is kept has another value after each reset, and the legs after it keep that.
 #[test]
-fn a_kept_energy_is_that_after_the_last_bounce() {
+fn the_kept_energy_is_that_after_the_last_bounce() {
     let file = ball("{ \"y'\" = \"-0.8*y'\" }");
     let options = ["--t-end", "2", "--samples", "41", "--every", "10", "--project", "energy"];
     let run = Run::new(file.path().to_str().expect("UTF-8"), &options);

@@ -93,13 +93,13 @@ fn only_regular_files_are_replaced() {
     refuses(&run("-o", "circle.csv"), "circle.csv", "Too many levels of symbolic links (os error 40)");
     // These are written again and again, or beside which there is more.
     for file in ["fifo", "null.csv"] {
-        refuses(&run("--checkpoint", file), file, "it is no regular file");
+        refuses(&run("--checkpoint", file), file, "it is not a regular file");
     }
-    refuses(&["run", "euler-top", "--resume", "null.csv"], "null.csv", "it is no regular file");
+    refuses(&["run", "euler-top", "--resume", "null.csv"], "null.csv", "it is not a regular file");
     refuses(
         &["sweep", "euler-top", "--vary", "I1=1:2:2", "-o", "null.csv"],
         "null.csv",
-        "it is no regular file",
+        "it is not a regular file",
     );
     assert!(place.pc(&run("-o", "null.csv")).status().expect("pc").success(), "written through");
     assert!(place.pc(&run("--checkpoint", "/dev/null")).status().expect("pc").code() == Some(2));
@@ -121,7 +121,7 @@ fn a_fifo_is_written_through() {
 }
 
 #[test]
-fn links_are_followed_to_what_is_not_there_yet() {
+fn links_are_followed_to_files_that_do_not_exist_yet() {
     let place = Place::new();
     fs::create_dir(place.at("results")).expect("a directory");
     symlink("results/b.csv", place.at("a.csv")).expect("a link");
@@ -159,7 +159,7 @@ fn the_mode_and_the_owner_of_a_replaced_file_are_kept() {
 const FULL: &str = "trap '' XFSZ; ulimit -f 16";
 
 #[test]
-fn what_fits_on_a_full_disk_is_kept_beside() {
+fn rows_that_fit_on_a_full_disk_are_kept_beside_the_file() {
     let place = Place::new();
     fs::write(place.at("a.csv"), "old").expect("written");
     let whole = table(&place, &["--samples", "1000"]);
@@ -185,7 +185,7 @@ fn what_fits_on_a_full_disk_is_kept_beside() {
 }
 
 #[test]
-fn what_cannot_be_written_through_is_kept_elsewhere() {
+fn a_result_that_cannot_be_written_through_is_kept_elsewhere() {
     let place = Place::new();
     symlink("/dev/full", place.at("a.csv")).expect("a link");
     let output = place.pc(&["run", "euler-top", "-o", "a.csv"]).output().expect("pc starts");
@@ -219,7 +219,7 @@ fn a_result_whose_directory_has_gone_is_kept_elsewhere() {
     let kept = place.entries().1.pop().expect("a file");
     let file = place.1.path().join(&kept);
     let message = format!(
-        "pc: cannot write gone/a.json; the result is in {}\n  because: no file can be made in gone: entity not found\n",
+        "pc: cannot write gone/a.json; the result is in {}\n  because: no file can be created in gone: entity not found\n",
         file.display()
     );
     assert!(output.status.code() == Some(6) && said(&output).ends_with(&message), "{}", said(&output));
@@ -238,7 +238,7 @@ fn a_sweep_on_a_full_disk_goes_on_later() {
     let (done, rest) = message.split_once(' ').expect(message);
     let done: u64 = done.parse().expect("a number");
     assert!((10..200).contains(&done), "{done}");
-    let after = "members before are kept there, and the same command goes on after them\n  because: File too large \
+    let after = "members finished before are kept there, and the same command continues after them\n  because: File too large \
                  (os error 27)\n";
     assert_eq!(rest, after);
     let output = place.pc(&sweep).output().expect("pc starts");
@@ -250,7 +250,7 @@ fn a_sweep_on_a_full_disk_goes_on_later() {
 }
 
 #[test]
-fn what_a_killed_run_has_left_is_removed_by_the_next_one() {
+fn files_of_a_killed_run_are_removed_by_the_next_one() {
     let place = Place::new();
     let [left, in_use, of_another, of_somebody] =
         [".a.csv.pc-AbCdE1.part", ".a.csv.pc-AbCdE2.part", ".b.csv.pc-AbCdE1.part", ".a.csv.pc-mine.part"];
@@ -294,7 +294,7 @@ fn a_full_standard_output_is_an_error() {
 }
 
 #[test]
-fn what_has_no_end_is_not_read_to_it() {
+fn endless_input_is_not_read_to_the_end() {
     let place = Place::new();
     let message = |name: &str| {
         format!("pc: cannot read {name}\n  because: it has more than 64 MiB, the most that is read\n")
@@ -315,11 +315,11 @@ fn what_has_no_end_is_not_read_to_it() {
 fn more_rows_than_there_is_memory_for_are_refused_in_advance() {
     let place = Place::new();
     let message = "pc: 10000000 rows of 11 numbers would take 840 MiB, more than the limit of 512 MiB; ask for fewer, give \
-                   --limit-memory 840M, or of one motion -o FILE.csv alone, whose rows are written as they come\n";
+                   --limit-memory 840M, or for a single motion only -o FILE.csv, whose rows are written as they are computed\n";
     let arguments = ["run", "euler-top", "--samples", "10000000", "--limit-memory", "512M", "-o", "a.json"];
     ends(&mut place.pc(&arguments), 4, message);
     let message = "pc: 10000000 rows of 96 numbers would take 7325 MiB, more than the limit of 4096 MiB; ask for fewer, \
-                   give --limit-memory 7325M, or of one motion -o FILE.csv alone, whose rows are written as they come\n";
+                   give --limit-memory 7325M, or for a single motion only -o FILE.csv, whose rows are written as they are computed\n";
     let arguments =
         ["sweep", "euler-top", "--vary", "I1=1:2:2", "--threads", "4", "--rows", "10000000", "-o", "a.csv"];
     ends(&mut place.pc(&arguments), 4, message);
@@ -330,11 +330,11 @@ fn more_rows_than_there_is_memory_for_are_refused_in_advance() {
 const MANY: [&str; 6] = ["run", "euler-top", "--samples", "200000", "--limit-memory", "16M"];
 
 #[test]
-fn rows_that_have_no_room_are_written_on_the_way() {
+fn rows_beyond_the_memory_limit_are_written_during_the_run() {
     let place = Place::new();
     let held = place.pc(&["run", "euler-top", "--samples", "200000"]).output().expect("pc starts");
     let message = "pc: 200000 rows of 11 numbers would take 17 MiB, more than the limit of 16 MiB; ask for fewer, give \
-                   --limit-memory 17M, or of one motion -o FILE.csv alone, whose rows are written as they come\n";
+                   --limit-memory 17M, or for a single motion only -o FILE.csv, whose rows are written as they are computed\n";
     ends(&mut place.pc(&MANY), 4, message);
     let given = place.pc(&[&MANY[..], &["-o", "a.csv"]].concat()).output().expect("pc starts");
     assert!(given.status.success(), "{}", said(&given));
@@ -347,7 +347,7 @@ fn rows_that_have_no_room_are_written_on_the_way() {
 
 /// The ending and the last row of one that an event ends, and of one that fails.
 #[test]
-fn rows_on_the_way_end_where_the_motion_does() {
+fn rows_written_during_the_run_end_with_the_motion() {
     let place = Place::new();
     let text = "[coordinates]\ny = 1.0\n[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"POTENTIAL\"\n[events.low]\nwhen \
                 = \"y - 0.4\"\nterminal = true\n[simulation]\nt_end = 3.0\nsamples = 100000\n";
@@ -363,7 +363,7 @@ fn rows_on_the_way_end_where_the_motion_does() {
 }
 
 #[test]
-fn rows_on_the_way_are_kept_where_the_disk_is_full() {
+fn rows_written_during_the_run_are_kept_on_a_full_disk() {
     let place = Place::new();
     fs::write(place.at("a.csv"), "old").expect("written");
     let held = place.pc(&["run", "euler-top", "--samples", "200000"]).output().expect("pc starts").stdout;

@@ -42,7 +42,7 @@ fn carried(r: &str, z: Option<(&str, &str)>) -> String {
 
 /// [X_1, X_2] = r'(q) X_1, whatever is carried along with q: minors that vanish with roots, sizes and powers of q in them.
 #[test]
-fn a_coordinate_that_is_carried_along_changes_no_bracket() {
+fn a_coordinate_that_follows_changes_no_bracket() {
     for (r, start, slope) in [
         ("sqrt(q)", "q0^2", "2*q"),
         ("sqrt(1 + q^2)", "sqrt(q0)", "1/(2*sqrt(q))"),
@@ -65,7 +65,7 @@ fn a_coordinate_that_is_carried_along_changes_no_bracket() {
 
 /// The reaction of h' = 0 is that of the system without the coordinate z = 1.08… cos q, which is carried along.
 #[test]
-fn a_coordinate_that_is_carried_along_changes_no_reaction() {
+fn a_coordinate_that_follows_changes_no_reaction() {
     let model = |start: &str, rate: &str| {
         format!(
             "[parameters]\np = 1.08\n[coordinates]\nq = 0.12\ns = 0.51\nh = -0.79\n{start}\n\
@@ -165,7 +165,7 @@ fn ball(written: &str) -> String {
 
 /// v² = 2 (E − g y) where it rises, and no branch that is not taken is asked.
 #[test]
-fn a_guarded_force_is_asked_below_the_ground_only() {
+fn a_guarded_force_is_evaluated_below_the_ground_only() {
     let force = |y: &str| format!("potential = \"9.81*y\"\n[forces]\ny = \"{y}\"");
     let expected = end(&ball(&force("1000*max(-y, 0)^1.5")), &[]);
     for form in ["poincare", "canonical"] {

@@ -50,7 +50,7 @@ fn directory() -> tempfile::TempDir {
 const SHOWN: &str = "a \\input{secret} %*/ </text><script>&amp;\" ??/ #error\\\u{fffd}[31m\u{fffd}2J\u{fffd}";
 
 #[test]
-fn a_title_is_one_line_of_a_terminal() {
+fn a_title_is_printed_on_one_line() {
     let directory = directory();
     for arguments in [&["derive", "m.toml"][..], &["check", "m.toml"], &["run", "m.toml"]] {
         let (out, said) = printed(directory.path(), arguments);
@@ -68,7 +68,7 @@ fn a_title_is_one_line_of_a_terminal() {
 }
 
 #[test]
-fn json_has_the_title_as_it_is() {
+fn json_has_the_title_unchanged() {
     let directory = directory();
     for arguments in [["derive", "m.toml", "--format", "json"], ["check", "m.toml", "--format", "json"]] {
         let (out, _) = printed(directory.path(), &arguments);
@@ -158,7 +158,7 @@ fn a_column_is_one_column() {
 }
 
 #[test]
-fn source_has_it_in_comments_alone() {
+fn source_has_the_title_in_comments_only() {
     let directory = directory();
     for (language, file) in [("c", "m.c"), ("rust", "m.rs")] {
         printed(directory.path(), &["emit", "m.toml", "--lang", language, "-o", "."]);
@@ -175,7 +175,7 @@ fn source_has_it_in_comments_alone() {
 }
 
 #[test]
-fn labels_are_seen_or_refused() {
+fn labels_are_visible_or_refused() {
     let directory = tempfile::tempdir().expect("a directory");
     let refused = |text: &str, message: &str| {
         fs::write(directory.path().join("m.toml"), text).expect("written");
@@ -187,7 +187,7 @@ fn labels_are_seen_or_refused() {
     };
     let help = "help: a label stands on one line, in what is printed and in columns: leave out what controls terminals, ends \
                 lines or turns the direction of writing";
-    let hidden = "has characters that are not seen";
+    let hidden = "contains invisible characters";
     refused(
         &model("", "rod\\n  verified"),
         &format!(

@@ -67,7 +67,7 @@ fn a_bicycle_rides_at_every_speed() {
 
 /// 5e-324 is no multiple of itself: 0.56 x' cannot be made zero by a step of Newton's method.
 #[test]
-fn the_smallest_number_is_rounding() {
+fn the_smallest_number_counts_as_rounding() {
     let model = |c: &str, start: &str, other: &str| {
         format!(
             "[coordinates]\nx = 0.0\ny = 0.0\n[quasi_velocities]\n\"x'\" = {start}\n\"y'\" = {other}\n[constraints]\n\
@@ -89,7 +89,7 @@ fn the_smallest_number_is_rounding() {
 
 /// Where nothing moves, what the equations leave of accelerations is rounding, and the energy can be kept.
 #[test]
-fn energy_is_kept_where_its_rate_is_rounding() {
+fn energy_is_kept_where_its_rate_is_only_rounding() {
     let still = "[quasi_velocities]\nw1 = 0.0\nw2 = 0.19879861614865244\nw3 = 0.22336923162769937\n[algebra]\n\
                  name = \"heisenberg\"\n[constraints]\nk0 = \"w2 - 0.89*w3 + 1.14*w1\"\nk1 = \"w1\"\n[lagrangian]\n\
                  kinetic = \"1.568*w2^2/2 + 0.82*w3^2/2\"\n[simulation]\nt_end = 1.0\n";

@@ -57,7 +57,7 @@ fn a_start_that_is_moved_keeps_what_is_named() {
 }
 
 #[test]
-fn what_cannot_be_named_is_refused() {
+fn unknown_names_are_refused() {
     let unknown = said(&pc(CIRCLE, &["--project-start", "--keep", "x,z"]), 2);
     assert!(unknown.contains("`z`") && unknown.contains("x, y"), "{unknown}");
     let alone = said(&pc(CIRCLE, &["--keep", "x"]), 2);
@@ -87,7 +87,7 @@ fn zeros_within_a_step_are_found_where_it_is_sampled_densely() {
 
 /// Flight n of a ball lasts eⁿ of the first, e = 0.5: what is left falls below a part p after log p/log e bounces or so.
 #[test]
-fn bounces_are_followed_to_the_part_that_is_asked_for() {
+fn bounces_are_followed_to_the_requested_fraction() {
     let model = "[coordinates]\ny = 1.0\n[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"9.81*y\"\n[events.bounce]\nwhen = \"y\"\n\
                  direction = \"falling\"\nreset = { \"y'\" = \"-0.5*y'\" }\n[simulation]\nt_end = 3.0\nsamples = 4\n";
     let followed = |part: &str| {

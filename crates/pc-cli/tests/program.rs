@@ -225,7 +225,7 @@ fn a_file_of_the_current_directory_comes_before_a_built_in_model() {
 }
 
 #[test]
-fn wrong_usage_is_exit_2_and_says_what_would_be_right() {
+fn wrong_usage_is_exit_2_and_suggests_a_correction() {
     refuses(&["run", "heavy-top-lagrang"], 2, "did you mean `heavy-top-lagrange`?");
     refuses(&["run", "no/such/file.toml"], 2, "no file `no/such/file.toml`");
     refuses(&["run", "."], 2, "cannot read .");
@@ -255,7 +255,7 @@ fn wrong_usage_is_exit_2_and_says_what_would_be_right() {
 }
 
 #[test]
-fn the_end_time_must_stand_somewhere() {
+fn an_end_time_is_required() {
     let endless = FREE.replace("t_end = 1.0", "");
     let output = run_on(&endless, &["run", "-"]);
     assert_eq!(code(&output), 2);
@@ -290,7 +290,7 @@ fn a_degenerate_lagrangian_is_refused() {
 }
 
 #[test]
-fn what_was_reached_is_written_before_a_failure() {
+fn rows_reached_before_a_failure_are_written() {
     for (model, at_least, mention) in [(CENTRE, 10, "r = "), (WALL, 10, "x = ")] {
         let output = run_on(model, &["run", "-"]);
         let text = stderr(&output);
@@ -346,7 +346,7 @@ fn a_new_file_has_the_usual_permissions_and_links_are_followed() {
 }
 
 #[test]
-fn a_reader_that_goes_away_is_told_by_the_exit_code_alone() {
+fn a_closed_pipe_is_reported_by_the_exit_code_alone() {
     let mut child = pc()
         .args(["run", "euler-top", "--samples", "50000"])
         .stdout(Stdio::piped())
@@ -362,7 +362,7 @@ fn a_reader_that_goes_away_is_told_by_the_exit_code_alone() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_writes_what_was_reached() {
+fn ctrl_c_writes_the_rows_reached() {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("a.json");
     let mut child = pc()
@@ -403,7 +403,7 @@ fn models_and_algebras_are_listed() {
 }
 
 #[test]
-fn the_text_of_a_model_is_printed_to_be_changed() {
+fn the_text_of_a_model_is_printed() {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("ball.toml");
     let text = stdout(&run(&["models", "bouncing-ball"]));

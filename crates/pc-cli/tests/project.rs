@@ -42,7 +42,7 @@ fn drift(output: &Output) -> f64 {
 }
 
 #[test]
-fn integrals_are_kept_when_asked_for() {
+fn integrals_are_kept_on_request() {
     let plain = pc(OSCILLATOR, &["--rtol", "1e-6"]);
     said(&plain, 0);
     assert!(drift(&plain) > 1e-6);
@@ -55,7 +55,7 @@ fn integrals_are_kept_when_asked_for() {
 }
 
 #[test]
-fn what_cannot_be_kept_is_refused() {
+fn functions_that_are_not_integrals_are_refused() {
     assert_eq!(
         said(&pc(OSCILLATOR, &["--project", "radios"]), 2),
         "pc: --project: `radios` is not an integral of this model; there are place, radius, energy\n"

@@ -54,7 +54,7 @@ fn assert_close(run: &Value, expected: &[(&str, f64)], within: f64) {
 /// Straight on, drawn by a peg that moves, it is the block: slips of (2π − 2 arctan q)/ω, q = 1, ω = 1, and stops of
 /// 2 (F_s − F_k)/(k V) = 2.
 #[test]
-fn a_sleigh_that_goes_straight_on_is_the_block() {
+fn a_sleigh_going_straight_moves_like_the_block() {
     let straight = ["--set", "ω0=0", "--set", "a=0", "--set", "V=0.5", "--set", "Fk=0.5", "--set", "ξ0=-1"];
     let (slip, stop) = (TAU * 0.75, 2.0);
     let expected = [("stop", 0.0), ("slip", stop), ("stop", stop + slip), ("slip", 2.0 * stop + slip)];

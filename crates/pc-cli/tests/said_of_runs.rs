@@ -67,7 +67,7 @@ fn values_of_rows_that_are_not_held_are_named() {
 }
 
 #[test]
-fn what_is_too_large_is_refused_before_it_is_done() {
+fn work_that_is_too_large_is_refused_in_advance() {
     let sum = (1..2000).map(|i| format!("sin({i}*x)")).collect::<Vec<_>>().join(" + ");
     let model = block("").replace("v^2/2\"", &format!("v^2/2\"\npotential = \"{sum}\""));
     let (code, text) = said(&["derive", "-", "--limit-memory", "1M"], &model);
@@ -82,7 +82,7 @@ fn what_is_too_large_is_refused_before_it_is_done() {
 }
 
 #[test]
-fn a_name_ends() {
+fn names_have_a_maximum_length() {
     let model = block("").replace('x', &"x".repeat(300));
     let (code, text) = said(&["check", "-"], &model);
     assert_eq!(code, Some(3), "{text}");

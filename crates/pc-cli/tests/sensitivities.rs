@@ -91,7 +91,7 @@ fn a_bouncing_ball() {
 }
 
 #[test]
-fn what_is_no_parameter_is_refused() {
+fn a_name_that_is_not_a_parameter_is_refused() {
     let refused = |arguments: &[&str]| {
         let output = pc(&[&["run", "bouncing-ball"], arguments].concat());
         (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))

@@ -174,7 +174,7 @@ fn each_member_ends_as_its_own_run_does() {
 }
 
 #[test]
-fn starts_are_varied_and_all_rows_can_be_had() {
+fn starts_are_varied_and_all_rows_can_be_written() {
     let place = Place::new(MASSES);
     let table = lines(&place.swept("a.csv", &["--vary", "x'=0:0.5:2", "--rows", "5"]));
     assert_eq!(table.len(), 1 + 2 * 5);
@@ -300,7 +300,7 @@ fn a_member_that_an_event_ends_says_which() {
 }
 
 #[test]
-fn wrong_usage_says_what_would_be_right() {
+fn wrong_usage_suggests_a_correction() {
     let place = Place::new(MASSES);
     for (options, mention) in [
         (&[][..], "--vary"),
@@ -381,7 +381,7 @@ fn torn(place: &Place) -> Vec<u8> {
 }
 
 #[test]
-fn a_damaged_journal_is_mended() {
+fn a_damaged_journal_is_repaired() {
     let place = Place::new(SLEIGH);
     let undisturbed = place.swept("whole.csv", &MANY);
     let journal = torn(&place);
@@ -416,7 +416,7 @@ fn the_journal_of_another_sweep_is_refused_with_the_difference() {
         (&["--rows", "2"], "--rows none, where now it is 2"),
         (&["--random", "m=uniform(1,2)"], "--random ω=normal(1,0.3) a=uniform(0.1,1), where now"),
     ] {
-        ends(&strs(&with(more)), 2, &[mention, "a.csv.partial", "remove the file to begin anew"]);
+        ends(&strs(&with(more)), 2, &[mention, "a.csv.partial", "remove the file to start afresh"]);
     }
     fs::write(place.at("model.toml"), SLEIGH.replace("x = 0.0", "x = 0.1")).expect("written");
     ends(&strs(&with(&[])), 2, &["another text of the model"]);
@@ -432,7 +432,7 @@ fn the_journal_of_another_sweep_is_refused_with_the_difference() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_keeps_what_is_finished() {
+fn ctrl_c_keeps_finished_members() {
     let place = Place::new(SLEIGH);
     let undisturbed = place.swept("whole.csv", &MANY);
     let arguments = place.sweep("a.csv", &MANY);
@@ -446,7 +446,7 @@ fn ctrl_c_keeps_what_is_finished() {
     assert!(interrupt.expect("kill").success());
     let output = child.wait_with_output().expect("pc ends");
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
-    assert!(stderr(&output).contains("of 600 members; the same command goes on from there"));
+    assert!(stderr(&output).contains("of 600 members; the same command continues from there"));
     assert!(!place.at("a.csv").exists());
     assert!(place.swept("a.csv", &MANY) == undisturbed);
 }

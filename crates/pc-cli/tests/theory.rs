@@ -96,7 +96,7 @@ fn all_models_have_a_theory() {
 
 /// The examples of the page, by the program itself.
 #[test]
-fn the_page_says_what_the_program_says() {
+fn the_page_shows_the_output_of_the_program() {
     let page = include_str!("../../../docs/theory.md");
     let directory = tempfile::tempdir().expect("a directory");
     let program = Path::new(env!("CARGO_BIN_EXE_pc")).parent().expect("a directory");
@@ -130,7 +130,7 @@ fn section<'a>(text: &'a str, title: &str) -> &'a str {
 
 /// Numbers at the start, or beside it where all states are possible, disprove what changes.
 #[test]
-fn what_changes_is_disproved_with_a_margin() {
+fn a_changing_function_is_disproved_with_a_margin() {
     for (model, margin) in [("damped-oscillator", "0.0769"), ("rotating-oscillator", "0.739")] {
         let text = said(&[model]);
         let integrals = section(&text, "Integrals");
@@ -163,7 +163,7 @@ fn a_free_body_has_the_bracket_of_lie_and_poisson() {
     let (code, text) = said_of(body, &[]);
     assert_eq!(code, 0, "{text}");
     let expected =
-        "  nothing depends on other variables than p_w1, p_w2, p_w3, by the bracket of Lie and Poisson
+        "  nothing depends on variables other than p_w1, p_w2, p_w3, by the bracket of Lie and Poisson
   (p_w1, p_w2) = -p_w3
   (p_w1, p_w3) = p_w2
   (p_w2, p_w3) = -p_w1

@@ -80,7 +80,10 @@ fn a_sweep_ends_as_a_whole_and_goes_on() {
         pc(&[&["sweep", &model], &vary[..]].concat(), "")
     };
     let said = limited(sweep("0.2", "part.csv"), 0.2);
-    assert!(said.contains("of 60 members: more time") && said.contains("the same command goes on"), "{said}");
+    assert!(
+        said.contains("of 60 members: more time") && said.contains("the same command continues"),
+        "{said}"
+    );
     for name in ["part.csv", "whole.csv"] {
         let (output, _) = sweep("1e6", name);
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));

@@ -73,7 +73,7 @@ fn weight_counts_in_the_energy() {
 #[test]
 fn damping_leaves_the_direction_of_a_momentum_neutral() {
     let text = check(&format!("{CART}[forces]\nphi = \"-0.2*phi'\"\n"));
-    let verdict = "asymptotically stable but for one neutral direction, by the first approximation\n";
+    let verdict = "asymptotically stable except for one neutral direction, by the first approximation\n";
     assert!(text.contains(verdict), "{text}");
     // Without the momentum, as with a force on the cart of higher order, nothing is known of that direction.
     let pushed = check(&format!("{CART}[forces]\nphi = \"-0.2*phi'\"\ns = \"s'^3\"\n"));

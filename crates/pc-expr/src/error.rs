@@ -1,4 +1,4 @@
-//! What can go wrong with expressions.
+//! Errors of expressions.
 
 use crate::graph::limits::Spent;
 
@@ -11,7 +11,7 @@ pub enum ExprError {
         /// Text of the dividend.
         dividend: String,
     },
-    /// An expression that no value of the symbols gives a value to, such as log(−1).
+    /// An expression without a value for any values of the symbols, such as log(−1).
     #[error("an expression is undefined: a constant in it has no finite value")]
     Undefined,
     /// A symbol that is neither an input of the program nor given a value.
@@ -30,7 +30,7 @@ pub enum ExprError {
         /// How many expressions there are.
         nodes: usize,
     },
-    /// Values to evaluate at that are not finite numbers: no expression is at fault.
+    /// Input values that are not finite: no expression is at fault.
     #[error("the values given are not finite: {}", listed(given))]
     GivenNotFinite {
         /// Names and values of the inputs, time, state and parameters, that are not finite.
@@ -61,7 +61,7 @@ fn listed(values: &[(String, f64)]) -> String {
     values.join(", ")
 }
 
-/// A number of a message: with an exponent where it would be long without.
+/// A number in a message: with an exponent where it would be long without.
 pub fn readable(value: f64) -> String {
     let usual = value == 0.0 || (1e-4..1e15).contains(&value.abs()) || !value.is_finite();
     if usual { value.to_string() } else { format!("{value:e}") }

@@ -1,11 +1,12 @@
 //! Expressions as nodes of a graph, interned and normalised as they are built.
 //!
-//! In goes what [`Expr`](expr::Expr)'s operators build; out come nodes that are equal if they are written alike. Read
+//! The operators of [`Expr`](expr::Expr) build nodes, which are equal if they are written alike. Read
 //! `number` (exact constants), `function` (the elementary functions), `node` and `divisors` (sets of them) first, then `dag`
 //! (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`: what it knows of sums and products, of calls,
-//! of values in prime fields, of signs, and of divisors. `graph` owns a `dag` and stays within a `budget` (`limits`, and of time a
-//! `deadline`), `expr` is the handle that formulas are written with; `subgraph` walks the nodes that expressions depend on, `queries` are what is asked of whole expressions,
-//! `places` looks symbols up in long lists, and `evaluate` computes their values one by one: the reference for all faster ways.
+//! of values in prime fields, of signs, and of divisors. `graph` owns a `dag` and stays within a `budget` (`limits`,
+//! and of time a `deadline`), `expr` is the handle that formulas are written with; `subgraph` walks the nodes that
+//! expressions depend on, `queries` are questions about whole expressions, `places` finds symbols in long lists, and `evaluate` computes their values one by
+//! one: the reference for all faster ways.
 
 pub(crate) mod budget;
 pub(crate) mod calls;

@@ -1,6 +1,6 @@
-//! What runs a program: an interpreter, and machine code.
+//! Kernels, which run programs: an interpreter, and machine code.
 //!
-//! In goes a [`Program`](crate::Program), out come numbers, the same ones from every [`Kernel`](kernel::Kernel). Read
+//! A [`Program`](crate::Program) gives the same numbers in every [`Kernel`](kernel::Kernel). Read
 //! `kernel` (the interface, and the interpreter, which works everywhere) with `tape`, `jit` (machine code by Cranelift), then
 //! `evaluator`, a program with the kernel that is made when it is first needed.
 

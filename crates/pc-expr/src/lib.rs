@@ -24,10 +24,10 @@
 //!
 //! # Rooms, in the order of the flow
 //!
-//! `parse` text → syntax tree · `graph` expressions · `identity` what is equal, decided by fingerprints · `calculus`
-//! derivatives and short forms · `print` text and LaTeX · `program` chosen outputs as a tape · `kernel` what runs a
-//! tape · `codegen` tapes as source text · `ode` what integrators take · `time_profile` how a field depends on time
-//! explicitly.
+//! `parse` text → syntax tree · `graph` expressions · `identity` equality, decided by fingerprints · `calculus`
+//! derivatives and short forms · `print` text and LaTeX · `program` chosen outputs as a tape · `kernel` running a tape
+//! · `codegen` tapes as source text · `ode` the interface to integrators · `time_profile` the explicit dependence of a
+//! field on time.
 
 mod calculus;
 mod codegen;

@@ -1,8 +1,8 @@
-//! What integrators take: ẏ = f(t, y), its derivatives, its events.
+//! The interface to integrators: ẏ = f(t, y), its derivatives, its events.
 //!
 //! `vector_field` is the interface between those who derive equations and those who integrate them; `events` are zeros
-//! of functions along a motion and resets there. `pattern` says where a Jacobian may be other than zero, `colouring`
-//! which of its columns can be told apart in one product.
+//! of functions along a motion and resets there. `pattern` says where a Jacobian may be nonzero, `colouring` which of
+//! its columns one product can separate.
 
 pub(crate) mod colouring;
 pub(crate) mod events;

@@ -1,8 +1,8 @@
-//! Expressions as text for people.
+//! Expressions as text for readers.
 //!
-//! In go expressions, out come lines. Read `piece` (text that knows how tightly it binds), `style` with `book` and `latex` (the
-//! alphabets it is set in), then `writer`, which decides order, signs and parentheses, `text`, one expression, and `names`,
-//! many with names for what is long or comes again.
+//! Expressions become lines. Read `piece` (text with its binding strength), `style` with `book` and `latex` (the
+//! alphabets it is set in), then `writer`, which decides order, signs and parentheses, `text`, one expression, and
+//! `names`, many expressions with names for long or repeated parts.
 
 pub(crate) mod book;
 pub(crate) mod latex;

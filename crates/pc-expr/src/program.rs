@@ -1,8 +1,9 @@
-//! Chosen expressions as a tape of operations that needs the graph no more.
+//! Chosen expressions as a tape of operations that is independent of the graph.
 //!
-//! In go expressions and the order of their inputs, out comes a [`Program`](program::Program). Read `program` first. A
+//! Expressions and the order of their inputs give a [`Program`](program::Program). Read `program` first. A
 //! tape is made by `sharing` (which factors products have in common), `angle_addition` (sines of sums from those of the
-//! summands) and `lower` (n-ary nodes as binary operations), in this order; `fuse` makes multiply-adds and counts; `bind` puts parameters in as numbers, and `digest` tells tapes apart.
+//! summands) and `lower` (n-ary nodes as binary operations), in this order; `fuse` makes multiply-adds and counts;
+//! `bind` puts parameters in as numbers, and `digest` identifies tapes.
 
 pub(crate) mod angle_addition;
 pub(crate) mod bind;

@@ -1,8 +1,8 @@
-//! How a vector field depends on time explicitly, looked at before an integrator steps over it.
+//! The explicit dependence of a vector field on time, examined before an integrator steps over it.
 //!
-//! In goes a program and an interval of time, out come the times at which an integrator must look. Read `interval` and
-//! `jet` (enclosures of functions and of their derivatives), `part` (what of a program is watched), `scan` (where it
-//! turns, bends and jumps), then `profile`, what a field offers of it.
+//! A program and an interval of time give the times at which an integrator must look. Read `interval` and `jet`
+//! (enclosures of functions and of their derivatives), `part` (the part of a program that is watched), `scan` (where
+//! it turns, bends and jumps), then `profile`, the interface of a field.
 
 pub(crate) mod interval;
 pub(crate) mod jet;

@@ -413,7 +413,7 @@ fn directions_may_be_expressions() {
 
 /// What is not defined beyond a switch is not asked for there: values and slopes of the first and second order, on both sides.
 #[test]
-fn a_branch_that_is_not_taken_has_no_say() {
+fn a_branch_that_is_not_taken_has_no_effect() {
     let graph = Graph::new();
     let [x, y] = graph.symbols(["x", "y"]);
     let root = (-x).pow(Expr::ratio(3, 2));

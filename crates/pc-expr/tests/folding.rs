@@ -107,7 +107,7 @@ fn structure_alone_collects_like_terms_and_factors() {
 }
 
 #[test]
-fn what_differs_somewhere_stays_apart() {
+fn functions_that_differ_somewhere_are_not_merged() {
     let graph = Graph::new();
     let [x, y] = graph.symbols(["x", "y"]);
     let half_turn = std::f64::consts::PI;
@@ -235,7 +235,7 @@ fn very_large_exponents_keep_their_parity_and_size() {
 }
 
 #[test]
-fn undefined_constants_spread() {
+fn undefined_constants_propagate() {
     let graph = Graph::new();
     let x = graph.symbol("x");
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -375,7 +375,7 @@ proptest! {
 
 /// Ω t is an angle of its own: t stands elsewhere, and Ω t does not matter.
 #[test]
-fn angles_that_are_no_symbols_are_forgotten() {
+fn angles_that_are_not_symbols_are_eliminated() {
     let graph = Graph::new();
     let [rate, t] = graph.symbols(["Ω", "t"]);
     let (sin, cos) = ((rate * t).sin(), (rate * t).cos());

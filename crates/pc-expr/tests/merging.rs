@@ -237,7 +237,7 @@ proptest! {
 
     /// Where divisors vanish: of two forms of one function none may take the place of another that is regular there.
     #[test]
-    fn what_is_regular_stays_regular(steps in steps(40, &SCALES[..5]), point in prop::array::uniform3(-1i32..3)) {
+    fn regular_expressions_stay_regular(steps in steps(40, &SCALES[..5]), point in prop::array::uniform3(-1i32..3)) {
         let graph = Graph::new();
         let symbols = graph.symbols(["x", "y", "z"]);
         let mut pool = symbols.to_vec();

@@ -133,7 +133,7 @@ fn messages() {
     fails("(a + b", "^", "unclosed parenthesis", "close it with `)`");
     fails("2*sin(a", "     ^", "unclosed parenthesis", "close it with `)`");
     fails("((a) + b", "^", "unclosed parenthesis", "close it with `)`");
-    fails("a)", " ^", "unmatched `)`", "take it out, or open a parenthesis before it");
+    fails("a)", " ^", "unmatched `)`", "remove it, or open a parenthesis before it");
     fails("(a, b)", "  ^", "unexpected `,`", commas);
     fails("1,5", " ^", "unexpected `,`", commas);
     fails("a $ b", "  ^", "unexpected character `$`", signs);

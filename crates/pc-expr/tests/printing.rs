@@ -48,7 +48,7 @@ proptest! {
     })]
 
     #[test]
-    fn what_is_printed_is_read_back(tree in trees(3), point in prop::array::uniform3(-2.0..2.0)) {
+    fn printed_expressions_are_read_back(tree in trees(3), point in prop::array::uniform3(-2.0..2.0)) {
         for folding in [Folding::ByValue, Folding::Structural] {
             let graph = Graph::with_folding(folding);
             let symbols = graph.symbols(["x", "y", "z"]);
@@ -152,7 +152,7 @@ fn expressions_as_a_book_sets_them() {
 }
 
 #[test]
-fn latex_says_what_is_meant() {
+fn latex_keeps_the_meaning() {
     let graph = Graph::new();
     let [a, b, e, x, y, theta] = graph.symbols(["a", "b", "e", "x", "y", "θ"]);
     for (expr, text) in [
@@ -183,7 +183,7 @@ fn latex_says_what_is_meant() {
 
 /// A line may end within a bracket, which changes nothing of what it says: \sin x (a − b) would be sin(x (a − b)).
 #[test]
-fn brackets_between_lines_say_what_is_meant() {
+fn brackets_across_lines_keep_the_meaning() {
     let graph = Graph::with_folding(Folding::Structural);
     let [a, b, x, m_1] = graph.symbols(["a", "b", "x", "m_1"]);
     let factor = x.sin() * (a + b.square());
@@ -200,7 +200,7 @@ fn brackets_between_lines_say_what_is_meant() {
 
 /// Ten thousand brackets, one in the other: written out they are short, all their parts together are not.
 #[test]
-fn what_is_deep_takes_no_more_room_than_it_needs() {
+fn deep_expressions_are_printed_compactly() {
     let graph = Graph::with_folding(Folding::Structural);
     let symbols: Vec<Expr> = (0..9_000).map(|i| graph.symbol(&format!("x{i}"))).collect();
     let deep = symbols.iter().fold(graph.symbol("y"), |sum, &x| (sum + 1.0) * x);

@@ -99,7 +99,7 @@ fn the_innermost_expression_that_is_not_finite_is_named() {
 }
 
 #[test]
-fn no_expression_is_at_fault_where_the_values_given_are_not_finite() {
+fn input_values_that_are_not_finite_are_reported_as_such() {
     let graph = Graph::new();
     let [t, x, y, k] = graph.symbols(["t", "x", "y", "k"]);
     let inputs = Inputs { time: Some(t), state: vec![x, y], parameters: vec![k] };
@@ -181,7 +181,7 @@ fn time_state_and_parameters_are_read_in_this_order() {
 
 /// What is not finite in a branch that is not taken is no fault, and not what is named.
 #[test]
-fn a_branch_that_is_not_taken_is_no_culprit() {
+fn a_branch_that_is_not_taken_is_not_blamed() {
     let graph = Graph::new();
     let [x, y] = graph.symbols(["x", "y"]);
     let inputs = Inputs { time: None, state: vec![x, y], parameters: Vec::new() };

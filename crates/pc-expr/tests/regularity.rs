@@ -92,7 +92,7 @@ fn forms_that_are_singular_at_different_points_are_equal() {
 
 /// A factor by itself or inside a product, under a root or not, is the same divisor; what never vanishes is none.
 #[test]
-fn the_same_divisors_in_other_words_do_not_keep_forms_apart() {
+fn equal_divisors_in_different_forms_are_recognised() {
     let graph = Graph::new();
     let [m, l, x, u] = graph.symbols(["m", "l", "x", "u"]);
     let product = m * m + m * l;

@@ -87,7 +87,7 @@ fn functions_and_their_inverses_cancel() {
 
 /// True for some signs of x and y only.
 #[test]
-fn what_holds_on_one_side_only_is_not_merged() {
+fn one_sided_identities_are_not_merged() {
     let graph = Graph::new();
     let [x, y, z] = graph.symbols(["x", "y", "z"]);
     let differences = [
@@ -117,7 +117,7 @@ fn what_holds_on_one_side_only_is_not_merged() {
 
 /// (√x − 1)² + 2√x − 1 is x, which also has a value below 0.
 #[test]
-fn a_form_with_roots_takes_no_place_of_one_without() {
+fn a_form_with_roots_does_not_replace_one_without() {
     let graph = Graph::new();
     let [x, y] = graph.symbols(["x", "y"]);
     let rooted = (x.sqrt() - 1.0) * (x.sqrt() + 1.0) + 1.0;

@@ -38,7 +38,7 @@ fn a_symbol_that_cancels_does_not_come_back() {
 
 /// Where no number leaves the divisors as they are, a new one vanishes at no usual place.
 #[test]
-fn what_takes_the_place_of_a_symbol_that_cancels_is_regular_at_usual_points() {
+fn a_symbol_that_cancels_is_replaced_by_a_regular_point() {
     for a in [-2.0, -1.0, 0.0, 0.5, 1.0, 2.0, 3.0] {
         let graph = Graph::new();
         let [x, y, v, u] = graph.symbols(["x", "y", "v", "u"]);
@@ -67,7 +67,7 @@ proptest! {
 
     /// f = (g h − p h)/h and (g + h)² − h² − 2 g h with random h are written with what cancels.
     #[test]
-    fn only_what_was_put_in_is_left(
+    fn only_substituted_symbols_are_left(
         [g, p] in prop::array::uniform2(trees(2)),
         h in trees(3),
         value in trees(2),

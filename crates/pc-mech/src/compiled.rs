@@ -5,8 +5,8 @@
 //! `vector_field` that results, with `options` and `machine_code`. Under constraints states lie on a manifold and integrals
 //! may be kept: `projection`. `legendre_transform` changes momenta into quasi-velocities and back, `in_momenta` is the
 //! motion of momenta under constraints, `forced_motion` that under forces computed outside; `running_error` bounds
-//! rounding, `point` is where all of them are evaluated, `chart` sees
-//! where quasi-velocities do not determine velocities, `mass_factors` solves with M alone, and `failure` says why there are no rates.
+//! rounding, `point` is where all of them are evaluated, `chart` detects where quasi-velocities do not determine
+//! velocities, `mass_factors` solves with M alone, and `failure` says why there are no rates.
 
 pub(crate) mod chart;
 pub(crate) mod elimination;

@@ -1,8 +1,8 @@
 //! Systems whose coordinates or velocities are subject to conditions.
 //!
 //! A `constraint` is one condition; `multipliers` keeps all coordinates and adds the reactions, M η̇ = r + Cᵀ λ;
-//! `independent_velocities` solves for some velocities instead (14)–(16), and `choice` says for which; `explicit_reactions` puts λ in as functions of
-//! the state, and `body_reactions` says what they are as forces and torques on bodies.
+//! `independent_velocities` solves for some velocities instead (14)–(16), which `choice` selects; `explicit_reactions`
+//! puts λ in as functions of the state, and `body_reactions` expresses them as forces and torques on bodies.
 
 pub(crate) mod body_reactions;
 pub(crate) mod choice;

@@ -1,8 +1,8 @@
 //! Equations of motion in expressions: Poincaré's (9) and Chetaev's (10), (11).
 //!
-//! In goes a [`System`](crate::System), out come [`Equations`](poincare::Equations) M η̇ = r, or, by the `legendre`
-//! transformation, the [`Canonical`](canonical::Canonical) ones; `momenta` puts functions of velocities in their terms, `book` sets
-//! them as sums of products.
+//! A [`System`](crate::System) has [`Equations`](poincare::Equations) M η̇ = r, or, by the `legendre` transformation,
+//! [`Canonical`](canonical::Canonical) ones; `momenta` expresses functions of velocities in momenta, `book` writes the
+//! equations as sums of products.
 
 pub(crate) mod book;
 pub(crate) mod canonical;

@@ -1,6 +1,6 @@
-//! What can be wrong with a mechanical system.
+//! Errors of mechanical systems.
 //!
-//! `mech`: the error of the crate, and what is asked of it. A file a topic, in the order of a derivation: `shape`, `frame`,
+//! `mech`: the error of the crate, with its predicates. One file a topic, in the order of a derivation: `shape`, `frame`,
 //! `lagrangian`, `body`, `tree`, `force`, `constraint`, `integral`, `matrix`, `evaluation`. `lists`: names and states in their messages.
 
 pub(crate) mod body;

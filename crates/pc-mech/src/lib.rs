@@ -1,5 +1,4 @@
-//! Poincaré–Chetaev mechanics: from a Lagrangian to equations of motion. What can be said of the motions is the matter of
-//! `pc-analysis`.
+//! Poincaré–Chetaev mechanics: from a Lagrangian to equations of motion. `pc-analysis` analyses the motions.
 //!
 //! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
 //! corrected. Conventions are those of [`pc_algebra`]: index 0 is time; i, j = 1..n count coordinates, r, s, m = 1..k
@@ -12,14 +11,15 @@
 //! ẋ = b η + b_0 (3), \[X_r, X_s\] = c_rs^m X_m (5), L(t, x, η) = T + U with U minus the potential energy, and
 //! Q_s (8), the force conjugate to η_s.
 //!
-//! [`System::builder`] takes each in the form in which a book has it. The frame: [velocities in terms of
+//! [`System::builder`] takes each in the form in which books give it. The frame: [velocities in terms of
 //! η](SystemBuilder::kinematics), a [`Frame`](SystemBuilder::frame), or neither, and then η = ẋ. The
-//! [algebra](SystemBuilder::algebra) only where b does not determine it, having a rank below k. The Lagrangian is the sum of
-//! [T](SystemBuilder::kinetic), [−V](SystemBuilder::potential), [L(t, x, η)](SystemBuilder::lagrangian), [L(t, x,
-//! ẋ)](SystemBuilder::lagrangian_in_velocities) and what each [particle](SystemBuilder::particle) and [rigid
-//! body](SystemBuilder::rigid_body) adds. So is Q: [on η](SystemBuilder::forces), [on
-//! x](SystemBuilder::force_on_coordinates), on the bodies, of a [dissipation function](SystemBuilder::dissipation),
-//! [gyroscopic](SystemBuilder::gyroscopic), or [computed outside](SystemBuilder::external_force).
+//! [algebra](SystemBuilder::algebra) is needed only where b does not determine it, because its rank is below k. The
+//! Lagrangian is the sum of [T](SystemBuilder::kinetic), [−V](SystemBuilder::potential), [L(t, x,
+//! η)](SystemBuilder::lagrangian), [L(t, x, ẋ)](SystemBuilder::lagrangian_in_velocities) and what each
+//! [particle](SystemBuilder::particle) and [rigid body](SystemBuilder::rigid_body) adds. So is Q: [on
+//! η](SystemBuilder::forces), [on x](SystemBuilder::force_on_coordinates), on the bodies, of a [dissipation
+//! function](SystemBuilder::dissipation), [gyroscopic](SystemBuilder::gyroscopic), or [computed
+//! outside](SystemBuilder::external_force).
 //!
 //! # Poincaré's equations
 //!
@@ -78,15 +78,14 @@
 //!
 //! M η̇ = r + Cᵀ λ;
 //!
-//! its [`Motion`] has no singular positions but those of the constraints themselves, and a projection by which an integrator
-//! stays on them.
-//! [`Multipliers::in_independent_velocities`] solves for some velocities and leaves the equations
+//! its [`Motion`] is singular only where the constraints themselves are, and has a projection by which an integrator
+//! stays on them. [`Multipliers::in_independent_velocities`] solves for some velocities and leaves the equations
 //!
 //! d/dt ∂L/∂ẋ_s − ∂L/∂x_s − b_js ∂L/∂x_j = Q_s (14)–(16),
 //!
 //! fewer, without reactions, and singular where the choice is. The first is for long motions and for reactions, the
-//! second for what is done with a system afterwards; canonical equations are (17) then. Constraints on velocities that
-//! are not integrable are refused by the second: they are the matter of `pc-nonholo`.
+//! second for further transformations of a system; its canonical equations are (17). The second refuses constraints on
+//! velocities that are not integrable, which `pc-nonholo` treats.
 //!
 //! ```
 //! use pc_mech::{Constraint, Graph, System};
@@ -120,8 +119,9 @@
 //!
 //! ẏ_s = (c_rs^m ∂H/∂y_r + c_0s^m) y_m − X_s H + Q_s (10), ẋ_i = b_i0 + b_is ∂H/∂y_s (11).
 //!
-//! [`System::canonical`] gives them as [`Canonical`]. A quadratic L is solved for η in an expression; any other by Newton's
-//! method at each evaluation, which [`Canonical::is_closed`] tells. [`LegendreTransform`] takes states there and back.
+//! [`System::canonical`] gives them as [`Canonical`]. For a quadratic L, η is an expression; for any other it is found
+//! by Newton's method at each evaluation ([`Canonical::is_closed`] says which). [`LegendreTransform`] takes states
+//! there and back.
 //!
 //! ```
 //! use pc_mech::{Graph, System};
@@ -173,7 +173,7 @@
 //!
 //! # States and inputs
 //!
-//! What moves with a system and is no part of its frame, such as the current in a motor, is a first-order
+//! A quantity that evolves with a system but is not part of its frame, such as the current in a motor, is a first-order
 //! [state](SystemBuilder::state) z with ż = h(t, x, η, z). L and Q may depend on it; d/dt ∂L/∂η_s in (9) then has the term
 //! ż ∂²L/∂η_s∂z, and dH/dt the term −ż ∂L/∂z. Parameters that are functions of time are [signals](SystemBuilder::signal); a
 //! motion reads them from [tables](Motion::driven_by).

@@ -1,9 +1,9 @@
-//! Mechanical systems as they are described: frame, Lagrangian, forces, bodies.
+//! Descriptions of mechanical systems: frame, Lagrangian, forces, bodies.
 //!
-//! In goes what a book says of a system, out comes a [`System`](system::System). Read `system`, then `builder`, which
-//! takes each part in the form it has; `bodies` are what particles and rigid bodies add, `forces` the forms of Q_s (8),
-//! `external_force` what gives forces computed outside, `signals` inputs that are functions of time; `energy_rate`
-//! is what changes the energy.
+//! The description of a system, as books give it, becomes a [`System`](system::System). Read `system`, then `builder`,
+//! which takes each part in its usual form; `bodies` are the contributions of particles and rigid bodies, `forces` the
+//! forms of Q_s (8), `external_force` forces computed outside, `signals` inputs that are functions of time;
+//! `energy_rate` is the rate of the energy.
 
 pub(crate) mod bodies;
 pub(crate) mod builder;

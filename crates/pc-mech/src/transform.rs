@@ -1,4 +1,4 @@
-//! A system as another system of the same motions.
+//! Transformations of a system into another one with the same motions.
 //!
 //! `quasi_velocities` changes to other η, `lagrange` back to ẋ, `velocities` converts states between them;
 //! `restriction` keeps the last η at zero, `reduction` leaves out coordinates that nothing depends on, and

@@ -435,7 +435,7 @@ fn velocities_of_coordinates_stand_for_the_frame() {
 }
 
 #[test]
-fn what_is_refused() {
+fn invalid_bodies_are_refused() {
     let graph = Graph::new();
     let [rate, x_rate] = graph.symbols(["w", "x'"]);
     let builder = || {
@@ -446,11 +446,11 @@ fn what_is_refused() {
     let of_body = |body| refused(builder().rigid_body(|_, _, _| body));
     assert_eq!(
         of_particle(Particle::new(1, [rate])),
-        "the position of a body depends on time and coordinates only; here it depends on `w`"
+        "the position of a body may depend on time and coordinates only, but depends on `w`"
     );
     assert_eq!(
         of_particle(Particle::new(x_rate, [1])),
-        "the mass of a body depends on time and coordinates only; here it depends on `x'`"
+        "the mass of a body may depend on time and coordinates only, but depends on `x'`"
     );
     assert_eq!(
         of_particle(Particle::new(1, [1, 2]).force([1])),
@@ -463,15 +463,15 @@ fn what_is_refused() {
     );
     assert_eq!(
         of_body(RigidBody::rotating(1, [0], [1; 3], square(3))),
-        "the rotation of a body depends on time and coordinates only; here it depends on `w`"
+        "the rotation of a body may depend on time and coordinates only, but depends on `w`"
     );
     assert_eq!(
         of_body(RigidBody::turning(1, [0], [rate; 3], [1; 3])),
-        "the inertia of a body depends on time and coordinates only; here it depends on `w`"
+        "the inertia of a body may depend on time and coordinates only, but depends on `w`"
     );
     assert_eq!(
         of_body(RigidBody::turning(1, [0], [1; 3], [Expr::ZERO, x_rate * rate, 0.into()])),
-        "an angular velocity is affine in the quasi-velocities; its component `w^2*x` is not"
+        "an angular velocity must be affine in the quasi-velocities; its component `w^2*x` is not"
     );
     assert!(matches!(
         System::builder(&graph).coordinates(["x"]).build(),
@@ -481,7 +481,7 @@ fn what_is_refused() {
 
 /// One sign wrong in a rotation about an axis, a column too long, a reflection.
 #[test]
-fn a_matrix_that_is_no_rotation_is_refused() {
+fn a_matrix_that_is_not_a_rotation_is_refused() {
     let refused = |entries: fn(Expr<'static>) -> [[Expr<'static>; 3]; 3]| {
         let graph: &'static Graph = Box::leak(Box::new(Graph::new()));
         let rotation = entries(graph.symbol("φ"));
@@ -496,7 +496,7 @@ fn a_matrix_that_is_no_rotation_is_refused() {
             [Expr::ZERO, Expr::ONE, Expr::ZERO],
             [phi.sin(), Expr::ZERO, phi.cos()]
         ]),
-        "the rotation of a body is none: its columns 1 and 3 are not orthogonal and of one length; they miss it by \
+        "the matrix of a body is not a rotation: its columns 1 and 3 are not orthogonal and of equal length; the defect is \
          `2*cos(φ)*sin(φ)`"
     );
     assert_eq!(
@@ -505,7 +505,7 @@ fn a_matrix_that_is_no_rotation_is_refused() {
             [phi.sin(), phi.cos(), Expr::ZERO],
             [Expr::ZERO, Expr::ZERO, 2.into()]
         ]),
-        "the rotation of a body is none: its columns 1 and 3 are not orthogonal and of one length; they miss it by `-3`"
+        "the matrix of a body is not a rotation: its columns 1 and 3 are not orthogonal and of equal length; the defect is `-3`"
     );
     assert_eq!(
         refused(|phi| [

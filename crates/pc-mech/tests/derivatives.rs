@@ -291,7 +291,7 @@ fn the_derivatives_of_a_particle_in_a_frame_that_depends_on_time() {
 }
 
 #[test]
-fn what_was_not_compiled_is_refused() {
+fn derivatives_that_were_not_compiled_are_refused() {
     let graph = Graph::new();
     let options = CompileOptions::default().jacobian(false);
     let mut motion = top(&graph, true).poincare().unwrap().compile_for(options).unwrap();
@@ -333,7 +333,8 @@ fn a_parameter_that_makes_the_mass_matrix_singular_is_found_when_it_changes() {
     let (y, mut ydot) = ([0.0, 0.0, 1.0, 2.0], [0.0; 4]);
     motion.rhs(0.0, &y, &mut ydot).unwrap();
     motion.parameters_mut()[1] = 0.0;
-    let message = "the mass matrix is singular: the kinetic energy lacks `y'` (pivot 0) at t = 0, x = 0, y = 0, x' = 1, y' = 2";
+    let message =
+        "the mass matrix is singular: its pivot for `y'` is 0 at t = 0, x = 0, y = 0, x' = 1, y' = 2";
     assert_eq!(motion.rhs(0.0, &y, &mut ydot).unwrap_err().to_string(), message);
     motion.parameters_mut()[1] = 2.0;
     motion.rhs(0.0, &y, &mut ydot).unwrap();
@@ -388,7 +389,7 @@ fn an_indefinite_mass_matrix_is_regular_where_a_pivot_vanishes() {
 
 /// Where a pivot is what roundings leave, of an entry or of a matrix with both signs, the rates would be rounding too.
 #[test]
-fn a_mass_matrix_that_is_singular_but_for_rounding_is_refused() {
+fn a_mass_matrix_that_is_singular_up_to_rounding_is_refused() {
     type Lagrangian = for<'g> fn(&[Expr<'g>], &[Expr<'g>]) -> Expr<'g>;
     let cases: [(Lagrangian, [f64; 2], &str); 4] = [
         // sin² π

@@ -152,7 +152,7 @@ fn integrable_constraints_keep_the_brackets_that_are_given() {
 
 /// ẏ = η_2 and x = t: the push along X_1 makes c_02^3 = c_12^3 of the Heisenberg algebra, η̇_2 = η_3.
 #[test]
-fn what_moves_by_itself_gives_brackets_with_time() {
+fn a_drift_gives_brackets_with_time() {
     let graph = Graph::new();
     let [t, x, w2, w3] = graph.symbols(["t", "x", "w2", "w3"]);
     let system = System::builder(&graph)

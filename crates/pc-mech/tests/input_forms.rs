@@ -72,7 +72,7 @@ fn the_frame_may_come_after_the_energy() {
 
 /// Quasi-velocities may be called as velocities are, even of another coordinate.
 #[test]
-fn names_of_velocities_are_not_mixed_up() {
+fn names_of_velocities_are_kept_apart() {
     let graph = Graph::new();
     let [x_rate, y_rate] = graph.symbols(["x'", "y'"]);
     let crossed = System::builder(&graph)
@@ -161,7 +161,7 @@ fn gyroscopic_forces_do_no_work() {
     );
     assert_eq!(
         refused((1, 1)).to_string(),
-        "the matrix of gyroscopic forces is antisymmetric; its entries for `ω2` and `ω2` do not add up to zero"
+        "the matrix of gyroscopic forces must be antisymmetric, but its entries for `ω2` and `ω2` do not add up to zero"
     );
 }
 

@@ -123,7 +123,7 @@ fn after_an_impact_other_values_are_kept() {
 }
 
 #[test]
-fn what_is_no_integral_is_refused() {
+fn a_function_that_is_not_an_integral_is_refused() {
     let graph = Graph::new();
     let equations = top(&graph).poincare().unwrap();
     let spin = equations.kept(&["spin"]).unwrap();
@@ -143,7 +143,7 @@ fn what_is_no_integral_is_refused() {
 
 /// φ̈ = −sin φ − ½ φ̇ from rest: its energy has no rate at the start.
 #[test]
-fn a_rate_that_vanishes_at_the_start_alone_is_seen() {
+fn a_rate_that_vanishes_only_at_the_start_is_detected() {
     let graph = Graph::new();
     let equations = System::builder(&graph)
         .coordinates(["φ"])
@@ -223,7 +223,7 @@ fn rounding_moves_nothing_near_an_equilibrium() {
 
 /// Far from its level an integral that is flat there is reached in many steps that are not half as long as those before.
 #[test]
-fn slow_steps_are_no_end() {
+fn slow_steps_do_not_end_the_iteration() {
     let graph = Graph::new();
     let equations = System::builder(&graph)
         .coordinates(["x", "y"])
@@ -242,7 +242,7 @@ fn slow_steps_are_no_end() {
 
 /// A bumper that is not touched: its power has no derivative by the exponent there.
 #[test]
-fn parts_without_a_derivative_are_no_hindrance() {
+fn parts_without_a_derivative_are_allowed() {
     let graph = Graph::new();
     let bumpers: [for<'g> fn(Expr<'g>) -> Expr<'g>; 2] =
         [|depth| depth.pow(2.5), |depth| depth.square() * depth.sqrt()];
@@ -269,7 +269,7 @@ fn parts_without_a_derivative_are_no_hindrance() {
 
 /// A velocity that a constraint keeps at zero, but for the rounding of a start, does not belie the energy.
 #[test]
-fn rounding_of_a_velocity_that_vanishes_is_no_change() {
+fn rounding_of_a_vanishing_velocity_does_not_count_as_change() {
     let graph = Graph::new();
     let system = System::builder(&graph)
         .coordinates(["x", "y"])

@@ -67,7 +67,7 @@ proptest! {
     /// η → y → η and y → η → y: M ≥ 1, so that an error of y, some roundings of its terms, is no less than that
     /// of η.
     #[test]
-    fn quasi_velocities_and_momenta_are_turned_into_each_other(
+    fn quasi_velocities_and_momenta_are_converted_both_ways(
         lagrangian in convex(),
         x in prop::collection::vec(-2.0..2.0, 4),
         eta in prop::collection::vec(-5.0..5.0, 4),
@@ -92,7 +92,7 @@ proptest! {
 
     /// h² f‴/6 and ε f/h at h = 1e-5, relative to the largest entry.
     #[test]
-    fn jacobians_are_those_of_differences(
+    fn jacobians_agree_with_difference_quotients(
         lagrangian in convex(),
         x in prop::collection::vec(-1.0..1.0, 4),
         y in prop::collection::vec(-3.0..3.0, 4),
@@ -194,8 +194,7 @@ fn messages_name_momenta_and_state() {
     let graph = Graph::new();
     let mut motion = compiled(&on_a_line(&graph, |v| v.cosh().log()));
     let failure = motion.rhs(0.5, &[0.25, 2.0], &mut [0.0; 2]).unwrap_err().to_string();
-    let (start, end) =
-        ("y = ∂L/∂η has no solution η that could be found: after ", "at t = 0.5, x = 0.25, p_x = 2");
+    let (start, end) = ("no solution η of y = ∂L/∂η was found: after ", "at t = 0.5, x = 0.25, p_x = 2");
     assert!(failure.starts_with(start) && failure.ends_with(end), "{failure}");
 
     let mut transform = on_a_line(&graph, |v| -(1.0 - v.square()).sqrt()).legendre_transform().unwrap();
@@ -212,8 +211,7 @@ fn the_guess_chooses_where_to_start_and_which_solution_is_found() {
     let graph = Graph::new();
     let quartic = on_a_line(&graph, |v| v.powi(4) / 4.0);
     let error = quartic.legendre_transform().unwrap().to_quasi_velocities(0.0, &[0.0, 8.0]).unwrap_err();
-    let message =
-        "the mass matrix is singular: the kinetic energy lacks `x'` (pivot 0) at t = 0, x = 0, p_x = 8";
+    let message = "the mass matrix is singular: its pivot for `x'` is 0 at t = 0, x = 0, p_x = 8";
     assert_eq!(error.to_string(), message);
     let mut transform = quartic.with_guess(&[1.0]).unwrap().legendre_transform().unwrap();
     assert_eq!(transform.to_quasi_velocities(0.0, &[0.0, 8.0]).unwrap(), [0.0, 2.0]);

@@ -4,8 +4,8 @@
 
 use pc_mech::{CompileOptions, Constraint, Expr, Graph, Motion, Multipliers, System, VectorField};
 
-/// A particle in a turning frame with a drag, on an ellipsoid that grows, on a skate: redundant velocities, brackets, b_0, time, forces
-/// and both kinds of constraints.
+/// A particle in a turning frame with a drag, on an ellipsoid that grows, on a skate: redundant velocities, brackets,
+/// b_0, time, forces and both kinds of constraints.
 fn held(graph: &Graph) -> Multipliers<'_> {
     let [m, x, y, z, u, v, w] = graph.symbols(["m", "x", "y", "z", "u", "v", "w"]);
     let t = graph.symbol("t");
@@ -79,7 +79,7 @@ fn the_motion_is_that_of_the_quasi_velocities() {
 /// The Jacobians are those of difference quotients, along the constraints, on which alone η is a function of (x, y) that
 /// the momenta have.
 #[test]
-fn derivatives_are_those_of_quotients() {
+fn derivatives_agree_with_difference_quotients() {
     let graph = Graph::new();
     let held = held(&graph);
     let options = CompileOptions::default().parameter_jacobian(true);
@@ -117,8 +117,8 @@ fn derivatives_are_those_of_quotients() {
     }
 }
 
-/// A point without mass on a rod with one that has: L determines its velocity only with the constraint. And a relativistic particle on a
-/// circle, where L is not quadratic.
+/// A point without mass on a rod with one that has: L determines its velocity only with the constraint. And a
+/// relativistic particle on a circle, where L is not quadratic.
 #[test]
 fn momenta_determine_velocities_with_the_constraints() {
     let graph = Graph::new();
@@ -152,7 +152,7 @@ fn momenta_determine_velocities_with_the_constraints() {
 /// At a given speed a velocity and its opposite satisfy the constraint; the momentum of a convex L says which it is, whatever
 /// the guess.
 #[test]
-fn the_momentum_tells_a_velocity_from_its_opposite() {
+fn the_momentum_determines_the_sign_of_a_velocity() {
     let graph = Graph::new();
     let system = System::builder(&graph)
         .coordinates(["x", "y"])

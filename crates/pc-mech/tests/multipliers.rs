@@ -211,7 +211,7 @@ fn conditions_of_both_kinds_bind_quasi_velocities() {
 }
 
 #[test]
-fn what_cannot_be_held_is_refused() {
+fn constraints_that_cannot_be_held_are_refused() {
     let graph = Graph::new();
     let [x, y, vx, vy] = graph.symbols(["x", "y", "x'", "y'"]);
     let system = System::builder(&graph)
@@ -232,7 +232,7 @@ fn what_cannot_be_held_is_refused() {
     );
     assert_eq!(
         refused(&[circle.clone(), line.clone(), third]),
-        "nothing is left free: constraints 3, quasi-velocities 3"
+        "the constraints leave nothing free: there are 3 of them for 3 quasi-velocities"
     );
     assert_eq!(
         refused(&[Constraint::new("speed", vx.square() + vy.square() - 1.0)]),
@@ -284,7 +284,7 @@ fn states_near_the_origin_of_coordinates_are_projected() {
 
 /// Where a coordinate is too large to be moved by its share of a rounding, the other one comes nearer by halves.
 #[test]
-fn rounding_is_no_way_to_go() {
+fn a_projection_does_not_follow_rounding() {
     let graph = Graph::new();
     let [x, y, vx, vy] = graph.symbols(["x", "y", "x'", "y'"]);
     let system = System::builder(&graph)
@@ -306,7 +306,7 @@ fn rounding_is_no_way_to_go() {
 
 /// A step along which T vanishes has a length all the same.
 #[test]
-fn a_metric_that_is_not_positive_is_none_to_measure_steps_by() {
+fn steps_are_not_measured_by_an_indefinite_metric() {
     let graph = Graph::new();
     let [x, y, z, vx, vz] = graph.symbols(["x", "y", "z", "x'", "z'"]);
     let system = |masses: [f64; 3]| {
@@ -372,7 +372,7 @@ fn a_mass_that_cancels_under_constraints_is_singular() {
 
 /// Far from a surface that bends away Newton's whole step overshoots.
 #[test]
-fn the_way_to_a_surface_may_be_long() {
+fn a_projection_may_take_a_long_way() {
     let graph = Graph::new();
     let [x, y, z, t] = graph.symbols(["x", "y", "z", "t"]);
     let system = System::builder(&graph)
@@ -513,7 +513,7 @@ fn units_do_not_matter() {
 }
 
 #[test]
-fn what_is_no_number_is_named() {
+fn values_that_are_not_finite_are_named() {
     let graph = Graph::new();
     let [x, y] = graph.symbols(["x", "y"]);
     let system = System::builder(&graph)
@@ -641,7 +641,7 @@ fn a_frame_contains_no_velocities() {
 
 /// Two bobs on a rod of length one, the second four times as heavy.
 #[test]
-fn what_is_held_stays_and_the_rest_goes_the_shortest_way() {
+fn held_components_stay_and_the_rest_moves_the_shortest_way() {
     let graph = Graph::new();
     let system = System::builder(&graph)
         .coordinates(["x1", "x2", "y"])
@@ -671,7 +671,7 @@ fn what_is_held_stays_and_the_rest_goes_the_shortest_way() {
 
 /// x = y holds where (x − y)(x + y) = 0 and x > 0; on the other branch it does not.
 #[test]
-fn what_no_longer_follows_is_an_error() {
+fn a_constraint_that_no_longer_follows_is_an_error() {
     let graph = Graph::new();
     let system = System::builder(&graph)
         .coordinates(["x", "y"])
@@ -687,7 +687,9 @@ fn what_no_longer_follows_is_an_error() {
     let failure = motion.project(0.0, &mut [1.0, -1.0, 0.5, -0.5]).unwrap_err();
     let message = failure.to_string();
     assert!(
-        message.starts_with("the constraint `diagonal`, which followed from the others, does not at t = 0"),
+        message.starts_with(
+            "the constraint `diagonal`, which followed from the others, no longer does at t = 0"
+        ),
         "{message}"
     );
 }

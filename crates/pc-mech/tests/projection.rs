@@ -26,7 +26,7 @@ fn wheel(graph: &Graph) -> Multipliers<'_> {
 
 /// The smallest squares of radii are just above the numbers that have fewer digits, the largest just below infinity.
 #[test]
-fn a_state_on_its_constraints_but_for_rounding_stays_there() {
+fn a_state_on_its_constraints_up_to_rounding_stays_there() {
     let graph = Graph::new();
     let mut motion = wheel(&graph).compile().unwrap();
     let mut next = numbers(11);

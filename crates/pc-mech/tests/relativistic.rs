@@ -129,7 +129,7 @@ fn derivatives_are_those_of_the_closed_form() {
 }
 
 #[test]
-fn what_was_solved_before_changes_no_bit() {
+fn earlier_solutions_change_no_bit() {
     let graph = Graph::new();
     let canonical = relativistic(&graph).canonical().unwrap();
     let mut motion = compiled(&canonical);
@@ -143,7 +143,7 @@ fn what_was_solved_before_changes_no_bit() {
 /// From a guess near the velocity of light, Newton's method does not find a velocity near that of light in another
 /// direction. The motion gets there all the same.
 #[test]
-fn where_the_guess_leads_nowhere_the_last_solution_does() {
+fn the_last_solution_serves_where_the_guess_fails() {
     let graph = Graph::new();
     let canonical = relativistic(&graph).canonical().unwrap().with_guess(&[0.0, -1.999]).unwrap();
     let (mut motion, mut fresh) = (compiled(&canonical), compiled(&canonical));
@@ -184,7 +184,7 @@ fn a_constant_force_drives_a_particle_to_the_velocity_of_light() {
 }
 
 #[test]
-fn what_needs_the_hamiltonian_of_momenta_is_refused() {
+fn functions_that_need_a_closed_hamiltonian_are_refused() {
     let graph = Graph::new();
     let canonical = relativistic(&graph).canonical().unwrap();
     let action = graph.symbol("φ");

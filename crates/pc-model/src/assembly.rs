@@ -1,10 +1,11 @@
 //! From a model to a mechanical system.
 //!
-//! In goes a [`Model`](crate::Model), out comes an [`Assembly`](assembly::Assembly). Read `assembly` first, then `assembler`, what
-//! its parts share, and these in the order in which `assemble` puts them together: `parameters` and `tables`, `frame`,
-//! `definitions`, `start`, `bodies`, the `tree` of those on joints and `external_force`, `brackets`, `constraints` with `constraint_treatment`,
-//! `body_reactions` and the names of a `resultant`, `action`, `event` and `events`, and quasi-velocities that are `given` beside the text; `trial` and `definite` look whether the start
-//! makes sense. A `function` is put together alone, when it is asked for.
+//! A [`Model`](crate::Model) becomes an [`Assembly`](assembly::Assembly). Read `assembly` first, then `assembler`,
+//! what its parts share, and these in the order in which `assemble` puts them together: `parameters` and `tables`,
+//! `frame`, `definitions`, `start`, `bodies`, the `tree` of those on joints and `external_force`, `brackets`, `constraints` with
+//! `constraint_treatment`, `body_reactions` and the names of a `resultant`, `action`, `event` and `events`, and
+//! quasi-velocities that are `given` in addition to the text; `trial` and `definite` check the start. A `function` is
+//! assembled by itself, on request.
 
 pub(crate) mod action;
 pub(crate) mod assemble;

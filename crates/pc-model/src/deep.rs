@@ -1,4 +1,4 @@
-//! Work on models that calls itself.
+//! Recursive work on models.
 
 /// Where less of the stack is left, work gets one of its own.
 #[cfg(feature = "any-stack")]
@@ -9,10 +9,11 @@ const LEAST: usize = 2 << 20;
 #[cfg(feature = "any-stack")]
 const STACK: usize = 8 << 20;
 
-/// Does work on models that may call itself deeply, as reading and deriving do, on a stack of its own where the thread has too
-/// little left.
+/// Does work on models that may recurse deeply, as reading and deriving do, on a stack of its own where the thread has
+/// too little left.
 ///
-/// With the feature `any-stack`, any thread that has 128 KiB may do it; without, it needs as much as the main thread usually has.
+/// With the feature `any-stack`, any thread with 128 KiB of stack may call it; without, it needs as much as the main
+/// thread usually has.
 pub fn deep<T>(work: impl FnOnce() -> T) -> T {
     #[cfg(feature = "any-stack")]
     return stacker::maybe_grow(LEAST, STACK, work);

@@ -1,9 +1,9 @@
-//! What can be wrong with a model, and how it is said: file, line, column, and what would be right.
+//! Errors of models and their messages: file, line, column, and a correction.
 //!
-//! In goes what is wrong and where, out comes a [`ModelError`](error::ModelError) with its message and its `category`,
-//! which decides the exit code. Read `source` first, the text with places in it and how a line of it is shown; then
-//! `meaning`, what can be wrong with the meaning of a model, in `words`; `error_kind`, what can be wrong with its text as
-//! well; and `error`, the one type that all of it becomes.
+//! An error and its place become a [`ModelError`](error::ModelError) with its message and its `category`, which
+//! decides the exit code. Read `source` first, the text with places in it and how a line of it is shown; then
+//! `meaning`, errors in the meaning of a model, in `words`; `error_kind`, errors in its text as well; and `error`, the
+//! one type that all of them become.
 
 pub(crate) mod category;
 pub(crate) mod error;

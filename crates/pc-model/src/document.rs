@@ -1,9 +1,11 @@
 //! The text of a model as a typed document: every entry with its place, names not yet resolved.
 //!
-//! In goes TOML, out comes a [`Document`]. Read what comes out first: `expression`, with the places that
-//! `text_map` finds again in the file, and `contents`, section by section. Then how it is read: `reading` has its bytes, `syntax` gives TOML,
-//! `reader` typed access to it, `hidden` what no label may have; `sections`, `bodies`, `tree` with the `joints` it is of, `loops`, `inputs` and
-//! `simulation` read the sections, `hanging` declares what joints move, `checks` holds what must be true between them, and `parse` puts these together.
+//! TOML becomes a [`Document`]. Read the result first: `expression`, with the places that
+//! `text_map` finds again in the file, and `contents`, section by section. Then how it is read: `reading` reads its
+//! bytes, `syntax` TOML, `reader` gives typed access to it, `hidden` lists characters that no label may have;
+//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `inputs` and `simulation` read the
+//! sections, `hanging` declares what joints move, `checks` holds what must be true between them,
+//! and `parse` puts these together.
 
 pub(crate) mod bodies;
 pub(crate) mod checks;

@@ -1,8 +1,9 @@
-//! The vector field that is integrated, what happens on its way, and what a table shows of its states.
+//! The vector field that is integrated, its events, and the columns of a table of its states.
 //!
-//! In goes an [`Assembly`](crate::Assembly), out comes a [`Flow`](flow::Flow). Read `variables` first, the equations in the
-//! variables of their state, `free_form`, those of independent quasi-velocities, and `compile`, their motion, tried at the start; `reading` gives states as coordinates,
-//! quasi-velocities and first-order states; `events` are the model's events on them, and `flow` is all of these.
+//! An [`Assembly`](crate::Assembly) becomes a [`Flow`](flow::Flow). Read `variables` first, the equations in the
+//! variables of their state, `free_form`, those of independent quasi-velocities, and `compile`, their motion, tried at
+//! the start; `reading` converts states to coordinates, quasi-velocities and first-order states; `events` are the
+//! model's events on them, and `flow` combines all of these.
 
 pub(crate) mod compile;
 pub(crate) mod event_slopes;

@@ -1,8 +1,9 @@
-//! A model: a document with the values of its parameters, and errors put at their places in it.
+//! A model: a document with the values of its parameters, and errors located in it.
 //!
-//! In goes a [`Document`](crate::Document), out comes a [`Model`](model::Model) that can be asked for its equations.
-//! Read `model` first; `blame` finds the place in the file to which an error of the derivation belongs, `start` begins
-//! the motion at other values than those of the file, `given` and `choices` are quasi-velocities that are asked for beside those of the text, `builtin` are the models that come with the library.
+//! A [`Document`](crate::Document) becomes a [`Model`](model::Model), from which equations are derived. Read `model`
+//! first; `blame` finds the entry in the file that causes an error of the derivation, `start` changes the start
+//! values, `given` and `choices` are quasi-velocities requested in addition to those of the text, `builtin` are the
+//! models that come with the library.
 
 pub(crate) mod blame;
 pub(crate) mod builtin;

@@ -1,8 +1,8 @@
 //! Names and expressions of a model, resolved to expressions of a graph.
 //!
-//! In goes an expression of the text, out comes one of the graph. Read `stage` first, what an expression may contain by the
-//! place where it stands; `scope` knows what a name stands for there, `functions` what a function does, and `definitions`
-//! are resolved in their order; `points` of bodies with joints follow from how these move.
+//! An expression of the text becomes one of the graph. Read `stage` first, which names an expression may contain,
+//! depending on its place; `scope` gives the meaning of a name there, `functions` that of a function, and
+//! `definitions` are resolved in their order; `points` of bodies with joints follow from how these move.
 
 pub(crate) mod definitions;
 pub(crate) mod functions;

@@ -194,7 +194,7 @@ fn expressions_of_bodies_are_refused_where_they_stand() {
 
 /// What only the start and the derivation show is put to the body too.
 #[test]
-fn bodies_are_blamed_for_singular_energies() {
+fn singular_energies_are_located_at_bodies() {
     let root = refused(&format!("{BODY}[bodies.b]\nmass = \"m\"\nposition = [\"sqrt(x - 2)\", 0, 0]\n"));
     assert_eq!(root.category(), Category::Inconsistent);
     assert_eq!(

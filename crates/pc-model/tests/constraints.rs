@@ -71,7 +71,7 @@ fn refuses_point(start: &str, constraints: &str, category: Category, expected: &
 }
 
 #[test]
-fn texts_that_are_no_constraints_are_refused() {
+fn texts_that_are_not_constraints_are_refused() {
     refuses_point(
         BELOW,
         "length = \"x^2 + z^2 - 1\"",
@@ -92,7 +92,7 @@ fn texts_that_are_no_constraints_are_refused() {
         Category::Text,
         "m.toml:5:10: [constraints] speed: `x'^2 + y'^2 - 1` is not affine in the velocities\n    \
          speed = \"x'^2 + y'^2 - 1\"\n             ^^^^^^^^^^^^^^^\n  help: write a sum of terms linear in the velocities, \
-         or say that it is none, with Chetaev's condition for the displacements: \
+         or declare it nonlinear, with Chetaev's condition for the displacements: \
          `speed = { expr = \"…\", kind = \"nonlinear\" }`",
     );
     // Of these the second derivatives vanish.
@@ -111,7 +111,7 @@ fn constraints_must_leave_something_to_move() {
         BELOW,
         "a = \"x - 0.6\"\nb = \"y + 0.8\"",
         Category::Inconsistent,
-        "m.toml:6:6: [constraints] b: nothing is left free: constraints 2, quasi-velocities 2\n    b = \"y + 0.8\"\n         \
+        "m.toml:6:6: [constraints] b: the constraints leave nothing free: there are 2 of them for 2 quasi-velocities\n    b = \"y + 0.8\"\n         \
          ^^^^^^^\n  help: there must be fewer independent constraints than velocities, or nothing moves",
     );
     // Two that say the same leave one velocity.
@@ -133,7 +133,7 @@ fn constraints_must_leave_something_to_move() {
 }
 
 #[test]
-fn what_follows_is_dropped() {
+fn redundant_constraints_are_dropped() {
     let redundant = |constraints: &str| {
         let model = model(&point(BELOW, "", constraints));
         let graph = Graph::new();
@@ -162,10 +162,10 @@ fn contradictions_name_both() {
         "a = \"x'\"\nb = \"2*x' - 1\"",
         Category::Inconsistent,
         "m.toml:6:6: [constraints] b: the constraint `b` contradicts `a`\n    b = \"2*x' - 1\"\n         ^^^^^^^^\n  \
-         help: no motion satisfies it; mend it or leave it out",
+         help: no motion satisfies it; correct it or leave it out",
     );
     let expected = "m.toml:6:6: [constraints] b: the constraint `b` contradicts `a`: where that holds, it is -1, not 0\
-                    \n    b = \"x - 1\"\n         ^^^^^\n  help: no motion satisfies it; mend it or leave it out";
+                    \n    b = \"x - 1\"\n         ^^^^^\n  help: no motion satisfies it; correct it or leave it out";
     // The start satisfies the first, the second, neither.
     for start in ["x = 0\ny = 0\n", "x = 1\ny = 0\n", "x = 0.5\ny = 0\n"] {
         refuses_point(start, "a = \"x\"\nb = \"x - 1\"", Category::Inconsistent, expected);
@@ -179,14 +179,14 @@ fn contradictions_name_both() {
         Category::Inconsistent,
         "m.toml:8:6: [constraints] c: the constraint `c` contradicts `a` and `b`: where these hold, it is -2.5e-7, not 0\
          \n    c = \"x + y - z - t - 2.5e-7\"\n         ^^^^^^^^^^^^^^^^^^^^^^\n  \
-         help: no motion satisfies it; mend it or leave it out",
+         help: no motion satisfies it; correct it or leave it out",
     );
     refuses_point(
         "x = 0\ny = 0\n",
         "v = \"x'\"\nb = \"x - t\"",
         Category::Inconsistent,
         "m.toml:5:6: [constraints] v: the constraint `v` contradicts `b`\n    v = \"x'\"\n         ^^\n  \
-         help: no motion satisfies it; mend it or leave it out",
+         help: no motion satisfies it; correct it or leave it out",
     );
     // No contradiction: the velocity follows from the position, which the start misses.
     refuses_point(
@@ -194,24 +194,24 @@ fn contradictions_name_both() {
         "v = \"x'\"\nb = \"x - 1\"",
         Category::Inconsistent,
         "m.toml:6:6: [constraints] b: the start is off the constraint `b`: it is -1, not 0\n    b = \"x - 1\"\n         \
-         ^^^^^\n  help: give a start that satisfies it, or have it moved there by --project-start",
+         ^^^^^\n  help: give a start that satisfies it, or move it there with --project-start",
     );
 }
 
 #[test]
-fn what_nothing_moves_is_refused() {
+fn constraints_on_constants_are_refused() {
     refuses_point(
         BELOW,
         "late = \"t - 1\"",
         Category::Inconsistent,
         "m.toml:5:9: [constraints] late: the constraint `late` contradicts itself: no velocity satisfies it\n    \
-         late = \"t - 1\"\n            ^^^^^\n  help: no motion satisfies it; mend it or leave it out",
+         late = \"t - 1\"\n            ^^^^^\n  help: no motion satisfies it; correct it or leave it out",
     );
     refuses(
         &format!("[parameters]\np = 1\n{}", point(BELOW, "", "c = \"p - 2\"")),
         Category::Inconsistent,
         "m.toml:7:6: [constraints] c: the constraint `c` cannot hold: it is always -1, not 0\n    c = \"p - 2\"\n         \
-         ^^^^^\n  help: no motion satisfies it; mend it or leave it out",
+         ^^^^^\n  help: no motion satisfies it; correct it or leave it out",
     );
 }
 
@@ -219,7 +219,7 @@ fn what_nothing_moves_is_refused() {
 fn a_start_off_a_constraint_is_refused_or_moved() {
     let length = "length = \"x^2 + y^2 - 1\"";
     let help = "\n    length = \"x^2 + y^2 - 1\"\n              ^^^^^^^^^^^^^\n  \
-                help: give a start that satisfies it, or have it moved there by --project-start";
+                help: give a start that satisfies it, or move it there with --project-start";
     let off = "x = 1.0\ny = -0.8\n";
     refuses_point(
         off,
@@ -243,7 +243,7 @@ fn a_start_off_a_constraint_is_refused_or_moved() {
         Category::Inconsistent,
         "m.toml:7:10: [constraints] blade: the start is off the constraint `blade`: it is 1, not 0\n    \
          blade = \"x' - x*y'\"\n             ^^^^^^^^^\n  \
-         help: give a start that satisfies it, or have it moved there by --project-start",
+         help: give a start that satisfies it, or move it there with --project-start",
     );
 
     // The nearest point of the circle is on the ray, and of the velocity the tangential part is left.
@@ -331,7 +331,7 @@ fn a_start_where_constraints_are_singular_is_refused() {
 }
 
 #[test]
-fn no_state_may_satisfy_them() {
+fn constraints_that_no_state_satisfies_are_refused() {
     let text = point("x = 1\ny = 0.5\nz = 0\n", "", "a = \"x\"\nb = \"x + y^2 + 1\"");
     let mut model = model(&text.replace("y'^2)", "y'^2 + z'^2)"));
     model.project_start(true);
@@ -358,10 +358,10 @@ fn a_kind_may_be_given() {
     refuses(
         &given("holonomic"),
         Category::Inconsistent,
-        "m.toml:15:55: [constraints] blade.kind: the constraint `blade` is not holonomic: velocities it allows lead off \
+        "m.toml:15:55: [constraints] blade.kind: the constraint `blade` is not holonomic: the velocities it allows leave \
          every surface (component 1.0e0)\n    blade = { expr = \"-sin(phi)*x' + cos(phi)*y'\", kind = \"holonomic\" }\n    \
          \u{20}                                                     ^^^^^^^^^^^\n  \
-         help: leave its kind out, or write it as a function of coordinates and t",
+         help: leave out its kind, or write it as a function of coordinates and t",
     );
     assert!(matches!(kind(&given("nonholonomic")), Ok(Kind::Nonholonomic { .. })));
     let circle =
@@ -374,7 +374,7 @@ fn a_kind_may_be_given() {
 
 /// The name of a constraint may be taken: it is not in the namespace of expressions.
 #[test]
-fn constraints_may_be_called_as_they_please() {
+fn constraints_may_have_any_label() {
     for name in ["blade", "m", "x", "v", "t", "energy"] {
         let text = format!("{SLEIGH}{}", BLADE.replace("blade", name));
         let model = model(&text);
@@ -404,7 +404,7 @@ fn a_quasi_velocity_that_vanishes_starts_at_zero() {
         &text("0.1"),
         Category::Inconsistent,
         "m.toml:14:9: [constraints] slip: the start is off the constraint `slip`: it is 0.1, not 0\n    slip = \"u\"\n            \
-         ^\n  help: give a start that satisfies it, or have it moved there by --project-start",
+         ^\n  help: give a start that satisfies it, or move it there with --project-start",
     );
     let mut moved = model(&text("0.1"));
     moved.project_start(true);
@@ -414,7 +414,7 @@ fn a_quasi_velocity_that_vanishes_starts_at_zero() {
 
 /// [bodies] give the energy, constraints the shape: ẍ = −λ x, ÿ = −λ y − g with λ = ẋ² + ẏ² − g y.
 #[test]
-fn bodies_are_bound_too() {
+fn constraints_bind_bodies_too() {
     let text = "[coordinates]\nx = 0.6\ny = -0.8\n[quasi_velocities]\n\"x'\" = 0.8\n\"y'\" = 0.6\n[constraints]\n\
                 length = \"x^2 + y^2 - 1\"\n[bodies.bob]\nmass = 2\nposition = [\"x\", \"y\", 0]\nforce = [0, -19.6, 0]\n";
     let model = model(text);
@@ -456,10 +456,10 @@ fn a_coordinate_without_mass_is_held_by_a_constraint() {
 }
 
 #[test]
-fn what_is_called_nonlinear_is_so() {
+fn a_constraint_declared_nonlinear_must_be_so() {
     let called = |expr: &str| format!("c = {{ expr = \"{expr}\", kind = \"nonlinear\" }}");
     let place = |column: usize, line: &str| {
-        format!("\n    {line}\n{}^^^^^^^^^^^\n  help: leave its kind out", " ".repeat(3 + column))
+        format!("\n    {line}\n{}^^^^^^^^^^^\n  help: leave out its kind", " ".repeat(3 + column))
     };
     let affine = called("x' - x*y'");
     refuses_point(
@@ -518,7 +518,7 @@ fn nonlinear_constraints_stand_beside_others() {
 
 /// The definition that is to blame, not the first.
 #[test]
-fn definitions_are_blamed_where_they_stand() {
+fn errors_in_definitions_are_located_there() {
     let text = |is: &str| {
         format!(
             "[coordinates]\nx = 0\ny = 0\n[quasi_velocities]\nu = {{ is = \"x' + y'\", start = 1 }}\n\

@@ -93,7 +93,7 @@ fn a_pendulum_moves_by_its_angular_velocity() {
 
 /// Whatever of the velocities is defined: x'' = −x (w² − y) for the pendulum with w = y'/x = −x'/y.
 #[test]
-fn any_choice_of_velocities_will_do() {
+fn any_choice_of_velocities_gives_the_same_motion() {
     let by = |is: &str, start: f64| {
         let text = PENDULUM.replace("x*y' - y*x'", is).replace("start = 0.2", &format!("start = {start}"));
         model(&text)
@@ -122,7 +122,7 @@ fn rolling_may_be_written_with_the_angular_velocity() {
 }
 
 #[test]
-fn what_follows_from_other_constraints_is_dropped() {
+fn constraints_that_follow_from_others_are_dropped() {
     let text = WHEEL.replace("[lagrangian]", "again = \"2*x' - 2*r*φ'\"\nstays = \"y'\"\n[lagrangian]");
     let graph = Graph::new();
     let assembly = model(&text).assemble(&graph).unwrap();
@@ -203,7 +203,7 @@ fn quasi_velocities_follow_from_start_velocities() {
 }
 
 #[test]
-fn what_is_held_of_the_start_is_not_moved() {
+fn held_start_values_are_not_moved() {
     let off = PENDULUM
         .replace("y = -0.8", "y = -0.7")
         .replace("w = { is = \"x*y' - y*x'\", start = 0.2 }", "\"x'\" = 0.8");
@@ -234,7 +234,7 @@ fn what_is_held_of_the_start_is_not_moved() {
 }
 
 #[test]
-fn a_reset_says_what_can_be_reset() {
+fn an_invalid_reset_lists_what_can_be_reset() {
     let text = "[coordinates]\nx = 0.0\ny = 0.0\n[quasi_velocities]\nw1 = { is = \"x'\", start = 0.0 }\n\
                 w2 = { is = \"y'\", start = 1.0 }\n[constraints]\nm0 = \"w1\"\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n\
                 [events.e]\nwhen = \"y - 0.5\"\nreset = { w1 = \"0.3\" }\n";

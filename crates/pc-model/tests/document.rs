@@ -343,7 +343,7 @@ fn later_stages_report_in_the_same_way() {
     let error = document.source.error(&place, ErrorKind::Unsupported { what: "masses are" });
     let line = SLEIGH.lines().find(|line| line.starts_with("kinetic")).unwrap();
     let expected = format!(
-        "m.toml:23:12: [lagrangian] kinetic: masses are not supported yet\n    {line}\n               ^\n  help: take the entry out"
+        "m.toml:23:12: [lagrangian] kinetic: masses are not supported yet\n    {line}\n               ^\n  help: remove the entry"
     );
     assert_eq!(error.to_string(), expected);
     assert_eq!(error.category(), Category::Unsupported);

@@ -82,7 +82,7 @@ fn velocities_are_reset_where_they_are_the_quasi_velocities() {
 
 /// A reset need have no value at the start, where `when` must have one.
 #[test]
-fn only_the_crossing_is_tried_at_the_start() {
+fn only_the_event_function_is_tried_at_the_start() {
     let later = "[events.low]\nwhen = \"phi\"\nreset = { omega = \"sqrt(-phi)\" }\n";
     assert!(model(&format!("{PENDULUM}{later}")).assemble(&Graph::new()).is_ok());
     let error = error(&format!("{PENDULUM}[events.low]\nwhen = \"1 + sqrt(-phi)\"\n"));

@@ -116,7 +116,7 @@ fn a_table_has_no_value_outside_its_times() {
 
 /// Neither by the energy's own rate, nor by that of functions.
 #[test]
-fn what_a_table_drives_is_no_integral() {
+fn a_function_driven_by_a_table_is_not_an_integral() {
     let graph = Graph::new();
     let table = "u = { times = [0, 1], values = [3, 5] }";
     for (inputs, kept) in [("u = 3", true), (table, false)] {
@@ -159,10 +159,10 @@ fn a_column_of_a_file_beside_the_model() {
     assert_eq!(message(read("column = \"v\"")), "`x.csv` has no column `v`; its columns are s, u, t");
     assert_eq!(
         message(read("column = \"u\", time = \"s\"")),
-        "line 4 of `x.csv`: the times must rise, but 9 follows 9"
+        "line 4 of `x.csv`: the times must increase, but 9 follows 9"
     );
     fs::write(directory.join("x.csv"), "t,u\n0,1\n1,two\n").unwrap();
-    assert_eq!(message(read("column = \"u\"")), "line 3 of `x.csv`: `two` is no finite number");
+    assert_eq!(message(read("column = \"u\"")), "line 3 of `x.csv`: `two` is not a finite number");
     fs::write(directory.join("x.csv"), "t,u\n0,1\n1\n").unwrap();
     assert_eq!(message(read("column = \"u\"")), "line 3 of `x.csv` has 1 entries, not 2");
     fs::remove_dir_all(&directory).unwrap();
@@ -191,11 +191,14 @@ fn refused(text: &str) -> (Category, String) {
 }
 
 #[test]
-fn what_is_wrong_with_an_input_is_said_where_it_stands() {
+fn errors_in_inputs_are_located_there() {
     for (inputs, message) in [
-        ("u = { times = [0, 1], values = [1] }", "2 times and 1 values do not make a table"),
-        ("u = { times = [0, 0], values = [1, 2] }", "the times of a table must rise: 0 follows 0"),
-        ("u = { times = [0], values = [1] }", "a table needs 2 times at least, not 1"),
+        (
+            "u = { times = [0, 1], values = [1] }",
+            "a table needs as many values as times, but has 2 times and 1 values",
+        ),
+        ("u = { times = [0, 0], values = [1, 2] }", "the times of a table must increase: 0 follows 0"),
+        ("u = { times = [0], values = [1] }", "a table needs at least 2 times, not 1"),
         ("u = \"x\"", "`x` cannot be used in the value of a parameter"),
         ("v = 1\nu = \"v\"", "`v` cannot be used in the value of a parameter"),
     ] {

@@ -33,7 +33,7 @@ fn error(text: &str) -> ModelError {
 
 /// u = ε x' + y', w = x' + y' with ε = cos(π/2), a rounding error: y' = u and x' = w − u.
 #[test]
-fn a_rounding_error_in_a_definition_is_none_in_the_velocities() {
+fn a_rounding_error_in_a_definition_does_not_affect_the_velocities() {
     for [u, w] in [["cos(pi/2)*x' + y'", "x' + y'"], ["y' + 1e-14*x'", "x' + y'"]] {
         let text = format!(
             "[coordinates]\nx = 0\ny = 0\n[quasi_velocities]\nu = {{ is = \"{u}\", start = 1 }}\n\

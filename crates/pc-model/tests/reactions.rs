@@ -64,7 +64,7 @@ fn reactions_bear_the_names_of_their_constraints() {
 
 /// The rod of a spherical pendulum pulls with 2λ r, λ = (g z − |ṙ|²)/(2|r|²); what follows from it has no reaction.
 #[test]
-fn multipliers_are_outputs_and_what_is_dropped_is_zero() {
+fn multipliers_are_outputs_and_those_dropped_are_zero() {
     let sphere = r#"
 [coordinates]
 x = 0.6
@@ -85,7 +85,7 @@ potential = "10*z"
 }
 
 #[test]
-fn a_reaction_of_nothing_is_no_name() {
+fn a_reaction_of_an_unknown_constraint_is_refused() {
     let wrong = HELD.replace("λ_first - 10*λ_second", "λ_third");
     let model = derived_twice(Document::parse(Source::new("model.toml", &wrong)).unwrap());
     let error = model.assemble(&Graph::new()).map(|_| ()).unwrap_err();

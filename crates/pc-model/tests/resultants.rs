@@ -267,7 +267,7 @@ blade = "x2' - y2*y2'"
 /// Two masses on a rod by its centre and angle: what a blade at one end does to each is not told by virtual work, but what
 /// it does to a third mass is.
 #[test]
-fn what_virtual_work_does_not_tell_is_left_out() {
+fn undetermined_reactions_are_left_out() {
     let rod = r#"
 [coordinates]
 x = 0.0
@@ -305,7 +305,7 @@ stop = "s"
         error(&named).to_string(),
         "m.toml:21:11: [outputs] push: `F_blade_left_x` is not determined: the velocity of the body is tied to others by \
          the choice of coordinates\n    push = \"2*F_blade_left_x\"\n              ^^^^^^^^^^^^^^\n  \
-         help: take coordinates in which the body moves by itself, and constraints that tie it"
+         help: use coordinates in which the body moves independently, and constraints that tie it"
     );
     // A particle has no torque.
     let torque = format!("{rod}[outputs]\npush = \"N_stop_slide_1\"\n");
@@ -329,7 +329,7 @@ fn kinetic_energy_beside_bodies_shares_the_load() {
 }
 
 #[test]
-fn what_is_dropped_exerts_no_force() {
+fn dropped_constraints_exert_no_force() {
     let text = PENDULUM
         .replace("length =", "again = \"x*x' + z*z'\"\nlength =")
         .replace("F_length_bob_x*x", "F_again_bob_x*x");

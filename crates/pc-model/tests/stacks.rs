@@ -47,12 +47,12 @@ fn model(potential: &str, definitions: &str) -> String {
 }
 
 #[test]
-fn functions_nest_as_deep_as_they_may() {
+fn functions_nest_up_to_the_limit() {
     on_small_stack(model(&format!("{}x + y{}", "sin(".repeat(199), ")".repeat(199)), ""), true);
 }
 
 #[test]
-fn sums_are_long() {
+fn long_sums_are_handled() {
     let sum: Vec<String> = (1..5000).map(|i| format!("sin({i}*x)*y^{}", i % 3)).collect();
     on_small_stack(model(&sum.join(" + "), ""), false);
 }

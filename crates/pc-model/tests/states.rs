@@ -207,7 +207,7 @@ fn events_see_and_reset_states() {
 
 /// A gain that only energy tells: kept by projection, the charge of a capacitor stays as it is.
 #[test]
-fn integrals_are_kept_without_them() {
+fn integrals_are_kept_without_changing_states() {
     let text = "[coordinates]\nx = 1\n[states]\nz = { start = 2, rate = \"-z\" }\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
                 potential = \"x^2/2\"\n[integrals]\nI = \"x^2 + x'^2\"\n[simulation]\nproject = [\"I\"]\n";
     let mut flow = flow(text, Variables::QuasiVelocities);
@@ -225,7 +225,7 @@ fn refused(text: &str) -> (Category, String) {
 }
 
 #[test]
-fn the_frame_knows_no_states() {
+fn the_frame_contains_no_states() {
     let states = "[states]\nz = { rate = \"-z\" }\n";
     let lagrangian = "[lagrangian]\nkinetic = \"x'^2\"\n";
     let points = "[bodies.b]\nmass = 1\nposition = [\"z*x\", 0, 0]\n";

@@ -1,8 +1,8 @@
-//! What constraints do: which bind, which follow, which can be integrated.
+//! Classification of constraints: which bind, which are redundant, which are integrable.
 //!
-//! In go conditions on positions and velocities, out come their kinds: `classification` by Frobenius' test, with `reach`,
-//! the velocities allowed, `involutive`, the directions that these reach by commutators, and `binding`, which of them hold
-//! the motion at a state that `positions` finds. `combinations` writes those that can be integrated together.
+//! Conditions on positions and velocities are given their kinds: `classification` by Frobenius' test, with `reach`,
+//! the velocities allowed, `involutive`, the directions that these reach by commutators, and `binding`, which of them
+//! bind the motion at a state that `positions` finds. `combinations` writes those that are integrable together.
 
 pub(crate) mod binding;
 pub(crate) mod classification;

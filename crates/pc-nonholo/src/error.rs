@@ -1,4 +1,4 @@
-//! What can be wrong with constraints.
+//! Errors of constraints.
 
 use pc_mech::MechError;
 
@@ -20,7 +20,7 @@ pub enum NonholoError {
     /// Voronets' equations asked for in quasi-velocities.
     #[error("Voronets' equations are those of a system in the velocities of its coordinates")]
     NotInVelocities,
-    /// A form of the equations that there is under constraints affine in the velocities only.
+    /// A form of the equations that requires constraints affine in the velocities.
     #[error("{form} need constraints that are affine in the velocities; `{constraint}` is not")]
     Nonlinear {
         /// What was asked for.

@@ -1,11 +1,11 @@
-//! Nonholonomic constraints in quasi-velocities: which constraints are, equations of motion, reactions.
+//! Nonholonomic constraints in quasi-velocities: their classification, equations of motion, reactions.
 //!
 //! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
 //! corrected; conventions are those of [`pc_mech`]. Of k quasi-velocities l are free, counted by r, s = 1..l, and k − l
 //! are kept at zero, counted by α = l+1..k; m counts all of them. The library is unit-agnostic: any consistent units will
 //! do.
 //!
-//! # Which constraints are
+//! # Which constraints are nonholonomic
 //!
 //! A [`Constraint`](pc_mech::Constraint) is a condition f(t, x) = 0, or one on velocities. Of those on velocities some can
 //! be integrated, and some follow from others or contradict them. A [`ConstraintClassification`] says which: with X'_1..X'_l
@@ -77,8 +77,8 @@
 //!
 //! # Adapted frames
 //!
-//! Constraints C η + c_0 = 0 that are no quasi-velocities are made such: [`Adapted`] takes their left-hand sides for the last
-//! quasi-velocities, beside those that stay independent. From there on all is as above.
+//! Constraints C η + c_0 = 0 that are not quasi-velocities are made so: [`Adapted`] takes their left-hand sides as the
+//! last quasi-velocities, after those that stay independent. The equations above then apply.
 //!
 //! ```
 //! use pc_mech::{Constraint, Graph, System};
@@ -113,9 +113,9 @@
 //!
 //! d/dt ∂θ/∂η_s = (c_rs^m η_r + c_0s^m) ∂θ/∂η_m + (c_rs^α η_r + c_0s^α)(∂T/∂η_α)_0 + X_s (θ + U) + Q_s, m ≤ l (32).
 //!
-//! Without the second term, as if they had been put into L first, they would be wrong. [`Constrained::free_system`]
-//! counts it among the forces: a [`System`](pc_mech::System) of l quasi-velocities with all that belongs to one, whose
-//! canonical equations are (34). Its bracket does not satisfy Jacobi's identity.
+//! Without the second term, as if the constraints had been put into L first, they would be wrong.
+//! [`Constrained::free_system`] counts this term among the forces: a [`System`](pc_mech::System) of l quasi-velocities
+//! with all that belongs to one, whose canonical equations are (34). Its bracket does not satisfy Jacobi's identity.
 //!
 //! ```
 //! # use pc_mech::{Graph, System};
@@ -167,9 +167,9 @@
 //!
 //! # Or multipliers
 //!
-//! All forms above have singular positions where their choice of velocities has. The equations with
-//! [`Multipliers`](pc_mech::Multipliers), M η̇ = r + Cᵀ λ, have none but those of the constraints, nonholonomic ones
-//! included, and observe the λ: they are what a long motion is integrated in.
+//! All forms above are singular where their choice of velocities is. The equations with
+//! [`Multipliers`](pc_mech::Multipliers), M η̇ = r + Cᵀ λ, are singular only where the constraints are, nonholonomic
+//! ones included, and observe the λ: long motions are integrated in them.
 
 mod classification;
 mod error;

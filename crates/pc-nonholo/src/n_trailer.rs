@@ -12,7 +12,7 @@ pub struct Wagon<'g> {
     pub mass: Expr<'g>,
     /// Moment of inertia about the vertical through the mass centre.
     pub inertia: Expr<'g>,
-    /// How far the mass centre lies before the axle.
+    /// The distance of the mass centre ahead of the axle.
     pub ahead: Expr<'g>,
 }
 

@@ -1,7 +1,7 @@
-//! Equations of the velocities that constraints leave.
+//! Equations in independent velocities.
 //!
-//! In goes a system with constraints, out come its equations in independent velocities, and the reactions.
-//! `adapted` makes constraints vanishing quasi-velocities, `constrained` puts them in after differentiation (30), (32),
+//! A system with constraints gives its equations in independent velocities, and the reactions. `adapted` turns
+//! constraints into vanishing quasi-velocities, `constrained` puts them in after differentiation (30), (32),
 //! `voronets` solves them for velocities (35).
 
 pub(crate) mod adapted;

@@ -83,7 +83,7 @@ fn the_integrals_that_were_put_in_are_found() {
 }
 
 #[test]
-fn what_has_no_integral_has_none() {
+fn constraints_without_integrable_combinations_have_none() {
     let graph = Graph::new();
     let system = particle(&graph);
     let v = system.quasi_velocities();

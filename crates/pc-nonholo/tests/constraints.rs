@@ -98,7 +98,7 @@ fn constraints_are_sorted_by_frobenius_test() {
 
 /// A disk that rolls, of whatever radius: what a constraint does is no matter of units.
 #[test]
-fn what_a_constraint_does_depends_on_no_unit() {
+fn the_kind_of_a_constraint_does_not_depend_on_units() {
     for radius in [1.0, 1e-6, 1e-10, 1e-14, 1e10] {
         let graph = Graph::new();
         let [vx, vy, phi, vphi, vtheta] = graph.symbols(["x'", "y'", "φ", "φ'", "θ'"]);
@@ -122,7 +122,7 @@ fn what_a_constraint_does_depends_on_no_unit() {
 
 /// log(xy) − log x − log y is zero, though nothing that the graph knows.
 #[test]
-fn what_vanishes_up_to_rounding_is_integrable() {
+fn a_bracket_that_vanishes_up_to_rounding_is_integrable() {
     let graph = Graph::new();
     let [x, y, vx, vz] = graph.symbols(["x", "y", "x'", "z'"]);
     let system = System::builder(&graph)
@@ -137,7 +137,7 @@ fn what_vanishes_up_to_rounding_is_integrable() {
 
 /// In an orthonormal frame ζ of the allowed velocities ζ̇_s = r_s; ẍ is what it is in independent velocities.
 #[test]
-fn an_orthonormal_frame_tells_the_same_motion() {
+fn an_orthonormal_frame_gives_the_same_motion() {
     let graph = Graph::new();
     let system = sleigh(&graph);
     let [vx, vy, phi] = graph.symbols(["x'", "y'", "φ"]);
@@ -231,7 +231,7 @@ fn brackets_of_brackets_count() {
 
 /// A frame of three bars that are parallel, where two would do; where a bar has another length, it stands still.
 #[test]
-fn a_bar_too_many_is_found_where_the_others_hold() {
+fn a_redundant_bar_is_found_where_the_others_hold() {
     let frame = |third: f64| {
         let graph = Graph::new();
         let names = ["α", "β", "γ", "θ", "φ"];
@@ -263,7 +263,7 @@ fn a_bar_too_many_is_found_where_the_others_hold() {
 
 /// y = 0 and y = x² touch: their gradients are parallel where both hold, but neither follows from the other.
 #[test]
-fn conditions_that_touch_do_not_follow_from_each_other() {
+fn tangent_conditions_do_not_follow_from_each_other() {
     let graph = Graph::new();
     let [t, x, y, z] = graph.symbols(["t", "x", "y", "z"]);
     let system = System::builder(&graph)

@@ -20,7 +20,7 @@ fn at(graph: &Graph) -> Vec<(Expr<'_>, f64)> {
 
 /// The knife ż = y ẋ is nonholonomic, the plane ẏ = 0 integrable, whatever the speed is bound to.
 #[test]
-fn the_affine_ones_keep_their_kinds() {
+fn affine_constraints_keep_their_kinds() {
     let graph = Graph::new();
     let [y, vx, vy, vz] = graph.symbols(["y", "x'", "y'", "z'"]);
     let speed = Constraint::nonlinear("speed", vx.square() + vy.square() - 1.0);
@@ -40,7 +40,7 @@ fn the_affine_ones_keep_their_kinds() {
 }
 
 #[test]
-fn forms_of_independent_velocities_refuse_them() {
+fn forms_in_independent_velocities_refuse_nonlinear_constraints() {
     let graph = Graph::new();
     let [vx, vy] = graph.symbols(["x'", "y'"]);
     let speed = Constraint::nonlinear("speed", vx.square() + vy.square() - 1.0);

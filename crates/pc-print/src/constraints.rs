@@ -2,11 +2,11 @@
 
 use pc_nonholo::Kind;
 
-/// What a constraint does.
+/// The kind of a constraint in words.
 pub fn kind_in_words(kind: Kind) -> &'static str {
     match kind {
         Kind::Position => "holonomic",
-        Kind::Integrable => "holonomic in disguise: integrable",
+        Kind::Integrable => "integrable, so holonomic",
         Kind::Nonholonomic { .. } => "nonholonomic",
         Kind::Nonlinear => "nonholonomic, not affine in the velocities",
     }

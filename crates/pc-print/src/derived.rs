@@ -1,4 +1,4 @@
-//! Equations of motion in one of their forms, with what belongs to them.
+//! Equations of motion in one of their forms, with constraints and reactions.
 
 use pc_mech::{Constraint, Equations, Expr, Multipliers};
 use pc_model::{Assembly, ConstraintFormulation, ModelError, Variables};
@@ -6,22 +6,22 @@ use pc_nonholo::{Kind, NonholoError, Voronets};
 
 use crate::form::Form;
 
-/// Equations of motion with what belongs to them.
+/// Equations of motion with their constraints and reactions.
 #[derive(Clone, Debug)]
 pub struct Derived<'g> {
     /// M η̇ = r of the independent quasi-velocities.
     pub equations: Equations<'g>,
     /// The quasi-velocities that constraints keep at zero, over which brackets are summed too.
     pub vanishing: Vec<Expr<'g>>,
-    /// The constraints with what they do.
+    /// The constraints with their kinds.
     pub constraints: Vec<(Constraint<'g>, Kind)>,
-    /// What the quasi-velocities that vanish are in velocities, where that is known.
+    /// The definitions of the vanishing quasi-velocities in velocities, where they are known.
     pub definitions: Vec<(Expr<'g>, Expr<'g>)>,
-    /// The quasi-velocities that are not those of the model, each with what it is.
+    /// The quasi-velocities that are not those of the model, each with its definition.
     pub quasi_velocities: Vec<(Expr<'g>, Expr<'g>)>,
-    /// The reactions with what they are equal to.
+    /// The reactions with their expressions.
     pub reactions: Vec<(Expr<'g>, Expr<'g>)>,
-    /// What is to be known of the energy.
+    /// A remark on the energy.
     pub energy_remark: Option<&'static str>,
 }
 
@@ -154,7 +154,7 @@ impl<'g> Derived<'g> {
     }
 }
 
-/// What is to be known of the energy of equations in independent velocities, where it is not the `energy` of a run.
+/// A remark on the energy of equations in independent velocities, where it is not the `energy` of a run.
 pub fn energy_remark(assembly: &Assembly<'_>) -> Option<&'static str> {
     let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else { return None };
     let mut constraints = held.multipliers.constraints().iter();

@@ -19,12 +19,12 @@ pub enum Form {
     LiePoisson,
     /// Equations for quasi-velocities that are orthonormal in the kinetic metric.
     Orthonormal,
-    /// Equations for quasi-velocities given beside the text.
+    /// Equations for quasi-velocities given on the command line.
     Hamel,
 }
 
 impl Form {
-    /// The variables of its state; none of the forms in velocities, which are only printed.
+    /// The variables of its state; none for the forms in velocities, which are only printed.
     pub fn variables(self) -> Option<Variables> {
         Some(match self {
             Form::Poincare => Variables::QuasiVelocities,
@@ -37,7 +37,7 @@ impl Form {
         })
     }
 
-    /// What it is called on a command line.
+    /// Its name on a command line.
     pub fn name(self) -> &'static str {
         match self {
             Form::Lagrange => "lagrange",

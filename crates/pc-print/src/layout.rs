@@ -1,8 +1,8 @@
-//! How equations are laid out on a page.
+//! The layout of a page of equations.
 
 use crate::lines::columns;
 
-/// How a page of equations is laid out.
+/// The layout of a page of equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// Columns of a line.

@@ -1,4 +1,4 @@
-//! What one evaluation of a right-hand side costs.
+//! The cost of one evaluation of a right-hand side.
 
 use pc_expr::{Cost, ExprError, Inputs, Program};
 use pc_mech::{Canonical, Equations, Expr, System};
@@ -24,7 +24,7 @@ impl Operations {
         Operations::counted(system, system.quasi_velocities(), &rates)
     }
 
-    /// Those of the canonical equations; where they are not closed, the quasi-velocities being known.
+    /// Those of the canonical equations; where they are not closed, with the quasi-velocities given.
     ///
     /// # Errors
     /// As [`of`](Operations::of).
@@ -69,7 +69,7 @@ fn rates_of_states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
 }
 
 impl Operations {
-    /// A line each for parameters free and bound.
+    /// One line for free and one for bound parameters.
     pub fn lines(&self) -> Vec<String> {
         vec![counted("parameters free ", &self.free), counted("parameters bound", &self.bound)]
     }

@@ -1,7 +1,7 @@
-//! All that is printed of some equations, as expressions in the graph of a page.
+//! Everything that is printed of equations, as expressions in the graph of a page.
 //!
-//! A page has a graph of its own, in which what is written stays as it is written: there nothing is merged back to the form
-//! that costs a computer least.
+//! A page has a graph of its own, in which expressions stay as they are written and are not merged into the form that
+//! is cheapest to compute.
 
 use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
 use pc_expr::{Given, Graph};
@@ -14,7 +14,7 @@ use crate::derived::Derived;
 /// Equations of so many nodes are multiplied out whatever that makes of them.
 const SMALL: usize = 60;
 
-/// What is printed of equations of motion.
+/// The contents of a page of equations of motion.
 #[derive(Clone, Debug)]
 pub struct Sheet<'p> {
     /// Parameters with their numbers.
@@ -23,25 +23,25 @@ pub struct Sheet<'p> {
     pub coordinates: Vec<Expr<'p>>,
     /// Independent quasi-velocities η, those of the equations.
     pub quasi_velocities: Vec<Expr<'p>>,
-    /// The quasi-velocities that are not those of the model, each with what it is.
+    /// The quasi-velocities that are not those of the model, each with its definition.
     pub changed: Vec<(Expr<'p>, Expr<'p>)>,
-    /// What vanishes, by the names of the constraints.
+    /// The vanishing left-hand sides, with the names of the constraints.
     pub constraints: Vec<(String, Expr<'p>, Kind)>,
     /// The matrix b and the column b_0 of ẋ = b η + b_0 (3).
     pub frame: (Matrix<Expr<'p>>, Vec<Expr<'p>>),
-    /// Each ẋ_i with what it is equal to.
+    /// Each ẋ_i with its expression.
     pub rates: Vec<(Expr<'p>, Expr<'p>)>,
     /// The brackets that are not zero.
     pub brackets: Brackets<'p>,
     /// The equations themselves.
     pub balance: Balance<'p>,
-    /// Each ż_j with what it is equal to.
+    /// Each ż_j with its expression.
     pub states: Vec<(Expr<'p>, Expr<'p>)>,
     /// The energy, or Hamilton's function.
     pub energy: Expr<'p>,
-    /// What is to be known of the energy.
+    /// A remark on the energy.
     pub energy_remark: Option<&'static str>,
-    /// Each reaction with what it is equal to.
+    /// Each reaction with its expression.
     pub reactions: Vec<(Expr<'p>, Expr<'p>)>,
     /// The definitions of the model.
     pub definitions: Vec<Given<'p>>,

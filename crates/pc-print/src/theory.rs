@@ -1,9 +1,9 @@
-//! What can be said of a model's motions without integrating them, in print.
+//! The analysis of a model's motions, in print.
 //!
-//! In goes an assembled model, out comes text. Read `description` first, what is said whatever it is printed as; then `ground`,
-//! from which all start, and what is said of it, part by part: `brackets`, `integrals`, `measure`, `action`, `steady`, `routh`.
-//! `text`, `latex` and `json` are the three ways to print, `folded` has long formulas on several lines, and `page` puts these
-//! together.
+//! An assembled model becomes text. Read `description` first, the content whatever the format; then `ground`, from
+//! which all parts start, and the parts: `brackets`, `integrals`, `measure`, `action`, `steady`, `routh`. `text`,
+//! `latex` and `json` are the three ways to print, `folded` breaks long formulas into several lines, and `page` puts
+//! these together.
 
 pub(crate) mod action;
 pub(crate) mod brackets;

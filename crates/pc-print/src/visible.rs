@@ -1,4 +1,4 @@
-//! Text of others as it may be shown: no character in it does anything.
+//! Foreign text made harmless: no character in it controls a terminal.
 
 use std::borrow::Cow;
 use std::fmt::Write;
@@ -6,7 +6,7 @@ use std::fmt::Write;
 use pc_model::document::is_hidden;
 use serde_json::Value;
 
-/// Titles and names on one line: runs of white space are a space, and what is not seen is shown as `�`.
+/// Titles and names on one line: runs of white space become a space, and invisible characters become `�`.
 pub fn one_line(text: &str) -> Cow<'_, str> {
     if !text.contains(is_hidden) {
         return Cow::Borrowed(text);
@@ -32,7 +32,7 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     if text.contains(acts) { Cow::Owned(text.replace(acts, "\u{fffd}")) } else { Cow::Borrowed(text) }
 }
 
-/// JSON on several lines, as it may be sent to a terminal: the same value, what is not seen being spelt out.
+/// JSON on several lines, as it may be sent to a terminal: the same value, with invisible characters escaped.
 pub fn visible_json(value: &Value) -> String {
     let mut text = String::new();
     for c in format!("{value:#}").chars() {
@@ -56,14 +56,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_stay_one_line() {
+    fn titles_stay_on_one_line() {
         assert_eq!(one_line("ẋ of the Čaplygin sleigh"), "ẋ of the Čaplygin sleigh");
         assert_eq!(one_line("a\n\r\n\\input{b}\u{2028}c\u{85}d\t"), "a \\input{b} c d");
         assert_eq!(one_line("\u{1b}[31m\u{9b}\u{202e}"), "\u{fffd}[31m\u{fffd}\u{fffd}");
     }
 
     #[test]
-    fn nothing_that_is_shown_does_anything() {
+    fn shown_text_has_no_effect_on_a_terminal() {
         assert_eq!(visible("a\tb\nc"), "a\tb\nc");
         assert_eq!(visible("a\u{1b}]0;b\u{7}\rc"), "a\u{fffd}]0;b\u{fffd}\u{fffd}c");
     }

@@ -1,7 +1,7 @@
-//! Where a motion can be taken up again, with the same numbers to the last bit.
+//! Checkpoints, from which a motion is resumed with the same numbers to the last bit.
 //!
-//! `checkpoint` says what is kept, `encoding` how it is written as bytes, `resume` keeps it and goes
-//! on from it, `resume_cvode` by CVODES; `legs` goes from checkpoint to checkpoint.
+//! `checkpoint` is what is kept, `encoding` its bytes, `resume` makes one and continues from it, `resume_cvode` by
+//! CVODES; `legs` goes from checkpoint to checkpoint.
 
 pub(crate) mod checkpoint;
 pub(crate) mod encoding;

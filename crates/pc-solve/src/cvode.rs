@@ -1,10 +1,11 @@
-//! SUNDIALS CVODES, safe to hold and to call.
+//! A safe interface to SUNDIALS CVODES.
 //!
-//! `context`, `handles` and `callback` are the boundary to C: owned objects, vector fields as callbacks. `options` say how,
-//! `cvode` is the integration step by step, made by `setup`, with `interpolation`, `projection` and `quadrature_callbacks`
-//! inside its steps, the `integrals` being kept as `quadrature`; `breaks` and `foresee`, by `foresight`, where the field is
-//! not smooth in time; `restart` to go on; `statistics` of the work. `stepper` makes it a method, `integration` begins one
-//! by it. `linear` are its linear systems, `forward` its sensitivities.
+//! `context`, `handles` and `callback` are the boundary to C: owned objects, vector fields as callbacks. `options` are
+//! its options, `cvode` is the integration step by step, made by `setup`, with `interpolation`, `projection` and
+//! `quadrature_callbacks` inside its steps, and `integrals` computed as a `quadrature`; `breaks` and `foresee`, by
+//! `foresight`, handle fields that are not smooth in time; `restart` continues after jumps; `statistics` counts the
+//! work. `stepper` makes it a method, `integration` begins an integration by it. `linear` are its linear systems,
+//! `forward` its sensitivities.
 
 pub(crate) mod breaks;
 pub(crate) mod callback;

@@ -1,4 +1,4 @@
-//! What can go wrong.
+//! Errors of integration.
 //!
 //! `input`: with a problem or an option, before the first step. `solve`: in an integration, for a `reason`, which may be a
 //! `return_code` of CVODES or that a number is `non_finite`.

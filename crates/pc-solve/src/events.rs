@@ -1,7 +1,7 @@
-//! Events: what they are given by, and where they occur.
+//! Events: their functions, and their location.
 //!
-//! `events` takes closures and tells what occurred; `samples` are what is seen along a step, `root_finding` locates where functions along a step pass through zero
-//! first.
+//! `events` are given by closures, with their occurrences; `samples` are values along a step, `root_finding` locates
+//! the first zeros of functions along a step.
 
 pub(crate) mod events;
 pub(crate) mod root_finding;

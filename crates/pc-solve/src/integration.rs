@@ -1,11 +1,11 @@
 //! Integration by any method: one engine for outputs, events, dense output and checkpoints.
 //!
-//! In go a [`VectorField`](pc_expr::VectorField), a start and a method; out come states, occurrences and
-//! [`Statistics`](statistics::Statistics). Read `stepper` first, what a method has to offer, and `method`, how one begins;
-//! then `integration`, what is made of it: `run` goes from event to event, `step` gives single steps and their polynomials,
-//! `occur` does what happens at events, `saltation` what that does to derivatives; `observer` is told of it all. `limits`
-//! say how far, `checks` whether at all; `trajectory` and `dense_output` hold motions. `fn_field` makes closures vector
-//! fields, `breaks` ends steps where a field is not smooth.
+//! A [`VectorField`](pc_expr::VectorField), a start and a method give states, occurrences and
+//! [`Statistics`](statistics::Statistics). Read `stepper` first, the interface of a method, and `method`, how one
+//! begins; then `integration`, which is built on it: `run` goes from event to event, `step` gives single steps and
+//! their polynomials, `occur` handles events, `saltation` their effect on derivatives; an `observer` is informed of
+//! everything. `limits` bound an integration, `checks` validate its input; `trajectory` and `dense_output` hold
+//! motions. `fn_field` makes closures vector fields, `breaks` ends steps where a field is not smooth.
 
 pub(crate) mod breaks;
 pub(crate) mod checks;

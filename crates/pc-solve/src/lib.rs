@@ -18,14 +18,14 @@
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! [`Options`] chooses method and tolerances; [`Solve`] adds events and other methods, and [`Integration`] is the integration
-//! itself, to take it step by step.
+//! [`Options`] chooses method and tolerances; [`Solve`] adds events and other methods, and [`Integration`] is the
+//! integration itself, step by step.
 //!
 //! The methods are those of the variable-order, variable-step linear multistep code CVODE [Cohen, Hindmarsh 1996],
 //! in SUNDIALS 7 [Hindmarsh et al. 2005; Gardner et al. 2022].
 //!
-//! Without the feature `cvode`, which is on unless left out, the crate builds without SUNDIALS and a C compiler. Left are
-//! [`Integration`] by any [`Stepper`], such as [`RungeKutta4`], with events, dense output and checkpoints.
+//! Without the default feature `cvode` the crate builds without SUNDIALS and a C compiler. It then has [`Integration`]
+//! by any [`Stepper`], such as [`RungeKutta4`], with events, dense output and checkpoints.
 
 #![cfg_attr(feature = "cvode", expect(unsafe_code, reason = "calls of the C library SUNDIALS"))]
 

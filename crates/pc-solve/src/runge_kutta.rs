@@ -45,7 +45,7 @@ impl FixedStep {
         FixedStep { length, limits: Limits::default() }
     }
 
-    /// What the integration keeps to.
+    /// The limits of the integration.
     pub fn limits(self, limits: Limits) -> FixedStep {
         FixedStep { limits, ..self }
     }
@@ -63,7 +63,7 @@ impl<F: VectorField> IntegrationMethod<F> for FixedStep {
 
 /// The classical Runge–Kutta method of order 4 as a [`Stepper`].
 ///
-/// States are [projected](VectorField::project) at the end of each step, and inside where they are asked for.
+/// States are [projected](VectorField::project) at the end of each step, and inside steps where they are read.
 #[derive(Debug, Clone)]
 pub struct RungeKutta4<F> {
     field: F,

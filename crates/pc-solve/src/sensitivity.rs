@@ -1,8 +1,8 @@
 //! Derivatives of a motion by its start and by parameters, and gradients of functionals of it.
 //!
-//! The columns are integrated by CVODES, with `trajectory` and `forward_output` coming out. `adjoint` goes backwards for the
-//! gradient of a `functional`, as `adjoint_options` say: `adjoint_pass` takes the pieces of the motion in turn, each a
-//! `motion_record`, and `adjoint_field` are the equations, by a `transpose`.
+//! The columns are integrated by CVODES and returned as a `trajectory` or by `forward_output`. `adjoint` integrates
+//! backwards for the gradient of a `functional`, with `adjoint_options`: `adjoint_pass` takes the pieces of the motion
+//! in turn, each a `motion_record`, and `adjoint_field` are the equations, by a `transpose`.
 
 pub(crate) mod adjoint;
 pub(crate) mod adjoint_field;

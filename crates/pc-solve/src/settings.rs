@@ -1,5 +1,4 @@
-//! What is chosen by a name or by numbers, of which errors speak too: a `method`, a `tolerance`, the signs that an
-//! `inequality` keeps.
+//! Settings that errors mention too: a `method`, a `tolerance`, the signs that an `inequality` keeps.
 
 pub(crate) mod inequality;
 pub(crate) mod method;

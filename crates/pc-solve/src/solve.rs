@@ -1,6 +1,6 @@
 //! Integration in one call.
 //!
-//! `solve` by any method, with a `solution` or a `failure` coming out; `integrals` along the motion.
+//! `solve` integrates by any method to a `solution` or a `failure`, with `integrals` along the motion.
 
 pub(crate) mod failure;
 #[cfg(feature = "cvode")]

@@ -357,7 +357,7 @@ fn numbers_that_are_not_finite_are_named() {
 }
 
 #[test]
-fn panics_go_on_to_the_caller() {
+fn panics_reach_the_caller() {
     for faulty in [
         Faulty { jacobian: |_| panic!("here"), ..SOUND },
         Faulty { by_parameter: |_| panic!("here"), ..SOUND },
@@ -375,7 +375,7 @@ fn input_is_checked() {
         adjoint_gradient(SOUND, SOUND, 0.0, &[0.0], t1, &options).unwrap_err().to_string()
     };
     let new = || AdjointOptions::new(Options::default());
-    assert_eq!(refusal(new(), 0.0), "the end is the start, t = 0");
+    assert_eq!(refusal(new(), 0.0), "the end time is the start time, t = 0");
     assert_eq!(refusal(new(), f64::NAN), "output time number 0 (from 0) is NaN");
     assert_eq!(
         refusal(new().checkpoint_interval(0), 1.0),

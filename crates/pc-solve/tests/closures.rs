@@ -8,7 +8,7 @@ fn still(_t: f64, _y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
 }
 
 #[test]
-fn what_is_given_is_answered_and_nothing_else() {
+fn only_given_closures_are_available() {
     let mut bare = from_fn(2, still);
     assert!(!bare.has_jacobian() && !bare.has_jvp() && !bare.has_parameter_jacobian());
     assert!(!bare.has_projection() && bare.sparsity().is_none());

@@ -45,7 +45,7 @@ fn a_cancelled_integration_keeps_what_it_reached() {
 
 /// Without an end the integration would go on for hours.
 #[test]
-fn time_ends_an_integration_and_more_of_it_goes_on() {
+fn a_deadline_ends_an_integration_and_a_new_one_continues_it() {
     let limit = Duration::from_millis(50);
     let options = within(Some(limit), Cancel::default()).max_steps(u64::MAX);
     let field = cancelling(Cancel::default(), 0.0);
@@ -65,7 +65,7 @@ fn time_ends_an_integration_and_more_of_it_goes_on() {
 }
 
 #[test]
-fn any_method_ends() {
+fn a_deadline_ends_any_method() {
     let cancel = Cancel::default();
     let deadline = Deadline::new(&Limits { cancel: cancel.clone(), ..Limits::default() });
     let steps = FixedStep::new(0.01).limits({

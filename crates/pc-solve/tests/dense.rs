@@ -79,7 +79,7 @@ fn dense_output_is_as_good_as_the_steps() {
 /// what is kept of a step is of the order of the step. At 1e-12 these are orders up to 12 in Adams' formulas, and steps
 /// on which a cubic would err by 1e-6.
 #[test]
-fn what_is_kept_of_a_step_is_of_its_order() {
+fn segments_have_the_order_of_their_step() {
     for method in [Method::Adams, Method::Bdf] {
         for rtol in [1e-4, 1e-8, 1e-12] {
             let options = Options::new(method).relative_tolerance(rtol).absolute_tolerance(rtol);
@@ -120,7 +120,7 @@ fn a_time_outside_is_refused() {
 /// Segments are given one after the other and kept by nobody else; one may begin and end inside a step, and outputs in
 /// between change nothing.
 #[test]
-fn segments_as_they_come() {
+fn segments_are_given_in_order() {
     let mut cvode = Integration::new(oscillator(), 0.0, &[1.0, 0.0], &Options::default()).unwrap();
     let mut motion = DenseOutput::default();
     let mut spans = Vec::new();

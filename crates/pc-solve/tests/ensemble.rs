@@ -167,7 +167,7 @@ fn the_consumer_and_a_flag_stop_members_on_their_way() {
 }
 
 #[test]
-fn a_panic_of_the_consumer_goes_on_to_the_caller() {
+fn a_panic_of_the_consumer_reaches_the_caller() {
     let panicking = || {
         let make = |member| Ok::<_, Failure>((pendulum(), start(member)));
         threads(2).solve(0..1000, make, 0.0, &TIMES, &Options::default(), |member, _| {

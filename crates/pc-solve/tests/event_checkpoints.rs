@@ -359,7 +359,7 @@ fn the_step_limit_is_that_of_a_motion_without_checkpoints() {
 
 /// At t = 1e6, where times lie 1.2e-10 apart, the first step of each leg ends where it began; the next is longer.
 #[test]
-fn a_step_that_ends_where_it_began_is_no_leg() {
+fn a_step_of_length_zero_is_not_a_leg() {
     let (from, options) = (Checkpoint::start(1e6, &[1.0]), Options::default().initial_step(1e-11));
     let (mut kept, mut idle, mut last) = (Vec::new(), 0, 1e6);
     let step = |t, _: &[f64]| {
@@ -381,7 +381,7 @@ fn a_step_that_ends_where_it_began_is_no_leg() {
 }
 
 #[test]
-fn what_is_not_of_this_motion_is_refused() {
+fn checkpoints_of_other_motions_are_refused() {
     let mut kept = Vec::new();
     let keep = |checkpoint: &Checkpoint, _| kept.push(checkpoint.clone());
     let (options, times) = (Options::default(), [5.0]);

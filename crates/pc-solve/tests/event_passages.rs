@@ -59,7 +59,7 @@ fn passages_close_to_each_other_are_both_found() {
 
 /// A function that comes to zero and turns back does not pass; one that stays there passes when it comes.
 #[test]
-fn touches_are_no_passages() {
+fn touches_are_not_passages() {
     for at in [0.3, 1.0, 2.5, 5.0] {
         // Exact at the zero, and nowhere below it.
         for options in [Options::default(), Options::default().max_step(at / 8.0)] {
@@ -92,7 +92,7 @@ fn a_touch_hides_no_passage() {
 
 /// A step that is looked at in so many parts shows pairs of zeros farther apart than two of them.
 #[test]
-fn a_step_shows_as_much_as_is_asked_for() {
+fn a_step_is_sampled_as_densely_as_requested() {
     let wave = |y: f64| (40.0 * y + 0.1).sin();
     let options = |samples| Options::default().initial_step(1.0).samples_per_step(samples);
     let expected: Vec<f64> = (1..127).map(|n| (f64::from(n) * std::f64::consts::PI - 0.1) / 40.0).collect();
@@ -175,7 +175,7 @@ fn ball() -> impl VectorField {
 
 /// Whether bounces accumulate does not depend on how long the motion has been going on.
 #[test]
-fn bounces_that_are_kicked_on_do_not_accumulate() {
+fn bounces_with_a_kick_do_not_accumulate() {
     let start = 2e4;
     for t0 in [0.0, -start] {
         let cvode =
@@ -215,7 +215,7 @@ fn bounces_that_are_kicked_on_do_not_accumulate() {
 
 /// The rule is set in the options, of all ways of running.
 #[test]
-fn the_accumulation_is_chosen() {
+fn the_accumulation_fraction_can_be_chosen() {
     let run = |within| {
         let accumulation = Accumulation { within, ..Accumulation::default() };
         let options = Options::default().accumulation(accumulation);

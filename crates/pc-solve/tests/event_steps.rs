@@ -52,7 +52,7 @@ fn dense_output_may_end_in_the_step_before_an_event() {
 }
 
 #[test]
-fn steps_end_at_events_and_know_their_inside() {
+fn steps_end_at_events_and_can_be_interpolated() {
     let (mut hybrid, mut told, mut t) = (ball(), Vec::new(), 0.0);
     assert!(matches!(hybrid.interpolate(0.0, 0), Err(SolveError::Input(InputError::NoStep))));
     while t < 3.0 {
@@ -109,7 +109,7 @@ fn steps_end_at_events_and_know_their_inside() {
 }
 
 #[test]
-fn an_observer_stops_a_step_and_the_next_goes_on() {
+fn an_observer_stops_a_step_and_the_next_continues() {
     let mut hybrid = ball();
     let mut ending = Ending::Completed;
     while ending == Ending::Completed {

@@ -206,7 +206,7 @@ fn a_function_that_is_zero_at_the_start_has_to_leave_first() {
 
 /// y = (t − 1)² − depth: no event above zero, two close ones below, found within steps that begin and end above.
 #[test]
-fn grazing() {
+fn grazing_functions_cause_no_event() {
     for method in [Method::Adams, Method::Bdf] {
         for (depth, expected) in [(-1e-6, 0), (1e-4, 2), (1e-8, 2), (1e-12, 2)] {
             let f: f64 = depth;
@@ -226,7 +226,7 @@ fn grazing() {
 
 /// Three functions that vanish together, with roundings of their own, and one a little later.
 #[test]
-fn simultaneous_events_are_dealt_with_in_order() {
+fn simultaneous_events_are_handled_in_order() {
     let seen = RefCell::new(Vec::new());
     let add = |amount: f64| {
         let seen = &seen;
@@ -324,7 +324,7 @@ fn a_terminal_event_is_the_last_output() {
 }
 
 #[test]
-fn who_watches_may_stop() {
+fn observers_may_stop() {
     let mut hybrid = Integration::new(falling(), 0.0, &[1.0, 0.0], &Options::default())
         .unwrap()
         .with_events(bounce(0.9))
@@ -348,7 +348,7 @@ fn who_watches_may_stop() {
 
 /// The work before restarts is counted, and each evaluation of the field is.
 #[test]
-fn statistics_go_on_over_restarts() {
+fn statistics_continue_over_restarts() {
     for method in [Method::Adams, Method::Bdf] {
         let calls = std::cell::Cell::new(0);
         let counted = from_fn(2, |_, y: &[f64], ydot: &mut [f64]| {

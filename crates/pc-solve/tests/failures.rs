@@ -55,7 +55,7 @@ fn recoverable_failures_are_answered_by_shorter_steps() {
 }
 
 #[test]
-fn a_wall_stalls_the_integration_and_is_named() {
+fn a_singularity_stalls_the_integration_and_is_named() {
     for options in methods() {
         let clock = from_fn(1, |t, _y, ydot| {
             ydot[0] = 3.0 * root(1.0 - t)?;
@@ -73,7 +73,7 @@ fn a_wall_stalls_the_integration_and_is_named() {
         assert!((y[0] - 2.0).abs() < 1e-3);
         // The steps become ever shorter, until t + h = t.
         let message = chain(&failure);
-        let expected = format!("the steps have become too short to go on from t = {t} <- sqrt(-");
+        let expected = format!("the steps have become too short to continue from t = {t} <- sqrt(-");
         assert!(message.starts_with(&expected), "{message}");
         assert!(failure.reached.statistics().steps < 3000);
         let cause = failure.source().unwrap().downcast_ref::<NegativeRoot>().unwrap();
@@ -335,7 +335,7 @@ fn blow_up_ends() {
         assert!((failure.reached.state(0)[0] - 2.0).abs() < 1e-6);
         let (t, _) = failure.error.reached().unwrap();
         assert!((t - 1.0).abs() < 1e-4);
-        assert_eq!(chain(&failure), format!("the steps have become too short to go on from t = {t}"));
+        assert_eq!(chain(&failure), format!("the steps have become too short to continue from t = {t}"));
     }
 }
 

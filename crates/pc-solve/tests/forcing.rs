@@ -110,7 +110,7 @@ fn pulses_of_many_forms_are_not_stepped_over() {
 
 /// A train of pulses, far apart and all seen; forwards and backwards.
 #[test]
-fn each_of_many_pulses_is_met() {
+fn each_of_many_pulses_is_found() {
     /// exp(−(sin(πt/10)/0.001)²): at 0, 10, 20, …, each of width 0.01/π.
     fn train(t: Expr<'_>) -> Expr<'_> {
         (-((t * (PI / 10.0)).sin() / 1e-3).square()).exp()
@@ -221,7 +221,7 @@ fn pulses_are_found_wherever_they_are() {
 
 /// A force that turns faster than numbers tell times apart is refused soon, unless the tolerances do not feel it.
 #[test]
-fn what_no_step_can_follow_is_refused() {
+fn a_force_that_no_step_can_follow_is_refused() {
     for (at, from) in [(1e21, 0.0), (1e17, 3.0)] {
         for method in [Method::Adams, Method::Bdf] {
             let force = |size: f64| Spring::new(move |t, _| size * (at * t).sin());

@@ -289,7 +289,7 @@ fn over_events_the_adjoint_agrees_with_forward_sensitivities() {
 }
 
 #[test]
-fn what_has_no_gradient_is_refused() {
+fn gradients_that_do_not_exist_are_refused() {
     let options = AdjointOptions::new(sharp(Method::Adams));
     let gradient = |events: FnEvents<'static>, h: f64| {
         adjoint_gradients_with_events(ball(1.0), events, [Flight(1.0)], 0.0, &[h, 0.0], 4.0, &options)

@@ -39,7 +39,7 @@ fn signs_are_kept() {
 
 /// ẏ = −1 from 1 leaves y ≥ 0 at t = 1, whatever the step. What is predicted exactly is met by shorter steps too.
 #[test]
-fn what_cannot_be_kept_ends_the_integration() {
+fn an_inequality_that_cannot_be_kept_ends_the_integration() {
     for nonlinear_solver in [NonlinearSolver::Newton, NonlinearSolver::FixedPoint] {
         let options = Options::new(Method::Bdf)
             .nonlinear_solver(nonlinear_solver)

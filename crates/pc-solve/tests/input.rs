@@ -74,11 +74,17 @@ fn times() {
         failure.to_string()
     };
     assert_eq!(refusal(&[]), "no output times are given");
-    assert_eq!(refusal(&[1.0]), "the end is the start, t = 1");
+    assert_eq!(refusal(&[1.0]), "the end time is the start time, t = 1");
     assert_eq!(refusal(&[2.0, f64::NAN, 3.0]), "output time number 1 (from 0) is NaN");
     assert_eq!(refusal(&[2.0, f64::INFINITY]), "output time number 1 (from 0) is inf");
-    assert_eq!(refusal(&[2.0, 3.0, 3.0]), "output time 3 (number 2 from 0) does not go on from 3");
-    assert_eq!(refusal(&[2.0, 1.5, 3.0]), "output time 1.5 (number 1 from 0) does not go on from 2");
+    assert_eq!(
+        refusal(&[2.0, 3.0, 3.0]),
+        "output time 3 (number 2 from 0) does not continue in one direction after 3"
+    );
+    assert_eq!(
+        refusal(&[2.0, 1.5, 3.0]),
+        "output time 1.5 (number 1 from 0) does not continue in one direction after 2"
+    );
     assert_eq!(refusal(&[0.5, 1.5]), "t = 0.5 lies behind t = 1");
     let options = Options::default().stop_time(1.5);
     let failure = solve(drift(1), 1.0, &[0.0], &[1.2, 1.6], &options).unwrap_err();
@@ -90,7 +96,7 @@ fn times() {
 #[test]
 fn directions() {
     let mut cvode = Integration::new(drift(1), 0.0, &[0.0], &Options::default()).unwrap();
-    assert_eq!(cvode.step_towards(0.0).unwrap_err().to_string(), "the end is the start, t = 0");
+    assert_eq!(cvode.step_towards(0.0).unwrap_err().to_string(), "the end time is the start time, t = 0");
     cvode.state_at(1.0).unwrap();
     assert_eq!(cvode.state_at(0.5).unwrap_err().to_string(), "t = 0.5 lies behind t = 1");
     assert_eq!(cvode.step_towards(0.5).unwrap_err().to_string(), "t = 0.5 lies behind t = 1");

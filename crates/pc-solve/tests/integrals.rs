@@ -125,7 +125,7 @@ fn over_events() {
 
 /// A start in between keeps what was integrated to where the integration stands.
 #[test]
-fn a_restart_goes_on_with_the_integrals() {
+fn integrals_continue_over_a_restart() {
     let options = Options::new(Method::Bdf).relative_tolerance(1e-10).absolute_tolerance(1e-12);
     let mut cvode = Integration::with_integrals(decay(), 0.0, &[1.0], &options, moments()).unwrap();
     assert_eq!(cvode.integrals().unwrap(), [0.0, 0.0]);
@@ -161,7 +161,7 @@ fn of_projected_states() {
 }
 
 #[test]
-fn what_cannot_be_integrated_is_refused() {
+fn invalid_integrals_are_refused() {
     let options = Options::default();
     let begin = |integrals: Integrals| Integration::with_integrals(decay(), 0.0, &[1.0], &options, integrals);
     let none = Integrals::new(0, |_, _, _| Ok(()));

@@ -78,7 +78,7 @@ fn solve(
 /// The energy is 0.81 of what it was after each bounce, and what the field was made with before the first, which need not
 /// be that of the start.
 #[test]
-fn a_level_is_that_after_the_last_reset() {
+fn kept_values_are_those_after_the_last_reset() {
     let times: Vec<f64> = (0..=80).map(|i| 0.15 * f64::from(i)).collect();
     for (method, level) in [(Method::Adams, 1.0), (Method::Bdf, 1.0), (Method::Adams, 1.25)] {
         let options = Options::new(method).relative_tolerance(1e-6).absolute_tolerance(1e-8);
@@ -105,7 +105,7 @@ fn a_level_is_that_after_the_last_reset() {
 
 /// With events and without, from one integration to the next.
 #[test]
-fn what_is_kept_goes_on_from_a_jump() {
+fn kept_values_continue_from_a_jump() {
     let options = Options::default();
     let near = |y: &[f64], level: f64| assert!((energy(y) - level).abs() < 1e-14, "{} {level}", energy(y));
     let again = |checkpoint: Checkpoint| Checkpoint::from_bytes(&checkpoint.to_bytes("")).unwrap().0;

@@ -242,7 +242,7 @@ fn preconditioners_save_iterations() {
 
 /// I − γ ∂f/∂y is exactly 0 in the first step, and another step is tried.
 #[test]
-fn singular_matrices_are_got_over() {
+fn singular_matrices_are_overcome() {
     let lambda = 1024.0;
     let solvers = [
         (2, LinearSolver::Dense),
@@ -272,7 +272,7 @@ fn singular_matrices_are_got_over() {
 }
 
 #[test]
-fn the_choice_is_made_by_size_and_pattern() {
+fn the_linear_solver_is_chosen_by_size_and_pattern() {
     let chosen = |n: usize, pattern: Option<Pattern>, options: &Options| {
         let field = from_fn(n, |_t, _y, ydot| {
             ydot.fill(0.0);
@@ -299,7 +299,7 @@ fn the_choice_is_made_by_size_and_pattern() {
         assert!(matches!(error, SolveError::Input(_)));
         error.to_string()
     };
-    let no_pattern = "the sparse linear solver needs the zero pattern of the Jacobian, which the vector field does not know";
+    let no_pattern = "the sparse linear solver needs the zero pattern of the Jacobian, which the vector field does not have";
     assert_eq!(refusal(2, None, LinearSolver::Sparse), no_pattern);
     assert_eq!(
         refusal(2, rod(3), LinearSolver::Sparse),

@@ -153,7 +153,7 @@ fn assert_reached(t: f64, y: &[f64]) {
 }
 
 #[test]
-fn mishaps_are_named_and_leave_the_last_state() {
+fn failures_are_named_and_leave_the_last_state() {
     for (place, mishap, solver) in cases() {
         let mut cvode = start(place, mishap, &solver);
         let case = format!("{place:?} {mishap:?} {solver:?}");

@@ -112,11 +112,11 @@ fn input_is_checked() {
     let refusal = |lyapunov: LyapunovOptions| {
         lyapunov_exponents(lorenz(), 0.0, &[1.0; 3], &options, &lyapunov).unwrap_err().to_string()
     };
-    let expected = "4 exponents are asked for, but a flow in 3 dimensions has 1 to 3";
+    let expected = "4 exponents are requested, but a flow in 3 dimensions has 1 to 3";
     assert_eq!(refusal(LyapunovOptions::new(4, 1.0, 1)), expected);
     assert_eq!(
         refusal(LyapunovOptions::new(0, 1.0, 1)),
-        "0 exponents are asked for, but a flow in 3 dimensions has 1 to 3"
+        "0 exponents are requested, but a flow in 3 dimensions has 1 to 3"
     );
     assert_eq!(refusal(LyapunovOptions::new(1, -1.0, 1)), "the interval is -1, but must be positive");
     assert_eq!(
@@ -125,7 +125,7 @@ fn input_is_checked() {
     );
     let late = lyapunov_exponents(lorenz(), 1e9, &[1.0; 3], &options, &LyapunovOptions::new(1, 1e-9, 1))
         .unwrap_err();
-    assert_eq!(late.to_string(), "the end is the start, t = 1000000000");
+    assert_eq!(late.to_string(), "the end time is the start time, t = 1000000000");
 }
 
 /// Vectors that one interval makes parallel to rounding are not taken for what they are not.

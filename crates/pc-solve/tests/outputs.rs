@@ -61,10 +61,7 @@ fn advancing_piecewise_gives_the_same_motion() {
 #[test]
 fn steps_and_interpolation() {
     let mut cvode = pendulum_at(0.0, &Options::default());
-    assert_eq!(
-        cvode.interpolate(0.0, 0).unwrap_err().to_string(),
-        "no step has been taken to interpolate in"
-    );
+    assert_eq!(cvode.interpolate(0.0, 0).unwrap_err().to_string(), "there is no last step to interpolate in");
     let mut before = 0.0;
     while cvode.time() < 5.0 {
         let state_before = cvode.state().to_vec();
@@ -99,7 +96,7 @@ fn steps_and_interpolation() {
 
 /// What lies outside the last step, or beyond the degree of its polynomial, is refused before CVODES is asked.
 #[test]
-fn what_cannot_be_interpolated_is_told() {
+fn invalid_interpolations_are_refused() {
     for end in [5.0, -5.0] {
         let mut cvode = pendulum_at(0.0, &Options::default());
         cvode.state_at(end).unwrap();
@@ -124,7 +121,7 @@ fn what_cannot_be_interpolated_is_told() {
             assert_eq!(
                 error.to_string(),
                 format!(
-                    "the derivative of order {beyond} is asked for, but the last step has derivatives up to \
+                    "the derivative of order {beyond} is requested, but the last step has derivatives up to \
                      order {order}"
                 )
             );

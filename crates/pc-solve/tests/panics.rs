@@ -64,7 +64,7 @@ fn message(panic: &(dyn std::any::Any + Send)) -> &str {
 }
 
 #[test]
-fn a_panic_goes_on_to_the_caller_and_leaves_the_last_state() {
+fn a_panic_reaches_the_caller_and_leaves_the_last_state() {
     for method in [Method::Adams, Method::Bdf] {
         let drops = Rc::new(Cell::new(0));
         let field = Fragile { panics_from: 2.0, ..Fragile::new(&drops) };

@@ -87,7 +87,7 @@ fn projection_keeps_the_surface_and_the_accuracy() {
 /// The error goes down with the tolerance as it should, by at least a power of 0.7 (codes that choose the order
 /// themselves keep errors proportional to the tolerance only roughly).
 #[test]
-fn projection_does_no_harm_to_the_order() {
+fn projection_preserves_the_order() {
     for method in [Method::Adams, Method::Bdf] {
         let errors = [1e-5, 1e-7, 1e-9, 1e-11].map(|rtol| turn(method, rtol, CIRCLE, 20.0).1);
         let slope = (errors[0] / errors[3]).log10() / 6.0;

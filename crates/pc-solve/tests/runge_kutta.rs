@@ -113,7 +113,7 @@ fn a_ball_bounces_when_it_should() {
 }
 
 #[test]
-fn what_goes_on_from_a_checkpoint_is_the_same_to_the_last_bit() {
+fn a_resumed_integration_is_the_same_to_the_last_bit() {
     let (method, every) = (FixedStep::new(0.013), NonZeroU64::new(9).unwrap());
     let times = [0.3, 0.9, 1.15];
     let mut kept = Vec::new();
@@ -190,7 +190,7 @@ fn steps_end_where_the_field_jumps() {
 }
 
 #[test]
-fn what_cannot_be_is_said() {
+fn invalid_input_is_refused() {
     let begin =
         |length: f64| RungeKutta4::new(oscillator(), 0.0, &[1.0, 0.0], &FixedStep::new(length)).map(|_| ());
     for length in [0.0, -0.1, f64::NAN] {

@@ -189,7 +189,7 @@ fn events_that_reset_nothing() {
 
 /// What has no derivatives, or is not told, is refused.
 #[test]
-fn what_has_no_derivatives_is_refused() {
+fn sensitivities_over_events_without_derivatives_are_refused() {
     let start = |h: f64, v: f64| {
         Integration::with_sensitivities(ball(1.0), 0.0, &[h, v], &sharp(Method::Adams), &columns()).unwrap()
     };
@@ -219,7 +219,7 @@ fn what_has_no_derivatives_is_refused() {
 /// A motion taken up at a checkpoint has the derivatives of one that was not interrupted; without a word about them it is
 /// refused.
 #[test]
-fn derivatives_go_on_from_a_checkpoint() {
+fn derivatives_continue_from_a_checkpoint() {
     let options = sharp(Method::Adams);
     let decay = || {
         from_fn(1, |_t, y: &[f64], ydot: &mut [f64]| {

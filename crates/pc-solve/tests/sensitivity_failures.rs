@@ -175,7 +175,7 @@ fn derivatives_that_are_not_written_are_named() {
 }
 
 #[test]
-fn panics_go_on_to_the_caller_and_leave_the_last_state() {
+fn panics_reach_the_caller_and_leave_the_last_state() {
     for method in [Method::Adams, Method::Bdf] {
         for field in [faulty(PANIC, true, ZERO), faulty(PANIC, false, ZERO), faulty(ZERO, true, PANIC)] {
             let drops = Rc::clone(&field.drops);
@@ -260,11 +260,11 @@ fn input_is_checked() {
     let new = Sensitivities::new;
     assert_eq!(
         refusal(new().by_parameter(1)),
-        "the vector field has 1 parameters, but number 1 (from 0) is asked for"
+        "the vector field has 1 parameters, but number 1 (from 0) is requested"
     );
     assert_eq!(
         refusal(new().by_start(1)),
-        "the vector field has 1 components, but number 1 (from 0) is asked for"
+        "the vector field has 1 components, but number 1 (from 0) is requested"
     );
     assert_eq!(refusal(new().along([1.0, 2.0])), "the start of a sensitivity: 2 numbers for 1 components");
     assert_eq!(refusal(new().by_parameter_from(0, [f64::NAN])), "a sensitivity of x at the start is NaN");

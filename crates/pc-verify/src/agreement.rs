@@ -1,28 +1,28 @@
-//! What comes of a comparison.
+//! The result of a comparison.
 
 use std::fmt;
 
 use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::projected::DIRECTIONS;
 
-/// That, and how closely, two derivations agree.
+/// The agreement of two derivations, and how close it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agreement {
     /// States at which all forms were compared.
     pub states: usize,
     /// The number of these at which equations were only compared along random virtual velocities, the model being large.
     pub projected: usize,
-    /// States that were passed over since the equations are singular or not defined there.
+    /// States that were skipped because the equations are singular or not defined there.
     pub skipped: usize,
-    /// Why the last of these was.
+    /// The reason for the last of these.
     pub reason: Option<String>,
     /// The largest difference, relative to the size of the terms; at most [`TOLERANCE`](crate::TOLERANCE).
     pub error: f64,
-    /// What differs by it.
+    /// The quantity that differs by it.
     pub quantity: String,
     /// The forms compared: `poincare`, `canonical`, `emit`.
     pub forms: Vec<String>,
-    /// What was not compared, each with the reason.
+    /// The quantities that were not compared, each with the reason.
     pub not_compared: Vec<String>,
 }
 

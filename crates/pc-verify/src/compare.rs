@@ -25,12 +25,12 @@ const OTHER: f64 = 1e-9;
 /// digits at most. Where it scatters further there is nothing to be compared.
 const WORSE: f64 = 1e4;
 
-/// How much is compared.
+/// The extent of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// Number of states at which the derivations are compared.
     pub states: usize,
-    /// From which the states are drawn: other seeds, other states.
+    /// The seed of the random states.
     pub seed: u64,
 }
 
@@ -42,8 +42,8 @@ impl Default for Options {
 }
 
 /// Derives a model a second time and compares, at random states on the constraints: ẋ, η̇ or ẏ, λ, the energy and its rate,
-/// integrals and outputs, of the equations in quasi-velocities and in momenta that are integrated, and of those that are
-/// written as source.
+/// integrals and outputs, of the equations that are integrated, in quasi-velocities and in momenta, and of those that
+/// are emitted as source.
 ///
 /// # Errors
 /// [`VerifyError::Disagreement`] with the quantity, its two values and the state; [`VerifyError::Model`] if the first
@@ -192,7 +192,7 @@ impl Agreement {
 }
 
 impl Second {
-    /// Compares what is integrated, here called `form`, with the second derivation at one of its states.
+    /// Compares the integrated equations, here called `form`, with the second derivation at one of their states.
     ///
     /// # Errors
     /// As for [`verify`].
@@ -266,7 +266,7 @@ impl Second {
             if !within(error, TOLERANCE) {
                 return Err(Passed::Error(VerifyError::Disagreement(Box::new(Disagreement {
                     form: form.to_owned(),
-                    quantity: format!("what should vanish of {label}"),
+                    quantity: format!("the residual of {label}"),
                     first: residual.value,
                     second: 0.0,
                     size: residual.size,

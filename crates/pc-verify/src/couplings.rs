@@ -1,8 +1,8 @@
 //! Which velocities stand together in a summand of the energy.
 //!
-//! Where none has both of w_r and w_s, ∂²L/∂w_r∂w_s vanishes, and need not be computed: n coordinates that have nothing to do
-//! with each other cost n evaluations of L instead of n². Were it wrong, the mass matrix would lack an entry, and the
-//! derivations disagree.
+//! Where none has both of w_r and w_s, ∂²L/∂w_r∂w_s vanishes, and need not be computed: n uncoupled coordinates cost n
+//! evaluations of L instead of n². If this were wrong, the mass matrix would lack an entry, and the derivations would
+//! disagree.
 
 use crate::body::Turning;
 use crate::term::Term;

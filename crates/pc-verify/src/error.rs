@@ -5,7 +5,7 @@ use std::fmt;
 use pc_expr::Spent;
 use pc_model::ModelError;
 
-/// Why a model was not found to agree with its second derivation.
+/// Why a model and its second derivation were not found to agree.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VerifyError {
@@ -18,7 +18,7 @@ pub enum VerifyError {
     /// The second derivation cannot be made of this model.
     #[error("the second derivation cannot be made: {0}")]
     Unable(#[from] Unable),
-    /// Nowhere were both derivations regular.
+    /// Both derivations were regular at no state.
     #[error("nothing could be compared: of {tried} states none is regular; {reason}")]
     NothingCompared {
         /// States tried.
@@ -44,7 +44,7 @@ pub struct Disagreement {
     pub first: f64,
     /// Its value by the second.
     pub second: f64,
-    /// How large the terms are that it is made up of, in its own units, rounding being led through the linear equations.
+    /// The size of its terms, in its own units, with rounding carried through the linear equations.
     pub size: f64,
     /// Time.
     pub t: f64,
@@ -64,11 +64,11 @@ impl fmt::Display for State<'_> {
     }
 }
 
-/// What the second derivation does not know.
+/// Why the second derivation cannot be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unable {
-    /// A name that is none of the model's.
+    /// A name that the model does not declare.
     #[error("`{name}` is unknown")]
     UnknownName {
         /// It.
@@ -80,8 +80,8 @@ pub enum Unable {
         /// It.
         name: String,
     },
-    /// d() of what contains velocities, where accelerations are not known, or d() too deep inside d().
-    #[error("d() of velocities, or nested too deep")]
+    /// d() of velocities where accelerations are not known, or d() nested too deeply.
+    #[error("d() of velocities, or nested too deeply")]
     NoRate,
     /// A reaction outside `[integrals]` and `[outputs]`.
     #[error("a reaction where none is known")]
@@ -92,11 +92,11 @@ pub enum Unable {
         /// One that is not.
         name: String,
     },
-    /// The frame is of lower rank, and nothing says what the brackets are.
+    /// The frame is of lower rank, and the brackets are not given.
     #[error("the brackets of the quasi-velocities are neither given nor determined by constants")]
     NoBrackets,
     /// A name of `[algebra]` that is not in the table of the second derivation.
-    #[error("the algebra `{name}` is not known to it")]
+    #[error("the algebra `{name}` is unknown")]
     UnknownAlgebra {
         /// As written.
         name: String,
@@ -125,7 +125,7 @@ pub(crate) enum Irregular {
     #[error("the equations for the accelerations are singular")]
     Singular,
     /// The constraints are not met near by.
-    #[error("no state near by satisfies the constraints")]
+    #[error("no nearby state satisfies the constraints")]
     OffConstraints,
     /// The frame does not determine its brackets here.
     #[error("the frame is singular or not closed")]

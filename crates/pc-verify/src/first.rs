@@ -212,7 +212,7 @@ impl<'g> First<'g> {
                     wanted.push((label, quantity));
                     places.push(place);
                 }
-                None => agreement.leave_out(&label, "it does not have it"),
+                None => agreement.leave_out(&label, "this form does not have it"),
             }
         }
         First { form: form.to_owned(), wanted, places, free, source, compared: 0, reason: None, noise: None }

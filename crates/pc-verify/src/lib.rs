@@ -6,8 +6,8 @@
 //! pivoting: no graph, no frame with its brackets where the frame determines these, no rewriting. Where the rank of the
 //! frame is below the number of quasi-velocities, the equations (9) are taken by their definition, with the brackets given.
 //!
-//! [`verify`] compares both at random states on the constraints, in each form that the program offers. What it compares
-//! are ẋ, η̇ or ẏ, the multipliers, the energy with its rate, integrals and outputs.
+//! [`verify`] compares both at random states on the constraints, in each form that the program offers. It compares ẋ,
+//! η̇ or ẏ, the multipliers, the energy with its rate, integrals and outputs.
 //!
 //! ```
 //! use pc_model::{Builtin, Model};

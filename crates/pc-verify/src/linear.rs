@@ -1,4 +1,4 @@
-//! Dense matrices, with pivoting, block by block: n coordinates that have nothing to do with each other cost n small ones.
+//! Dense matrices, with pivoting, block by block: n uncoupled coordinates cost n small ones.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_block_determines_is_singular() {
+    fn an_undetermined_unknown_is_singular() {
         let a = shuffled(&[random(2, 3, 2), random(3, 2, 2)]);
         assert!(matches!(solve(&a, &[1.0; 5], &[1.0; 5]), Err(Irregular::Singular)));
         let a = shuffled(&[random(3, 3, 3), random(2, 2, 2)]);

@@ -1,4 +1,4 @@
-//! The equations as they are printed, as numbers: the very expressions that `pc derive` writes on a page.
+//! The printed equations as numbers: the very expressions that `pc derive` prints.
 
 use nalgebra::DMatrix;
 use pc_expr::ExprError;
@@ -161,7 +161,7 @@ impl<'g> Printed<'g> {
         second: &Second,
         external: &[String],
     ) -> Result<(Candidates, Vec<Free>), String> {
-        let unknown = |name: &String| format!("`{name}` is not known to it");
+        let unknown = |name: &String| format!("`{name}` is unknown to the second derivation");
         let free = |name: &String| second.free(name).ok_or_else(|| unknown(name));
         let free: Vec<Free> = self.quasi_velocities.iter().map(free).collect::<Result<_, String>>()?;
         if !second.are_free(&free) {

@@ -1,4 +1,4 @@
-//! Rounding errors made at will, to see what they do to a result.
+//! Deliberate rounding errors, to measure their effect on a result.
 
 use std::cell::Cell;
 

@@ -199,7 +199,7 @@ impl Second {
         observed.or_else(reaction).or_else(resultant)
     }
 
-    /// How many terms of the text are evaluated for the equations at one state, roughly.
+    /// The approximate number of terms of the text that are evaluated for the equations at one state.
     pub fn cost(&self) -> usize {
         let k = self.start.w.len();
         let evaluations = self.derivation.couplings.pairs() + 4 * k + 4;
@@ -219,7 +219,7 @@ impl Second {
         evaluations.saturating_mul(self.derivation.text.terms())
     }
 
-    /// Whether one comparison is as much as there is time for: a tenth of the derivation or so.
+    /// Whether one comparison uses up the available time, about a tenth of the derivation.
     pub fn is_long(&self, flow: &Flow) -> bool {
         let is_own = flow.has_own_variables() && flow.motion.coordinates() == self.start.x.len();
         self.cost() > LONG && (flow.has_momenta() || !is_own)
@@ -244,8 +244,8 @@ impl Second {
         (form != Form::Poincare && self.cost() > LONG).then_some("the model is large")
     }
 
-    /// The row of coordinates, columns and first-order states of what a flow shows; coordinates that it does without are as at the
-    /// start.
+    /// The row of coordinates, columns and first-order states of what a flow shows; coordinates that it does without
+    /// are as at the start.
     pub(crate) fn row(&self, flow: &mut Flow, t: f64, state: &[f64]) -> Vec<f64> {
         let shown = flow.row(t, state);
         let names = &self.derivation.text.names;

@@ -301,7 +301,7 @@ t_end = -0.5
 "#;
 
     #[test]
-    fn reactions_are_as_uncertain_as_what_the_frame_of_the_text_leads_to_them() {
+    fn reactions_are_as_uncertain_as_the_contributions_of_the_frame() {
         let agreement = verify(&model(LEVER), &Options::default()).unwrap();
         assert_eq!(agreement.states, 100);
     }

@@ -191,7 +191,7 @@ potential = "10*z"
 
 /// ẍ = −2 ζ x' − x by Rayleigh's function, and a force on a coordinate.
 #[test]
-fn dissipation_brakes() {
+fn dissipation_slows_the_motion() {
     let derived = at_start(
         r#"
 [coordinates]
@@ -249,7 +249,7 @@ kinetic = "(x'^2 + y'^2)/2"
 
 /// One constraint with coefficients of 1e40 leaves the other as it is.
 #[test]
-fn constraints_count_alike_however_large_they_are() {
+fn the_scale_of_a_constraint_does_not_matter() {
     let text = r#"
 [coordinates]
 x = 0.0
@@ -274,7 +274,7 @@ kinetic = "(x'^2 + y'^2 + z'^2)/2"
 
 /// x' − y' of x' = y' is as large as either, as far as its rounding goes.
 #[test]
-fn what_cancels_is_measured_by_its_summands() {
+fn cancelling_sums_are_measured_by_their_summands() {
     let text = r#"
 [coordinates]
 x = 0.0
@@ -298,7 +298,7 @@ out = "rest/4"
 /// L = x'⁴/4 − x'²/2 has the momentum x'³ − x': three velocities for one where |x'| < 2/√3. The form in momenta is compared where
 /// they determine the velocity, and it is said that they do not always.
 #[test]
-fn momenta_of_several_velocities_are_no_disagreement() {
+fn ambiguous_momenta_are_not_a_disagreement() {
     let text = r#"
 [coordinates]
 x = 0.0
@@ -316,7 +316,7 @@ potential = "x^2/2"
 
 /// η = √a q' + 1/q of a free particle: p = 2 q'/√a is kept, and its rate is what rounding leaves of terms in 1/q³.
 #[test]
-fn what_a_drift_cancels_is_known_to_the_rounding_of_the_drift() {
+fn quantities_that_a_drift_cancels_have_the_rounding_of_the_drift() {
     let agreement = verify(
         &model(
             r#"
@@ -338,7 +338,7 @@ kinetic = "q'^2"
 
 /// y is held against a force, and moves with a part in 2⁵⁴ of it; the motion along q is a thousand times as slow.
 #[test]
-fn what_reactions_take_up_is_known_to_the_rounding_of_the_forces() {
+fn quantities_that_reactions_balance_have_the_rounding_of_the_forces() {
     let agreement = verify(
         &model(
             r#"
@@ -365,10 +365,10 @@ x = "(-0.33)*exp(-((t - 0.13769)/0.02769)^2)"
     assert_eq!(agreement.unwrap().states, 100);
 }
 
-/// w_2 = y φ' + y' and ω = y' say less and less of φ' as y goes to 0, to y⁻⁴ roundings of reactions: states near there say nothing of
-/// the derivation, others do.
+/// w_2 = y φ' + y' and ω = y' say less and less of φ' as y goes to 0, to y⁻⁴ roundings of reactions: states near there
+/// say nothing of the derivation, others do.
 #[test]
-fn states_at_which_rounding_hides_everything_are_passed_over() {
+fn states_at_which_rounding_hides_everything_are_skipped() {
     let agreement = verify(
         &model(
             r#"
@@ -398,7 +398,7 @@ kinetic = "x'^2 + φ'^2 + q'^2"
 /// Sixty coordinates, coupled by one with all, on fifty-nine circles: the rates of the constraints cancel to the last digit, and
 /// scatter by nothing.
 #[test]
-fn what_cancels_wholly_has_the_size_of_its_terms() {
+fn fully_cancelling_sums_have_the_size_of_their_terms() {
     let list = |n: usize, entry: &dyn Fn(usize) -> String, between: &str| -> String {
         (0..n).map(entry).collect::<Vec<_>>().join(between)
     };
@@ -415,7 +415,7 @@ fn what_cancels_wholly_has_the_size_of_its_terms() {
 
 /// Numbers below 2⁻¹⁰²² have fewer digits the smaller they are.
 #[test]
-fn what_has_no_digits_is_not_compared_by_digits() {
+fn values_without_significant_digits_are_not_compared() {
     let text = "[coordinates]\nx = 0.7\ny = 0.3\n[lagrangian]\nkinetic = \"3*x'^2 + x'*y'*cos(x) + y'^2\"\n\
                 potential = \"7e-323*sin(x + y)\"\n";
     assert_eq!(verify(&model(text), &Options::default()).unwrap().states, 100);

@@ -1,4 +1,4 @@
-//! What a model says, as terms of time, coordinates and velocities.
+//! The text of a model, as terms of time, coordinates and velocities.
 
 use std::sync::Arc;
 

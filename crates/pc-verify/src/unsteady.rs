@@ -89,7 +89,7 @@ mod tests {
     /// As x goes to 0 the constraint says less and less of w: what is printed for the other velocity has terms in 1/x⁴ that cancel
     /// and absorb what is left. Some states say nothing of it, others do.
     #[test]
-    fn what_is_absorbed_is_passed_over() {
+    fn absorbed_terms_are_ignored() {
         let agreement = verify(
             &model(
                 r#"

@@ -4,7 +4,7 @@ use pc_model::{BUILTIN, Model};
 use pc_verify::{Options, TOLERANCE, verify};
 
 #[test]
-fn built_in_models_are_derived_alike_by_both_routes() {
+fn built_in_models_agree_by_both_routes() {
     let mut failures = Vec::new();
     for builtin in BUILTIN {
         let model = Model::new(builtin.document().unwrap());

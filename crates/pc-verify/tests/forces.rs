@@ -29,7 +29,7 @@ w = "x*u"
 "#;
 
 #[test]
-fn forces_of_every_kind_are_derived_alike_by_both_routes() {
+fn forces_of_every_kind_agree_by_both_routes() {
     let model = Model::new(Document::parse(Source::new("forces.toml", MODEL)).unwrap());
     let agreement = verify(&model, &Options::default()).unwrap();
     let printed =

@@ -50,7 +50,7 @@ turn = "N_hinge_y_door_3 + 2*N_gear_door_3"
 "#;
 
 #[test]
-fn forces_and_torques_of_reactions_are_derived_alike_by_both_routes() {
+fn forces_and_torques_of_reactions_agree_by_both_routes() {
     let agreement = agreement(DOOR);
     assert!(agreement.not_compared.is_empty() && agreement.states == 30, "{agreement:?}");
     assert!(agreement.error < 1e-12, "{agreement:?}");

@@ -279,7 +279,7 @@ mod tests {
 
     /// As a program that has it mapped does, this one still sees the old contents; and what a link leads to is not written.
     #[test]
-    fn what_is_in_use_stays_as_it_is() {
+    fn files_in_use_are_left_alone() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         let read = |path: &Path| fs::read_to_string(path).unwrap();
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn without_its_tools_it_says_which() {
+    fn missing_tools_are_named() {
         let directory = tempfile::tempdir().unwrap();
         fs::write(directory.path().join("ld"), "").unwrap();
         let error = binutils(&Machine::with_path(directory.path())).unwrap_err();

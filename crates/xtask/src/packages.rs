@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn the_remedy_is_a_line_to_copy() {
+    fn the_remedy_is_a_command_to_copy() {
         assert_eq!(
             remedy(Some(PackageManager::Pacman), &[Tool::Cmake, Tool::Libclang]),
             "install with\n  sudo pacman -S --needed cmake clang"

@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn llvm_config_shows_the_way() {
+    fn llvm_config_finds_libclang() {
         let (directory, mut machine) =
             machine(&["srv/llvm/lib/libclang.so", "srv/llvm/lib/clang/21/include/stddef.h"]);
         assert!(!machine.has(Tool::Libclang));
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn libclang_path_is_obeyed_even_where_it_is_wrong() {
+    fn libclang_path_is_used_even_where_it_is_wrong() {
         let (directory, mut machine) = machine(&[
             "usr/lib/llvm-14/lib/libclang.so.1",
             "usr/lib/llvm-14/lib/clang/14/include/stddef.h",
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn stars_stand_for_any_characters() {
+    fn stars_match_any_characters() {
         for (name, pattern, fits) in [
             ("llvm-14", "llvm-*", true),
             ("llvm-", "llvm-*", true),

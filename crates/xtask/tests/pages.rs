@@ -3,7 +3,7 @@
 use std::path::Path;
 
 #[test]
-fn places_that_pages_name_exist() {
+fn paths_named_in_pages_exist() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let (mut missing, mut named) = (Vec::new(), 0);
     for page in ["docs/architecture.md", "docs/notation.md", "CONTRIBUTING.md"] {

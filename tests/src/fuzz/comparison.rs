@@ -333,7 +333,7 @@ mod tests {
 
     /// Near a singular place energies are lost, which a projection keeps, whatever it makes of the rest.
     #[test]
-    fn what_a_projection_holds_says_nothing_of_noise() {
+    fn projected_components_do_not_measure_noise() {
         let (free, held) = (motion([1e-9, 0.3], [0.7, 1.2]), motion([1e-9, 0.0], [0.7, 0.9]));
         let compared = |held_name| compare("differs", &free, &held, |name| Some(name.to_owned()), held_name);
         assert_eq!(compared(Some("energy")), None);
@@ -342,7 +342,7 @@ mod tests {
 
     /// Of a column that is resolved in both the values are compared, held or not; noise in any other column is one.
     #[test]
-    fn a_projection_to_elsewhere_is_found() {
+    fn a_projection_to_a_wrong_state_is_found() {
         let (free, held) = (motion([1e-12, 1e-12], [0.7, 0.9]), motion([1e-12, 0.0], [0.7, 0.91]));
         let compared = |a, b| compare("differs", a, b, |name| Some(name.to_owned()), Some("energy"));
         assert!(compared(&free, &held).is_some_and(|finding| finding.detail.contains("energy is 0.91")));

@@ -74,7 +74,7 @@ mod tests {
     use crate::fuzz::specimen::Coordinate;
 
     #[test]
-    fn definitions_that_become_dependent_are_no_frame() {
+    fn definitions_that_become_dependent_are_not_a_frame() {
         let mut specimen = generator::empty();
         let coordinate = |name: &str| Coordinate { name: name.to_owned(), start: 0.5, shown: true };
         specimen.chart = vec![coordinate("x"), coordinate("y")];

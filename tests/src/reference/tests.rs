@@ -113,7 +113,7 @@ fn columns_start_and_state_belong_together() {
 
 /// The attitude of the quaternion is that of Euler's angles, at the start and at the end.
 #[test]
-fn euler_angles_and_quaternion_tell_one_motion() {
+fn euler_angles_and_quaternion_describe_one_motion() {
     let vertical_of_angles = |x: &[f64]| [x[1].sin() * x[2].sin(), x[1].sin() * x[2].cos(), x[1].cos()];
     let vertical_of_quaternion = |q: &[f64]| {
         let [q0, q1, q2, q3] = [q[0], q[1], q[2], q[3]];
@@ -167,7 +167,7 @@ fn symmetric_top_in_euler_angles_nutates_as_the_closed_form() {
 
 /// The masses of the chain hang where the angles say, at the start and at the end.
 #[test]
-fn angles_and_places_of_a_chain_tell_one_motion() {
+fn angles_and_positions_of_a_chain_describe_one_motion() {
     let places = |angles: &[f64]| {
         let mut end = [0.0; 2];
         let ends = angles.iter().flat_map(|angle| {

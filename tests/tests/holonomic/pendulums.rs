@@ -153,7 +153,7 @@ fn a_spherical_pendulum_by_rotations_is_refused() {
     assert_eq!(error, expected);
     assert_eq!(
         error.to_string(),
-        "the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank 2 of 3, so that `w3` is not \
+        "the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank 2 of 3, so `w3` is not \
          determined by its equation"
     );
 }

@@ -117,7 +117,7 @@ impl<'g> Frame<'g> {
 }
 
 impl<'g> FrameChange<'g> {
-    /// The frame it leads to.
+    /// The new frame.
     pub fn frame(&self) -> &Frame<'g> {
         &self.to
     }

@@ -1,9 +1,9 @@
 //! Constant structure coefficients, of frames whose operators are dependent at each point.
 //!
-//! Where rank b < k, b c_rs = [X_r, X_s] has many solutions c_rs at a point, and with coefficients that change from point
-//! to point many everywhere. With coefficients that are the same at all points, functions of parameters and time only, it
-//! has one at most if no combination of the operators with such coefficients vanishes, and none of these may be taken for
-//! the brackets if there are several.
+//! Where rank b < k, b c_rs = [X_r, X_s] has many solutions c_rs at each point, and so many with coefficients that
+//! change from point to point. With coefficients that are the same at all points, functions of parameters and time
+//! only, there is at most one if no combination of the operators with such coefficients vanishes; if there are
+//! several, none of them may be taken as the brackets.
 
 use nalgebra::{DMatrix, DVector};
 use pc_expr::{Expr, Graph, Number};

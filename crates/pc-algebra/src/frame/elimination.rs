@@ -74,8 +74,8 @@ impl<'g> Elimination<'g> {
     /// and c'_rs^I = Y^I if Y^D = A_DI Y^I, which is the test of Frobenius.
     ///
     /// # Errors
-    /// [`AlgebraError::Shape`] unless `c` has k operators; [`AlgebraError::NotClosed`] naming the first pair whose bracket
-    /// is no combination of the operators that are left.
+    /// [`AlgebraError::Shape`] unless `c` has k operators; [`AlgebraError::NotClosed`] naming the first pair whose
+    /// bracket is not a combination of the operators that are left.
     ///
     /// ```
     /// # use pc_algebra::{Frame, LieAlgebra, Matrix, Neighbourhood};

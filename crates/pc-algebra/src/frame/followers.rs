@@ -78,14 +78,14 @@ mod tests {
     }
 
     #[test]
-    fn on_a_circle_neither_coordinate_follows() {
+    fn on_a_circle_neither_coordinate_follows_the_other() {
         let graph = Graph::new();
         let [x, y] = graph.symbols(["x", "y"]);
         assert_eq!(followers(&graph, &[x, y], &[&[-y], &[x]]), [false, false]);
     }
 
     #[test]
-    fn of_two_that_follow_each_other_one_is_left() {
+    fn of_two_coordinates_that_follow_each_other_one_is_left() {
         let graph = Graph::new();
         let [x, y] = graph.symbols(["x", "y"]);
         assert_eq!(followers(&graph, &[x, y], &[&[x], &[3.0 * x]]), [false, true]);

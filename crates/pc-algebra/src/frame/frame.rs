@@ -98,7 +98,7 @@ impl<'g> Frame<'g> {
         self.a.as_ref()
     }
 
-    /// The graph of all its expressions.
+    /// The graph of all expressions of the frame.
     pub fn graph(&self) -> &'g Graph {
         self.graph
     }

@@ -1,16 +1,16 @@
-//! What is known of an identity.
+//! Verdicts on an identity.
 
 /// Whether an identity holds. The graph proves it, or numbers disprove it; between the two it stays open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Identity {
     /// The graph folds it to zero.
     Proved,
-    /// The graph does not, but numbers leave so little of its terms that it may be rounding, or there are none (∞).
+    /// The graph does not, but the numerical residual is small enough to be rounding, or there are no numbers (∞).
     Open {
         /// The part of the terms that is left.
         rest: f64,
     },
-    /// Numbers leave more of its terms than any rounding.
+    /// The numerical residual is larger than any rounding.
     Disproved {
         /// The part of the terms that is left.
         rest: f64,
@@ -22,7 +22,7 @@ impl Identity {
     /// roots enlarge it a million times, leaves less.
     const MARGIN: f64 = 1e-6;
 
-    /// What the [residual](crate::Neighbourhood::residual) of an identity says.
+    /// The verdict by the [residual](crate::Neighbourhood::residual) of an identity.
     pub fn of(residual: f64) -> Identity {
         match residual {
             0.0 => Identity::Proved,

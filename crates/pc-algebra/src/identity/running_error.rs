@@ -1,4 +1,4 @@
-//! Numbers with the size of the terms that they were made of, to tell a small number from what rounding left of zero.
+//! Numbers with the size of the terms that they were made of, to distinguish a small number from the rounding error of zero.
 //!
 //! A weight decides once, at sample points of a derivation, so that its order of magnitude is enough; the bound that a motion
 //! compares residuals with at each of its states is derived as an expression, in `pc-mech/src/compiled/running_error.rs`.
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_small_number_is_no_rounding_error_and_a_rounding_error_no_small_number() {
+    fn small_numbers_and_rounding_errors_are_distinguished() {
         let small = exact(1e-10) * exact(0.3);
         assert_eq!(small.rest(), 1.0);
         let third = exact(0.1) * exact(3.0);
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rounding_left_of_a_constant_is_no_small_constant() {
+    fn the_rounding_error_of_a_constant_is_not_a_small_constant() {
         let zero = Weighed::constant(Number::from((std::f64::consts::PI / 2.0).cos()));
         assert!(zero.rest() < 1e-16 && (zero * exact(1e3)).rest() < 1e-16);
         for small in [1e-10, 1e-14, 1e-20] {

@@ -19,8 +19,8 @@ pub struct Neighbourhood<'g> {
 }
 
 impl<'g> Neighbourhood<'g> {
-    /// Parts of the terms of a sum below this are no more than rounding, also of constants that are written with ten
-    /// digits: a sum that does not vanish is of the order of its terms.
+    /// A sum smaller than this part of its terms counts as rounding, also of constants written with ten digits: a sum
+    /// that does not vanish is of the order of its terms.
     pub const ROUNDING: f64 = 1e-9;
 
     /// Values of `outputs` at point number `index` of a fixed sequence (0 is the centre).
@@ -58,11 +58,12 @@ impl<'g> Neighbourhood<'g> {
         if samples.is_empty() { f64::INFINITY } else { largest }
     }
 
-    /// The largest |f|/Σ|terms| of sums f of `terms` at the centre and points near it where all are finite: about 10⁻¹⁶ where
-    /// f vanishes identically and not even the graph knows, and never more than 1; infinity if there are no such points. It is 0
-    /// only where the graph knows. In Σ|terms| are also the terms that have cancelled in a term.
+    /// The largest |f|/Σ|terms| of sums f of `terms` at the centre and points near it where all are finite: about
+    /// 10⁻¹⁶ where f vanishes identically but the graph does not fold it to 0, and never more than 1; infinity if
+    /// there are no such points. It is 0 only where the graph folds f to 0. Σ|terms| includes terms that have
+    /// cancelled inside a term.
     ///
-    /// It depends on no unit: 10⁻¹⁰ x is no zero.
+    /// It does not depend on units: 10⁻¹⁰ x is not zero.
     ///
     /// ```
     /// # use pc_algebra::Neighbourhood;
@@ -98,7 +99,7 @@ impl<'g> Neighbourhood<'g> {
         worst
     }
 
-    /// A neighbourhood in which expressions have numbers, if one is found: where nothing is known of their symbols.
+    /// A neighbourhood in which the expressions have values, if one is found, without any values given for their symbols.
     pub fn anywhere(graph: &'g Graph, expressions: &[Expr<'g>]) -> Neighbourhood<'g> {
         let symbols = graph.symbols_of(expressions);
         let about =
@@ -107,8 +108,8 @@ impl<'g> Neighbourhood<'g> {
         [1.0, 0.0, -1.0, 0.3, 3.0, 10.0, -10.0].into_iter().map(about).find(has_numbers).unwrap_or_default()
     }
 
-    /// Whether an expression is zero, or no more than rounding wherever it has numbers near by, although the graph does not
-    /// know it.
+    /// Whether an expression is zero, or no more than rounding wherever it has values near by, although the graph does
+    /// not fold it to zero.
     pub fn vanishes(&self, graph: &'g Graph, expression: Expr<'g>) -> bool {
         if expression.constant().is_some() {
             return expression.is_zero();
@@ -131,7 +132,7 @@ impl<'g> Neighbourhood<'g> {
         samples.into_iter().map(|sample| rank_of_sample(matrix, &sample)).max()
     }
 
-    /// The rank of a matrix at the centre; `None` where it has no numbers there.
+    /// The rank of a matrix at the centre; `None` where it has no values there.
     pub fn rank_at_centre(&self, graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<usize> {
         let sample = self.sample::<Weighed>(graph, &matrix.nonzero_entries(), 0)?;
         sample.iter().all(|x| x.is_finite()).then(|| rank_of_sample(matrix, &sample))

@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn names_with_a_size_or_a_parameter() {
+    fn names_may_have_a_size_or_a_parameter() {
         assert_eq!(LieAlgebra::named("heisenberg5").unwrap(), LieAlgebra::heisenberg(2));
         assert_eq!(LieAlgebra::named("gl3").unwrap().dim(), 9);
         assert_eq!(LieAlgebra::named("bianchi1").unwrap(), LieAlgebra::commutative(3));

@@ -14,7 +14,7 @@ impl LieAlgebra {
     /// A basis of the linear forms ξ with ξ([x, y]) = 0: the solutions of c_rs^m ξ_m = 0, the annihilator of
     /// \[g, g\].
     ///
-    /// As functions of the momenta they are no Casimirs: they are the characters of the algebra. Entries are
+    /// They are the characters of the algebra; as functions of the momenta they are not Casimirs. Entries are
     /// whole and coprime.
     ///
     /// # Errors

@@ -64,7 +64,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_not_zero_tells_all(k in 1_usize..5, seeds in prop::collection::vec(-3_i64..4, 125)) {
+        fn nonzero_constants_determine_the_algebra(k in 1_usize..5, seeds in prop::collection::vec(-3_i64..4, 125)) {
             // Mostly zeros, as in frames of mechanics: then some of them are Lie algebras.
             let c = |r: usize, s: usize, m: usize| {
                 let upper = |r: usize, s: usize| match seeds[(r * 5 + s) * 5 + m] {

@@ -1,8 +1,7 @@
 //! Structure constants as rationals of any size.
 //!
 //! [`Number`] holds numerators and denominators up to 2⁵³ and rounds beyond; elimination soon leaves that
-//! range. What is said exactly of an algebra is therefore computed with [`BigRational`] and brought back to
-//! [`Number`] at the end.
+//! range. Exact properties of an algebra are therefore computed with [`BigRational`] and converted back to [`Number`] at the end.
 
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -166,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_just_beyond_the_range_is_rounded_and_said_to_be() {
+    fn a_number_just_beyond_the_range_is_rounded_and_marked_so() {
         let just_beyond = ratio((1 << 54) + 1, 1 << 54);
         assert_eq!(small(&just_beyond), None);
         assert_eq!(rounded(&just_beyond).to_f64(), 1.0);

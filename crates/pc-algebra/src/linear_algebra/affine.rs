@@ -7,7 +7,7 @@ use crate::linear_algebra::matrix::Matrix;
 /// The coefficients f_s and the rest f_0 of an expression f = f_s z_s + f_0 that is affine in the `symbols` z; `None` for
 /// one that is not.
 ///
-/// |z|, max(z, 0) and the sign of z are not, though their second derivatives vanish.
+/// |z|, max(z, 0) and the sign of z are not affine, though their second derivatives vanish.
 ///
 /// ```
 /// # use pc_algebra::affine;
@@ -110,7 +110,7 @@ mod tests {
 
     /// Their slopes do not change with z wherever there are any.
     #[test]
-    fn what_is_affine_in_pieces_only_is_not_affine() {
+    fn piecewise_affine_functions_are_not_affine() {
         let graph = Graph::new();
         let [x, z] = graph.symbols(["x", "z"]);
         for value in [
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_affine_may_look_otherwise() {
+    fn affine_functions_are_recognised_in_any_form() {
         for folding in [Folding::ByValue, Folding::Structural] {
             let graph = Graph::with_folding(folding);
             let [x, y, z] = graph.symbols(["x", "y", "z"]);
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_quadratic_in_pieces_only_is_not_quadratic() {
+    fn piecewise_quadratic_functions_are_not_quadratic() {
         for folding in [Folding::ByValue, Folding::Structural] {
             let graph = Graph::with_folding(folding);
             let [x, y, z] = graph.symbols(["x", "y", "z"]);

@@ -1,7 +1,7 @@
 //! The block triangular form of a square matrix, from its zeros alone.
 //!
-//! Rows are matched with columns; the strongly connected components of the graph of what then depends on what are the
-//! blocks (I. S. Duff, A. M. Erisman, J. K. Reid, *Direct Methods for Sparse Matrices*, 2017, ch. 6). The determinant is the
+//! Rows are matched with columns; the strongly connected components of the resulting dependency graph are the blocks
+//! (I. S. Duff, A. M. Erisman, J. K. Reid, *Direct Methods for Sparse Matrices*, 2017, ch. 6). The determinant is the
 //! product of theirs, so each is regular wherever the matrix is.
 
 /// The rows and columns of the diagonal blocks, so that the rows of each have entries in its own columns and in those of
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn triangles_and_cycles_are_told_apart() {
+    fn triangles_and_cycles_are_distinguished() {
         let triangle = [vec![0, 1, 2], vec![1, 2], vec![2]];
         let blocks =
             block_triangular(&triangle).map(|blocks| blocks.into_iter().map(|(rows, _)| rows).collect());

@@ -20,10 +20,10 @@ const ROUNDING: f64 = 1e-13;
 /// Its entries are regular wherever the matrix is. Constant pivots that are not small against their row are eliminated
 /// first. What is left is solved block after block of its block triangular form, small blocks by cofactors over their
 /// determinant, larger ones by orthogonalisation: no divisor vanishes where the matrix is regular,
-/// whatever the state. Constants that cancel but for rounding are zero; so is a divisor that is nothing but rounding at
-/// random points, though the graph does not know it.
+/// whatever the state. Constants that cancel up to rounding count as zero; so does a divisor that is no more than
+/// rounding at random points, though the graph does not fold it.
 ///
-/// Rows and columns that have nothing to do with each other are inverted apart.
+/// Uncoupled rows and columns are inverted separately.
 pub fn inverse<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
     let n = matrix.rows();
     let entries = |i: usize| matrix.nonzero(i).map(|(j, _)| j).collect();
@@ -83,7 +83,7 @@ fn inverse_of_block<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<M
     Some(result)
 }
 
-/// The determinant of a square matrix; `None` for more than four rows, where it is no short expression.
+/// The determinant of a square matrix; `None` for more than four rows, where it is not a short expression.
 pub fn determinant<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
     let all: Vec<usize> = (0..matrix.rows()).collect();
     (all.len() <= COFACTORS && matrix.columns() == all.len()).then(|| minor(graph, matrix, &all, &all))
@@ -330,7 +330,7 @@ mod tests {
 
     /// log(xy) − log x − log y is zero, though nothing that the graph knows.
     #[test]
-    fn what_is_rounding_everywhere_is_no_pivot() {
+    fn an_entry_that_is_rounding_everywhere_is_not_a_pivot() {
         let graph = Graph::new();
         let [x, y] = graph.symbols(["x", "y"]);
         let zero = (x * y).log() - x.log() - y.log();
@@ -349,7 +349,7 @@ mod tests {
 
     /// x' = w − u whatever the rounding error of cos(π/2) is.
     #[test]
-    fn a_rounding_error_is_no_pivot() {
+    fn a_rounding_error_is_not_a_pivot() {
         let graph = Graph::new();
         let noise = Expr::from((std::f64::consts::PI / 2.0).cos());
         let x = graph.symbol("x");
@@ -377,7 +377,7 @@ mod tests {
 
     /// Small constants are as good as others where the row has nothing larger: the unit of a quasi-velocity.
     #[test]
-    fn a_small_unit_is_no_rounding_error() {
+    fn a_small_unit_is_not_a_rounding_error() {
         let graph = Graph::new();
         let [x, y] = graph.symbols(["x", "y"]);
         let rows = [[Expr::from(1e-10), Expr::ZERO], [y, x]];
@@ -387,7 +387,7 @@ mod tests {
 
     /// √2·√2 − 2 is 0, though not in floating point.
     #[test]
-    fn constants_that_cancel_but_for_rounding_are_singular() {
+    fn constants_that_cancel_up_to_rounding_are_singular() {
         let graph = Graph::new();
         let root = Expr::from(2f64.sqrt());
         let rows = [[root, Expr::ONE], [Expr::from(2.0), root]];

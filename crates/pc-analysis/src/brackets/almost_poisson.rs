@@ -1,4 +1,4 @@
-//! The bracket that nonholonomic constraints leave.
+//! The bracket under nonholonomic constraints.
 
 use pc_mech::{Expr, Matrix};
 use pc_nonholo::Constrained;

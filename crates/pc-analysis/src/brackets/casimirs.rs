@@ -19,8 +19,8 @@ impl<'g> PoissonBracket<'g> {
 
     /// The Casimirs that are linear combinations of `functions` with rational coefficients; a basis of them.
     ///
-    /// Each is proved, (C, z_i) being folded to zero. What may be missed is said at
-    /// [`linear_relations`](pc_mech::Graph::linear_relations).
+    /// Each is proved: (C, z_i) is folded to zero. [`linear_relations`](pc_mech::Graph::linear_relations) says what
+    /// may be missed.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of something else than variables and constants.

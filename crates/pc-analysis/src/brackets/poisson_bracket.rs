@@ -17,13 +17,14 @@ use crate::integrals::polynomials::independent;
 ///
 ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m   (12),
 ///
-/// and generates the motion, ẋ_i = (x_i, H), ẏ_s = (y_s, H), where b_0 = 0, c_0s = 0 and Q = 0. The term
-/// c_0s^m ∂f/∂y_s y_m that the source adds for other systems is left out: with it (f, g) is not −(g, f).
-/// What serves them is the [extended](PoissonBracket::extended) bracket.
+/// and generates the motion, ẋ_i = (x_i, H), ẏ_s = (y_s, H), where b_0 = 0, c_0s = 0 and Q = 0. The term c_0s^m
+/// ∂f/∂y_s y_m that the source adds for other systems is left out: with it (f, g) is not −(g, f). For them use the
+/// [extended](PoissonBracket::extended) bracket.
 ///
-/// Functions may contain, beside the variables, what counts as constant: the symbols that stand in the tensor, those of
+/// Besides the variables, functions may contain symbols that count as constants: the symbols that stand in the tensor, those of
 /// the system it is a bracket of but for its quasi-velocities, and those [declared](PoissonBracket::with_constants). Any
-/// other symbol in a function is an error, quasi-velocities too: [`Canonical::in_momenta`](pc_mech::Canonical::in_momenta) puts momenta in their place.
+/// other symbol in a function is an error, quasi-velocities too:
+/// [`Canonical::in_momenta`](pc_mech::Canonical::in_momenta) puts momenta in their place.
 #[derive(Clone, Debug)]
 pub struct PoissonBracket<'g> {
     graph: &'g Graph,
@@ -202,8 +203,8 @@ impl<'g> PoissonBracket<'g> {
         check_variables("a function in a Poisson bracket", self.graph, functions, &known)
     }
 
-    /// The first three variables whose brackets do not satisfy Jacobi's identity, with the defect. One that is not folded to
-    /// zero counts where numbers show that it is none.
+    /// The first three variables whose brackets do not satisfy Jacobi's identity, with the defect. A defect that is
+    /// not folded to zero counts where numbers show that it is not zero.
     pub fn jacobi_violation(&self) -> Option<([Expr<'g>; 3], Expr<'g>)> {
         let z = &self.variables;
         let triples = (0..z.len())
@@ -276,9 +277,8 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.defect(f, g, h))
     }
 
-    /// The functions and what their brackets, the brackets of these and so on add to them: functionally
-    /// independent, the given ones first, as far as they are independent themselves. Integrals give
-    /// integrals.
+    /// The functions, and what their brackets, the brackets of these and so on add to them: functionally independent,
+    /// the given ones first as far as they are independent. Brackets of integrals are integrals.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).
@@ -328,7 +328,7 @@ impl<'g> PoissonBracket<'g> {
         self.graph.generic_rank_of_entries(self.tensor.columns(), &self.tensor.nonzero_rows())
     }
 
-    /// Number of variables less rank: so many independent Casimirs there are near almost every point.
+    /// Number of variables less rank: the number of independent Casimirs near almost every point.
     pub fn corank(&self) -> usize {
         self.variables.len() - self.rank()
     }

@@ -1,4 +1,4 @@
-//! What is known of a function that is said to solve Hamilton–Jacobi's equation.
+//! Verdicts on a function that is claimed to solve Hamilton–Jacobi's equation.
 
 use pc_mech::{Canonical, Expr, Graph, Identity, Neighbourhood};
 
@@ -13,11 +13,11 @@ const POINTS: u64 = 16;
 pub struct ProposedAction<'g> {
     /// X_0 S + H(t, x, X_s S), zero if that is proved.
     pub remainder: Expr<'g>,
-    /// Whether it vanishes, in parts of its two terms.
+    /// Whether the remainder vanishes, relative to its two terms.
     pub identity: Identity,
-    /// Where it does not, if it does not.
+    /// A point where it does not vanish, if there is one.
     pub refuted: Option<Residual>,
-    /// The rank of ∂(X_s S)/∂α at almost all points, of k if the integral is complete.
+    /// The rank of ∂(X_s S)/∂α at almost all points, k if the integral is complete.
     pub rank: usize,
 }
 
@@ -26,13 +26,13 @@ pub struct ProposedAction<'g> {
 pub struct Residual {
     /// Names and values of its symbols.
     pub at: Vec<(String, f64)>,
-    /// What it is there.
+    /// Its value there.
     pub value: f64,
 }
 
 impl<'g> ProposedAction<'g> {
-    /// What is known of S = `action`, a function of (t, x) and of `constants`, by terms that cancel and by numbers `near` a point
-    /// where it is defined.
+    /// The verdict on S = `action`, a function of (t, x) and of `constants`, by terms that cancel and by numbers
+    /// `near` a point where it is defined.
     ///
     /// # Errors
     /// As for [`hamilton_jacobi`].

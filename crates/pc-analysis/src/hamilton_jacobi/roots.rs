@@ -8,9 +8,9 @@ use pc_expr::{Expr, Folding, Function, Graph, Number, Scalar};
 /// Whether `expression` is zero wherever it is defined, as far as the graph tells, its roots being related to each other
 /// here.
 ///
-/// The graph knows the square of each root, but little of relations between roots of several sums. So each root √u becomes a symbol r and, where u is linear in a symbol z, this symbol is eliminated: z = (r² − u_0)/u_1
-/// for u = u_0 + u_1 z. What is left is rational in r, and zero for all r only if `expression` is zero for
-/// all z.
+/// The graph knows the square of each root, but little of relations between roots of several sums. So each root √u
+/// becomes a symbol r and, where u is linear in a symbol z, this symbol is eliminated: z = (r² − u_0)/u_1 for u = u_0
+/// + u_1 z. What is left is rational in r, and zero for all r only if `expression` is zero for all z.
 pub(crate) fn vanishes<'g>(graph: &'g Graph, expression: Expr<'g>) -> bool {
     if expression.is_zero() {
         return true;
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn roots_are_more_than_names() {
+    fn identities_of_roots_are_used() {
         let graph = Graph::new();
         let [x, e] = graph.symbols(["x", "E"]);
         let r = (2.0 * e - x.square()).sqrt();

@@ -6,15 +6,15 @@ use crate::error::AnalysisError;
 use crate::integrals::polynomials::{Generator, combination, independent, monomials};
 use crate::integrals::rates::Rates;
 
-/// What first integrals are looked for among: Σ a_jl m_j f_l with rational a_jl, the m_j being the monomials
-/// in the quasi-velocities (or momenta) up to a degree, the f_l given functions of (t, x).
+/// The form of the first integrals to be found: Σ a_jl m_j f_l with rational a_jl, monomials m_j in the
+/// quasi-velocities (or momenta) up to a degree, and given functions f_l of (t, x).
 #[derive(Clone, Debug)]
 pub struct Ansatz<'g> {
     /// Degree in η or y.
     pub degree: u32,
     /// f_1, f_2, …, simple ones first; with [`Expr::ONE`] among them if the coefficients may be constants.
     pub functions: Vec<Expr<'g>>,
-    /// Integrals that are known already: what is a function of them is not returned.
+    /// Integrals that are known already: functions of them are not returned.
     pub known: Vec<Expr<'g>>,
 }
 
@@ -22,10 +22,10 @@ impl<'g> Rates<'g> {
     /// The integrals that are linear combinations of `functions` with rational coefficients; a basis of them,
     /// constants and functions of each other not left out.
     ///
-    /// The functions are of (t, x, η) or (t, x, y), and may contain parameters. Each integral is proved, its
-    /// rate being folded to zero. Parameters are unknowns that the coefficients do not contain:
-    /// [bind](Rates::with_parameters_bound) them to search for given values. What else may be missed is said
-    /// at [`linear_relations`](pc_expr::Graph::linear_relations).
+    /// The functions are of (t, x, η) or (t, x, y), and may contain parameters. Each integral is proved: its rate is
+    /// folded to zero. Parameters are unknowns that the coefficients do not contain:
+    /// [bind](Rates::with_parameters_bound) them to search for given values.
+    /// [`linear_relations`](pc_expr::Graph::linear_relations) says what else may be missed.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of something that is not of the motion.
@@ -68,7 +68,7 @@ impl<'g> Rates<'g> {
 
     /// The ansatz of polynomials of degree ≤ `degree` in η or y whose coefficients are polynomials of degree
     /// ≤ `coefficients` in the coordinates, or, for those that the equations contain in sines and cosines
-    /// only, in their sine and cosine; nothing is known. Time is left out: functions of it are to be added.
+    /// only, in their sine and cosine; no integrals are known. Time is left out; add functions of it where they matter.
     pub fn ansatz(&self, degree: u32, coefficients: u32) -> Ansatz<'g> {
         let rates: Vec<Expr<'g>> = self.flow.iter().map(|&(_, rate)| rate).collect();
         let places: Vec<Places> = self.coordinates.iter().map(|&x| Places::of(self, x, &rates)).collect();

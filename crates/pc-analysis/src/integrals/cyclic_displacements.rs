@@ -13,8 +13,8 @@ pub struct CyclicDisplacement<'g> {
     pub coefficients: Vec<Number>,
     /// The integral a_s ∂L/∂η_s in terms of (t, x, η).
     pub momentum: Expr<'g>,
-    /// Whether X commutes with X_0..X_k, that is, a_s c_rs^m = 0 for r = 0..k. Then X L + a_s Q_s = 0 is
-    /// left of the condition; otherwise the terms of this Lagrangian cancel.
+    /// Whether X commutes with X_0..X_k, that is, a_s c_rs^m = 0 for r = 0..k. Then the condition is X L + a_s Q_s =
+    /// 0; otherwise terms of this Lagrangian cancel.
     pub commutes: bool,
 }
 
@@ -23,11 +23,11 @@ impl<'g> CyclicDisplacement<'g> {
     ///
     ///   d/dt (a_s y_s) = a_s [(c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s] = 0   identically in (t, x, η),
     ///
-    /// by (9). The condition is sufficient and, for constant a_s, necessary. It holds above all of the
-    /// displacements that are cyclic in Chetaev's sense: they [commute](CyclicDisplacement::commutes) with
-    /// all operators, and X L = 0. Coordinates that are cyclic in Lagrange's sense are these in the frame
-    /// X_s = ∂/∂x_s. It also holds of X_3 for Lagrange's top in body axes, where the first term is ω_2 y_1 −
-    /// ω_1 y_2 = (A − B) ω_1 ω_2.
+    /// by (9). The condition is sufficient and, for constant a_s, necessary. It holds in particular for the
+    /// displacements that are cyclic in Chetaev's sense: they [commute](CyclicDisplacement::commutes) with all
+    /// operators, and X L = 0. In the frame X_s = ∂/∂x_s these are the coordinates that are cyclic in Lagrange's
+    /// sense. It also holds for X_3 of Lagrange's top in body axes, where the first term is ω_2 y_1 − ω_1 y_2 = (A −
+    /// B) ω_1 ω_2.
     ///
     /// Parameters count as independent of each other; [bind](System::with_parameters_bound) them to use their
     /// values.

@@ -1,4 +1,4 @@
-//! Functions that a motion keeps, or may keep, with what is known of them.
+//! Functions that a motion keeps, or may keep, with their verdicts.
 
 use pc_mech::{Equations, Expr, Number, System};
 
@@ -7,13 +7,13 @@ use crate::integrals::rates::Rates;
 /// A function that may keep its value.
 #[derive(Clone, Debug)]
 pub struct Integral<'g> {
-    /// What it is called: as declared, `energy`, `momentum 1`, `Casimir 1`, `found 1`.
+    /// Its name: as declared, or `energy`, `momentum 1`, `Casimir 1`, `found 1`.
     pub name: String,
     /// The function of (t, x, η).
     pub value: Expr<'g>,
     /// Where it comes from.
     pub origin: Origin,
-    /// What is known of its rate.
+    /// The verdict on its rate.
     pub verdict: ConservationVerdict<'g>,
     /// Whether an event may change it.
     pub jumps: bool,
@@ -43,7 +43,7 @@ pub enum Origin {
     Found,
 }
 
-/// What is known of the rate of change of a function along the motion.
+/// The verdict on the rate of change of a function along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConservationVerdict<'g> {
     /// It vanishes identically.
@@ -52,9 +52,9 @@ pub enum ConservationVerdict<'g> {
     ConservedHere,
     /// It vanishes identically, if only for these values, where the function does not jump.
     BetweenJumps,
-    /// It is not known: the function is none of time and state alone, as one with reactions.
+    /// It is unknown, because the function does not depend on time and state alone, such as one with reactions.
     NoFunction,
-    /// It is not seen to vanish.
+    /// It is not found to vanish.
     Rate {
         /// The rate in terms of (t, x, η).
         rate: Expr<'g>,
@@ -63,7 +63,7 @@ pub enum ConservationVerdict<'g> {
     },
 }
 
-/// What the motion keeps, or may keep.
+/// The functions that the motion keeps, or may keep.
 #[derive(Clone, Debug)]
 pub struct Integrals<'g> {
     pub(super) list: Vec<Integral<'g>>,
@@ -84,7 +84,7 @@ impl<'g> Integrals<'g> {
         self.list.push(integral);
     }
 
-    /// Gives each the name that `name` has for it, if it has one.
+    /// Renames each integral for which `name` gives a name.
     pub fn rename(&mut self, name: impl Fn(&Integral<'g>) -> Option<String>) {
         for integral in &mut self.list {
             if let Some(name) = name(integral) {
@@ -93,7 +93,7 @@ impl<'g> Integrals<'g> {
         }
     }
 
-    /// Says that the energy is proved to be kept, by a theorem where its rate along the equations is not seen to vanish.
+    /// Marks the energy as proved to be conserved, by a theorem where its rate along the equations is not found to vanish.
     pub fn keep_energy(&mut self, equations: &Equations<'g>) {
         let open = |integral: &&mut Integral<'g>| {
             integral.is_energy() && matches!(integral.verdict, ConservationVerdict::Rate { .. })
@@ -105,8 +105,8 @@ impl<'g> Integrals<'g> {
         }
     }
 
-    /// Says of what keeps its value between events that resets may change it: those that do not leave it as it is whatever
-    /// the state, or that are `projected` to constraints. A reset is a list of components of the `system`'s state, each
+    /// Marks the conserved functions that resets may change: resets that do not leave the function as it is for every
+    /// state, or that are `projected` to constraints. A reset is a list of components of the `system`'s state, each
     /// with its new value.
     pub fn jump<'r>(
         &mut self,

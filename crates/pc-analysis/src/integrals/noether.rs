@@ -16,7 +16,7 @@ pub struct NoetherField<'g> {
     pub coefficients: Vec<Expr<'g>>,
     /// f, zero unless L changes along X by a rate.
     pub gauge: Expr<'g>,
-    /// Whether [X_r, X] = (X_r a_m + a_s c_rs^m) X_m is seen to vanish for r = 0..k.
+    /// Whether [X_r, X] = (X_r a_m + a_s c_rs^m) X_m is found to vanish for r = 0..k.
     pub commutes: bool,
 }
 

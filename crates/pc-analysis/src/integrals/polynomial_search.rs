@@ -26,39 +26,39 @@ const MOST_PARAMETER_DEGREE: u32 = 4;
 /// The most products of parameters and functions that have unknown coefficients for that.
 const MOST_WITH_PARAMETERS: usize = 300;
 
-/// What integrals are looked for among: Σ a_jlm m_j p_l f_m with rational a_jlm, m_j being the monomials in η, p_l those in the
-/// coordinates, or in their sines and cosines, and f_m functions of (t, x), 1 among them.
+/// The form of the integrals to be found: Σ a_jlm m_j p_l f_m with rational a_jlm, monomials m_j in η, monomials p_l
+/// in the coordinates or in their sines and cosines, and functions f_m of (t, x), 1 among them.
 #[derive(Clone, Debug)]
 pub struct PolynomialAnsatz<'g> {
     /// The largest degree in η.
     pub degree: u32,
-    /// The f_m but for 1.
+    /// The f_m other than 1.
     pub functions: Vec<Expr<'g>>,
 }
 
-/// What an ansatz was tried with.
+/// The extent of a search by an ansatz.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AnsatzSearch {
-    /// With so many functions.
+    /// It was searched, with this number of functions.
     Made {
         /// The largest degree in the coordinates.
         coefficients: u32,
         /// How many functions have had an unknown coefficient.
         functions: usize,
     },
-    /// With none: there are more of them than can be tried.
+    /// It was not searched: there are too many functions.
     TooMany {
         /// How many there are with coefficients that are constant but for the f_m.
         functions: usize,
     },
-    /// With none: the accelerations are too long.
+    /// It was not searched: the accelerations are too long.
     TooLong,
 }
 
 impl<'g> Integrals<'g> {
-    /// Adds the integrals of an ansatz to what is known already: those that are no polynomials of known ones with rational
-    /// coefficients, of low degree first. Functions of those before them are said to be such, as the third component of the
-    /// Runge–Lenz vector is.
+    /// Adds the integrals of an ansatz to those known already, unless they are polynomials of known ones with rational
+    /// coefficients; those of low degree come first. Other functions of integrals before them are marked as dependent,
+    /// such as the third component of the Runge–Lenz vector.
     ///
     /// They are sought for the values that the parameters have. Where the coefficients are polynomials in the parameters, up to a
     /// common factor, these stand in them and the integral is proved for all their values.
@@ -190,7 +190,8 @@ struct Span<'g> {
 }
 
 impl<'g> Span<'g> {
-    /// With coefficients of the largest degree up to `most` with which they can be tried; else their number with that of degree 0.
+    /// With coefficients of the largest degree up to `most` with which they can be tried; else their number with that
+    /// of degree 0.
     fn new(
         graph: &'g Graph,
         rates: &Rates<'g>,
@@ -277,8 +278,9 @@ fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>) -> bool {
     graph.dependent_columns(&columns, &[]).iter().any(|&(j, _)| j == of.len())
 }
 
-/// The integral Σ a_i(p) f_i for all values of the parameters p that is Σ a_i f_i for those they have, up to a factor, if there is
-/// one whose coefficients are polynomials in p of low degree, of those p that its rates contain; that of the lowest degree.
+/// The integral Σ a_i(p) f_i for all values of the parameters p that is Σ a_i f_i for those they have, up to a factor,
+/// if there is one whose coefficients are polynomials in p of low degree, of those p that its rates contain; that of
+/// the lowest degree.
 ///
 /// There is one at most but for its factor: relations of an echelon form are independent without their last function, for these
 /// values and so for almost all.

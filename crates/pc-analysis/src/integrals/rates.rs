@@ -4,17 +4,17 @@ use pc_mech::{Canonical, Equations, Expr, Graph, System};
 
 use crate::error::{AnalysisError, check_variables};
 
-/// What is known of a function along the motion.
+/// The verdict on a function along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Conservation<'g> {
     /// Its rate vanishes identically: it is an integral.
     Conserved,
     /// Its rate vanishes identically for the values that the parameters have.
     ConservedHere,
-    /// Its rate vanishes identically, if only for the values that the parameters have, but it jumps where a sign or a
-    /// step in it does, and of that the rate knows nothing.
+    /// Its rate vanishes identically, if only for the values that the parameters have, but the function jumps where a
+    /// sign or a step in it does, which its rate does not show.
     ConservedBetweenJumps,
-    /// The rate, which the graph does not fold to zero.
+    /// Its rate, which the graph does not fold to zero.
     Changing(Expr<'g>),
 }
 
@@ -113,8 +113,8 @@ impl<'g> Rates<'g> {
     /// The rate df/dt, an expression in (t, x, η) or (t, x, y).
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of a symbol that is none of the motion: neither one that changes along it
-    /// nor one that its equations contain.
+    /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion: it neither
+    /// changes along it nor appears in its equations.
     pub fn of(&self, f: Expr<'g>) -> Result<Expr<'g>, AnalysisError> {
         Ok(self.of_all(&[f])?[0])
     }
@@ -134,8 +134,8 @@ impl<'g> Rates<'g> {
         self.graph.substitute(&self.graph.directional(&functions, &self.flow), &self.momenta)
     }
 
-    /// Whether the motion keeps f constant. [`Conservation::Changing`] is no proof of the contrary where the
-    /// rate contains roots, logarithms or the like: the graph knows few of their identities.
+    /// Whether the motion keeps f constant. Where the rate contains roots, logarithms or the like,
+    /// [`Conservation::Changing`] is not a proof of the contrary: the graph knows few of their identities.
     ///
     /// # Errors
     /// As for [`of`](Rates::of).
@@ -153,8 +153,8 @@ impl<'g> Rates<'g> {
         })
     }
 
-    /// The part |df/dt|/Σ|∂f/∂z_i ż_i| of its terms that is left of the rate at a point, from 0 to 1: rounding where f is an
-    /// integral. None where all of them vanish, or are not numbers.
+    /// The rate relative to its terms, |df/dt|/Σ|∂f/∂z_i ż_i|, at a point, from 0 to 1: no more than rounding where f
+    /// is an integral. None where all terms vanish, or are not numbers.
     ///
     /// # Errors
     /// As for [`of`](Rates::of).
@@ -171,7 +171,7 @@ impl<'g> Rates<'g> {
         Ok(Some(left).filter(|left| left.is_finite()))
     }
 
-    /// Whether f is written with a sign, a step or an angle of what changes, and so may jump.
+    /// Whether f contains a sign, a step or an angle of changing quantities, and so may jump.
     pub fn has_jumps(&self, f: Expr<'g>) -> bool {
         let f = self.graph.substitute(&[f], &self.accelerations)[0];
         let changing: Vec<Expr<'g>> = self.flow.iter().map(|&(symbol, _)| symbol).collect();

@@ -1,4 +1,4 @@
-//! What a motion keeps: declared integrals, the energy, momenta, Casimirs, and what an ansatz finds.
+//! The integrals of a motion: declared ones, the energy, momenta, Casimirs, and those that an ansatz finds.
 
 use pc_mech::{Equations, Expr, Graph, Neighbourhood, System};
 
@@ -12,7 +12,7 @@ use crate::integrals::rates::{Conservation, Rates};
 const MOST_FUNCTIONS: usize = 150;
 
 impl<'g> Integrals<'g> {
-    /// The declared integrals, the energy, and what else is found, each with a verdict: momenta of cyclic displacements,
+    /// The declared integrals, the energy, and others that are found, each with a verdict: momenta of cyclic displacements,
     /// Casimirs, and integrals linear in η with polynomials of low degree as coefficients. `near` has values of time,
     /// state and parameters.
     ///
@@ -46,7 +46,7 @@ impl<'g> Integrals<'g> {
         Integrals { list }
     }
 
-    /// Adds the energy of all velocities, that of a run; y·η − L of the independent ones is called Jacobi's then.
+    /// Adds the energy of all velocities, which a run observes; y·η − L of the independent ones is then called Jacobi's.
     pub fn add_energy_of_all(
         &mut self,
         equations: &Equations<'g>,

@@ -16,16 +16,16 @@ const MOST_FACTORS: usize = 60;
 /// The longest equations of such motions, in operations written out: some tenths of a second.
 const LONGEST: u32 = 4_000;
 
-/// What is known of the measures that a motion keeps.
+/// The result of a search for an invariant measure.
 #[derive(Clone, Debug)]
 pub enum MeasureSearch<'g> {
-    /// This one.
+    /// The motion keeps this one.
     Found(PhaseMeasure<'g>),
     /// None is found.
     None,
     /// It depends on forces that are computed outside.
     External,
-    /// No theorem has one, and the equations are too long to look for one.
+    /// No theorem gives one, and the equations are too long to search.
     TooLong,
 }
 
@@ -34,18 +34,18 @@ pub enum MeasureSearch<'g> {
 pub struct PhaseMeasure<'g> {
     /// Whether it is Liouville's, that of a holonomic system by its frame, whatever the Lagrangian.
     pub liouville: bool,
-    /// N of N dx dy, positive at the start; none where it is no short expression, 1/det b or det(∂f/∂x_D)/det b_I.
+    /// N of N dx dy, positive at the start; none where 1/det b or det(∂f/∂x_D)/det b_I is not a short expression.
     pub density: Option<Expr<'g>>,
-    /// N det M of N det M dx dη, M = ∂²L/∂η∂η; none where it is no short expression.
+    /// N det M of N det M dx dη, M = ∂²L/∂η∂η; none where it is not a short expression.
     pub in_velocities: Option<Expr<'g>>,
-    /// The momenta where they vanish of which N is zero or infinite.
+    /// The momenta on whose zeros N is zero or infinite.
     pub singular: Vec<Expr<'g>>,
-    /// Whether momenta or ẋ are written with what may jump, a sign, a step or an angle: the measure is kept where they do not.
+    /// Whether momenta or ẋ contain a sign, a step or an angle, which may jump: the measure is kept where they do not.
     pub jumps: bool,
 }
 
 impl<'g> MeasureSearch<'g> {
-    /// What is known of the motion (10), (11) of a system, under constraints of their [free
+    /// The measure of the motion (10), (11) of a system; under constraints, of their [free
     /// system](pc_nonholo::Constrained::free_system).
     ///
     /// Where forces other than those of L are functions of the place, or gyroscopic, phase volume grows at the rate
@@ -57,8 +57,8 @@ impl<'g> MeasureSearch<'g> {
     /// `positions` are f of a holonomic system, declared integrals of the place are others; `None` says that it is not
     /// holonomic.
     ///
-    /// Else one with these and the factors of [`invariant_measure`] is looked for, then one that has momenta among its factors also;
-    /// this is left out for more than six quasi-velocities and for long equations.
+    /// Else one with these and the factors of [`invariant_measure`] is looked for, then one that has momenta among its
+    /// factors also; this is left out for more than six quasi-velocities and for long equations.
     ///
     /// `at` are values of time, state and parameters, where N is positive.
     ///

@@ -15,11 +15,11 @@ pub struct SecondVariation {
     pub variables: Vec<String>,
     /// The names of the integrals with the multipliers λ_j.
     pub multipliers: Vec<(String, f64)>,
-    /// |dH + λ_j dI_j| against the largest of |dH| and |dI_j|: zero but for rounding at a steady motion.
+    /// |dH + λ_j dI_j| relative to the largest of |dH| and |dI_j|: zero up to rounding at a steady motion.
     pub residual: f64,
-    /// The eigenvalues of the second variation on the kernel of the dI_j, rising.
+    /// The eigenvalues of the second variation on the kernel of the dI_j, in ascending order.
     pub eigenvalues: Vec<f64>,
-    /// The size up to which an eigenvalue counts as zero.
+    /// The absolute value up to which an eigenvalue counts as zero.
     pub tolerance: f64,
     /// [`Stable`](Verdict::Stable) if it is definite, else [`Undecided`](Verdict::Undecided).
     pub verdict: Verdict,

@@ -1,4 +1,4 @@
-//! Eigenvalues of the first approximation, and what they say about stability.
+//! Eigenvalues of the first approximation, and the stability that follows from them.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use pc_mech::{Matrix, MechError, ShapeError, SingularValues};
 
 use crate::numeric::dense::{eigenvalues, norm, product};
 
-/// What is known of the stability of an equilibrium or a steady motion.
+/// The verdict on the stability of an equilibrium or a steady motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Neighbouring motions approach it: all real parts are negative (Lyapunov's first method).
@@ -15,8 +15,7 @@ pub enum Verdict {
     Stable,
     /// Some neighbouring motion leaves: a real part is positive (Lyapunov's first method).
     Unstable,
-    /// The method decides nothing: the case is critical, as it is for the first approximation of every stable
-    /// conservative system.
+    /// The method does not decide: the case is critical, as for the first approximation of every stable conservative system.
     Undecided,
 }
 
@@ -85,7 +84,7 @@ impl Spectrum {
         Ok(Spectrum { eigenvalues: found, zero_blocks, tolerance: uncertainty.sqrt() * scale })
     }
 
-    /// The eigenvalues, n of them, by falling real part.
+    /// The n eigenvalues, in descending order of their real parts.
     pub fn eigenvalues(&self) -> &[Eigenvalue] {
         &self.eigenvalues
     }
@@ -96,7 +95,7 @@ impl Spectrum {
         &self.zero_blocks
     }
 
-    /// The size up to which a real part counts as zero.
+    /// The absolute value up to which a real part counts as zero.
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }

@@ -6,7 +6,7 @@ use crate::error::{AnalysisError, shape};
 use crate::numeric::{dense::norm, newton};
 use crate::stability::spectrum::{Spectrum, Verdict};
 
-/// How a steady motion is looked for.
+/// Options of the search for a steady motion.
 ///
 /// ```
 /// use pc_analysis::{SteadyMotion, SteadyOptions};
@@ -83,7 +83,7 @@ pub struct SteadyMotion {
     pub components: Vec<String>,
     /// ∂f_i/∂y_j over these, r × r: the first approximation δẏ = A δy in the reduced variables.
     pub first_approximation: Matrix<f64>,
-    /// The spectrum of it.
+    /// Its spectrum.
     pub spectrum: Spectrum,
 }
 
@@ -97,7 +97,7 @@ impl SteadyMotion {
     ///
     /// # Errors
     /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::UnknownComponent`],
-    /// [`AnalysisError::NotCyclic`] for names that do not fit; otherwise as [`first_approximation`].
+    /// [`AnalysisError::NotCyclic`] for unsuitable names; otherwise as [`first_approximation`].
     pub fn near(
         motion: &mut Motion,
         t: f64,
@@ -165,7 +165,7 @@ impl SteadyMotion {
         })
     }
 
-    /// What the first approximation says about stability with respect to the components that are not cyclic.
+    /// The verdict of the first approximation on stability with respect to the components that are not cyclic.
     pub fn verdict(&self) -> Verdict {
         self.spectrum.verdict()
     }

@@ -33,7 +33,7 @@ const ZERO: f64 = 1e-8;
 /// The equilibria and steady motions of an autonomous system that are found from many starts.
 #[derive(Clone, Debug)]
 pub struct SteadyMotions {
-    /// The nearest to the start of the model first, no two of the same state.
+    /// The motions, the nearest to the start of the model first, no two with the same state.
     pub list: Vec<FoundSteadyMotion>,
     /// How many starts there were.
     pub starts: usize,
@@ -44,17 +44,17 @@ pub struct SteadyMotions {
 pub struct FoundSteadyMotion {
     /// The motion.
     pub motion: NearbySteadyMotion,
-    /// The dimension of the family of steady motions with the same integrals of which it is the one that is nearest to the
-    /// start, 0 if it is alone.
+    /// The dimension of the family of steady motions with the same integrals, of which this is the nearest to the
+    /// start; 0 if it is isolated.
     pub family: usize,
 }
 
-/// Why none are looked for.
+/// Reasons for not searching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoSteadyMotions {
     /// The equations depend on time.
     NotAutonomous,
-    /// Not as many functions of the coordinates are known as the frame keeps: a solution might not be reached.
+    /// Fewer functions of the coordinates are known than the frame keeps: a solution might be unreachable.
     SurfaceUnknown,
     /// The motion has no derivatives at its start.
     NoApproximation,
@@ -66,13 +66,13 @@ pub enum NoSteadyMotions {
 }
 
 impl SteadyMotions {
-    /// Those that are found from the start (t, y), and from starts spread about it evenly: equilibria, and the steady motions that
-    /// have as many integrals as possible in common with the start (Routh). Of coordinates in which rates and integrals are
-    /// periodic one period is looked through, of others values to some three times that of the start. Where there are families
-    /// with these integrals, one member of each dimension is kept.
+    /// The steady motions found from the start (t, y), and from starts spread evenly about it: equilibria, and the
+    /// steady motions that have as many integrals as possible in common with the start (Routh). Coordinates in which
+    /// rates and integrals are periodic are searched over one period, others up to some three times their value at the
+    /// start. Where there are families with these integrals, one member of each dimension is kept.
     ///
-    /// `motion` is compiled from the `equations`, `positions` are what constraints say of coordinates, `integrals` what is
-    /// known to be kept.
+    /// `motion` is compiled from the `equations`, `positions` are the relations between coordinates that constraints
+    /// imply, `integrals` the known integrals.
     ///
     /// # Errors
     /// [`NoSteadyMotions`] with the reason.

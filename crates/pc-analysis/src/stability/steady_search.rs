@@ -27,55 +27,55 @@ pub struct NearbySteadyMotion {
     pub state: Vec<(String, f64)>,
     /// The cyclic coordinates whose rates are constant, with these.
     pub rates: Vec<(String, f64)>,
-    /// Euclidean, in the components that are not cyclic.
+    /// The Euclidean distance from the start in the components that are not cyclic.
     pub distance: f64,
-    /// The integrals that have the values of the start.
+    /// The integrals that have their values at the start.
     pub same: Vec<String>,
-    /// Those of the first approximation.
+    /// The eigenvalues of the first approximation.
     pub eigenvalues: Vec<Eigenvalue>,
     /// The real part that counts as zero.
     pub tolerance: f64,
-    /// What these say.
+    /// The verdict of the first approximation.
     pub first_approximation: Verdict,
     /// How many directions are neutral, where neighbouring motions approach steady ones: λ = 0 so many times, once for each of
     /// as many independent integrals, and all other real parts negative.
     pub neutral: Option<usize>,
-    /// What the second variation says, if the energy and the integrals are kept.
+    /// The verdict of the second variation, if the energy and the integrals are conserved.
     pub second_variation: Option<EnergyCriterion>,
 }
 
-/// What the second variation of the energy under the integrals says.
+/// The verdict of the second variation of the energy under the integrals.
 #[derive(Clone, Debug)]
 pub struct EnergyCriterion {
     /// Stable, or undecided.
     pub verdict: Verdict,
-    /// In which variables, if not in all that are not cyclic.
+    /// Its variables, if they are not all those that are not cyclic.
     pub variables: Option<Vec<String>>,
 }
 
-/// What is known of the stability of a steady motion, and by what.
+/// The stability of a steady motion, and how it is known.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stability {
     /// The first approximation decides.
     ByFirstApproximation(Verdict),
     /// It is stable by the second variation of the energy.
     BySecondVariation {
-        /// In which variables, if not in all that are not cyclic.
+        /// Its variables, if they are not all those that are not cyclic.
         variables: Option<Vec<String>>,
     },
-    /// It is asymptotically stable but for neutral directions, by the first approximation.
+    /// It is asymptotically stable except for neutral directions, by the first approximation.
     AsymptoticBut {
         /// Their number.
         directions: usize,
     },
-    /// Nothing decides.
+    /// No criterion decides.
     Undecided {
         /// Whether the second variation was asked too.
         second_variation: bool,
     },
 }
 
-/// What came of the search.
+/// The result of the search.
 #[derive(Clone, Debug)]
 pub enum SteadySearch {
     /// The equations depend on time.
@@ -89,15 +89,15 @@ pub enum SteadySearch {
         /// So many.
         components: usize,
     },
-    /// Newton's method ended nowhere, or far away.
+    /// Newton's method did not converge, or converged far from the start.
     None,
-    /// It is there.
+    /// A steady motion was found.
     Found(Box<NearbySteadyMotion>),
 }
 
 impl SteadySearch {
     /// The steady motion of `equations` near the start (t, y), among the states in which coordinates that are not
-    /// independent keep their relations; `positions` are those that constraints say, `integrals` what is known to be kept.
+    /// independent keep their relations; `positions` are the relations that constraints imply, `integrals` the known integrals.
     pub fn near<'g>(
         equations: &Equations<'g>,
         motion: &mut Motion,
@@ -401,7 +401,7 @@ impl<'g> Surface<'g> {
 }
 
 impl NearbySteadyMotion {
-    /// What is known of stability, and by what.
+    /// The stability, and how it is known.
     pub fn stability(&self) -> Stability {
         let proved = |second: &&EnergyCriterion| second.verdict == Verdict::Stable;
         match (self.first_approximation, self.second_variation.as_ref().filter(proved)) {

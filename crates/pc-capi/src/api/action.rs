@@ -9,8 +9,8 @@ use crate::ffi::pointer::{finite, text};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, number, quoted};
 
-/// Sets a function S of time, coordinates and constants that is said to solve Hamilton–Jacobi's
-/// equation, which pc_system_theory looks at. No motion needs it.
+/// Sets a function S of time, coordinates and constants that is claimed to solve
+/// Hamilton–Jacobi's equation; pc_system_theory examines the claim. No motion depends on it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_action(
     model: *mut pc_model,
@@ -27,8 +27,8 @@ pub unsafe extern "C" fn pc_model_set_action(
     unsafe { draft(model, error, "pc_model_set_action", write) }
 }
 
-/// Adds a constant of the action, with a value near which the action is defined: where it is not
-/// proved to solve the equation, numbers are tried there.
+/// Adds a constant of the action, with a value near which the action is defined: where there
+/// is no proof that it solves the equation, it is tested numerically there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_action_constant(
     model: *mut pc_model,

@@ -10,9 +10,9 @@ use crate::ffi::pointer::{text, texts};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, quoted};
 
-/// Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of its
-/// mass centre or of a point of it that is at rest, as expressions of coordinates. Energy and
-/// forces follow from bodies; no Lagrangian is needed beside them.
+/// Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of
+/// its mass centre or of a point of the body that is at rest, as expressions in the
+/// coordinates. Energy and forces follow from the bodies; no Lagrangian is needed as well.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_body(
     model: *mut pc_model,
@@ -82,8 +82,8 @@ pub unsafe extern "C" fn pc_model_set_body_angular_velocity(
     unsafe { draft(model, error, what.1, |draft| part(draft, body, what.0, || vector([x, y, z]))) }
 }
 
-/// Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions Ixx,
-/// Iyy, Izz, or 6, which go on with Ixy, Iyz, Ixz.
+/// Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions
+/// Ixx, Iyy, Izz, or 6, which continue with Ixy, Iyz, Ixz.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_inertia(
     model: *mut pc_model,
@@ -99,8 +99,8 @@ pub unsafe extern "C" fn pc_model_set_body_inertia(
     unsafe { draft(model, error, "pc_model_set_body_inertia", write) }
 }
 
-/// Sets how a rigid body is turned: the 9 entries of the matrix R from axes of the body to those
-/// of space, row by row.
+/// Sets the rotation of a rigid body: the 9 entries of the matrix R from axes of the body to
+/// axes in space, row by row.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_rotation(
     model: *mut pc_model,

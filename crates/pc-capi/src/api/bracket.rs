@@ -20,9 +20,10 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
 ///
 /// so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no
-/// forces. The functions are expressions of the model, of coordinates and velocities; the momenta
-/// y_s = ∂L/∂η_s are put in. Under nonholonomic constraints it is the almost-Poisson bracket of
-/// the independent momenta. Each call derives, as pc_system_new does.
+/// forces. The functions are expressions of the model in coordinates and velocities; the
+/// momenta y_s = ∂L/∂η_s are substituted. Under nonholonomic constraints it is the
+/// almost-Poisson bracket of the independent momenta. Each call derives, as pc_system_new
+/// does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_bracket(
     system: *const pc_system,

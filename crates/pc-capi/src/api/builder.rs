@@ -10,11 +10,11 @@ use crate::ffi::pointer::{clear, finite, numbers, text, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, number, numbers as list_of, quoted};
 
-/// A model without anything, to be built by the calls below, in any order between sorts of
-/// entries; the order of coordinates, quasi-velocities, parameters and so on is that of their
-/// calls. Expressions are those of the text model, where `x'` is the velocity of the coordinate
-/// x, and `t` the time. What is said is understood as a whole by pc_model_check and
-/// pc_system_new, whose errors name the entry and show its expression.
+/// An empty model, to be built by the calls below. Kinds of entries may come in any order;
+/// coordinates, quasi-velocities, parameters and so on keep the order of their calls.
+/// Expressions are those of the text model, where `x'` is the velocity of the coordinate x and
+/// `t` the time. The model is read as a whole by pc_model_check and pc_system_new, whose
+/// errors name the entry and show its expression.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_new(
     name: *const c_char,
@@ -33,8 +33,8 @@ pub unsafe extern "C" fn pc_model_new(
     unsafe { entry(error, new) }
 }
 
-/// Reads what has been said as a whole: PC_OK if all names are known and all expressions well
-/// formed, and the frame and the start are in order. Whether equations can be derived is found by
+/// Reads the model as a whole: PC_OK if all names are known, all expressions are well formed,
+/// and the frame and the start are valid. Whether equations can be derived is found by
 /// pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_check(model: *const pc_model, error: *mut *mut pc_error) -> pc_status {
@@ -83,8 +83,8 @@ pub unsafe extern "C" fn pc_model_add_parameter(
     unsafe { draft(model, error, "pc_model_add_parameter", write) }
 }
 
-/// Adds a parameter that is an expression in those before it, which it follows until it is set
-/// itself.
+/// Adds a parameter that is an expression in the parameters before it. It follows them until
+/// it is itself set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_parameter_expression(
     model: *mut pc_model,
@@ -102,9 +102,9 @@ pub unsafe extern "C" fn pc_model_add_parameter_expression(
     unsafe { draft(model, error, "pc_model_add_parameter_expression", write) }
 }
 
-/// Adds an input: a value that is constant until it is set, as parameters are, after all of which
-/// it comes. Forces, rates of states, events and what is watched may contain it, but nothing that
-/// velocities or momenta depend on.
+/// Adds an input: a value that is constant until it is set, as a parameter is. Inputs come
+/// after all parameters. Forces, rates of states, events, integrals and outputs may contain
+/// it, but nothing that velocities or momenta depend on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input(
     model: *mut pc_model,
@@ -122,9 +122,9 @@ pub unsafe extern "C" fn pc_model_add_input(
     unsafe { draft(model, error, "pc_model_add_input", write) }
 }
 
-/// Adds an input that is a function of time: `length` values at rising times, between them
-/// "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the times.
-/// Its values are not set otherwise.
+/// Adds an input that is a function of time: `length` values at increasing times, interpolated
+/// by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the
+/// times. Its values cannot be set in any other way.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input_table(
     model: *mut pc_model,
@@ -158,10 +158,10 @@ pub unsafe extern "C" fn pc_model_add_input_table(
     unsafe { draft(model, error, "pc_model_add_input_table", write) }
 }
 
-/// Adds an input whose table is a column of a file of numbers with commas between them, below a
-/// line of names; otherwise as pc_model_add_input_table. `time` is the name of the column of
-/// times, NULL for "t" or else the first. The path is taken from the working directory as it is
-/// now.
+/// Adds an input whose table is a column of a file of comma-separated numbers below a line of
+/// names; otherwise as pc_model_add_input_table. `time` is the name of the column of times,
+/// NULL for "t" or, without one, the first column. The path is relative to the working
+/// directory at the time of the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input_file(
     model: *mut pc_model,
@@ -208,7 +208,7 @@ unsafe fn choice<'a>(word: *const c_char, what: &'static str) -> Result<&'a str,
 
 /// Adds a first-order state with its value at the start and its rate: an expression of time,
 /// coordinates, velocities and states. It is integrated with the motion and comes after the
-/// velocities in the state; no frame knows it.
+/// velocities in the state; it is no part of the frame.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_state(
     model: *mut pc_model,
@@ -374,8 +374,8 @@ pub unsafe extern "C" fn pc_model_set_bracket(
     unsafe { draft(model, error, "pc_model_set_bracket", write) }
 }
 
-/// Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is not
-/// affine in the velocities is said to be so by pc_model_set_constraint_kind.
+/// Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is
+/// not affine in the velocities is declared so by pc_model_set_constraint_kind.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_constraint(
     model: *mut pc_model,
@@ -393,8 +393,7 @@ pub unsafe extern "C" fn pc_model_add_constraint(
     unsafe { draft(model, error, "pc_model_add_constraint", write) }
 }
 
-/// Sets the Lagrangian L(t, x, η), in which x' may stand too. Excludes kinetic and potential
-/// energy.
+/// Sets the Lagrangian L(t, x, η), which may contain x' too. Excludes kinetic and potential energy.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_lagrangian(
     model: *mut pc_model,
@@ -480,7 +479,7 @@ pub unsafe extern "C" fn pc_model_add_force(
     unsafe { draft(model, error, "pc_model_add_force", write) }
 }
 
-/// Adds an expression that should stay constant, to be watched.
+/// Adds an integral: an expression that should stay constant, observed along the motion.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_integral(
     model: *mut pc_model,
@@ -498,7 +497,7 @@ pub unsafe extern "C" fn pc_model_add_integral(
     unsafe { draft(model, error, "pc_model_add_integral", write) }
 }
 
-/// Adds an expression to be watched.
+/// Adds an output: an expression observed along the motion.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_output(
     model: *mut pc_model,

@@ -9,8 +9,9 @@ use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{clear, free, write};
 use crate::ffi::status::pc_status;
 
-/// Ends derivations of systems that were given it in pc_system_options, and integrations of these.
-/// Any number of threads may use it at the same time. Free it with pc_cancel_free.
+/// Ends the derivations of systems whose pc_system_options have this handle, and integrations
+/// of these systems. Any number of threads may use it at the same time. Free it with
+/// pc_cancel_free.
 pub struct pc_cancel {
     pub(crate) cancel: Cancel,
 }
@@ -30,24 +31,22 @@ pub unsafe extern "C" fn pc_cancel_new(cancel: *mut *mut pc_cancel, error: *mut 
 }
 
 /// Ends the derivations and integrations under way with PC_LIMIT, soon, and those that begin later
-/// at once. It takes no lock and allocates nothing, so that a handler of signals may call it,
-/// which is all that one may. NULL is allowed.
+/// at once. It takes no lock and allocates nothing: it is the one function that a signal
+/// handler may call. NULL is allowed.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_cancel_request(cancel: *const pc_cancel) {
-    // SAFETY: null or a live handle, as the preamble demands.
-    if let Some(handle) = unsafe { cancel.as_ref() } {
+pub extern "C" fn pc_cancel_request(cancel: Option<&pc_cancel>) {
+    if let Some(handle) = cancel {
         handle.cancel.cancel();
     }
 }
 
-/// 1 after pc_cancel_request, else 0, as of NULL.
+/// 1 after pc_cancel_request, else 0; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_cancel_is_requested(cancel: *const pc_cancel) -> c_int {
-    // SAFETY: null or a live handle, as the preamble demands.
-    unsafe { cancel.as_ref() }.map_or(0, |handle| handle.cancel.is_cancelled().into())
+pub extern "C" fn pc_cancel_is_requested(cancel: Option<&pc_cancel>) -> c_int {
+    cancel.map_or(0, |handle| handle.cancel.is_cancelled().into())
 }
 
-/// Frees a handle; what was given it goes on. Null is allowed.
+/// Frees a handle; systems that have it continue without. NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_cancel_free(cancel: *mut pc_cancel) {
     // SAFETY: null or a handle of ours that nobody uses any more.

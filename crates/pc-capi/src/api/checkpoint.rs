@@ -16,12 +16,12 @@ use crate::machinery::engine::Integration;
 use crate::machinery::event_set::Followed;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes time and state of a solver as bytes, to be freed with pc_bytes_free and taken up by
-/// pc_solver_restore, in another run of the program if you like. `label` says what it is a
+/// Writes time and state of a solver as bytes, to be freed with pc_bytes_free and read by
+/// pc_solver_restore, possibly in another run of the program. `label` says what it is a
 /// checkpoint of; NULL for the empty text.
 ///
-/// A method rests on the steps before, so that this solver, too, begins anew there, at order 1:
-/// from a checkpoint on, it and those restored go through the same numbers to the last bit.
+/// A multistep method depends on earlier steps, so this solver restarts here too, at order 1:
+/// from a checkpoint on, it and the restored ones go through the same numbers to the last bit.
 /// Events of the model are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_checkpoint(
@@ -54,11 +54,11 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
     }
 }
 
-/// An integration from a checkpoint, with the parameters of the system as they are now. It goes
-/// on as the one did that was written if system, parameters and options are the same. `options`
-/// may be NULL. PC_INVALID_CHECKPOINT unless the bytes are all that pc_solver_checkpoint wrote,
-/// unchanged, and of a model with the same names and equations; values of parameters may differ.
-/// The work of the solver is counted from there.
+/// An integration from a checkpoint, with the parameters of the system as they are now. It
+/// continues as the checkpointed one did if system, parameters and options are the same.
+/// `options` may be NULL. PC_INVALID_CHECKPOINT unless the bytes are exactly what
+/// pc_solver_checkpoint wrote, for a model with the same names and equations; values of
+/// parameters may differ. Statistics of the solver count from here.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_restore(
     system: *const pc_system,
@@ -97,7 +97,7 @@ pub unsafe extern "C" fn pc_solver_restore(
 }
 
 /// Writes the label of a checkpoint, to be freed with pc_string_free. PC_INVALID_CHECKPOINT as
-/// pc_solver_restore.
+/// for pc_solver_restore.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_checkpoint_label(
     data: *const c_void,
@@ -142,7 +142,7 @@ fn handed_out(content: &[u8]) -> *mut c_void {
     unsafe { Box::into_raw(whole).cast::<u8>().add(HEAD).cast() }
 }
 
-/// Frees bytes that a function of this library has written to be freed. Null is allowed.
+/// Frees the bytes of a checkpoint. NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_bytes_free(data: *mut c_void) {
     if data.is_null() {

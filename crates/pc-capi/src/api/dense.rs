@@ -22,8 +22,8 @@ pub struct pc_dense {
 /// Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal
 /// step, from the polynomial of the method, whose degree is the order of that step. The step
 /// reaches from step_time − last_step to step_time of pc_statistics, but not beyond an event;
-/// there is none before the first, nor after a reset. y is on the constraints, its derivatives
-/// are those of the polynomial.
+/// before the first step and after a reset there is none. y is on the constraints; its
+/// derivatives are those of the polynomial.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_interpolate(
     solver: *mut pc_solver,
@@ -43,9 +43,9 @@ pub unsafe extern "C" fn pc_solver_interpolate(
     unsafe { integrate(solver, error, interpolate) }
 }
 
-/// Integrates to the time t, which is not that of the solver, as pc_solver_advance does, and
-/// keeps the motion from where it stood: (order + 2) × dim numbers for each internal step.
-/// `dense` is made also with PC_EVENT and PC_STOPPED, and then ends there.
+/// Integrates to the time t, which must differ from that of the solver, as pc_solver_advance
+/// does, and keeps the motion from where the solver stood: (order + 2) × dim numbers for each
+/// internal step. With PC_EVENT and PC_STOPPED `dense` is made too, and ends there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run_dense(
     solver: *mut pc_solver,
@@ -100,9 +100,9 @@ unsafe fn at(
     unsafe { entry(error, evaluate) }
 }
 
-/// Writes y(t). At an event that is the state after it, but at the very end the limit from
-/// before. Between the ends of steps it is off the constraints by the error of a step;
-/// pc_system_project moves it there.
+/// Writes y(t). At an event this is the state after it, except at the very end, where it is
+/// the limit from before. Between the ends of steps it is off the constraints by the error of
+/// a step; pc_system_project moves it onto them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_dense_eval(
     dense: *const pc_dense,
@@ -115,7 +115,7 @@ pub unsafe extern "C" fn pc_dense_eval(
     unsafe { at(dense, DenseOutput::evaluate, t, (y, y_length), error) }
 }
 
-/// Writes the rate of y at t, which may jump by the error of a step from one step to the next.
+/// Writes the rate of y at t. It may jump by the error of a step where one step meets the next.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_dense_rate(
     dense: *const pc_dense,
@@ -128,28 +128,25 @@ pub unsafe extern "C" fn pc_dense_rate(
     unsafe { at(dense, DenseOutput::derivative, t, (ydot, ydot_length), error) }
 }
 
-/// The length of the state. 0 of NULL.
+/// The length of the state; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_dense_dim(dense: *const pc_dense) -> usize {
-    // SAFETY: null or a live handle, as the preamble demands.
-    unsafe { dense.as_ref() }.map_or(0, |dense| dense.dim)
+pub extern "C" fn pc_dense_dim(dense: Option<&pc_dense>) -> usize {
+    dense.map_or(0, |dense| dense.dim)
 }
 
-/// Where the motion begins; NaN of NULL.
+/// The time at which the motion begins; NaN for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_dense_t_begin(dense: *const pc_dense) -> f64 {
+pub extern "C" fn pc_dense_t_begin(dense: Option<&pc_dense>) -> f64 {
     span(dense).0
 }
 
-/// Where the motion ends, before its beginning if it goes back in time; NaN of NULL.
+/// The time at which the motion ends, before its beginning if it goes back in time; NaN for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_dense_t_end(dense: *const pc_dense) -> f64 {
+pub extern "C" fn pc_dense_t_end(dense: Option<&pc_dense>) -> f64 {
     span(dense).1
 }
 
-fn span(dense: *const pc_dense) -> (f64, f64) {
-    // SAFETY: null or a live handle, as the preamble demands of the callers.
-    let dense = unsafe { dense.as_ref() };
+fn span(dense: Option<&pc_dense>) -> (f64, f64) {
     dense.and_then(|dense| dense.motion.span()).unwrap_or((f64::NAN, f64::NAN))
 }
 

@@ -22,7 +22,7 @@ use crate::machinery::event_set::Followed;
 use crate::machinery::motion_field::MotionField;
 use crate::machinery::system::pc_system;
 
-/// What has come of a member of an ensemble. It may grow at the end.
+/// The result of a member of an ensemble. The structure may grow at the end.
 #[repr(C)]
 pub struct pc_member {
     /// Its number, from 0.
@@ -34,18 +34,18 @@ pub struct pc_member {
     /// The output times that it reached, as many as `rows`; the time of a terminal event is the
     /// last one.
     pub times: *const f64,
-    /// The states at these, one after the other, each of `dim` numbers. As `times`, NULL where
-    /// there are none.
+    /// The states at these times, one after the other, each of `dim` numbers. Like `times`,
+    /// NULL where there are none.
     pub states: *const f64,
-    /// How many these are, also if it failed.
+    /// How many there are, also if the member failed.
     pub rows: usize,
     /// The length of a state.
     pub dim: usize,
 }
 
-/// Is given each member in order, on the thread of the call; what it points to is valid during
-/// the call. Returns 0 to go on; anything else ends the ensemble with PC_STOPPED. Otherwise as
-/// pc_observer.
+/// Receives each member in order, on the thread of the call; what the member points to is
+/// valid during the call. Returns 0 to continue; anything else ends the ensemble with
+/// PC_STOPPED. Otherwise as pc_observer.
 pub type pc_member_observer =
     Option<unsafe extern "C" fn(member: *const pc_member, user: *mut c_void) -> c_int>;
 
@@ -160,14 +160,15 @@ impl Plan<'_> {
 /// as a solver of its own would: the numbers are the same for any number of threads. The events
 /// of the model are followed.
 ///
-/// `states` has members × dim numbers, member by member, at the time t; NULL for the start of the
-/// model, and then t is not looked at. `parameters` has members × pc_system_parameter_count
-/// numbers; NULL for those of the system as they are now. A length is 0 with NULL. `options` may
-/// be NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
-/// returns. A member that fails is told as any other, with what it reached, and the others go on.
-/// What is the same for all, such as the times, is found by each. PC_STOPPED if the observer
-/// stops it; PC_LIMIT, after those members that were finished, if the time limit or the pc_cancel
-/// of the system's options ends it. The system may be used meanwhile.
+/// `states` has members × dim numbers, member by member, at the time t; NULL for the start of
+/// the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
+/// numbers; NULL for those of the system as they are now. The length that goes with NULL is 0.
+/// `options` may be NULL. `threads` is the number of threads, 0 for one on each core; they
+/// have ended when this returns. A member that fails is passed to the observer like any other,
+/// with what it reached, and the others continue. An error that all share, such as one in the
+/// times, is reported by each. PC_STOPPED if the observer stops the ensemble; PC_LIMIT, after
+/// the members that were finished, if the time limit or the pc_cancel of the system's options
+/// ends it. The system may be used meanwhile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_ensemble_run(
     system: *const pc_system,

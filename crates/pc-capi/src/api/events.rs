@@ -1,4 +1,4 @@
-//! Events of a model: said call by call, and for an integrator of one's own.
+//! Events of a model: declared call by call, and evaluated for an integrator of the program's own.
 
 use std::ffi::{c_char, c_int};
 
@@ -14,7 +14,7 @@ use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, quoted};
 use crate::machinery::system::{Inner, Inventory, Room, count, inside, name, pc_system};
 
-/// In which direction the function of an event passes through zero, as the integration goes.
+/// The direction in which the function of an event passes through zero, along the integration.
 #[repr(C)]
 pub enum pc_direction {
     /// From above.
@@ -35,9 +35,9 @@ pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), CallE
     }
 }
 
-/// Adds an event: `when`, an expression, passes through zero in a direction, a pc_direction. A
-/// `terminal` one, not 0, ends an integration with PC_EVENT. Simultaneous ones are dealt with in
-/// the order in which they were added.
+/// Adds an event: the expression `when` passes through zero in a direction, a pc_direction. If
+/// `terminal` is not 0 it ends an integration with PC_EVENT. Simultaneous events are handled
+/// in the order in which they were added.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event(
     model: *mut pc_model,
@@ -60,9 +60,9 @@ pub unsafe extern "C" fn pc_model_add_event(
     unsafe { draft(model, error, "pc_model_add_event", write) }
 }
 
-/// Gives an event that has been added a reset: where it occurs, the coordinate, quasi-velocity or
-/// velocity `x'` that is called `variable` takes the value of the expression. All resets of an
-/// event take effect together, from the state before it.
+/// Adds a reset to an event: where the event occurs, the coordinate, quasi-velocity or
+/// velocity `x'` called `variable` takes the value of the expression. All resets of an event
+/// take effect together, from the state before it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event_reset(
     model: *mut pc_model,
@@ -81,22 +81,22 @@ pub unsafe extern "C" fn pc_model_add_event_reset(
     unsafe { draft(model, error, "pc_model_add_event_reset", write) }
 }
 
-/// The number of events of the model. 0 of NULL.
+/// The number of events of the model; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_event_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_event_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.events.len())
 }
 
 /// The name of an event, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_event_name(system: *const pc_system, index: usize) -> *const c_char {
+pub extern "C" fn pc_system_event_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.event_names)
 }
 
 /// The direction of an event, a pc_direction; PC_BOTH beyond the last. These are the numbers that
 /// CVODE's CVodeSetRootDirection takes.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_event_direction(system: *const pc_system, index: usize) -> c_int {
+pub extern "C" fn pc_system_event_direction(system: Option<&pc_system>, index: usize) -> c_int {
     of_event(system, index, |event| match event.crosses() {
         Direction::Falling => -1,
         Direction::Both => 0,
@@ -106,26 +106,24 @@ pub unsafe extern "C" fn pc_system_event_direction(system: *const pc_system, ind
 
 /// 1 if an event ends the integration, else 0.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_event_is_terminal(system: *const pc_system, index: usize) -> c_int {
+pub extern "C" fn pc_system_event_is_terminal(system: Option<&pc_system>, index: usize) -> c_int {
     of_event(system, index, |event| event.is_terminal().into())
 }
 
 /// 1 if an event resets the state, else 0.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_event_resets(system: *const pc_system, index: usize) -> c_int {
+pub extern "C" fn pc_system_event_resets(system: Option<&pc_system>, index: usize) -> c_int {
     of_event(system, index, |event| event.resets().into())
 }
 
 /// What is known of an event; 0 of null, and beyond the last.
-fn of_event(system: *const pc_system, index: usize, known: impl FnOnce(&Event) -> c_int) -> c_int {
-    // SAFETY: null or a live handle, as the preamble demands of the callers.
-    let inventory = unsafe { system.as_ref() }.map(|system| &system.inventory);
-    inventory.and_then(|inventory| inventory.events.get(index)).map_or(0, known)
+fn of_event(system: Option<&pc_system>, index: usize, known: impl FnOnce(&Event) -> c_int) -> c_int {
+    system.and_then(|system| system.inventory.events.get(index)).map_or(0, known)
 }
 
 /// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event
-/// occurs where its own passes through zero. They are not finite where the model has no value for
-/// them.
+/// occurs where its function passes through zero. A function without a value here is not
+/// finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_events(
     system: *const pc_system,

@@ -16,8 +16,8 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// Writes the external forces at (t, y) to q: one for each that was declared, in that order, so
 /// `q_length` is pc_system_force_count. y is the state of the system; in the canonical form it
 /// has momenta. Returns 0; a positive number where the forces are not defined, so that a smaller
-/// step may help; a negative one to give up. What is left unwritten is not a number, and treated
-/// as a positive answer. It must return: no exceptions, no longjmp.
+/// step may help; a negative one to give up. A force left unwritten is NaN, and treated like a
+/// positive return value. It must return: no exceptions, no longjmp.
 pub type pc_force_function = Option<
     unsafe extern "C" fn(
         t: f64,
@@ -43,10 +43,10 @@ pub type pc_force_jacobian = Option<
     ) -> c_int,
 >;
 
-/// Declares that a force which a function of yours computes acts on a quasi-velocity; on a
-/// coordinate if the model declares no quasi-velocities. It adds to what else acts there. The
-/// function belongs to the system, not to the model: pc_system_set_force. An unknown name is
-/// found by pc_model_check and pc_system_new.
+/// Declares that a force computed by a function of yours acts on a quasi-velocity; on a
+/// coordinate if the model declares no quasi-velocities. It adds to the other forces there.
+/// The function belongs to the system, not to the model: pc_system_set_force. An unknown name
+/// is reported by pc_model_check and pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_external_force(
     model: *mut pc_model,
@@ -62,18 +62,15 @@ pub unsafe extern "C" fn pc_model_add_external_force(
     unsafe { change(model, error, declare) }
 }
 
-/// The number of external forces. 0 of NULL.
+/// The number of external forces; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_force_count(system: *const pc_system) -> usize {
-    // SAFETY: null or a live handle, as the preamble demands.
-    unsafe { system.as_ref() }.map_or(0, |system| system.inventory.forces.len())
+pub extern "C" fn pc_system_force_count(system: Option<&pc_system>) -> usize {
+    system.map_or(0, |system| system.inventory.forces.len())
 }
 
 /// The name of the quasi-velocity on which an external force acts, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_force_name(system: *const pc_system, index: usize) -> *const c_char {
-    // SAFETY: null or a live handle, as the preamble demands.
-    let system = unsafe { system.as_ref() };
+pub extern "C" fn pc_system_force_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     system.map_or(std::ptr::null(), |system| nth(&system.inventory.forces, index))
 }
 

@@ -9,17 +9,17 @@ use pc_mech::VectorField;
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::pointer::{are_usable, clear, free, fresh, handle, numbers, write};
+use crate::ffi::pointer::{are_usable, clear, free, fresh, numbers, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::lock_free_rhs::Direct;
 use crate::machinery::motion_field::MotionField;
 use crate::machinery::system::{Inner, holding, pc_system};
 
-/// f(t, y) for an integrator of one's own: the context of pc_kernel_rhs and pc_kernel_jacobian.
+/// f(t, y) for an integrator of your own: the context of pc_kernel_rhs and pc_kernel_jacobian.
 /// Free it with pc_kernel_free.
 ///
-/// It has room to compute in, so each thread needs its own, and two calls at the same time are
-/// not safe; in return there are no locks.
+/// It holds workspace, so each thread needs its own, and two calls at the same time are not
+/// safe; in return there are no locks.
 pub struct pc_kernel {
     dim: usize,
     direct: Option<Direct>,
@@ -96,12 +96,12 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
     unsafe { entry(error, set) }
 }
 
-/// Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they share no
-/// memory. `kernel` is a pc_kernel of this thread's.
+/// Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they must not
+/// share memory. `kernel` is a pc_kernel of this thread.
 ///
-/// Returns 0; 1 where f cannot be evaluated, so that a smaller step may help; −1 for what no step
-/// helps. pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2 takes,
-/// with the kernel as `params`.
+/// Returns 0; 1 where f cannot be evaluated and a smaller step may help; −1 where no step
+/// helps. pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2
+/// takes, with the kernel as `params`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, kernel: *mut c_void) -> c_int {
     // SAFETY: a kernel, whose motion lives, and arrays of its dimension, as the documentation demands, which are apart.
@@ -130,8 +130,8 @@ pub unsafe extern "C" fn pc_kernel_jacobian(
 }
 
 /// Writes f(t, y) of `count` states, which stand one after the other in `states`, to `rates`, in
-/// the same order. Otherwise as pc_kernel_rhs: 1 if some cannot be evaluated, whose rates are not
-/// numbers then; −1 for what no step helps, and the rates of those after it are not written.
+/// the same order. Otherwise as pc_kernel_rhs: 1 if some cannot be evaluated, whose rates are
+/// then NaN; −1 where no step helps, and the rates of the states after it are not written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_rhs_many(
     t: f64,
@@ -196,9 +196,8 @@ unsafe fn evaluate(
     }
 }
 
-/// The dimension of a kernel's state. 0 of NULL.
+/// The dimension of a kernel's state; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_kernel_dim(kernel: *const pc_kernel) -> usize {
-    // SAFETY: null or a live kernel, as the preamble demands.
-    unsafe { handle(kernel, "kernel") }.map_or(0, |kernel| kernel.dim)
+pub extern "C" fn pc_kernel_dim(kernel: Option<&pc_kernel>) -> usize {
+    kernel.map_or(0, |kernel| kernel.dim)
 }

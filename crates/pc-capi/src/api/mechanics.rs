@@ -47,8 +47,8 @@ impl Inner {
 
 /// Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state,
 /// so `length` is k*k; k is pc_system_dim less pc_system_coordinate_count and
-/// pc_system_state_count. With multipliers their rows are not among it. The first call derives,
-/// as pc_system_new does.
+/// pc_system_state_count. Rows of multipliers are not part of it. The first call derives, as
+/// pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_mass_matrix(
     system: *const pc_system,
@@ -72,9 +72,9 @@ pub unsafe extern "C" fn pc_system_mass_matrix(
     unsafe { inside(system, error, compute) }
 }
 
-/// Writes the right-hand side r of M η̇ = r at (t, y), k numbers, k and M as of
-/// pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions of multipliers.
-/// The first call derives, as pc_system_new does.
+/// Writes the right-hand side r of M η̇ = r at (t, y), k numbers, with k and M as in
+/// pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions of
+/// multipliers. The first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_right_hand_side(
     system: *const pc_system,
@@ -102,8 +102,9 @@ pub unsafe extern "C" fn pc_system_right_hand_side(
     unsafe { inside(system, error, compute) }
 }
 
-/// Solves M w = v at (t, y), M as of pc_system_mass_matrix, and writes w = M⁻¹ v; both have k
-/// numbers. The first call derives, as pc_system_new does. PC_EVALUATION where M is singular.
+/// Solves M w = v at (t, y), with M as in pc_system_mass_matrix, and writes w = M⁻¹ v; both
+/// have k numbers. The first call derives, as pc_system_new does. PC_EVALUATION where M is
+/// singular.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_solve_mass_matrix(
     system: *const pc_system,
@@ -146,9 +147,9 @@ pub unsafe extern "C" fn pc_system_solve_mass_matrix(
     unsafe { inside(system, error, compute) }
 }
 
-/// Writes the number K of operators X_1 … X_K between which there are structure coefficients: one
-/// for each quasi-velocity of the state, then those that constraints say vanish, if any. The
-/// first call derives, as pc_system_new does.
+/// Writes the number K of operators X_1 … X_K that have structure coefficients: one for each
+/// quasi-velocity of the state, then one for each that constraints make vanish. The first call
+/// derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_operator_count(
     system: *const pc_system,
@@ -190,10 +191,10 @@ pub unsafe extern "C" fn pc_system_structure_coefficients(
     unsafe { inside(system, error, compute) }
 }
 
-/// Writes the residual of the equations for ydot, as codes for implicit equations F(t, y, ẏ) = 0
-/// take it: ẋ − b η − b_0, then M η̇ − r, where nothing is divided by M. With multipliers, whose
-/// reactions are eliminated, the second part is M times the difference of η̇ from what it should
-/// be; in the canonical form all is ẏ − f. The first call derives, as pc_system_new does.
+/// Writes the residual of the equations for ydot, as codes for implicit equations F(t, y, ẏ) =
+/// 0 take it: ẋ − b η − b_0, then M η̇ − r, without dividing by M. With multipliers, whose
+/// reactions are eliminated, the second part is M times the error of η̇; in the canonical form
+/// the residual is ẏ − f. The first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_residual(
     system: *const pc_system,

@@ -1,4 +1,4 @@
-//! Models: a text, or what has been said call by call.
+//! Models: a text, or built call by call.
 
 use std::ffi::{CString, c_char, c_int};
 use std::sync::OnceLock;
@@ -170,7 +170,7 @@ pub extern "C" fn pc_builtin_name(index: usize) -> *const c_char {
     nth(NAMES.get_or_init(|| Builtin::all().map(|builtin| c_string(builtin.name)).collect()), index)
 }
 
-/// A copy that can be changed by itself.
+/// A copy, which can be changed independently.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_clone(
     model: *const pc_model,
@@ -235,8 +235,8 @@ pub unsafe extern "C" fn pc_model_set(
     unsafe { change(model, error, set) }
 }
 
-/// Has states projected to the value that this integral, or "energy", has at the start: after
-/// each step of a solver, and by pc_system_project. An unknown name is found by pc_system_new.
+/// Keeps this integral, or "energy", at its value at the start, by projection: after each step
+/// of a solver, and in pc_system_project. An unknown name is reported by pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_keep(
     model: *mut pc_model,
@@ -253,8 +253,8 @@ pub unsafe extern "C" fn pc_model_keep(
     unsafe { change(model, error, keep) }
 }
 
-/// Whether the start is moved to where the constraints are satisfied (else a start off them is
-/// refused). Not 0 is yes.
+/// Whether the start is moved onto the constraints (otherwise a start off them is refused).
+/// Any value but 0 means yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_project_start(
     model: *mut pc_model,
@@ -269,9 +269,9 @@ pub unsafe extern "C" fn pc_model_project_start(
     unsafe { change(model, error, project) }
 }
 
-/// Has a start that is moved to where the constraints are satisfied keep the value of this
-/// coordinate or quasi-velocity: the others follow. Without pc_model_project_start it says
-/// nothing. An unknown name is found by pc_system_new, with PC_NOT_FOUND.
+/// Holds the start value of this coordinate or quasi-velocity fixed where the start is moved
+/// onto the constraints: the others follow. Without pc_model_project_start it has no effect.
+/// An unknown name is reported by pc_system_new, with PC_NOT_FOUND.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_hold_start(
     model: *mut pc_model,
@@ -289,7 +289,7 @@ pub unsafe extern "C" fn pc_model_hold_start(
 }
 
 /// Whether the reactions of the constraints are observed, each called `λ_` and the name of its
-/// constraint. Not 0 is yes.
+/// constraint. Any value but 0 means yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_observe_reactions(
     model: *mut pc_model,
@@ -305,7 +305,7 @@ pub unsafe extern "C" fn pc_model_observe_reactions(
 }
 
 /// Whether systems of the model are derived with their derivatives by parameters, which
-/// pc_solver_add_sensitivity takes. Not 0 is yes.
+/// pc_solver_add_sensitivity needs. Any value but 0 means yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_differentiate(
     model: *mut pc_model,
@@ -320,12 +320,12 @@ pub unsafe extern "C" fn pc_model_differentiate(
     unsafe { change(model, error, differentiate) }
 }
 
-/// The text of the model, to be freed with pc_string_free. That of a model built by calls is the
-/// text that these wrote; lines and columns of errors are counted in it. What no text says is not
-/// in it: pc_model_set of parameters, pc_model_set_start of a model that was read, pc_model_keep,
-/// pc_model_project_start, pc_model_hold_start, pc_model_observe_reactions,
-/// pc_model_differentiate, pc_model_add_external_force, pc_model_give_quasi_velocity,
-/// pc_model_add_independent.
+/// The text of the model, to be freed with pc_string_free. For a model built by calls it is
+/// the text that the calls wrote; errors refer to its lines and columns. Settings that the
+/// text format does not have are not in it: pc_model_set of parameters, pc_model_set_start of
+/// a model that was read, pc_model_keep, pc_model_project_start, pc_model_hold_start,
+/// pc_model_observe_reactions, pc_model_differentiate, pc_model_add_external_force,
+/// pc_model_give_quasi_velocity, pc_model_add_independent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_text(
     model: *const pc_model,

@@ -1,4 +1,4 @@
-//! What is watched along a motion.
+//! What is observed along a motion.
 
 use crate::api::rates::{State, Target, slices};
 use crate::ffi::call_error::CallError;
@@ -9,8 +9,8 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
 /// energy, the outputs.
 ///
-/// An observable is not finite where the model has no value for it; one with accelerations in it,
-/// also where external forces cannot be computed.
+/// An observable without a value here is not finite; nor is one that contains accelerations
+/// where external forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
     system: *const pc_system,
@@ -41,8 +41,8 @@ fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
     }
 }
 
-/// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: what
-/// should stay constant, which are the first of the observables.
+/// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: the
+/// first of the observables, which should stay constant.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_integrals(
     system: *const pc_system,
@@ -91,8 +91,9 @@ pub unsafe extern "C" fn pc_system_energy(
     unsafe { inside(system, error, observe) }
 }
 
-/// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: what
-/// they add to the forces Q_s is the sum of each times the derivative of its constraint by η_s.
+/// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count:
+/// together they add to the force Q_s the sum of each times the derivative of its constraint
+/// by η_s.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_reactions(
     system: *const pc_system,
@@ -106,7 +107,7 @@ pub unsafe extern "C" fn pc_system_reactions(
     let observe = |inventory: &Inventory, inner: &mut Inner| {
         let reactions = &inventory.reactions;
         if reactions.is_empty() {
-            let why = "there are none, or pc_model_observe_reactions was not asked";
+            let why = "there are none, or pc_model_observe_reactions was not called";
             return Err(CallError::Unsupported { what: "the reactions", why });
         }
         let target = Target { data: values, length, expected: reactions.len(), what: "values" };
@@ -124,7 +125,7 @@ pub unsafe extern "C" fn pc_system_reactions(
     unsafe { inside(system, error, observe) }
 }
 
-/// Writes what should be zero of each constraint that is kept by projection, as many as
+/// Writes the residual of each constraint that is kept by projection, as many as
 /// pc_system_constraint_count.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_constraint_residuals(

@@ -1,4 +1,4 @@
-//! The events that a solver follows: what occurs, and events of the program's own.
+//! The events that a solver follows: their occurrences, and events of the program's own.
 
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::sync::{MutexGuard, PoisonError};
@@ -16,10 +16,10 @@ use crate::ffi::user_data::{User, pc_destroy};
 use crate::machinery::engine::{Integration, Observer};
 use crate::machinery::event_set::Own;
 
-/// Is given each event where it occurs, by its number among the events of the solver, with the
-/// states before and after it, which are valid during the call. Of simultaneous events each has
-/// the state that it found and the one that it left. Returns 0 to go on; anything else ends the
-/// call with PC_STOPPED, or with PC_EVENT where a terminal event does so too. Otherwise as
+/// Receives each event where it occurs, by its number among the events of the solver, with the
+/// states before and after it, which are valid during the call. Among simultaneous events each
+/// has the state that it found and the one that it left. Returns 0 to continue; anything else
+/// ends the call with PC_STOPPED, or with PC_EVENT where the event is terminal. Otherwise as
 /// pc_observer.
 pub type pc_event_observer = Option<
     unsafe extern "C" fn(
@@ -33,9 +33,9 @@ pub type pc_event_observer = Option<
 >;
 
 /// Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else
-/// ends the integration with PC_INTEGRATION, as a value does that is not finite or not written.
-/// It should depend on nothing but its arguments and be smooth. It must return: no exceptions, no
-/// longjmp.
+/// ends the integration with PC_INTEGRATION, as does a value that is not finite or not
+/// written. It should depend on nothing but its arguments and be smooth. It must return: no
+/// exceptions, no longjmp.
 pub type pc_event_function = Option<
     unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, value: *mut f64, user: *mut c_void) -> c_int,
 >;
@@ -44,9 +44,9 @@ pub type pc_event_function = Option<
 pub type pc_event_reset =
     Option<unsafe extern "C" fn(t: f64, y: *mut f64, y_length: usize, user: *mut c_void) -> c_int>;
 
-/// Has an observer told of each event from now on, instead of the one before; of none if it is
-/// NULL. `user` has to live until there is another one, or the solver is freed. It is called
-/// within the calls that integrate, on their thread.
+/// Sets the observer that is called for each event from now on, in place of the one before;
+/// NULL for none. `user` has to live until another observer is set or the solver is freed. It
+/// is called within the calls that integrate, on their thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_observe_events(
     solver: *mut pc_solver,
@@ -60,7 +60,7 @@ pub unsafe extern "C" fn pc_solver_observe_events(
 
 /// The same with a `user` that the solver owns: `destroy`, unless NULL, is called with it exactly
 /// once: by this call if it fails or `observer` is NULL, else when another observer takes its
-/// place or the solver is freed. It must not use the solver while that is being freed.
+/// place or the solver is freed. It must not use the solver while the solver is being freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_set_event_observer(
     solver: *mut pc_solver,
@@ -95,8 +95,9 @@ unsafe fn observe(
 
 /// Follows an event of the program's own, after those of the model and those added before:
 /// `function` passes through zero in a direction, a pc_direction. There `reset`, unless NULL,
-/// changes the state, which is then projected to the constraints; a `terminal` event, not 0, ends
-/// the call with PC_EVENT. Comes before the first step. `name` is for messages.
+/// changes the state, which is then projected onto the constraints; if `terminal` is not 0 the
+/// event ends the call with PC_EVENT. Must be called before the first step. `name` is for
+/// messages.
 ///
 /// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
 /// pc_solver_free. It must not use the solver.
@@ -133,18 +134,16 @@ fn names(solver: &pc_solver) -> MutexGuard<'_, Vec<CString>> {
     solver.event_names.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The number of events that a solver follows: those of the model, then those added. 0 of NULL.
+/// The number of events that a solver follows: those of the model, then those added; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_solver_event_count(solver: *const pc_solver) -> usize {
-    // SAFETY: null or a live handle, as the preamble demands.
-    unsafe { solver.as_ref() }.map_or(0, |solver| names(solver).len())
+pub extern "C" fn pc_solver_event_count(solver: Option<&pc_solver>) -> usize {
+    solver.map_or(0, |solver| names(solver).len())
 }
 
 /// The name of an event, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_solver_event_name(solver: *const pc_solver, index: usize) -> *const c_char {
-    // SAFETY: null or a live handle, as the preamble demands.
-    unsafe { solver.as_ref() }.map_or(std::ptr::null(), |solver| nth(&names(solver), index))
+pub extern "C" fn pc_solver_event_name(solver: Option<&pc_solver>, index: usize) -> *const c_char {
+    solver.map_or(std::ptr::null(), |solver| nth(&names(solver), index))
 }
 
 /// Writes how often an event has occurred since the solver was made.
@@ -169,7 +168,7 @@ fn no_such(event: usize, count: usize) -> CallError {
     CallError::Index { what: "the events", index: event, count }
 }
 
-/// Writes when an event occurred last, and the states before and after. PC_NOT_FOUND if it has
+/// Writes when an event last occurred, and the states before and after. PC_NOT_FOUND if it has
 /// not occurred. Only the last occurrence is kept; an observer sees all. `before` and `after` may
 /// be NULL, of length 0.
 #[unsafe(no_mangle)]
@@ -211,8 +210,8 @@ pub unsafe extern "C" fn pc_solver_last_occurrence(
     unsafe { integrate(solver, error, read) }
 }
 
-/// Writes the number of the terminal event that ended the last call which integrated;
-/// PC_NOT_FOUND if none did.
+/// Writes the number of the terminal event that ended the last integrating call; PC_NOT_FOUND
+/// if none did.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_terminal_event(
     solver: *const pc_solver,

@@ -14,10 +14,10 @@ use crate::ffi::pointer::{aligned, numbers};
 /// Which equations of motion; values of pc_system_options.form.
 #[repr(C)]
 pub enum pc_form {
-    /// Poincaré's, of quasi-velocities: independent ones if constraints say that the others
+    /// Poincaré's, in quasi-velocities: independent ones if constraints make the others
     /// vanish, all of them with multipliers otherwise.
     PC_POINCARE = 0,
-    /// Chetaev's canonical equations, of momenta.
+    /// Chetaev's canonical equations, in momenta.
     PC_CANONICAL = 1,
     /// Poincaré's without the coordinates that nothing depends on, Euler–Poincaré's where none is
     /// left; the state has fewer coordinates. Where multipliers hold constraints,
@@ -26,9 +26,9 @@ pub enum pc_form {
     PC_REDUCED = 2,
     /// The same in momenta: Lie–Poisson equations.
     PC_LIE_POISSON = 3,
-    /// Poincaré's of quasi-velocities that are orthonormal in the kinetic metric.
+    /// Poincaré's, in quasi-velocities that are orthonormal in the kinetic metric.
     PC_ORTHONORMAL = 4,
-    /// Hamel's, of the quasi-velocities that pc_model_give_quasi_velocity gives.
+    /// Hamel's, in the quasi-velocities of pc_model_give_quasi_velocity.
     PC_HAMEL = 5,
 }
 
@@ -42,15 +42,15 @@ pub struct pc_system_options {
     pub form: c_int,
     /// 0: room for a choice to come.
     pub reserved: c_int,
-    /// Most bytes that the expressions of a derivation may take, as they are estimated; 0, the
-    /// default, for 4 GiB. Beyond it, PC_LIMIT. It holds for pc_system_new, and for each later
-    /// call that derives by itself, as do the next two.
+    /// Most bytes that the expressions of a derivation may take, by estimate; 0, the default,
+    /// for 4 GiB. Beyond it, PC_LIMIT. It applies to pc_system_new and to each later call that
+    /// derives, each by itself; so do the next two.
     pub memory_limit: u64,
     /// Most seconds that a derivation may take, and each call of a solver or an ensemble of the
     /// system, positive; 0, the default, for no limit.
     pub time_limit: f64,
-    /// By which derivations and integrations are ended; NULL, the default, for none. It may be
-    /// freed when pc_system_new has returned.
+    /// The handle by which derivations and integrations can be ended; NULL, the default, for
+    /// none. It may be freed when pc_system_new has returned.
     pub cancel: *const pc_cancel,
 }
 
@@ -157,7 +157,7 @@ pub struct pc_solver_options {
     pub iteration: c_int,
     /// A pc_linear_solver; PC_LINEAR_AUTOMATIC by default. Only for Newton's iteration.
     pub linear_solver: c_int,
-    /// Highest order of the method; 0, the default, for all it has.
+    /// Highest order of the method; 0, the default, for the highest it has.
     pub max_order: c_int,
     /// Relative tolerance, positive; 1e-9 by default.
     pub relative_tolerance: f64,
@@ -165,7 +165,7 @@ pub struct pc_solver_options {
     pub absolute_tolerance: f64,
     /// Absolute tolerances, one for each component, copied; NULL, the default, for the one above.
     pub absolute_tolerances: *const f64,
-    /// Their number, 0 without.
+    /// Their number, 0 with NULL.
     pub absolute_tolerances_length: usize,
     /// Most steps from one output to the next; 500000 by default.
     pub max_steps: u64,
@@ -176,15 +176,16 @@ pub struct pc_solver_options {
     pub min_step: f64,
     /// Largest length of a step; 0, the default, for none.
     pub max_step: f64,
-    /// A time beyond which the equations are never evaluated; infinite, the default, for none.
+    /// A time beyond which the equations are never evaluated; infinity, the default, for none.
     pub stop_time: f64,
     /// Events are looked for at the ends of so many equal parts of each step, at least 1; 4 by
     /// default. Between two such places an even number of zeros may be missed.
     pub samples_per_step: u32,
     /// 0: room for a choice to come.
     pub reserved: u32,
-    /// Events that follow each other ever faster are an error once what is left of the first of
-    /// their distances is this part, from 0, for never, to less than 1; 1e-5 by default.
+    /// Events that follow each other ever faster are an error once the time left until they
+    /// accumulate is this fraction of their first interval, at least 0 (never) and less than
+    /// 1; 1e-5 by default.
     pub accumulation: f64,
 }
 

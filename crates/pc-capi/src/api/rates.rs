@@ -69,9 +69,10 @@ unsafe fn misfits<'a>(
 ///
 /// After the first call it takes no lock where f is one piece of machine code: where no function
 /// of the program computes forces, M is not factorised in numbers, and no velocities are solved
-/// for. Any number of threads may then call it at the same time and get its rates, those of the
-/// parameters before or after where another one sets them. It is PC_BUSY, with anything in ydot,
-/// only where that happens during its evaluation, and where it fails while the handle is in use.
+/// for. Any number of threads may then call it at the same time; while another thread sets
+/// parameters, the rates are those of the parameters before or after. It returns PC_BUSY, with
+/// ydot undefined, only where parameters are set during its evaluation, and where it fails
+/// while the handle is in use.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_rhs(
     system: *const pc_system,
@@ -144,10 +145,10 @@ pub unsafe extern "C" fn pc_system_jacobian(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Where ∂f/∂y may be other than zero, in compressed columns: the rows of the entries of column
-/// j, ascending, are the numbers of row_indices from place column_starts(j) up to but without
-/// place column_starts(j + 1). Gives pointers to dim + 1 and `entries` numbers that belong to the
-/// system and its copies. Each of the three places may be NULL.
+/// The entries of ∂f/∂y that may be nonzero, in compressed columns: the rows of the entries of
+/// column j, ascending, are `row_indices[column_starts[j]]` up to, but not including,
+/// `row_indices[column_starts[j + 1]]`. Gives pointers to dim + 1 and `entries` numbers that
+/// belong to the system and its copies. Each of the three arguments may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_jacobian_pattern(
     system: *const pc_system,
@@ -240,9 +241,9 @@ pub unsafe extern "C" fn pc_system_jvp(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their product:
-/// by each parameter while the others, also those that follow it, stay; by an input with a table
-/// that by its values. PC_UNSUPPORTED unless pc_model_differentiate was asked, or there are
+/// Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their
+/// product: by each parameter with all others fixed, also those that follow it; by the value
+/// of an input with a table. PC_UNSUPPORTED unless pc_model_differentiate was called, and with
 /// external forces.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_parameter_jacobian(
@@ -256,7 +257,7 @@ pub unsafe extern "C" fn pc_system_parameter_jacobian(
 ) -> pc_status {
     let evaluate = |inventory: &Inventory, inner: &mut Inner| {
         if !inner.field.has_parameter_jacobian() {
-            let why = "pc_model_differentiate was not asked";
+            let why = "pc_model_differentiate was not called";
             return Err(CallError::Unsupported { what: "∂f/∂p", why });
         }
         let (state, dim) = (State { y, length: y_length }, inventory.dim());
@@ -272,7 +273,7 @@ pub unsafe extern "C" fn pc_system_parameter_jacobian(
 
 /// Writes ∂f/∂t, as long as the state, as Rosenbrock's methods take it. The first call derives, as
 /// pc_system_new does, unless no expression of the model has t. PC_UNSUPPORTED with external
-/// forces, of which it is not known, and with inputs that have tables.
+/// forces, whose ∂/∂t is unknown, and with inputs that have tables.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_time_derivative(
     system: *const pc_system,
@@ -286,7 +287,7 @@ pub unsafe extern "C" fn pc_system_time_derivative(
     let evaluate = |inventory: &Inventory, inner: &mut Inner| {
         let unknown = |why| Err(CallError::Unsupported { what: "∂f/∂t", why });
         if !inventory.forces.is_empty() {
-            return unknown("that of external forces is not");
+            return unknown("the time derivative of external forces is unknown");
         }
         if !inventory.model.parameter_values().tables().is_empty() {
             return unknown("there are inputs with tables");
@@ -307,9 +308,9 @@ pub unsafe extern "C" fn pc_system_time_derivative(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Moves the state, in place, to the constraints by the shortest way in the kinetic metric, and
-/// the integrals of pc_model_keep to their values at the start of the model, or where
-/// pc_system_keep_from said. Where there is nothing to be kept it stays.
+/// Moves the state, in place, onto the constraints by the shortest way in the kinetic metric,
+/// and the integrals of pc_model_keep to their values at the start of the model, or at the
+/// state of pc_system_keep_from. Without either the state stays as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_project(
     system: *const pc_system,
@@ -334,8 +335,9 @@ pub unsafe extern "C" fn pc_system_project(
     unsafe { inside(system, error, project) }
 }
 
-/// Has pc_system_project keep the integrals of pc_model_keep at their values at (t, y), moved to
-/// the constraints, also after the parameters are set. Solvers keep those at their own start.
+/// Makes pc_system_project keep the integrals of pc_model_keep at their values at (t, y),
+/// moved onto the constraints, also after parameters are set. Solvers keep the values at their
+/// own start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_keep_from(
     system: *mut pc_system,

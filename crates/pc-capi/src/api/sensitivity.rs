@@ -10,10 +10,10 @@ use crate::ffi::status::pc_status;
 use crate::machinery::engine::Integration;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes the derivative of the start of the model by parameter number `parameter`, from 0: its
+/// Writes the derivative of the start of the model by parameter number `parameter`, from 0:
 /// start values may be expressions in parameters. It derives the equations twice.
-/// PC_INCONSISTENT_MODEL where there is no start for parameters near by, for an input with a
-/// table, and for a parameter in whose expression others are.
+/// PC_INCONSISTENT_MODEL where nearby parameters have no start, for an input with a table, and
+/// for a parameter that is an expression in others.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_start_by_parameter(
     system: *const pc_system,
@@ -48,13 +48,13 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
     unsafe { inside(system, error, derive) }
 }
 
-/// Has a solver integrate one more sensitivity with the motion, before the first step: the
-/// derivative of the state by parameter number `parameter`, from 0, of a start with the
-/// derivative `start`, as pc_system_start_by_parameter gives it for that of the model; NULL, of
-/// length 0, for a start that does not depend on the parameter. The model has to be one of
-/// pc_model_differentiate. Sensitivities jump where an event of the model resets the state;
-/// PC_INVALID_ARGUMENT where an event of the program does. By an input with a table they are the
-/// change when all its values are raised alike.
+/// Adds a sensitivity that a solver integrates with the motion, before the first step: the
+/// derivative of the state by parameter number `parameter`, from 0. `start` is the derivative
+/// of the start, which pc_system_start_by_parameter gives for that of the model; NULL, of
+/// length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
+/// Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where
+/// an event of the program does. For an input with a table it is the derivative by a shift of
+/// all its values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_add_sensitivity(
     solver: *mut pc_solver,
@@ -75,8 +75,8 @@ pub unsafe extern "C" fn pc_solver_add_sensitivity(
     unsafe { integrate(solver, error, add) }
 }
 
-/// Writes sensitivity number `number`, from 0 in the order in which they were added, where the
-/// integration stands, as long as the state.
+/// Writes sensitivity number `number`, from 0 in the order in which they were added, at the
+/// time of the solver; it is as long as the state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_sensitivity(
     solver: *const pc_solver,

@@ -1,4 +1,5 @@
-//! What a model says beside its mechanics: title, start, kinds of constraints, events, how it is to be run.
+//! The settings of a model beside its mechanics: description, start, kinds of constraints, how
+//! it is run.
 
 use std::ffi::c_char;
 
@@ -10,7 +11,7 @@ use crate::ffi::pointer::{finite, text};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, number, quoted};
 
-/// Says what the model is.
+/// Sets the description of the model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_description(
     model: *mut pc_model,
@@ -21,7 +22,7 @@ pub unsafe extern "C" fn pc_model_set_description(
     unsafe { put(model, error, "pc_model_set_description", (Section::Heading, "description"), description) }
 }
 
-/// Says where the model comes from.
+/// Sets the reference from which the model comes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_reference(
     model: *mut pc_model,
@@ -32,8 +33,8 @@ pub unsafe extern "C" fn pc_model_set_reference(
     unsafe { put(model, error, "pc_model_set_reference", (Section::Heading, "reference"), reference) }
 }
 
-/// Sets the value at the start of a coordinate, of a quasi-velocity, or of a velocity `x'` where
-/// there are no quasi-velocities, to another number.
+/// Changes the start value of a coordinate, of a quasi-velocity, or of a velocity `x'` where
+/// there are no quasi-velocities, to a number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_start(
     model: *mut pc_model,
@@ -55,7 +56,7 @@ pub unsafe extern "C" fn pc_model_set_start(
     unsafe { change(model, error, set) }
 }
 
-/// Sets the same to an expression of parameters.
+/// Changes it to an expression in parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_start_expression(
     model: *mut pc_model,
@@ -72,8 +73,8 @@ pub unsafe extern "C" fn pc_model_set_start_expression(
     unsafe { draft(model, error, "pc_model_set_start_expression", write) }
 }
 
-/// Says of what kind a constraint is: "holonomic" or "nonholonomic", which is checked, or
-/// "nonlinear" of one that is not affine in the velocities and obeys Chetaev's condition.
+/// Sets the kind of a constraint: "holonomic" or "nonholonomic", which is checked, or
+/// "nonlinear" for one that is not affine in the velocities and obeys Chetaev's condition.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_constraint_kind(
     model: *mut pc_model,
@@ -102,8 +103,8 @@ pub unsafe extern "C" fn pc_model_set_start_time(
     unsafe { set_number(model, error, "pc_model_set_start_time", &[("t_start", t)]) }
 }
 
-/// Sets the time to which the program `pc` runs the model. It is written to the text, as are the
-/// next five; a solver is told by its own options.
+/// Sets the time to which the program `pc` runs the model. It is written to the text, as are
+/// the next five; a solver has options of its own.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_end_time(
     model: *mut pc_model,
@@ -114,7 +115,7 @@ pub unsafe extern "C" fn pc_model_set_end_time(
     unsafe { set_number(model, error, "pc_model_set_end_time", &[("t_end", t)]) }
 }
 
-/// Sets the number of rows, from 2, that the program `pc` writes.
+/// Sets the number of rows, at least 2, that the program `pc` writes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_samples(
     model: *mut pc_model,
@@ -154,9 +155,9 @@ pub unsafe extern "C" fn pc_model_set_max_step(
     unsafe { set_number(model, error, "pc_model_set_max_step", &[("max_step", length)]) }
 }
 
-/// Sets how zeros of event functions are looked for by the program `pc`: at `samples_per_step`
-/// places of each step, from 1, and events whose distances shrink geometrically to less than
-/// `accumulation` of the first are taken for accumulated.
+/// Sets how the program `pc` looks for zeros of event functions: at `samples_per_step` places
+/// of each step, at least 1; events whose intervals shrink until the time left is less than
+/// `accumulation` of the first interval count as accumulated.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_event_search(
     model: *mut pc_model,

@@ -19,7 +19,7 @@ use crate::machinery::event_set::Followed;
 use crate::machinery::exclusive::Exclusive;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// An integration, which stands at a time with a state. Free it with pc_solver_free.
+/// An integration, with its current time and state. Free it with pc_solver_free.
 pub struct pc_solver {
     pub(crate) inner: Exclusive<Integration>,
     pub(crate) dim: usize,
@@ -35,18 +35,18 @@ impl pc_solver {
     }
 }
 
-/// Is given the state at each output time. Returns 0 to go on; anything else ends the run with
-/// PC_STOPPED. It may call any function on other handles, and must return: no exceptions, no
-/// longjmp.
+/// Receives the state at each output time. Returns 0 to continue; anything else ends the run
+/// with PC_STOPPED. It may call any function on other handles, and must return: no exceptions,
+/// no longjmp.
 pub type pc_observer =
     Option<unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, user: *mut c_void) -> c_int>;
 
-/// An integration of the system from the state y at the time t, with the parameters as they are
-/// now; from the start of the model if y is NULL, of length 0, and then t is not looked at.
-/// `options` may be NULL. States stay on the constraints, and keep what pc_model_keep says, by
-/// projection after each step; what is kept then are the values at this start. The events of the
-/// model are followed: where one occurs, the state is reset as the model says, and a terminal one
-/// ends the call with PC_EVENT.
+/// An integration of the system from the state y at the time t, with the parameters as they
+/// are now; from the start of the model if y is NULL, of length 0, and then t is ignored.
+/// `options` may be NULL. Projection after each step keeps states on the constraints, and the
+/// integrals of pc_model_keep at their values at this start. The events of the model are
+/// followed: where one occurs, the state is reset as the model says, and a terminal one ends
+/// the call with PC_EVENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_new(
     system: *const pc_system,
@@ -86,7 +86,8 @@ pub unsafe extern "C" fn pc_solver_new(
     }
 }
 
-/// Frees a solver. Null is allowed. In its own observers and functions it does nothing.
+/// Frees a solver. NULL is allowed. Called from the solver's own observers and functions it
+/// does nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
     // SAFETY: null or a live handle, as the preamble demands.
@@ -114,10 +115,10 @@ pub(crate) unsafe fn integrate(
     unsafe { entry(error, body) }
 }
 
-/// Has a solver go on with the parameters and inputs of the system as they are now, from where it
-/// stands: it begins anew there, at order 1. So inputs are changed between two calls of
-/// pc_solver_advance. The system is that of the solver, or one of the same model. PC_UNSUPPORTED
-/// with events of pc_solver_add_event.
+/// Makes a solver continue with the parameters and inputs of the system as they are now: it
+/// restarts from where it stands, at order 1. This is how inputs change between two calls of
+/// pc_solver_advance. The system is that of the solver, or one of the same model.
+/// PC_UNSUPPORTED with events of pc_solver_add_event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_take_parameters(
     solver: *mut pc_solver,
@@ -139,10 +140,11 @@ pub unsafe extern "C" fn pc_solver_take_parameters(
     unsafe { integrate(solver, error, set) }
 }
 
-/// Integrates to the time t, in the direction of the first step, and writes the state there. With
-/// PC_EVENT and PC_STOPPED that is the state where it ended, and pc_solver_time tells when; the
-/// next call goes on from there. After a failure pc_solver_time and pc_solver_state tell what was
-/// reached; one of them is PC_LIMIT, by the time limit or the pc_cancel of the system's options.
+/// Integrates to the time t, in the direction of the first step, and writes the state there.
+/// With PC_EVENT and PC_STOPPED it is the state where the integration ended, and
+/// pc_solver_time gives the time; the next call continues from there. After a failure
+/// pc_solver_time and pc_solver_state give what was reached. PC_LIMIT is such a failure, by
+/// the time limit or the pc_cancel of the system's options.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_advance(
     solver: *mut pc_solver,
@@ -162,8 +164,9 @@ pub unsafe extern "C" fn pc_solver_advance(
     unsafe { integrate(solver, error, advance) }
 }
 
-/// Takes one internal step in the direction of `towards`, or the part of it before an event, and
-/// writes its end, which may lie beyond, and the state there, also with PC_EVENT and PC_STOPPED.
+/// Takes one internal step in the direction of `towards`, or the part of it before an event,
+/// and writes the time of its end, which may lie beyond `towards`, and the state there, also
+/// with PC_EVENT and PC_STOPPED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_step(
     solver: *mut pc_solver,
@@ -188,10 +191,10 @@ pub unsafe extern "C" fn pc_solver_step(
     unsafe { integrate(solver, error, step) }
 }
 
-/// Integrates through the times, which go one way, and calls `observer` at each with the state,
-/// which is valid during the call, and with `user`. PC_STOPPED if the observer stops it. At the
-/// time of an event it is given the state after it; a terminal event is the last thing it is
-/// given, at the time of that, and PC_EVENT is returned.
+/// Integrates through the times, which increase or decrease throughout, and calls `observer`
+/// at each with the state, which is valid during the call, and with `user`. PC_STOPPED if the
+/// observer stops it. At the time of an event it receives the state after the event; a
+/// terminal event is the last call, at the time of the event, and PC_EVENT is returned.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run(
     solver: *mut pc_solver,
@@ -219,7 +222,7 @@ pub unsafe extern "C" fn pc_solver_run(
     unsafe { integrate(solver, error, run) }
 }
 
-/// Writes the time at which the integration stands.
+/// Writes the current time of the integration.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_time(
     solver: *const pc_solver,
@@ -230,7 +233,7 @@ pub unsafe extern "C" fn pc_solver_time(
     unsafe { integrate(solver, error, |integration, _| write(t, integration.time(), "t")) }
 }
 
-/// Writes the state at which the integration stands.
+/// Writes the current state of the integration.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_state(
     solver: *const pc_solver,

@@ -14,7 +14,7 @@ use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
 use crate::machinery::system::{Inventory, pc_system};
 
-/// How equations are printed.
+/// The format in which equations are printed.
 #[repr(C)]
 pub enum pc_format {
     /// As a book prints them, in UTF-8.
@@ -69,12 +69,12 @@ fn printed(inventory: &Inventory, model: &Model, page: Page) -> Result<String, C
 }
 
 /// Writes the equations as C source that depends on nothing of this library: the text of NAME.h
-/// and of NAME.c, where NAME is `name`, spelt as an identifier: Greek letters by their names,
-/// other signs as `_`, one at a time and not at the ends, `n_` before a digit at the beginning,
-/// `_` behind a word of C. The source has the right-hand side, its Jacobian, the mass matrix, the
+/// and of NAME.c, where NAME is `name`, made an identifier: Greek letters by their names, runs
+/// of other characters as one `_`, none at the ends, `n_` before a leading digit, `_` after a
+/// keyword of C. The source has the right-hand side, its Jacobian, the mass matrix, the
 /// energy, the integrals and the outputs of independent quasi-velocities, those of its momenta
 /// where the system has these, and says at its head how it is used. External forces are
-/// parameters of it, after the others, called `Q_` and the name of their quasi-velocity, and stay
+/// parameters of it, after the others, called `Q_` and the name of their quasi-velocity, and
 /// zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
 /// capitals) to a program that integrates from the start of the model to that time. Free both
 /// texts with pc_string_free.

@@ -10,7 +10,8 @@ use crate::ffi::error::pc_error;
 use crate::ffi::pointer::handle;
 use crate::ffi::status::pc_status;
 
-/// Counts since the start of an integration, and its last internal step. It may grow at the end.
+/// Counts since the start of an integration, and its last internal step. The structure may
+/// grow at the end.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct pc_statistics {
@@ -34,12 +35,12 @@ pub struct pc_statistics {
     pub last_order: u64,
     /// Length of the last step, with the sign of the direction; 0 before the first.
     pub last_step: f64,
-    /// Length that the next step will be tried with.
+    /// Length with which the next step is tried.
     pub next_step: f64,
     /// End of the last step, which may lie beyond the time of the solver.
     pub step_time: f64,
-    /// Steps that were to end no later than where the explicit dependence on time shows something
-    /// that the motion up to there does not let expect: the beginning of a pulse, a jump.
+    /// Steps shortened to end where the explicit dependence on time shows something that the
+    /// motion so far gives no hint of: the beginning of a pulse, a jump.
     pub limited_steps: u64,
 }
 
@@ -63,7 +64,7 @@ impl From<Statistics> for pc_statistics {
     }
 }
 
-/// Writes the work so far. `size` is sizeof(pc_statistics).
+/// Writes the statistics so far. `size` is sizeof(pc_statistics).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_statistics(
     solver: *const pc_solver,

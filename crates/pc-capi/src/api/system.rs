@@ -1,4 +1,4 @@
-//! Equations of motion: what they are of, and their parameters.
+//! Equations of motion: their state, names and parameters.
 
 use std::ffi::c_char;
 
@@ -14,8 +14,8 @@ use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, count, holding, inside, name, pc_system};
 
 /// Derives and compiles the equations of a model. `options` may be NULL. This takes from
-/// milliseconds to, for a hundred bodies, seconds; everything else is fast, except where it says
-/// that it derives.
+/// milliseconds to seconds (for a hundred bodies); other functions are fast unless they say
+/// that they derive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_new(
     model: *const pc_model,
@@ -44,8 +44,8 @@ pub unsafe extern "C" fn pc_system_new(
 }
 
 /// A copy for another thread, with the parameters as they are now. It shares the machine code
-/// there is: that of f, and that of each derivative which the original has evaluated before (the
-/// first evaluation of each compiles it).
+/// that exists: that of f, and that of each derivative which the original has evaluated before
+/// (its first evaluation compiles it).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_clone(
     system: *const pc_system,
@@ -65,8 +65,8 @@ pub unsafe extern "C" fn pc_system_clone(
     unsafe { entry(error, clone) }
 }
 
-/// Frees a system. Null is allowed. In a function that is called by a call of this system it does
-/// nothing.
+/// Frees a system. NULL is allowed. Called from a function that a call of this system runs it
+/// does nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_free(system: *mut pc_system) {
     // SAFETY: null or a live handle, as the preamble demands.
@@ -76,86 +76,84 @@ pub unsafe extern "C" fn pc_system_free(system: *mut pc_system) {
     }
 }
 
-/// The length of the state y: coordinates, quasi-velocities or momenta, first-order states. 0 of
-/// NULL.
+/// The length of the state y: coordinates, quasi-velocities or momenta, first-order states; 0
+/// for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_dim(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_dim(system: Option<&pc_system>) -> usize {
     count(system, Inventory::dim)
 }
 
-/// The number of coordinates, which come first in the state. 0 of NULL.
+/// The number of coordinates, which come first in the state; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_coordinate_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_coordinate_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.coordinates)
 }
 
-/// The number of first-order states, which come last in the state. 0 of NULL.
+/// The number of first-order states, which come last in the state; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_state_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_state_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.states)
 }
 
-/// The number of parameters. 0 of NULL.
+/// The number of parameters; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_parameter_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_parameter_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.parameters.len())
 }
 
-/// The number of observables: the integrals, "energy", the outputs. 0 of NULL.
+/// The number of observables: the integrals, "energy", the outputs; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_observable_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_observable_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.observables.len())
 }
 
-/// The number of observables, the first ones, that should stay constant: integrals and energy. 0
-/// of NULL.
+/// The number of observables that should stay constant, integrals and energy, which come
+/// first; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_conserved_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_conserved_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.conserved)
 }
 
-/// The number of constraints that are kept by projection. 0 of NULL.
+/// The number of constraints that are kept by projection; 0 for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_constraint_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_constraint_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.constraints.len())
 }
 
-/// The number of reactions; 0 unless pc_model_observe_reactions was asked, and of NULL.
+/// The number of reactions; 0 without pc_model_observe_reactions, and for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_reaction_count(system: *const pc_system) -> usize {
+pub extern "C" fn pc_system_reaction_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.reactions.len())
 }
 
 /// The name of a component of the state, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_name(system: *const pc_system, index: usize) -> *const c_char {
+pub extern "C" fn pc_system_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.names)
 }
 
 /// The name of a parameter, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_parameter_name(system: *const pc_system, index: usize) -> *const c_char {
+pub extern "C" fn pc_system_parameter_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.parameters)
 }
 
 /// The name of an observable, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_observable_name(system: *const pc_system, index: usize) -> *const c_char {
+pub extern "C" fn pc_system_observable_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.observables)
 }
 
 /// The name of a constraint that is kept by projection, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_constraint_name(system: *const pc_system, index: usize) -> *const c_char {
+pub extern "C" fn pc_system_constraint_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.constraints)
 }
 
 /// The name of a reaction, `λ_` and that of its constraint, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_system_reaction_name(system: *const pc_system, index: usize) -> *const c_char {
-    // SAFETY: null or a live handle, as the preamble demands.
-    let inventory = unsafe { system.as_ref() }.map(|system| &system.inventory);
-    let place = inventory.and_then(|inventory| inventory.reactions.get(index).copied());
+pub extern "C" fn pc_system_reaction_name(system: Option<&pc_system>, index: usize) -> *const c_char {
+    let place = system.and_then(|system| system.inventory.reactions.get(index).copied());
     name(system, place.unwrap_or(usize::MAX), |inventory| &inventory.observables)
 }
 
@@ -198,9 +196,9 @@ pub unsafe extern "C" fn pc_system_parameters(
     unsafe { inside(system, error, get) }
 }
 
-/// Sets all parameters; cheap, nothing is derived again. The start stays, and solvers and kernels
-/// made before keep their values. Inputs come after the parameters; those with a table are read
-/// from it whatever they are set to.
+/// Sets all parameters; cheap, since nothing is derived again. The start stays, and solvers
+/// and kernels made before keep their values. Inputs come after the parameters; one with a
+/// table follows its table whatever it is set to.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_parameters(
     system: *mut pc_system,
@@ -222,8 +220,8 @@ pub unsafe extern "C" fn pc_system_set_parameters(
     unsafe { holding(system, error, set) }
 }
 
-/// Sets one parameter, by its place; those that are expressions in it follow, unless they have
-/// been set themselves. Otherwise as pc_system_set_parameters.
+/// Sets one parameter, by its index; parameters that are expressions in it follow, unless they
+/// have themselves been set. Otherwise as pc_system_set_parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_parameter(
     system: *mut pc_system,

@@ -19,12 +19,12 @@ const MOST_DEGREE: usize = 6;
 
 /// Prints what can be said of the motions without integrating them, as `pc theory` does: momenta
 /// and their brackets, Casimirs, integrals, cyclic displacements, invariant measure, Chaplygin's
-/// multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. What is claimed is
-/// said to be proved, disproved or open. Integrals are looked for that are polynomials of a
-/// `degree` from 1 to 6 in the velocities, whose coefficients are polynomials of the coordinates
-/// times 1 or one of the `functions`, expressions of the model; there may be none of these.
-/// `format` is a pc_format. Parameters have the values of the model. Everything is derived anew,
-/// which takes longer than pc_system_print. Free the text with pc_string_free.
+/// multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each claim is
+/// marked proved, disproved or open. Integrals are sought that are polynomials of a `degree`
+/// from 1 to 6 in the velocities, whose coefficients are polynomials in the coordinates times
+/// 1 or one of the `functions`, expressions of the model; the list may be empty. `format` is a
+/// pc_format. Parameters have the values of the model. Everything is derived again, which
+/// takes longer than pc_system_print. Free the text with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_theory(
     system: *const pc_system,

@@ -1,4 +1,4 @@
-//! Velocities that are asked for beside those of a model.
+//! Velocities that are chosen in addition to those of a model.
 
 use std::ffi::c_char;
 
@@ -7,10 +7,10 @@ use crate::ffi::error::pc_error;
 use crate::ffi::pointer::text;
 use crate::ffi::status::pc_status;
 
-/// Gives a quasi-velocity beside those of the model, for systems of the form PC_HAMEL: a linear
-/// form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where those
-/// given are fewer than the independent ones, quasi-velocities of the model complete them. Each
-/// is an output too. What is wrong with it is found by pc_model_check and pc_system_new.
+/// Adds a quasi-velocity to those of the model, for systems of the form PC_HAMEL: a linear
+/// form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where fewer
+/// are given than there are independent ones, quasi-velocities of the model complete them.
+/// Each is an output too. Errors in it are reported by pc_model_check and pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_give_quasi_velocity(
     model: *mut pc_model,
@@ -28,11 +28,11 @@ pub unsafe extern "C" fn pc_model_give_quasi_velocity(
     unsafe { change(model, error, give) }
 }
 
-/// Asks for a velocity as one of the independent ones, as many as the constraints leave free:
-/// where multipliers would hold these, systems then have the equations in which they are
-/// eliminated. The name is that of a quasi-velocity; x' where there are none. Without any,
-/// equations in print and in source are those of the velocities that make them shortest. A wrong
-/// choice is found by pc_system_new.
+/// Chooses a velocity as one of the independent ones, of which there are as many as the
+/// constraints leave free: where multipliers would hold the constraints, systems then have
+/// equations in which these are eliminated. The name is that of a quasi-velocity, or x' where
+/// there are none. Without a choice, printed equations and source are in the velocities that
+/// make them shortest. A wrong choice is reported by pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_independent(
     model: *mut pc_model,

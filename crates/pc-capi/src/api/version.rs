@@ -1,4 +1,4 @@
-//! Which library this is, and what holds for all of it.
+//! The version of the library, and what holds for all of it.
 
 use std::ffi::c_char;
 
@@ -47,32 +47,32 @@ pub const PREAMBLE: &str = "\
  *
  * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a
  * pc_error, or NULL. There it writes NULL if all went well, and otherwise a new error, which you
- * free; what stood there before is not looked at. PC_STOPPED and PC_EVENT are no failures: an
+  * free; what the place held before does not matter. PC_STOPPED and PC_EVENT are no failures: an
  * observer, or a terminal event, has ended an integration. Results are written unless the call
- * fails, except that a new handle or text is NULL after a failure, and that arrays for results may
- * hold anything then.
+  * fails; after a failure a new handle or text is NULL, and arrays for results may
+  * hold anything.
  *
- * Ownership. What a function of the name ..._new, ..._clone, pc_model_parse, pc_model_from_file,
+  * Ownership. What a function named ..._new, ..._clone, pc_model_parse, pc_model_from_file,
  * pc_model_builtin, pc_solver_restore or pc_solver_run_dense gives, you free with the ..._free of
  * its type; `char *` you free with pc_string_free, bytes with pc_bytes_free; `const char *`
  * belongs to the handle it came from and lives as long, or is static. All ..._free allow NULL.
  * Handles are independent: a model can be freed while its system lives, and a system while its
  * solvers and kernels do.
  *
- * Arrays. Each comes with its length, which has to be the right one, not only large enough. They
- * are `double`, aligned as such, and an array that is written shares no memory with another one;
+  * Arrays. Each comes with its length, which must be exact, not merely large enough. They
+  * are `double`, aligned as such, and an array that is written must not overlap another one;
  * this is checked. NULL goes with the length 0. Matrices are dense and column-major,
  * A[i + j*rows], unless the function says otherwise. Text is UTF-8 and zero-terminated.
  *
  * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a
  * time: a second one at the same time returns PC_BUSY and does nothing; only of pc_system_rhs many
  * may succeed side by side, as it says. (Freeing a handle while another thread uses it is not
- * safe, as ever.) Different handles are independent; to evaluate on many threads, give each its
+  * safe.) Different handles are independent; to evaluate on many threads, give each its
  * own by pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second
  * call. Names and sizes may be read at any time, by any number of threads, and a pc_cancel used.
- * That a function takes a handle as `const` says that what it computes stays, no more.
+  * A `const` handle says only that the call does not change what the handle computes.
  *
- * Not for signal handlers, but for pc_cancel_request. A fault of the library is PC_INTERNAL and
- * does not end your program; memory that is exhausted does, and a stack: a thread needs 128 KiB,
- * whatever the model; what goes deeper takes a stack of its own, of 8 MiB, while it derives.
+  * Signal handlers may call pc_cancel_request only. A fault of the library is PC_INTERNAL and
+  * does not end your program; exhausted memory or an exhausted stack does: a thread needs 128 KiB,
+  * whatever the model; deeper work takes a stack of its own, of 8 MiB, while it derives.
  */";

@@ -76,14 +76,14 @@ mod tests {
         // SAFETY: a place for a pointer; the error is freed once.
         unsafe {
             let status = entry(&raw mut error, body);
-            let message = CStr::from_ptr(pc_error_message(error)).to_str().unwrap().to_owned();
+            let message = CStr::from_ptr(pc_error_message(error.as_ref())).to_str().unwrap().to_owned();
             pc_error_free(error);
             (status, message)
         }
     }
 
     #[test]
-    fn a_panic_goes_no_further() {
+    fn a_panic_becomes_an_error() {
         let (status, message) = called(|| panic!("number {}", 7));
         assert_eq!((status, message.as_str()), (pc_status::PC_INTERNAL, "a fault of the library: number 7"));
         assert_eq!(called(|| panic!("seven")).1, "a fault of the library: seven");
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_panic_left_half_done_is_not_used_again() {
+    fn a_value_left_half_done_by_a_panic_is_not_used_again() {
         let value = Exclusive::new(1);
         let half_done = called(|| {
             let _held = value.take()?;

@@ -19,11 +19,11 @@ pub(crate) enum CallError {
     Null { what: &'static str },
     #[error("{what}: room for {found} numbers, but there are {expected}")]
     Length { what: &'static str, found: usize, expected: usize },
-    #[error("{what}: {found} numbers are more than any memory has, which is {most}; is it −1?")]
+    #[error("{what}: {found} numbers are more than memory can hold, {most} at most; is the length −1?")]
     TooLong { what: &'static str, found: usize, most: usize },
-    #[error("{what} does not stand at a multiple of {alignment} bytes, as its type does")]
+    #[error("{what} is misaligned: its address must be a multiple of {alignment} bytes")]
     Misaligned { what: &'static str, alignment: usize },
-    #[error("{what} is not UTF-8 text: byte number {offset} (from 0) does not fit")]
+    #[error("{what} is not UTF-8 text: byte number {offset} (from 0) is invalid")]
     NotText { what: &'static str, offset: usize },
     #[error("{what} is {value}, but must be finite")]
     NotFinite { what: &'static str, value: f64 },
@@ -39,9 +39,9 @@ pub(crate) enum CallError {
     Reserved { what: &'static str, value: i64 },
     #[error("the time limit is {value} s, but must be positive, or 0 for none")]
     TimeLimit { value: f64 },
-    #[error("{what} are of size {found}, not between {least} and {most}; set them up with the init function")]
+    #[error("{what} have size {found}, not between {least} and {most}; set them up with the init function")]
     StructSize { what: &'static str, found: usize, least: usize, most: usize },
-    #[error("{what}: there is no number {index}, there are {count}")]
+    #[error("{what}: index {index} is not below {count}")]
     Index { what: &'static str, index: usize, count: usize },
     #[error("{what} needs a model begun with pc_model_new; this one was read from a text")]
     NotADraft { what: &'static str },
@@ -49,11 +49,11 @@ pub(crate) enum CallError {
     NoSuchModel { name: String },
     #[error("cannot read `{path}`: {source}")]
     Read { path: String, source: std::io::Error },
-    #[error("{what} is not known of this system: {why}")]
+    #[error("{what} is not available for this system: {why}")]
     Unsupported { what: &'static str, why: &'static str },
     #[error("the handle is in use by another call")]
     Busy,
-    #[error("an earlier call failed inside; this handle can only be freed")]
+    #[error("an earlier call failed internally; this handle can only be freed")]
     Broken,
     #[error("a fault of the library: {message}")]
     Panic { message: String },
@@ -63,7 +63,7 @@ pub(crate) enum CallError {
     Stopped,
     #[error("a terminal event ended the integration")]
     Terminal,
-    #[error("{what} comes before the first step, and there has been one")]
+    #[error("{what} must come before the first step, and one has been taken")]
     Begun { what: &'static str },
     #[error("there is no event called `{name}`; pc_model_add_event adds one")]
     NoSuchEvent { name: String },
@@ -74,10 +74,10 @@ pub(crate) enum CallError {
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
     #[error(
-        "the checkpoint is of another model: its names, their number or its equations are not those of the system"
+        "the checkpoint belongs to another model: its names, their number or its equations differ from the system's"
     )]
     OtherModel,
-    #[error("the checkpoint does not say of which model it is: pc_solver_checkpoint did not write it")]
+    #[error("the checkpoint does not name its model: pc_solver_checkpoint did not write it")]
     NoModel,
     #[error("there is no {what} called `{name}`; there are {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") })]
     UnknownName { what: &'static str, name: String, known: Vec<String> },

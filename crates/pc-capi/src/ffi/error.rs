@@ -51,59 +51,55 @@ impl CallError {
     }
 }
 
-/// Its status, never PC_OK; PC_OK of null.
+/// Its status, never PC_OK; PC_OK for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_error_status(error: *const pc_error) -> pc_status {
-    // SAFETY: null or a live error, as the preamble demands.
-    unsafe { error.as_ref() }.map_or(pc_status::PC_OK, |error| error.status)
+pub extern "C" fn pc_error_status(error: Option<&pc_error>) -> pc_status {
+    error.map_or(pc_status::PC_OK, |error| error.status)
 }
 
 /// The message, in UTF-8, never null; it lives as long as the error. For a model it shows the
-/// line at fault and what would be right, over several lines of text. The empty text of null.
+/// line at fault and what would be right, over several lines of text. Empty for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_error_message(error: *const pc_error) -> *const c_char {
-    // SAFETY: null or a live error, as the preamble demands.
-    unsafe { error.as_ref() }.map_or(c"".as_ptr(), |error| error.message.as_ptr())
+pub extern "C" fn pc_error_message(error: Option<&pc_error>) -> *const c_char {
+    error.map_or(c"".as_ptr(), |error| error.message.as_ptr())
 }
 
-/// The line of the model text at fault, from 1; 0 if there is none, or of null.
+/// The line of the model text at fault, from 1; 0 if there is none, and for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_error_line(error: *const pc_error) -> usize {
+pub extern "C" fn pc_error_line(error: Option<&pc_error>) -> usize {
     place(error).line
 }
 
-/// The column at which the text at fault begins, in characters from 1; 0 if there is none, or of
-/// null.
+/// The column at which the text at fault begins, in characters from 1; 0 if there is none, and
+/// for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_error_column(error: *const pc_error) -> usize {
+pub extern "C" fn pc_error_column(error: Option<&pc_error>) -> usize {
     place(error).column
 }
 
-/// The byte at which the text at fault begins, from 0; 0 if there is none, or of null.
+/// The byte at which the text at fault begins, from 0; 0 if there is none, and for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_error_offset(error: *const pc_error) -> usize {
+pub extern "C" fn pc_error_offset(error: Option<&pc_error>) -> usize {
     place(error).offset
 }
 
-/// The number of bytes of the text at fault; 0 if there is none, or of null.
+/// The number of bytes of the text at fault; 0 if there is none, and for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_error_length(error: *const pc_error) -> usize {
+pub extern "C" fn pc_error_length(error: Option<&pc_error>) -> usize {
     place(error).length
 }
 
-/// The code that CVODES returned (cvodes.h), where it is the reason; else 0, as of null.
+/// The code that CVODES returned (cvodes.h), where it is the reason; else 0, and for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_error_integrator_code(error: *const pc_error) -> c_int {
-    // SAFETY: null or a live error, as the preamble demands.
-    unsafe { error.as_ref() }.map_or(0, |error| error.integrator_code)
+pub extern "C" fn pc_error_integrator_code(error: Option<&pc_error>) -> c_int {
+    error.map_or(0, |error| error.integrator_code)
 }
 
-/// 1 if the status is PC_EVALUATION and another state near by may do, so that an integrator
-/// should try a smaller step; else 0, as of null.
+/// 1 if the status is PC_EVALUATION and a nearby state may do, so that an integrator should
+/// try a smaller step; else 0, and for NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_error_is_recoverable(error: *const pc_error) -> c_int {
-    // SAFETY: null or a live error, as the preamble demands.
-    unsafe { error.as_ref() }.map_or(0, |error| error.recoverable.into())
+pub extern "C" fn pc_error_is_recoverable(error: Option<&pc_error>) -> c_int {
+    error.map_or(0, |error| error.recoverable.into())
 }
 
 /// Frees an error. Null is allowed.
@@ -113,7 +109,6 @@ pub unsafe extern "C" fn pc_error_free(error: *mut pc_error) {
     unsafe { free(error) };
 }
 
-fn place(error: *const pc_error) -> Place {
-    // SAFETY: null or a live error, as the preamble demands of the callers.
-    unsafe { error.as_ref() }.map_or_else(Place::default, |error| error.place)
+fn place(error: Option<&pc_error>) -> Place {
+    error.map_or_else(Place::default, |error| error.place)
 }

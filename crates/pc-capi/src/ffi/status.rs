@@ -16,39 +16,38 @@ pub enum pc_status {
     PC_INVALID_MODEL = 2,
     /// The model contradicts itself; the error has the place.
     PC_INCONSISTENT_MODEL = 3,
-    /// What is asked for cannot be done, or not of this system.
+    /// The request cannot be met, or not for this system.
     PC_UNSUPPORTED = 4,
-    /// There is nothing of this name, such as a file.
+    /// Nothing has this name: no file, no component, no event.
     PC_NOT_FOUND = 5,
-    /// A file that there is could not be read.
+    /// A file exists but could not be read.
     PC_IO = 6,
     /// The equations cannot be evaluated at this time and state.
     PC_EVALUATION = 7,
-    /// The integration could not begin or go on. Events that occur ever more closely, as a ball's
-    /// that comes to rest, are such an end.
+    /// The integration could not begin or go on. Events that accumulate, such as the bounces
+    /// of a ball that comes to rest, end it so.
     PC_INTEGRATION = 8,
     /// An observer stopped the integration. This is no failure, and there is no pc_error.
     PC_STOPPED = 9,
     /// The handle is in use: by another thread, or by the call that called the observer or the
     /// force function.
     PC_BUSY = 10,
-    /// A fault of the library, after which the handle can only be freed; or threads or memory for
-    /// a solver are not to be had, and the handle is as it was.
+    /// A fault of the library, after which the handle can only be freed; or threads or memory
+    /// for a solver are not available, and the handle is unchanged.
     PC_INTERNAL = 11,
     /// A terminal event ended the integration. This is no failure, and there is no pc_error.
     PC_EVENT = 12,
-    /// The bytes are no checkpoint, or one of which a part is missing or changed.
+    /// The bytes are not a checkpoint, or part of it is missing or changed.
     PC_INVALID_CHECKPOINT = 13,
     /// Two derivations of one model give different motions: a defect of the library.
     PC_DISAGREEMENT = 14,
-    /// The equations of the model, or an integration, would take more memory or time than they
-    /// may, or somebody cancelled the work.
+    /// The derivation or an integration would exceed its limit of memory or time, or was cancelled.
     PC_LIMIT = 15,
-    /// None.
+    /// Not a status.
     PC_STATUS_LAST = 0x7fff_ffff,
 }
 
-/// The name of a status, such as "PC_OK"; "unknown status" of a number that is none. Static.
+/// The name of a status, such as "PC_OK"; "unknown status" for any other number. Static.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_status_name(status: c_int) -> *const c_char {
     let name = match status {

@@ -2,7 +2,7 @@
 
 use std::ffi::{CString, c_char};
 
-/// Frees a text that a function of this library has returned to be freed. Null is allowed.
+/// Frees a text that a function of this library returned for the caller to free. NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_string_free(text: *mut c_char) {
     if !text.is_null() {

@@ -34,7 +34,7 @@ unsafe impl Sync for Shared {}
 /// Why there are no forces.
 #[derive(Clone, Copy, Debug, thiserror::Error)]
 enum NoForce {
-    #[error("no function was set for it; pc_system_set_force does")]
+    #[error("no function has been set for it; pc_system_set_force sets one")]
     Unset,
     #[error("its function returned {0}")]
     Function(c_int),

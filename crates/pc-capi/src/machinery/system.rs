@@ -280,17 +280,15 @@ pub(crate) unsafe fn holding(
 }
 
 /// A number of the inventory; 0 of null.
-pub(crate) fn count(system: *const pc_system, number: impl FnOnce(&Inventory) -> usize) -> usize {
-    // SAFETY: null or a live handle, as the preamble demands of the callers.
-    unsafe { system.as_ref() }.map_or(0, |system| number(&system.inventory))
+pub(crate) fn count(system: Option<&pc_system>, number: impl FnOnce(&Inventory) -> usize) -> usize {
+    system.map_or(0, |system| number(&system.inventory))
 }
 
 /// A name of the inventory; null of null, and beyond the last.
 pub(crate) fn name(
-    system: *const pc_system,
+    system: Option<&pc_system>,
     index: usize,
     list: impl FnOnce(&Inventory) -> &[CString],
 ) -> *const c_char {
-    // SAFETY: null or a live handle, as the preamble demands of the callers.
-    unsafe { system.as_ref() }.map_or(std::ptr::null(), |system| nth(list(&system.inventory), index))
+    system.map_or(std::ptr::null(), |system| nth(list(&system.inventory), index))
 }

@@ -28,7 +28,7 @@ unsafe extern "C" fn malloc(size: usize) -> *mut c_void {
     unsafe { __libc_malloc(size) }
 }
 
-// SAFETY: as above.
+// SAFETY: the function of the C library by its other name.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn calloc(number: usize, size: usize) -> *mut c_void {
     count();
@@ -36,7 +36,7 @@ unsafe extern "C" fn calloc(number: usize, size: usize) -> *mut c_void {
     unsafe { __libc_calloc(number, size) }
 }
 
-// SAFETY: as above.
+// SAFETY: the function of the C library by its other name.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn realloc(block: *mut c_void, size: usize) -> *mut c_void {
     count();

@@ -102,7 +102,7 @@ fn again(mut function: impl FnMut(*mut *mut pc_error) -> pc_status) -> usize {
 }
 
 #[test]
-fn what_allocates_is_counted() {
+fn allocations_are_counted() {
     let before = allocations();
     let held = std::hint::black_box(Box::new(1.0));
     assert_eq!(allocations(), before + 1);
@@ -123,12 +123,12 @@ fn evaluations_allocate_nothing() {
         // SAFETY: a live system.
         let (coordinates, states, parameters, observables, conserved, constraints) = unsafe {
             (
-                pc_system_coordinate_count(s),
-                pc_system_state_count(s),
-                pc_system_parameter_count(s),
-                pc_system_observable_count(s),
-                pc_system_conserved_count(s),
-                pc_system_constraint_count(s),
+                pc_system_coordinate_count(s.as_ref()),
+                pc_system_state_count(s.as_ref()),
+                pc_system_parameter_count(s.as_ref()),
+                pc_system_observable_count(s.as_ref()),
+                pc_system_conserved_count(s.as_ref()),
+                pc_system_constraint_count(s.as_ref()),
             )
         };
         let k = n - coordinates - states;
@@ -224,7 +224,7 @@ fn steps_allocate_nothing() {
             continue;
         }
         // SAFETY: a live system.
-        let events = unsafe { pc_system_event_count(system.0) };
+        let events = unsafe { pc_system_event_count(system.0.as_ref()) };
         with_events += usize::from(events > 0);
         let (bdf, newton) = (PC_BDF as c_int, pc_iteration::PC_NEWTON as c_int);
         let methods = [

@@ -38,7 +38,7 @@ pub(crate) fn call(function: impl FnOnce(*mut *mut pc_error) -> pc_status) -> Re
     let status = function(&raw mut error);
     // SAFETY: null or an error, which is ours and is freed once.
     unsafe {
-        assert_eq!(pc_error_status(error) == pc_status::PC_OK, error.is_null());
+        assert_eq!(pc_error_status(error.as_ref()) == pc_status::PC_OK, error.is_null());
         if status == pc_status::PC_OK {
             assert!(error.is_null());
             return Ok(());
@@ -47,10 +47,10 @@ pub(crate) fn call(function: impl FnOnce(*mut *mut pc_error) -> pc_status) -> Re
             assert!(error.is_null());
             return Err(Refusal { status, ..stopped() });
         }
-        assert_eq!(pc_error_status(error), status);
-        let message = CStr::from_ptr(pc_error_message(error)).to_str().unwrap().to_owned();
+        assert_eq!(pc_error_status(error.as_ref()), status);
+        let message = CStr::from_ptr(pc_error_message(error.as_ref())).to_str().unwrap().to_owned();
         assert!(!message.is_empty());
-        let line = pc_error_line(error);
+        let line = pc_error_line(error.as_ref());
         pc_error_free(error);
         Err(Refusal { status, message, line })
     }
@@ -132,7 +132,7 @@ impl System {
 
     pub(crate) fn dim(&self) -> usize {
         // SAFETY: a live system.
-        unsafe { pc_system_dim(self.0) }
+        unsafe { pc_system_dim(self.0.as_ref()) }
     }
 
     pub(crate) fn start(&self) -> (f64, Vec<f64>) {
@@ -154,7 +154,7 @@ impl System {
 
     pub(crate) fn parameters(&self) -> Vec<f64> {
         // SAFETY: a live system.
-        let mut values = vec![0.0; unsafe { pc_system_parameter_count(self.0) }];
+        let mut values = vec![0.0; unsafe { pc_system_parameter_count(self.0.as_ref()) }];
         // SAFETY: a live system and room as said.
         call(|error| unsafe { pc_system_parameters(self.0, values.as_mut_ptr(), values.len(), error) })
             .unwrap();
@@ -168,7 +168,7 @@ impl System {
 
     pub(crate) fn name(&self, i: usize) -> String {
         // SAFETY: a live system; the name lives as long.
-        unsafe { CStr::from_ptr(pc_system_name(self.0, i)).to_str().unwrap().to_owned() }
+        unsafe { CStr::from_ptr(pc_system_name(self.0.as_ref(), i)).to_str().unwrap().to_owned() }
     }
 }
 
@@ -297,7 +297,7 @@ impl Dense {
     pub(crate) fn at(&self, t: f64) -> Result<Vec<f64>, Refusal> {
         // SAFETY: a live motion and room as said.
         unsafe {
-            let mut y = vec![0.0; pc_dense_dim(self.0)];
+            let mut y = vec![0.0; pc_dense_dim(self.0.as_ref())];
             call(|error| pc_dense_eval(self.0, t, y.as_mut_ptr(), y.len(), error)).map(|()| y)
         }
     }
@@ -305,14 +305,14 @@ impl Dense {
     pub(crate) fn rate(&self, t: f64) -> Result<Vec<f64>, Refusal> {
         // SAFETY: a live motion and room as said.
         unsafe {
-            let mut y = vec![0.0; pc_dense_dim(self.0)];
+            let mut y = vec![0.0; pc_dense_dim(self.0.as_ref())];
             call(|error| pc_dense_rate(self.0, t, y.as_mut_ptr(), y.len(), error)).map(|()| y)
         }
     }
 
     pub(crate) fn span(&self) -> (f64, f64) {
         // SAFETY: a live motion, or null.
-        unsafe { (pc_dense_t_begin(self.0), pc_dense_t_end(self.0)) }
+        unsafe { (pc_dense_t_begin(self.0.as_ref()), pc_dense_t_end(self.0.as_ref())) }
     }
 }
 
@@ -324,7 +324,7 @@ impl Drop for Dense {
 }
 
 /// Refused, each with a status and a message that ends so; the arguments are written as for C, without the last.
-#[allow(unused_macros, reason = "as above")]
+#[allow(unused_macros, reason = "only the tests of refusals use it")]
 macro_rules! refused {
     ($status:expr, $end:expr; $($function:ident($($argument:expr),* $(,)?);)*) => {$(
         // SAFETY: null, live objects, or places as said; that what is wrong does no harm is what is tested.

@@ -114,10 +114,13 @@ pub(crate) extern "C" fn observe(_t: f64, y: *const f64, y_length: usize, user: 
         let watch = &*user.cast::<Watch>();
         let (mut t, mut error) = (0.0, ptr::null_mut());
         assert_eq!(pc_solver_time(watch.solver, &raw mut t, &raw mut error), pc_status::PC_BUSY);
-        assert_eq!(pc_error_status(error), pc_status::PC_BUSY);
+        assert_eq!(pc_error_status(error.as_ref()), pc_status::PC_BUSY);
         pc_error_free(error);
         pc_solver_free(watch.solver);
-        assert!(pc_solver_event_name(watch.solver, pc_solver_event_count(watch.solver)).is_null());
+        assert!(
+            pc_solver_event_name(watch.solver.as_ref(), pc_solver_event_count(watch.solver.as_ref()))
+                .is_null()
+        );
         watch.stop.into()
     }
 }

@@ -36,15 +36,24 @@ impl Handles {
         assert_eq!(error.is_null(), silent || self.quiet, "{status:?}");
         // SAFETY: null or an error, which is ours and freed once.
         unsafe {
-            let message = CStr::from_ptr(pc_error_message(error)).to_str().unwrap();
+            let message = CStr::from_ptr(pc_error_message(error.as_ref())).to_str().unwrap();
             assert_ne!(status, pc_status::PC_INTERNAL, "{message}");
             assert_eq!(message.is_empty(), error.is_null());
-            assert_eq!(pc_error_status(error), if error.is_null() { pc_status::PC_OK } else { status });
-            assert_eq!(pc_error_line(error) > 0, pc_error_column(error) > 0);
-            assert!(pc_error_offset(error) + pc_error_length(error) == 0 || pc_error_line(error) > 0);
+            assert_eq!(
+                pc_error_status(error.as_ref()),
+                if error.is_null() { pc_status::PC_OK } else { status }
+            );
+            assert_eq!(pc_error_line(error.as_ref()) > 0, pc_error_column(error.as_ref()) > 0);
+            assert!(
+                pc_error_offset(error.as_ref()) + pc_error_length(error.as_ref()) == 0
+                    || pc_error_line(error.as_ref()) > 0
+            );
             let by_integrator = matches!(status, pc_status::PC_INTEGRATION | pc_status::PC_INVALID_ARGUMENT);
-            assert!(pc_error_is_recoverable(error) == 0 || status == pc_status::PC_EVALUATION, "{message}");
-            assert!(pc_error_integrator_code(error) == 0 || by_integrator, "{message}");
+            assert!(
+                pc_error_is_recoverable(error.as_ref()) == 0 || status == pc_status::PC_EVALUATION,
+                "{message}"
+            );
+            assert!(pc_error_integrator_code(error.as_ref()) == 0 || by_integrator, "{message}");
             pc_error_free(error);
         }
         if status == pc_status::PC_OK { Ok(()) } else { Err(status) }
@@ -67,9 +76,11 @@ impl Handles {
         let dense = self.dense;
         // SAFETY: null or a live handle, and an array as long as said.
         unsafe {
-            assert!(pc_dense_dim(dense) > 0 || dense.is_null());
-            assert!(pc_dense_t_begin(dense).is_finite() == pc_dense_t_end(dense).is_finite());
-            let length = if length == 0 { pc_dense_dim(dense) } else { usize::from(length) };
+            assert!(pc_dense_dim(dense.as_ref()) > 0 || dense.is_null());
+            assert!(
+                pc_dense_t_begin(dense.as_ref()).is_finite() == pc_dense_t_end(dense.as_ref()).is_finite()
+            );
+            let length = if length == 0 { pc_dense_dim(dense.as_ref()) } else { usize::from(length) };
             let mut y = vec![0.0; length];
             let function = if rate { pc_dense_rate } else { pc_dense_eval };
             self.call(|error| function(dense, t, y.as_mut_ptr(), length, error))
@@ -82,7 +93,8 @@ impl Handles {
         unsafe {
             let rows =
                 |width: usize| numbers.iter().copied().cycle().take(members * width).collect::<Vec<_>>();
-            let (states, parameters) = (rows(pc_system_dim(system)), rows(pc_system_parameter_count(system)));
+            let (states, parameters) =
+                (rows(pc_system_dim(system.as_ref())), rows(pc_system_parameter_count(system.as_ref())));
             let given = |all: &[f64], no: bool| if no { (ptr::null(), 0) } else { (all.as_ptr(), all.len()) };
             let (state_data, state_length) = given(&states, which.is_multiple_of(4));
             let (parameter_data, parameter_length) = given(&parameters, !which.is_multiple_of(3));
@@ -138,8 +150,8 @@ fn nothing(which: u8) -> Outcome {
         pc_string_free(ptr::null_mut());
         pc_bytes_free(ptr::null_mut());
         pc_kernel_free(ptr::null_mut());
-        pc_cancel_request(ptr::null());
-        assert_eq!(pc_cancel_is_requested(ptr::null()), 0);
+        pc_cancel_request(None);
+        assert_eq!(pc_cancel_is_requested(None), 0);
         pc_cancel_free(ptr::null_mut());
         pc_system_options_init(ptr::null_mut(), 8);
         pc_solver_options_init(ptr::null_mut(), 8);

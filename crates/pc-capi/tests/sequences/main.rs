@@ -60,7 +60,7 @@ fn play_all(cases: u32, batch: u32) -> usize {
 const BATCH: u32 = 5000;
 
 #[test]
-fn any_sequence_of_calls_is_survived_and_leaves_nothing_behind() {
+fn any_sequence_of_calls_is_safe_and_leaks_nothing() {
     let cases: u32 = std::env::var("PC_SEQUENCES").map_or(300, |number| number.parse().unwrap());
     let batches = cases.div_ceil(BATCH);
     let workers = thread::available_parallelism().map_or(1, |n| n.get() as u32).min(batches);

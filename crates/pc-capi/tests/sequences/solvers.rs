@@ -138,7 +138,7 @@ impl Handles {
     /// Room for the state, or, seldom, for another number of numbers.
     fn state(&self, length: u8) -> Array {
         // SAFETY: null or a live handle. The solver may be of another system.
-        Array::of(length.wrapping_mul(37), unsafe { pc_system_dim(self.system) })
+        Array::of(length.wrapping_mul(37), unsafe { pc_system_dim(self.system.as_ref()) })
     }
 
     fn occurrences(&self, event: u8, before: u8, after: u8) -> Outcome {
@@ -149,7 +149,10 @@ impl Handles {
         unsafe {
             let _ = self.call(|error| pc_solver_terminal_event(solver, &raw mut number, error));
             let _ = self.call(|error| pc_solver_event_occurrences(solver, event, &raw mut count, error));
-            assert_eq!(pc_solver_event_name(solver, event).is_null(), event >= pc_solver_event_count(solver));
+            assert_eq!(
+                pc_solver_event_name(solver.as_ref(), event).is_null(),
+                event >= pc_solver_event_count(solver.as_ref())
+            );
             self.call(|error| pc_solver_last_occurrence(solver, event, &raw mut t, y, n, z, m, error))
         }
     }

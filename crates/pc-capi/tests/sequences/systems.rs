@@ -50,7 +50,7 @@ impl Handles {
                     self.with(*function, *room, *t, y, usize::from(index % 8))
                 }
                 SystemCall::Parameters { function, index, value } => {
-                    let mut values = Array::of(*index, pc_system_parameter_count(system));
+                    let mut values = Array::of(*index, pc_system_parameter_count(system.as_ref()));
                     let (data, len) = (values.data(), values.len());
                     self.call(|error| match function % 3 {
                         0 => pc_system_set_parameter(system, usize::from(index % 8), *value, error),
@@ -60,7 +60,7 @@ impl Handles {
                 }
                 SystemCall::Bracket([f, g], y) => {
                     let (f, g, mut y, mut value) =
-                        (c(f), c(g), Array::state(3, pc_system_dim(system), y), 0.0);
+                        (c(f), c(g), Array::state(3, pc_system_dim(system.as_ref()), y), 0.0);
                     let (data, len, place) = (y.data(), y.len(), &raw mut value);
                     let (f, g) = (f.as_ptr(), g.as_ptr());
                     self.call(|error| pc_system_bracket(system, f, g, 0.5, data, len, place, error))
@@ -111,8 +111,9 @@ impl Handles {
         let system = self.system;
         // SAFETY: the handle is null or live, arrays are as long as said.
         unsafe {
-            let dim = pc_system_dim(system);
-            let velocities = dim - pc_system_coordinate_count(system) - pc_system_state_count(system);
+            let dim = pc_system_dim(system.as_ref());
+            let velocities =
+                dim - pc_system_coordinate_count(system.as_ref()) - pc_system_state_count(system.as_ref());
             let (mut operators, mut entries) = (0, 0);
             let _ = self.call(|error| pc_system_operator_count(system, &raw mut operators, error));
             let _ = self.call(|error| {
@@ -120,16 +121,16 @@ impl Handles {
             });
             let functions: [(At, usize); 15] = [
                 (pc_system_time_derivative, dim),
-                (pc_system_parameter_jacobian, dim * pc_system_parameter_count(system)),
+                (pc_system_parameter_jacobian, dim * pc_system_parameter_count(system.as_ref())),
                 (pc_system_right_hand_side, velocities),
-                (pc_system_events, pc_system_event_count(system)),
+                (pc_system_events, pc_system_event_count(system.as_ref())),
                 (pc_system_rhs, dim),
                 (pc_system_jacobian, dim * dim),
                 (pc_system_sparse_jacobian, entries),
-                (pc_system_observe, pc_system_observable_count(system)),
-                (pc_system_integrals, pc_system_conserved_count(system)),
-                (pc_system_reactions, pc_system_reaction_count(system)),
-                (pc_system_constraint_residuals, pc_system_constraint_count(system)),
+                (pc_system_observe, pc_system_observable_count(system.as_ref())),
+                (pc_system_integrals, pc_system_conserved_count(system.as_ref())),
+                (pc_system_reactions, pc_system_reaction_count(system.as_ref())),
+                (pc_system_constraint_residuals, pc_system_constraint_count(system.as_ref())),
                 (pc_system_mass_matrix, velocities * velocities),
                 (pc_system_structure_coefficients, (operators + 1) * (operators + 1) * operators),
                 (pc_system_to_momenta, dim),
@@ -147,13 +148,14 @@ impl Handles {
         let system = self.system;
         // SAFETY: the handle is null or live, arrays are as long as said.
         unsafe {
-            let dim = pc_system_dim(system);
+            let dim = pc_system_dim(system.as_ref());
             let [mut y, mut v, mut result] =
                 [Array::state(room, dim, y), Array::state(room / 2, dim, y), Array::of(room, dim)];
             let (y, y_length, v, v_length) = (y.data(), y.len(), v.data(), v.len());
             let (out, length) = (result.data(), result.len());
             let mut number = 0.0;
-            let velocities = dim - pc_system_coordinate_count(system) - pc_system_state_count(system);
+            let velocities =
+                dim - pc_system_coordinate_count(system.as_ref()) - pc_system_state_count(system.as_ref());
             let [of_v, of_w] = [v_length, length].map(|length| length.min(velocities));
             self.call(|error| match function % 10 {
                 0 => pc_system_project(system, t, y, y_length, error),
@@ -173,8 +175,8 @@ impl Handles {
 
     /// Names up to the last and none beyond.
     fn inventory(&self, index: usize) -> Outcome {
-        type Count = unsafe extern "C" fn(*const pc_system) -> usize;
-        type Name = unsafe extern "C" fn(*const pc_system, usize) -> *const c_char;
+        type Count = extern "C" fn(Option<&pc_system>) -> usize;
+        type Name = extern "C" fn(Option<&pc_system>, usize) -> *const c_char;
         type Find = unsafe extern "C" fn(
             *const pc_system,
             *const c_char,
@@ -194,7 +196,7 @@ impl Handles {
         // SAFETY: the handle is null or live, the array as long as said.
         unsafe {
             for (count, name) in lists {
-                assert_eq!(name(system, index).is_null(), index >= count(system));
+                assert_eq!(name(system.as_ref(), index).is_null(), index >= count(system.as_ref()));
             }
             let finds = [
                 (pc_system_find as Find, pc_system_name as Name),
@@ -202,16 +204,19 @@ impl Handles {
                 (pc_system_find_observable, pc_system_observable_name),
             ];
             for (find, name) in finds {
-                let (known, mut place) = (name(system, index), usize::MAX);
+                let (known, mut place) = (name(system.as_ref(), index), usize::MAX);
                 let found = self.call(|error| find(system, known, &raw mut place, error));
                 assert_eq!(found.is_ok(), !known.is_null());
                 assert!(known.is_null() || place <= index); // the first one of the name
             }
-            assert!(pc_system_conserved_count(system) <= pc_system_observable_count(system));
-            assert!((-1..2).contains(&pc_system_event_direction(system, index)));
-            assert!((0..2).contains(&pc_system_event_is_terminal(system, index)));
-            assert!((0..2).contains(&pc_system_event_resets(system, index)));
-            let (mut t, mut y) = (0.0, vec![0.0; if index == 15 { 3 } else { pc_system_dim(system) }]);
+            assert!(
+                pc_system_conserved_count(system.as_ref()) <= pc_system_observable_count(system.as_ref())
+            );
+            assert!((-1..2).contains(&pc_system_event_direction(system.as_ref(), index)));
+            assert!((0..2).contains(&pc_system_event_is_terminal(system.as_ref(), index)));
+            assert!((0..2).contains(&pc_system_event_resets(system.as_ref(), index)));
+            let (mut t, mut y) =
+                (0.0, vec![0.0; if index == 15 { 3 } else { pc_system_dim(system.as_ref()) }]);
             let (data, len) = (y.as_mut_ptr(), y.len());
             self.call(|error| pc_system_start(system, &raw mut t, data, len, error))
         }
@@ -223,7 +228,7 @@ impl Handles {
         unsafe {
             let outcome = self.call(|error| pc_kernel_new(system, &raw mut kernel, error));
             assert_eq!(kernel.is_null(), outcome.is_err());
-            let dim = pc_kernel_dim(kernel);
+            let dim = pc_kernel_dim(kernel.as_ref());
             let (mut y, mut room) = (Array::state(3, dim, y), vec![0.0; dim * dim]);
             let answers = [
                 pc_kernel_rhs(0.0, y.data(), room.as_mut_ptr(), kernel.cast()),
@@ -234,7 +239,7 @@ impl Handles {
             ];
             assert!(answers.iter().all(|answer| (-1..2).contains(answer)));
             assert!(answers[3] == -1 && (outcome.is_ok() || answers == [-1; 4]));
-            let values = vec![value; pc_system_parameter_count(system)];
+            let values = vec![value; pc_system_parameter_count(system.as_ref())];
             let (data, len) = (values.as_ptr(), values.len());
             let set = self.call(|error| pc_kernel_set_parameters(kernel, data, len, error));
             pc_kernel_free(kernel);

@@ -29,21 +29,21 @@ pub struct Arguments {
 /// What to do.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
-    /// Say whether a model holds together, what its motion keeps, and whether a steady motion is near
+    /// Check a model: consistency, conserved quantities, steady motions near its start
     Check(CheckArguments),
     /// Print the equations of motion
     Derive(DeriveArguments),
-    /// Print what can be said of the motions: brackets, integrals, measures, steady motions, reductions
+    /// Print the analysis of the motions: brackets, integrals, measures, steady motions, reductions
     Theory(TheoryArguments),
     /// Integrate the motion; CSV on standard output unless -o is given
     Run(Box<RunArguments>),
-    /// Integrate many motions, of other parameters and starts, over all cores; what is finished survives interruptions
+    /// Integrate many motions over parameters and starts, on all cores; finished ones survive interruptions
     Sweep(Box<SweepArguments>),
-    /// Write the equations as C or Rust source that needs nothing of this program
+    /// Write the equations as C or Rust source without dependencies
     Emit(EmitArguments),
     /// Make a model of a robot in URDF
     Import(ImportArguments),
-    /// List the models that come with the program, or print one
+    /// List the built-in models, or print one
     Models(ModelsArguments),
 }
 

@@ -14,33 +14,33 @@ use crate::args::forms::{EmitForm, Form, RunForm, choice, emit_form, form, run_f
 pub struct ModelArguments {
     /// A file, `-` for standard input, or a built-in name
     pub model: String,
-    /// Give a parameter another value than that of the file (repeatable)
+    /// Set a parameter to another value than in the file (repeatable)
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<Setting>,
-    /// Move the start to where the constraints are satisfied, by steps of Newton's method that are the shortest in the
-    /// kinetic metric
+    /// Move the start onto the constraints, by steps of Newton's method that are the shortest in the kinetic metric
     #[arg(long)]
     pub project_start: bool,
-    /// With --project-start: coordinates and quasi-velocities, separated by commas, that keep the start values of the file
+    /// With --project-start: coordinates and quasi-velocities, separated by commas, that keep their start values
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "project_start")]
     pub keep: Vec<String>,
-    /// What the expressions of the equations, and again the rows of a motion, may take in memory, such as 500M or 8G
+    /// Memory limit of the expressions of the equations, and likewise of the rows of a motion, such as 500M or 8G
     #[arg(long, value_name = "BYTES", value_parser = bytes, default_value = "4G")]
     pub limit_memory: u64,
-    /// How many seconds all work on the model may take, from its derivation to the end of a motion; no limit unless given
+    /// Time limit in seconds of all work on the model, from its derivation to the end of a motion; none unless given
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub limit_time: Option<Duration>,
 }
 
-/// Which velocities the equations are written in.
+/// The velocities of the equations.
 #[derive(Clone, Debug, Default, Args)]
 pub struct VelocityArguments {
-    /// With --form hamel: quasi-velocities by linear forms in the velocities x' or the quasi-velocities of the model; those of the
-    /// model complete them
+    /// With --form hamel: quasi-velocities by linear forms in the velocities x' or the quasi-velocities of the model;
+    /// those of the model complete them
     #[arg(value_name = "NAME=EXPR", value_parser = definition)]
     pub definitions: Vec<Setting>,
-    /// Independent velocities of equations in which multipliers are eliminated, separated by commas: as many quasi-velocities as the
-    /// constraints leave free, velocities x' with --form voronets; else those whose equations are shortest
+    /// Independent velocities of equations in which multipliers are eliminated, separated by commas: as many
+    /// quasi-velocities as the constraints leave free, velocities x' with --form voronets; else those whose equations
+    /// are shortest
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub independent: Vec<String>,
 }
@@ -109,10 +109,10 @@ pub struct DeriveArguments {
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Page,
-    /// Columns of a line; what is longer goes on in the next, between two signs
+    /// Columns of a line; longer expressions are broken between two signs
     #[arg(long, value_name = "COLUMNS", default_value_t = 100, value_parser = clap::value_parser!(u16).range(60..))]
     pub width: u16,
-    /// In text: the first line of each equation, without what the names of long parts stand for
+    /// In text: only the first line of each equation, without the meanings of names for long parts
     #[arg(long)]
     pub brief: bool,
     /// Write out the definitions of the model instead of naming them
@@ -129,8 +129,8 @@ pub struct TheoryArguments {
     /// Look for integrals that are polynomials of up to this degree in the velocities
     #[arg(long, value_name = "N", default_value = "2", value_parser = clap::value_parser!(u32).range(1..=6))]
     pub degree: u32,
-    /// Functions of the place by which their coefficients may be multiplied, such as "1/r" (repeatable); polynomials of the
-    /// coordinates, or of their sines and cosines, are tried without
+    /// Functions of the coordinates by which their coefficients may be multiplied, such as "1/r" (repeatable);
+    /// polynomials in the coordinates, or in their sines and cosines, are always tried
     #[arg(long, value_name = "EXPRESSIONS", num_args = 1..)]
     pub functions: Vec<String>,
     /// How to print
@@ -138,15 +138,15 @@ pub struct TheoryArguments {
     pub format: Page,
 }
 
-/// How events are looked for.
+/// The search for events.
 #[derive(Clone, Debug, Default, Args)]
 pub struct EventArguments {
-    /// Look for events at the ends of N equal parts of each step; else as the file says, else of 4. Between two such places
-    /// an even number of zeros may be missed
+    /// Search for events at the ends of N equal parts of each step; else as in the file, else 4. Between two such
+    /// places an even number of zeros may be missed
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub samples_per_step: Option<u32>,
-    /// Events that follow each other ever faster are an error once what is left of the first of their distances is
-    /// this part; else that of the file, else 1e-5; 0 for never
+    /// Events that follow each other ever faster are an error once the time left until they accumulate is this
+    /// fraction of their first interval; else as in the file, else 1e-5; 0 for never
     #[arg(long, value_name = "P", value_parser = part)]
     pub accumulation: Option<f64>,
 }
@@ -172,7 +172,7 @@ pub struct RunArguments {
     /// Absolute tolerance; else that of the file, else 1e-12
     #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = positive)]
     pub atol: Option<f64>,
-    /// Largest step; else that of the file, else any. Events that come and go within a step are not seen
+    /// Largest step; else that of the file, else unlimited. Events that come and go within a step are not seen
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = positive)]
     pub max_step: Option<f64>,
     /// Events.
@@ -182,16 +182,17 @@ pub struct RunArguments {
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
     /// Form of the equations: poincare, canonical, reduced, lie-poisson, orthonormal or hamel (see `pc derive --help`); else that
-    /// of the file, else poincare. Columns stay the same, but for coordinates that reduced and lie-poisson are without, and NAME of
-    /// hamel behind the outputs
+    /// of the file, else poincare. Columns stay the same, except that reduced and lie-poisson lack some coordinates,
+    /// and hamel adds each NAME after the outputs
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<RunForm>,
-    /// Bring the motion back to the value of an integral, or of energy, after each step (repeatable)
+    /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,
-    /// More columns: the reactions of the constraints, as λ_NAME for the expression as it is written, and of models with
-    /// bodies as forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in its axes, as far as
-    /// virtual work determines them: a component across all motion that is possible is 0 here, whatever holds the body
+    /// More columns: the reactions of the constraints, as λ_NAME for the expression as it is written, and in models
+    /// with bodies as forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in its axes, as
+    /// far as virtual work determines them: a component perpendicular to every possible motion is 0 here, whatever
+    /// holds the body
     #[arg(long, value_name = "OUTPUTS")]
     pub outputs: Option<Outputs>,
     /// More columns: the derivatives ∂x/∂p of coordinates, quasi-velocities and first-order states by these parameters,
@@ -227,10 +228,10 @@ pub struct EmitArguments {
     /// Form of the equations: poincare, reduced, orthonormal or hamel (see `pc derive --help`)
     #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = emit_form)]
     pub form: EmitForm,
-    /// Leave the Jacobian out
+    /// Leave out the Jacobian
     #[arg(long)]
     pub no_jacobian: bool,
-    /// Directory to write into; it is made if it is not there
+    /// Output directory; it is created if it does not exist
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
 }
@@ -261,10 +262,10 @@ pub struct ImportArguments {
 /// Arguments of `pc models`.
 #[derive(Clone, Debug, Args)]
 pub struct ModelsArguments {
-    /// Print the text of this one, to begin a model of one's own with
+    /// Print the text of this model, as a start for your own
     #[arg(value_name = "NAME", conflicts_with = "algebras")]
     pub name: Option<String>,
-    /// List the Lie algebras that `[algebra]` knows by name instead
+    /// List the Lie algebras that `[algebra]` accepts by name instead
     #[arg(long)]
     pub algebras: bool,
 }
@@ -350,7 +351,7 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
 fn part(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if (0.0..1.0).contains(&value) => Ok(value),
-        _ => Err("write a part from 0 to less than 1, such as 1e-6".to_owned()),
+        _ => Err("write a fraction from 0 to less than 1, such as 1e-6".to_owned()),
     }
 }
 
@@ -366,7 +367,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_supported_yet_is_said_to_be_so() {
+    fn unsupported_choices_are_named() {
         assert_eq!(method("bdf"), Ok(Method::Bdf));
         assert_eq!(method("taylor").unwrap_err(), "`taylor` is not supported yet; use adams or bdf");
         assert_eq!(method("rk4").unwrap_err(), "use adams or bdf");

@@ -1,4 +1,4 @@
-//! What stands on the command line of `pc sweep`.
+//! Arguments of `pc sweep`.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -35,10 +35,10 @@ pub struct SweepArguments {
     /// Draw a parameter or start value: normal(m,s), uniform(a,b) or lognormal(m,s) (repeatable)
     #[arg(long, value_name = "NAME=DISTRIBUTION", value_parser = random, requires = "samples")]
     pub random: Vec<Random>,
-    /// Number of members, of which each is drawn
+    /// Number of randomly drawn members
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "random", conflicts_with = "vary")]
     pub samples: Option<u64>,
-    /// What the random numbers depend on, beside the number of the member
+    /// Seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
     /// Number of threads; else one for each core. The result is the same for any
@@ -56,7 +56,7 @@ pub struct SweepArguments {
     /// Absolute tolerance; else that of the file, else 1e-12
     #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = options::positive)]
     pub atol: Option<f64>,
-    /// Largest step; else that of the file, else any. Events that come and go within a step are not seen
+    /// Largest step; else that of the file, else unlimited. Events that come and go within a step are not seen
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = options::positive)]
     pub max_step: Option<f64>,
     /// Events.
@@ -68,7 +68,7 @@ pub struct SweepArguments {
     /// Form of the equations: poincare or canonical; else that of the file, else poincare. Columns stay the same
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<RunForm>,
-    /// Bring each motion back to the value of an integral, or of energy, after each step (repeatable)
+    /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,
     /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet
@@ -77,7 +77,7 @@ pub struct SweepArguments {
 }
 
 impl SweepArguments {
-    /// What `pc run` would be told for one member.
+    /// The corresponding arguments of `pc run` for one member.
     pub fn as_run(&self) -> RunArguments {
         RunArguments {
             velocities: VelocityArguments::default(),
@@ -119,7 +119,7 @@ pub struct Vary {
 pub struct Random {
     /// The parameter, coordinate or quasi-velocity.
     pub name: String,
-    /// What it is drawn from.
+    /// The distribution.
     pub law: Law,
 }
 
@@ -141,7 +141,7 @@ fn vary(text: &str) -> Result<Vary, String> {
     let &[from, to, count] = &parts[..] else { return Err(usage()) };
     let (from, to) = (options::finite(from)?, options::finite(to)?);
     let count = count.parse().ok().filter(|&count: &u64| count > 0);
-    let count = count.ok_or("the number of values is a whole number from 1")?;
+    let count = count.ok_or("the number of values must be a whole number, at least 1")?;
     if !(to - from).is_finite() {
         return Err("the range is too large".to_owned());
     }
@@ -182,7 +182,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_varied_is_read_or_refused() {
+    fn variations_are_read_or_refused() {
         let m = |from, to, count| Vary { name: "m".to_owned(), from, to, count };
         assert_eq!(vary("m=1:2:11"), Ok(m(1.0, 2.0, 11)));
         assert_eq!(vary("m = -1e3 : -1e3 : 1"), Ok(m(-1e3, -1e3, 1)));

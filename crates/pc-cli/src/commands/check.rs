@@ -1,7 +1,7 @@
-//! `pc check`: whether a model holds together.
+//! `pc check`: the consistency and the properties of a model.
 //!
-//! In goes a model, out comes a report on it. `frame` says what is known of its frame, `integrals` what its motion keeps,
-//! `steady` which steady motion is near; `command` puts these together, as text or for programs.
+//! A model gives a report. `frame` describes its frame, `integrals` the conserved quantities, `steady` the nearest
+//! steady motion; `command` puts these together, as text or for programs.
 
 mod combinations;
 mod command;

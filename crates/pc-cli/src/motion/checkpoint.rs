@@ -1,4 +1,4 @@
-//! Checkpoints of a run: written while it goes on, and gone on from.
+//! Checkpoints of a run: written on the way, and resumed from.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -20,12 +20,11 @@ use crate::motion::plan::Plan;
 use crate::output::place::Place;
 use crate::report::text;
 
-/// Internal steps from one checkpoint to the next if nobody says how many: the few dozen short ones after each are little
-/// against them.
+/// Internal steps from one checkpoint to the next by default: many more than the few dozen short ones that follow a restart.
 const EVERY: NonZeroU64 = NonZeroU64::new(1000).expect("not 0");
 
-/// The file is written again after so many times as long as it took the last time; how often does not change the
-/// numbers.
+/// The time between two writes of the file, in multiples of the time that the last write took. How often it is written
+/// does not change the numbers.
 const PATIENCE: u32 = 20;
 
 /// Checkpoints of one run.
@@ -134,7 +133,7 @@ impl Checkpoints {
         if motion.ending == Some(Ending::Stopped) || is_ended {
             let path = self.place.path().display();
             text::say(format_args!(
-                "note: the same command with --resume {path} goes on from the last checkpoint\n"
+                "note: the same command with --resume {path} continues from the last checkpoint\n"
             ));
         }
         Ok((motion, error))

@@ -1,4 +1,4 @@
-//! What can go wrong with checkpoints.
+//! Errors of checkpoints.
 
 use std::io;
 use std::path::PathBuf;
@@ -10,15 +10,15 @@ use pc_solve::CheckpointError;
 #[non_exhaustive]
 pub enum CheckpointFileError {
     /// The file cannot be read.
-    #[error("--resume {}: it cannot be read", path.display())]
+    #[error("--resume {}: the file cannot be read", path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// Why.
         source: io::Error,
     },
-    /// What is in the file is no checkpoint, or no longer one.
-    #[error("--resume {}: {source}; begin anew without --resume", path.display())]
+    /// The file is not a checkpoint, or a damaged one.
+    #[error("--resume {}: {source}; start afresh without --resume", path.display())]
     Unusable {
         /// The file.
         path: PathBuf,
@@ -26,7 +26,7 @@ pub enum CheckpointFileError {
         source: CheckpointError,
     },
     /// The checkpoint is that of another run.
-    #[error("--resume {}: it is of a run with {what}; repeat that command, or begin anew without --resume", path.display())]
+    #[error("--resume {}: the checkpoint is from a run with {what}; repeat that command, or start afresh without --resume", path.display())]
     OtherRun {
         /// The file.
         path: PathBuf,
@@ -34,12 +34,12 @@ pub enum CheckpointFileError {
         what: String,
     },
     /// A checkpoint would overwrite something else.
-    #[error("--checkpoint {}: the file is there and is no checkpoint; give another name", path.display())]
+    #[error("--checkpoint {}: the file exists and is not a checkpoint; give another name", path.display())]
     Occupied {
         /// The file.
         path: PathBuf,
     },
     /// `--every` where no checkpoint is kept.
-    #[error("--every says how often; give --checkpoint FILE too")]
+    #[error("--every sets how often checkpoints are written; give --checkpoint FILE too")]
     Nowhere,
 }

@@ -1,5 +1,4 @@
-//! What the numbers of a motion depend on: kept with what is left of an interrupted run, to be gone on from by the same
-//! command only.
+//! Everything that the numbers of a motion depend on: stored with an interrupted run, so that only the same command continues it.
 
 use pc_model::Model;
 use pc_solve::Accumulation;

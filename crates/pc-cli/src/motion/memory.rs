@@ -1,4 +1,4 @@
-//! What the rows of a motion take in memory, known before it is integrated.
+//! The memory of the rows of a motion, known before it is integrated.
 
 use pc_expr::Limits;
 use pc_mech::VectorField;

@@ -1,4 +1,4 @@
-//! How a motion is to be computed: the command line first, then the model file, then what is usual.
+//! The plan of a run: from the command line, else the model file, else the defaults.
 
 use pc_model::Model;
 use pc_model::document;
@@ -28,20 +28,20 @@ pub struct Plan {
     pub atol: f64,
     /// Largest length of a step, if it is limited.
     pub max_step: Option<f64>,
-    /// In how many parts of each step events are looked for, if that is said.
+    /// The number of parts of each step that are searched for events, if given.
     pub samples_per_step: Option<u32>,
-    /// To which part of their distance those of an event have shrunk when they accumulate, if that is said.
+    /// The fraction of the first interval at which events count as accumulated, if given.
     pub accumulation: Option<f64>,
     /// Method.
     pub method: Method,
     /// The parameters, by their numbers, by which the motion is to be differentiated.
     pub sensitivities: Vec<usize>,
-    /// When all work on the model has to end.
+    /// The deadline of all work on the model.
     pub deadline: Deadline,
 }
 
 impl Plan {
-    /// The form of the equations as the command line and the file want it.
+    /// The form of the equations, from the command line or the file.
     pub fn form(model: &Model, arguments: &RunArguments) -> RunForm {
         let written = model.document().simulation.form.as_ref().map(|form| form.value);
         arguments.form.unwrap_or(match written {
@@ -50,7 +50,7 @@ impl Plan {
         })
     }
 
-    /// The plan for a model as the command line and the file want it.
+    /// The plan for a model, from the command line and the file.
     ///
     /// # Errors
     /// [`CliError::NoEnd`], [`CliError::EndIsStart`], [`CliError::Sensitivities`].

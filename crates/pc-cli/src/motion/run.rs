@@ -1,4 +1,4 @@
-//! A motion as far as it was computed, and how that went.
+//! A motion as far as it was computed, with a record of the run.
 
 use std::time::Duration;
 
@@ -8,18 +8,18 @@ use crate::motion::plan::Plan;
 use crate::motion::table::Table;
 use crate::report::verification::Verification;
 
-/// A motion as far as it was computed, and how that went.
+/// A motion as far as it was computed, with a record of the run.
 #[derive(Debug)]
 pub struct Run {
-    /// What the model calls itself.
+    /// The title of the model.
     pub title: String,
     /// The parameters with their values.
     pub parameters: Vec<(String, f64)>,
-    /// How it was to be computed.
+    /// The plan.
     pub plan: Plan,
     /// Names of the components of the state that was integrated.
     pub state: Vec<String>,
-    /// What was reached.
+    /// The table as far as it was reached.
     pub table: Table,
     /// The constraints that are held, with the largest residual of each at the output times.
     pub constraints: Vec<(String, f64)>,
@@ -31,11 +31,11 @@ pub struct Run {
     pub keeps_energy: bool,
     /// The names of the events that the model has.
     pub events: Vec<String>,
-    /// What occurred, in order: the numbers of events, and when.
+    /// The occurrences, in order: the numbers of events, and their times.
     pub occurrences: Vec<(usize, f64)>,
     /// How it ended.
     pub ending: Ending,
-    /// What a second derivation says; none where it was not asked.
+    /// The result of the second derivation, if it was made.
     pub verification: Option<Verification>,
     /// The work done.
     pub statistics: Statistics,

@@ -1,4 +1,4 @@
-//! Where results go: standard output, or a file that is there whole or not at all.
+//! Destinations of results: standard output, or a file that is written whole or not at all.
 
 use std::io::Write;
 use std::path::Path;
@@ -25,7 +25,7 @@ pub enum Encoding {
     Png,
 }
 
-/// Where a result goes; the place has been looked at before anything is computed.
+/// The destination of a result; the place is examined before anything is computed.
 #[derive(Debug)]
 pub struct Destination {
     encoding: Encoding,

@@ -25,7 +25,7 @@ impl fmt::Display for Kept {
             Kept::Beginning(path) => write!(f, "; what could be written of it is in {}", path.display()),
             Kept::Journal(path) => write!(
                 f,
-                "; what is finished is in {}, and the same command goes on from there",
+                "; the finished members are in {}, and the same command continues from there",
                 path.display()
             ),
         }

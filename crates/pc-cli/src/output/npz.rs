@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_lead_nowhere_else() {
+    fn entries_stay_inside_the_archive() {
         for same in ["x", "x'", "∂x/∂p", "events/bounce", "λ_no slip", ".."] {
             assert_eq!(entry(same), same);
         }

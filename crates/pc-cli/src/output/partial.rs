@@ -26,7 +26,7 @@ pub(super) fn make(file: &Path) -> io::Result<NamedTempFile> {
         let directory = directory(file);
         let made = builder.tempfile_in(directory).map_err(|error| {
             // It names a file that nobody knows.
-            let message = format!("no file can be made in {}: {}", directory.display(), error.kind());
+            let message = format!("no file can be created in {}: {}", directory.display(), error.kind());
             io::Error::new(error.kind(), message)
         })?;
         // Where locks are unknown nobody takes it for left behind either. Before it was locked somebody may have.

@@ -1,4 +1,4 @@
-//! Where a result is to be, looked at before it is computed.
+//! The place of a result, examined before it is computed.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
@@ -25,7 +25,7 @@ impl Place {
     /// [`io::Error`] that says what stands in the way.
     pub(crate) fn regular(path: &Path) -> io::Result<Place> {
         match fs::metadata(path) {
-            Ok(found) if !found.is_file() && !found.is_dir() => Err(refused("it is no regular file")),
+            Ok(found) if !found.is_file() && !found.is_dir() => Err(refused("it is not a regular file")),
             _ => Place::new(path),
         }
     }
@@ -89,7 +89,7 @@ fn end_of_links(path: &Path) -> io::Result<PathBuf> {
             Err(_) => return Ok(file), // no link
         }
     }
-    Err(refused("it is a link that leads nowhere"))
+    Err(refused("it is a dangling link"))
 }
 
 fn refused(message: &str) -> io::Error {

@@ -1,4 +1,4 @@
-//! What becomes of a result that cannot be written where it belongs.
+//! Rescue of a result that cannot be written where it belongs.
 
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};

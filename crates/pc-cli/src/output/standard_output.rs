@@ -1,4 +1,4 @@
-//! Standard output, of which a reader that goes away is told to nobody.
+//! Standard output; a reader that goes away is not reported.
 
 use std::io::{self, ErrorKind, Write};
 

@@ -1,9 +1,9 @@
-//! What can go wrong with a picture.
+//! Errors of drawing a picture.
 
 /// A picture that could not be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlotError {
-    /// The font that is built in is not one.
+    /// The built-in font cannot be read.
     #[error("the built-in font cannot be read")]
     Font,
     /// The drawing library refused.

@@ -1,4 +1,4 @@
-//! What is said of constraints beside the equations.
+//! Remarks on constraints.
 
 use pc_mech::{Constraint, Expr};
 use pc_model::{Assembly, ConstraintFormulation};
@@ -22,8 +22,8 @@ pub fn say_dropped(assembly: &Assembly<'_>) {
     }
 }
 
-/// What is to be known of equations in the `free` velocities chosen from those that constraints bind, or in all where
-/// they bind none of them to others; nothing where there is no choice.
+/// A remark on equations in the `free` velocities, chosen among those that constraints bind, or in all where
+/// constraints bind none of them to others; none where there is no choice.
 pub fn choice(assembly: &Assembly<'_>, free: &[Expr<'_>]) -> Option<String> {
     let ConstraintFormulation::Multipliers(_) = assembly.constraints.formulation() else { return None };
     if let Some(held) = assembly.constraints.nonlinear() {
@@ -41,7 +41,7 @@ pub fn choice(assembly: &Assembly<'_>, free: &[Expr<'_>]) -> Option<String> {
     let follow = if others.len() == 1 { "follows" } else { "follow" };
     let declared = &assembly.system.quasi_velocities()[..assembly.declared];
     let choice = match declared.iter().all(|eta| free.contains(&eta.to_string())) {
-        _ if !assembly.constraints.asked_for().is_empty() => "These are the ones that are asked for.",
+        _ if !assembly.constraints.asked_for().is_empty() => "These are the requested ones.",
         true => "These are the quasi-velocities of the model.",
         false => "This choice is regular at the start, and makes them short.",
     };
@@ -54,7 +54,7 @@ pub fn choice(assembly: &Assembly<'_>, free: &[Expr<'_>]) -> Option<String> {
     ))
 }
 
-/// Says it, on standard error.
+/// Reports the choice on standard error.
 pub fn say_choice(choice: &str) {
     say(format_args!("note: {}\n", choice.replace('\n', "\n      ")));
 }
@@ -74,7 +74,7 @@ pub fn say_moved(assembly: &Assembly<'_>) {
             [] => say(format_args!("note: the start satisfies the constraints; it was not moved\n")),
             lines => {
                 let lines = lines.join("\n      ");
-                say(format_args!("note: the start was moved to the constraints:\n      {lines}\n"));
+                say(format_args!("note: the start was moved onto the constraints:\n      {lines}\n"));
             }
         }
     }

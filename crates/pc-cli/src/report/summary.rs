@@ -1,4 +1,4 @@
-//! What is said about a run, and what a file keeps of it.
+//! The summary of a run, for readers and for files.
 
 use pc_print::{columns, one_line};
 use serde_json::{Map, Value, json};
@@ -64,7 +64,7 @@ fn work_done(run: &Run) -> String {
         parts.push(count(work.error_test_failures, "rejected step"));
     }
     if work.limited_steps > 0 {
-        parts.push(format!("{} shortened for what depends on time", count(work.limited_steps, "step")));
+        parts.push(format!("{} shortened for explicit time dependence", count(work.limited_steps, "step")));
     }
     parts.push(format!("{:.3} ms", run.wall.as_secs_f64() * 1e3));
     parts.join(", ")

@@ -1,4 +1,4 @@
-//! What a second derivation says of the equations.
+//! The result of the second derivation.
 
 use pc_model::{Assembly, Flow, Model, Variables};
 use pc_print::columns;
@@ -24,7 +24,7 @@ impl Verification {
         Verification { second: Second::new(model, assembly), form, outcomes: Vec::new() }
     }
 
-    /// Whether one comparison is as much as there is time for: a tenth of the derivation or so.
+    /// Whether one comparison uses up the available time, about a tenth of the derivation.
     pub fn is_long(&self, flow: &Flow) -> bool {
         self.second.as_ref().is_ok_and(|second| second.is_long(flow))
     }
@@ -32,7 +32,7 @@ impl Verification {
     /// Compares at one state.
     ///
     /// # Errors
-    /// [`CliError::Verify`] if the derivations disagree. That the second cannot be made, or a state is singular, is none.
+    /// [`CliError::Verify`] if the derivations disagree. It is not an error if the second cannot be made, or a state is singular.
     pub fn compare(
         &mut self,
         flow: &Flow,
@@ -50,7 +50,7 @@ impl Verification {
         Ok(())
     }
 
-    /// What was compared, in words.
+    /// The comparison in words.
     pub fn lines(&self) -> Vec<String> {
         if let Err(error) = &self.second {
             return vec![error.to_string()];

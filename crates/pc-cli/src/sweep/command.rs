@@ -1,10 +1,10 @@
-//! `pc sweep`: many motions of one model, of other parameters and starts, in one table.
+//! `pc sweep`: many motions of one model, over parameters and starts, in one table.
 //!
 //! ```text
 //! Design ─ values of a member ─► Members ─ its motion ─► Record ─► Journal ─► table
 //!          on all cores, by pc_solve::Ensemble             in the order of the members
 //! ```
-//! The journal is all there is between a member and the table, so that a sweep may end at any moment and go on later.
+//! The journal is the only link between a member and the table, so a sweep may end at any moment and continue later.
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -39,7 +39,7 @@ const WAITING: usize = 64 << 20;
 /// … and how many.
 const MOST_WAITING: usize = 4096;
 
-/// Does what `pc sweep` is asked to.
+/// Runs `pc sweep`.
 ///
 /// # Errors
 /// [`CliError`]; what was finished is kept then.

@@ -1,4 +1,4 @@
-//! Which values the members of a sweep have.
+//! The values of the members of a sweep.
 
 use pc_model::Model;
 use pc_solve::member_stream;

@@ -1,4 +1,4 @@
-//! What can go wrong with a sweep.
+//! Errors of a sweep.
 
 use std::io;
 use std::path::PathBuf;
@@ -40,7 +40,7 @@ pub enum SweepError {
         /// The journal.
         journal: PathBuf,
     },
-    /// A file stands where the journal belongs.
+    /// Another file is in the place of the journal.
     #[error("{} was not left by a sweep of this version; remove it, or give another -o", journal.display())]
     Foreign {
         /// The file.
@@ -48,7 +48,7 @@ pub enum SweepError {
     },
     /// The journal is that of another sweep.
     #[error(
-        "{} was left by a sweep with {what}; repeat that command to go on, or remove the file to begin anew",
+        "{} was left by a sweep with {what}; repeat that command to continue, or remove the file to start afresh",
         journal.display()
     )]
     OtherSweep {
@@ -67,7 +67,7 @@ pub enum SweepError {
     },
     /// A finished member cannot be kept.
     #[error(
-        "cannot write {}; the {done} members before are kept there, and the same command goes on after them",
+        "cannot write {}; the {done} members finished before are kept there, and the same command continues after them",
         journal.display()
     )]
     Append {
@@ -90,7 +90,7 @@ pub enum SweepError {
         first: String,
     },
     /// A limit of time.
-    #[error("ended after {done} of {members} members: {limit}; the same command goes on from there")]
+    #[error("ended after {done} of {members} members: {limit}; the same command continues from there")]
     Ended {
         /// How many are finished.
         done: u64,
@@ -100,7 +100,7 @@ pub enum SweepError {
         limit: Spent,
     },
     /// Ctrl-C.
-    #[error("interrupted after {done} of {members} members; the same command goes on from there")]
+    #[error("interrupted after {done} of {members} members; the same command continues from there")]
     Interrupted {
         /// How many are finished.
         done: u64,

@@ -1,6 +1,6 @@
 //! The table of a sweep as a file, made from its journal in memory that does not grow with the number of members.
 //!
-//! In go a journal and the sheet of its rows, out comes a file. `csv`, `json`, `npz` and `parquet` are the formats,
+//! A journal and the sheet of its rows become a file. `csv`, `json`, `npz` and `parquet` are the formats,
 //! `destination` chooses one.
 
 mod csv;

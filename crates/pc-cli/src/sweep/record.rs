@@ -1,4 +1,4 @@
-//! What is kept of a member.
+//! The record of a member.
 
 /// How a member ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

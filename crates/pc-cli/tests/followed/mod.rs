@@ -98,7 +98,7 @@ fn call(function: impl FnOnce(*mut *mut pc_error) -> pc_status) -> Result<(), (p
     let status = function(&raw mut error);
     // SAFETY: null or an error, which is ours and is freed once.
     let message = unsafe {
-        let message = text(pc_error_message(error));
+        let message = text(pc_error_message(error.as_ref()));
         pc_error_free(error);
         message
     };
@@ -160,10 +160,11 @@ impl System {
     fn columns(&self) -> Vec<String> {
         // SAFETY: a live system; the names live as long.
         let names = unsafe {
-            let state = (0..pc_system_dim(self.handle)).map(|i| text(pc_system_name(self.handle, i)));
-            let observables = 0..pc_system_observable_count(self.handle);
+            let state = (0..pc_system_dim(self.handle.as_ref()))
+                .map(|i| text(pc_system_name(self.handle.as_ref(), i)));
+            let observables = 0..pc_system_observable_count(self.handle.as_ref());
             state
-                .chain(observables.map(|i| text(pc_system_observable_name(self.handle, i))))
+                .chain(observables.map(|i| text(pc_system_observable_name(self.handle.as_ref(), i))))
                 .collect::<Vec<_>>()
         };
         std::iter::once("t".to_owned()).chain(names).collect()
@@ -179,7 +180,7 @@ impl System {
             values
         };
         // SAFETY: a live system.
-        let observables = unsafe { pc_system_observable_count(self.handle) };
+        let observables = unsafe { pc_system_observable_count(self.handle.as_ref()) };
         let state = if self.canonical { at(pc_system_to_quasi_velocities, y.len()) } else { y.to_vec() };
         [&[t][..], &state, &at(pc_system_observe, observables)].concat()
     }
@@ -221,7 +222,7 @@ extern "C" fn note(
     // SAFETY: the record that `by_library` passes; the name lives as long as its system.
     unsafe {
         let record = &mut *user.cast::<Record>();
-        record.events.push((text(pc_system_event_name(record.system.handle, event)), t));
+        record.events.push((text(pc_system_event_name(record.system.handle.as_ref(), event)), t));
     }
     0
 }
@@ -265,7 +266,7 @@ pub(crate) fn by_library(model: &str, asked: &Asked<'_>, settings: &Settings) ->
         Err(other) => panic!("{model}: {other:?}"),
     };
     // SAFETY: a live system.
-    let observables = unsafe { pc_system_observable_count(record.system.handle) };
+    let observables = unsafe { pc_system_observable_count(record.system.handle.as_ref()) };
     let motion = Motion {
         columns: record.system.columns(),
         rows: record.rows,

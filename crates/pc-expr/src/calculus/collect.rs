@@ -1,7 +1,7 @@
-//! Short forms: expressions rebuilt as polynomials whose coefficients have forgotten what they do not depend on.
+//! Short forms: expressions rebuilt as polynomials whose coefficients no longer contain what they do not depend on.
 //!
-//! Nothing here needs to be trusted: a form that is built is adopted only where its fingerprint says that it is the
-//! same function, and only where it is cheaper. With [`Folding::Structural`] expressions stay as they are.
+//! Correctness does not depend on this module: a form is adopted only where its fingerprint says that it is the same
+//! function, and only where it is cheaper. With [`Folding::Structural`] expressions stay as they are.
 
 use std::collections::HashSet;
 
@@ -41,8 +41,8 @@ impl Graph {
     /// Each expression in the shortest form found: collected by powers of `variables` in this order, every
     /// coefficient without the symbols it does not depend on.
     ///
-    /// What a value does not depend on is put to a number; those of the `variables` to no other than 0, so that none
-    /// stands in their place.
+    /// Symbols that a value does not depend on are set to a number; those of the `variables` only to 0, so that no
+    /// other number takes their place.
     pub fn shorten<'g>(&'g self, expressions: &[Expr<'g>], variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let places = SymbolPlaces::of(variables);
         expressions.iter().map(|&e| self.collect(e, (variables, &places), 0)).collect()
@@ -255,8 +255,8 @@ impl Graph {
         odd.or_else(rounded).unwrap_or(e)
     }
 
-    /// `outputs` written with no other symbols than `known`, as far as they depend on none. Such a symbol cancels, and comes
-    /// in where a result has the value of an older and cheaper expression that is written with it.
+    /// `outputs` written without symbols other than `known`, as far as they do not depend on them. Such a symbol
+    /// cancels; it appears where a result has the value of an older and cheaper expression that contains it.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -384,8 +384,7 @@ impl Graph {
         })
     }
 
-    /// Whether the first expression divides by nothing that vanishes where the second has a value, as far as is seen from the
-    /// factors of what they divide by.
+    /// Whether no divisor of the first expression vanishes where the second has a value, judged by the factors of their divisors.
     ///
     /// ```
     /// # use pc_expr::Graph;

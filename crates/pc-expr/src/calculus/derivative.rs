@@ -1,7 +1,7 @@
 //! Derivatives: reverse sweeps for gradients, forward sweeps along a direction.
 //!
-//! Of `step`, min and max only the branch that is taken counts. The other one may have no value or no slope there, and 0 times
-//! that would be no number: a branch that is not defined everywhere is differentiated by itself, and the choice is one
+//! Of `step`, min and max only the branch that is taken counts. The other one may have no value or no slope there, and
+//! 0 times that would be NaN: a branch that is not defined everywhere is differentiated by itself, and the choice is
 //! between the derivatives.
 
 use rustc_hash::FxHashMap;

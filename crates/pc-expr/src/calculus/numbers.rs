@@ -1,7 +1,7 @@
 //! Whether two forms of one function have the same numbers.
 //!
-//! Constants are rounded, and a fingerprint takes them as they stand. So a divisor that vanishes but for their rounding is no
-//! zero to it: 1.19² − 1.4161 divided by itself is 1, but its numbers are noise.
+//! Constants are rounded, and a fingerprint takes them as exact. So a divisor that vanishes up to their rounding is
+//! not zero to it: 1.19² − 1.4161 divided by itself is 1, but its numbers are noise.
 
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
@@ -38,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_tell_functions_apart_and_are_not_asked_for_where_there_are_none() {
+    fn functions_are_distinguished_by_their_values_where_they_have_any() {
         let graph = Graph::new();
         let x = graph.symbol("x");
         assert!(!graph.has_numbers_of(x, 1.001 * x));

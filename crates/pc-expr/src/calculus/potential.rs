@@ -1,7 +1,7 @@
 //! Functions with a given gradient.
 //!
-//! Each product in a component f_i suggests what its integral over z_i may be made of; fingerprints find the combination of
-//! these functions whose gradient is the one given, if there is one. Nothing of the suggestions needs to be trusted.
+//! Each product in a component f_i suggests candidates for its integral over z_i; fingerprints find the combination of
+//! these candidates whose gradient is the one given, if there is one. The result is proved, whatever the candidates.
 
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
@@ -28,7 +28,7 @@ impl Graph {
     /// F with ∂F/∂z_i = f_i, if the `form` f_i dz_i is exact and F is found: a combination with rational coefficients of
     /// products of powers, sines, cosines, exponentials and logarithms like those in the f_i.
     ///
-    /// That F has this gradient is proved. A form may be exact without being found to be.
+    /// That F has this gradient is proved. An exact form may go unrecognised.
     ///
     /// # Panics
     /// If there are not as many components as variables.
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_that_are_not_exact_have_none() {
+    fn forms_that_are_not_exact_have_no_potential() {
         let graph = Graph::new();
         let [x, y, z] = graph.symbols(["x", "y", "z"]);
         for form in [[y, 0.into(), 1.into()], [y.cos(), y.sin(), 0.into()], [x, x * z, x * y]] {

@@ -87,7 +87,7 @@ impl Graph {
 
     /// `outputs` with each symbol of `replacements` replaced by the expression beside it, all at once.
     ///
-    /// A symbol that was replaced is in the results only where it is in the expressions put in.
+    /// A replaced symbol is in the results only where the replacing expressions contain it.
     ///
     /// # Panics
     /// If the first of a pair is not a symbol.

@@ -1,7 +1,7 @@
-//! The form in which a book has expressions: short to read, whatever it costs to compute.
+//! Expressions as a book prints them: short to read, whatever they cost to compute.
 //!
 //! Sums are rewritten from the inside outwards by identities that hold wherever both sides have values: cos a cos b + sin a sin b
-//! is cos(a − b), p/d + q/d is (p + q)/d, and what all terms have in common stands before them.
+//! is cos(a − b), p/d + q/d is (p + q)/d, and common factors are taken out of sums.
 
 use rustc_hash::FxHashMap;
 
@@ -27,7 +27,7 @@ struct Term {
 }
 
 impl Graph {
-    /// The expressions as a book has them, in the graph of a page, symbols of the same names.
+    /// The expressions as a book prints them, in the graph of a page, with symbols of the same names.
     ///
     /// ```
     /// # use pc_expr::{Folding, Graph};

@@ -1,7 +1,7 @@
-//! Long programs as a table of operations, gone through forward for their values and by the chain rule for derivatives.
+//! Long programs as a table of operations, traversed forward for their values and by the chain rule for derivatives.
 //!
-//! Straight-line code of a Jacobian is an order of magnitude longer than that of its function. Where that is too long to be read or
-//! compiled, the operations of the function are a table, and two short loops do the rest.
+//! Straight-line code of a Jacobian is an order of magnitude longer than that of its function. Where that is too long
+//! to be read or compiled, the operations of the function are a table, and two short loops do the rest.
 
 use std::fmt::Write;
 
@@ -18,20 +18,20 @@ const WIDTH: usize = 110;
 /// The names in the source of a table.
 #[derive(Clone, Debug)]
 pub struct ChainLayout {
-    /// Begins the names of what is not a function of the interface; C puts them into one space with all others.
+    /// The prefix of names that are not part of the interface; in C all names share one namespace.
     pub prefix: String,
-    /// How the length of the state is written.
+    /// The expression for the length of the state.
     pub dim: String,
-    /// How the number of parameters is written.
+    /// The expression for the number of parameters.
     pub parameters: String,
 }
 
-/// A program as a table, with what is written of it.
+/// A program as a table, and its source text.
 #[derive(Clone, Debug)]
 pub struct Chain {
     /// The table, and the function that computes values.
     pub support: String,
-    /// What that and the derivatives call.
+    /// The functions that it and the derivatives call.
     pub calls: Calls,
     places: Vec<usize>,
     values: usize,
@@ -74,8 +74,8 @@ fn called(function: Function) -> Option<Function> {
 }
 
 impl Program {
-    /// The program as a table of operations; none if it calls a function of several arguments or without a derivative, is fused, or has more
-    /// values than can be numbered with 16 bits.
+    /// The program as a table of operations; none if it calls a function of several arguments or without a derivative,
+    /// is fused, or has more values than can be numbered with 16 bits.
     pub fn chain(&self, language: Language, layout: ChainLayout) -> Option<Chain> {
         let mut calls = Calls::default();
         for instruction in &self.code {
@@ -220,7 +220,7 @@ impl Chain {
                 }
                 let _ = write!(
                     text,
-                    "\n/* The first values, so many of them. */\n\
+                    "\n/* The first `count` values. */\n\
                      static void {compute}(double t, const double *y, const double *p, int count, double *v)\n{{\n    \
                      const unsigned short *c = {table};\n"
                 );
@@ -260,7 +260,7 @@ impl Chain {
                      /// Where the right-hand side, the mass matrix and the energy are among the values.\n\
                      #[rustfmt::skip]\nstatic PLACES: [u16; {}] = [\n{places}];\n\n\
                      static NUMBERS: [f64; {c}] = [\n{}];\n\n\
-                     /// The first values, so many of them.\n\
+                     /// The first `count` values.\n\
                      fn compute(t: f64, y: &[f64; DIM], p: &[f64; PARAMETERS], count: usize, v: &mut [f64; {values}]) {{\n    \
                      v[..{c}].copy_from_slice(&NUMBERS);\n    v[{c}] = t;\n    v[{}..{}].copy_from_slice(y);\n    \
                      v[{}..{first}].copy_from_slice(p);\n    for (i, c) in ({first}..count).zip(CODE.chunks_exact(3)) {{\n        \

@@ -1,6 +1,6 @@
 //! Programs as source text: the statements of one straight-line function.
 //!
-//! What is printed computes what the [interpreter](crate::Interpreter) computes, operation by operation: a value used
+//! The source computes what the [interpreter](crate::Interpreter) computes, operation by operation: a value used
 //! once is written where it is used, with brackets wherever the order of operations needs them, any other becomes a
 //! local constant.
 
@@ -36,7 +36,7 @@ impl Program {
     /// ```
     ///
     /// # Panics
-    /// If `layout` has not as many identifiers as there are inputs without time, or not as many slots as outputs.
+    /// If `layout` does not have as many identifiers as there are inputs besides time, or as many slots as outputs.
     pub fn emit(&self, language: Language, layout: &Layout) -> FunctionBody {
         assert_eq!(layout.inputs.len(), self.state_len() + self.parameters_len(), "identifiers of inputs");
         assert_eq!(layout.slots.len(), self.outputs_len(), "slots of outputs");

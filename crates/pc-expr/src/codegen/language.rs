@@ -4,8 +4,8 @@ use crate::codegen::layout::{Calls, Language};
 use crate::codegen::{c, comment, identifier, rust};
 
 impl Language {
-    /// Valid and distinct identifiers for `names`, each as close to its name as can be: Greek letters are spelt out,
-    /// a prime becomes `_dot`, and what is a word of the language, an argument of a [`Layout`](crate::Layout) or in
+    /// Valid and distinct identifiers for `names`, each as close to its name as possible: Greek letters are spelt out,
+    /// a prime becomes `_dot`, and a keyword of the language, an argument of a [`Layout`](crate::Layout) or a name in
     /// `reserved` gets a `_` at its end.
     ///
     /// ```
@@ -18,7 +18,7 @@ impl Language {
         identifier::distinct(self, names, reserved)
     }
 
-    /// A literal of the constant that reads back to the same bits.
+    /// A literal that is read back as the same bits.
     pub fn constant(self, value: f64) -> String {
         match self {
             Language::C => c::constant(value),
@@ -34,7 +34,7 @@ impl Language {
         }
     }
 
-    /// `text` on one line and without what would end or break a comment.
+    /// `text` on one line, without anything that would end or break a comment.
     pub fn comment(self, text: &str) -> String {
         comment::comment(text)
     }

@@ -1,4 +1,4 @@
-//! What is asked for, and what comes out: the language, where inputs and outputs stand in a function, its text.
+//! The request and the result: the language, the places of inputs and outputs in a function, its text.
 
 use crate::graph::function::Function;
 
@@ -25,7 +25,7 @@ pub enum Place {
 pub struct Slot {
     /// Where it goes.
     pub place: Place,
-    /// What it is, as a comment after the statement; may be empty.
+    /// Its meaning, as a comment after the statement; may be empty.
     pub comment: String,
     /// A name for its value where that is needed again, an identifier of the language; may be empty.
     pub local: String,
@@ -38,9 +38,9 @@ pub struct Layout {
     pub inputs: Vec<String>,
     /// One slot for each output.
     pub slots: Vec<Slot>,
-    /// Leaves out the outputs that are zero at all states: whoever writes the function clears the array first.
+    /// Whether outputs that are zero at all states are left out: the surrounding function then clears the array first.
     pub skip_zeros: bool,
-    /// Begins the names of the [helper functions](Language::helpers), which C puts into one space with all others.
+    /// The prefix of the [helper functions](Language::helpers); in C all names share one namespace.
     pub prefix: String,
     /// Identifiers that no local may have, such as the name of the array of the outputs.
     pub reserved: Vec<String>,
@@ -49,11 +49,11 @@ pub struct Layout {
 /// The text of a function body, lines indented by four spaces.
 #[derive(Clone, Debug, Default)]
 pub struct FunctionBody {
-    /// Declares the inputs that are read, and passes over the arguments that are not.
+    /// Declares the inputs that are read, and marks the arguments that are not as unused.
     pub inputs: String,
     /// Computes the outputs.
     pub statements: String,
-    /// What it calls.
+    /// The functions it calls.
     pub calls: Calls,
 }
 
@@ -67,7 +67,7 @@ pub struct Calls {
 }
 
 impl Calls {
-    /// These and those.
+    /// The union of both.
     #[must_use]
     pub fn and(mut self, other: &Calls) -> Calls {
         other.functions.iter().for_each(|&function| self.add(function));

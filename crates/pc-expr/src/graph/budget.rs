@@ -1,4 +1,4 @@
-//! What making expressions may take.
+//! The budget of memory and time for making expressions.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use crate::graph::deadline::Deadline;
 use crate::graph::limits::{Limits, Spent};
 
-/// What is left of the limits; clones are the same budget, and graphs that are [within](crate::Graph::within) it take from it
-/// together. Once it is spent no graph makes expressions any more, and what is derived in them ends in
+/// The remainder of the limits; clones are the same budget, and graphs [within](crate::Graph::within) it share it.
+/// Once it is spent no graph makes expressions any more, and derivations in them end in
 /// [`ExprError::Spent`](crate::ExprError::Spent).
 ///
 /// ```
@@ -22,28 +22,28 @@ use crate::graph::limits::{Limits, Spent};
 pub struct Budget(Arc<Meter>);
 
 impl Budget {
-    /// A budget of which nothing is spent yet; its time begins to run.
+    /// A new budget; its time begins to run.
     pub fn new(limits: Limits) -> Budget {
         let deadline = Deadline::new(&limits);
         Budget(Arc::new(Meter::new(limits, deadline)))
     }
 
-    /// A budget of as much memory, of which nothing is spent yet, that ends when this one does.
+    /// A new budget of the same memory that ends when this one does.
     pub fn beside(&self) -> Budget {
         Budget(Arc::new(Meter::new(self.0.limits.clone(), self.0.deadline.clone())))
     }
 
-    /// What there was.
+    /// The limits it was made with.
     pub fn limits(&self) -> &Limits {
         &self.0.limits
     }
 
-    /// When it ends.
+    /// Its deadline.
     pub fn deadline(&self) -> &Deadline {
         &self.0.deadline
     }
 
-    /// What is spent by now, if anything is, and in which stage of the work it was.
+    /// The limit that is reached, if one is, and the stage of the work in which it was.
     pub fn spent(&self) -> Option<(Spent, &'static str)> {
         self.0.spent()
     }

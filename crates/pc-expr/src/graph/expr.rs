@@ -45,7 +45,7 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// Whether this is 0, or known to be.
+    /// Whether this is 0 or folded to 0.
     pub fn is_zero(self) -> bool {
         self.atom.is_zero()
     }
@@ -55,7 +55,7 @@ impl<'g> Expr<'g> {
         matches!(self.atom, Atom::Constant(c) if !c.is_finite())
     }
 
-    /// The number that stands before all else, 1 where none does; that of a constant is itself.
+    /// The leading numerical factor, 1 if there is none; that of a constant is the constant itself.
     ///
     /// ```
     /// # use pc_expr::{Graph, Number};

@@ -54,19 +54,19 @@ impl Graph {
         Graph { dag: RefCell::new(Dag::new(folding, Some(budget.meter()))), budget }
     }
 
-    /// An empty graph like this one that takes from a budget, which others may share.
+    /// An empty graph like this one that draws on a budget, which others may share.
     #[must_use]
     pub fn within(self, budget: &Budget) -> Graph {
         Graph::of(self.folding(), budget.clone())
     }
 
-    /// An empty graph that takes from the same budget as this one.
+    /// An empty graph that draws on the same budget as this one.
     pub fn page(&self, folding: Folding) -> Graph {
         Graph::of(folding, self.budget.clone())
     }
 
-    /// Does some work in this graph, unless its budget is spent, before or by it: what was made then is not what it should
-    /// be, and the error names the stage of the work.
+    /// Does some work in this graph. If its budget is spent, before or during the work, the result is incomplete and
+    /// is replaced by an error that names the stage of the work.
     ///
     /// # Errors
     /// [`ExprError::Spent`], and those of the work.

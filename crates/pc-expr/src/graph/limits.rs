@@ -1,16 +1,16 @@
-//! Limits of work, and how they are reached.
+//! Limits of work.
 
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// What work on expressions may take.
+/// The limits of work on expressions.
 #[derive(Clone, Debug)]
 pub struct Limits {
-    /// Bytes of expressions, as they are estimated from the nodes; 4 GiB by default.
+    /// Bytes of expressions, estimated from the nodes; 4 GiB by default.
     pub memory: u64,
-    /// From when the [budget](crate::Budget) is made; no limit by default.
+    /// Time since the [budget](crate::Budget) was made; no limit by default.
     pub time: Option<Duration>,
     /// Ends the work from elsewhere.
     pub cancel: Cancel,
@@ -22,13 +22,13 @@ impl Default for Limits {
     }
 }
 
-/// A handle by which another thread ends what works within a [`Budget`](crate::Budget) or until a
+/// A handle by which another thread ends work within a [`Budget`](crate::Budget) or until a
 /// [`Deadline`](crate::Deadline); clones are the same handle.
 #[derive(Clone, Debug, Default)]
 pub struct Cancel(Arc<AtomicBool>);
 
 impl Cancel {
-    /// Ends the work. It does not begin again.
+    /// Ends the work, for good.
     pub fn cancel(&self) {
         self.0.store(true, Ordering::Relaxed);
     }

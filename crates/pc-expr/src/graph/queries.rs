@@ -1,4 +1,4 @@
-//! What is asked of whole expressions.
+//! Questions about whole expressions.
 
 use rustc_hash::FxHashSet;
 
@@ -47,7 +47,7 @@ impl Graph {
         })
     }
 
-    /// √x, kept as a root where x is a number that is no square, so that its square is x.
+    /// √x, kept as a root where x is a number that is not a square, so that its square is x.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -61,13 +61,13 @@ impl Graph {
         self.build(|dag| dag.exact_root(x))
     }
 
-    /// The number of different nodes that the expressions are made of: about how long they are where each is written once.
+    /// The number of different nodes of the expressions: about their length where each is written once.
     pub fn size<'g>(&'g self, expressions: &[Expr<'g>]) -> usize {
         let roots: Vec<Atom> = expressions.iter().map(|expression| expression.atom_in(self)).collect();
         self.with(|dag| Cone::below(dag, roots).order.len())
     }
 
-    /// The names of the symbols that `outputs` contain, in order of their making.
+    /// The symbols that `outputs` contain, in order of creation.
     pub fn symbols_of<'g>(&'g self, outputs: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let atoms: Vec<Atom> = outputs.iter().map(|x| x.atom_in(self)).collect();
         let nodes: Vec<NodeId> = self.with(|dag| {
@@ -77,7 +77,7 @@ impl Graph {
         nodes.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
     }
 
-    /// Whether a function of which `which` holds is applied to something that is written with one of the `symbols`.
+    /// Whether a function that satisfies `which` is applied to an expression that contains one of the `symbols`.
     ///
     /// ```
     /// # use pc_expr::{Function, Graph};
@@ -136,7 +136,7 @@ impl Graph {
         })
     }
 
-    /// Whether something that is written with one of the `symbols` stands in a divisor.
+    /// Whether a divisor contains one of the `symbols`.
     ///
     /// ```
     /// # use pc_expr::Graph;

@@ -1,8 +1,8 @@
-//! What of a matrix has nothing to do with the rest of it.
+//! Independent blocks of a matrix.
 
 /// The rows and columns of each block of a matrix that is block diagonal but for the order of its rows and columns, by their
-/// first row: `entries` are the columns of the entries of each row that are not zero. Rows and columns without any entry are
-/// in no block. What a matrix of 1000 rows asks for as a whole its blocks seldom do.
+/// first row: `entries` are the columns of the entries of each row that are not zero. Rows and columns without entries
+/// are in no block. The blocks of a matrix of 1000 rows are often small, and the work on them with it.
 ///
 /// ```
 /// let blocks = pc_expr::independent_blocks(3, &[vec![2], vec![0], vec![], vec![2, 1]]);

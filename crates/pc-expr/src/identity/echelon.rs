@@ -31,7 +31,7 @@ impl ResidueEchelon {
         self.leading.iter().flatten().count()
     }
 
-    /// Adds a row, if it is independent of those that are there.
+    /// Adds a row, if it is independent of the present ones.
     ///
     /// # Panics
     /// If it has fewer entries than there are columns.

@@ -1,8 +1,8 @@
 //! Linear relations with rational coefficients between expressions.
 //!
 //! A relation Σ a_j f_j = 0 holds at every point, so each random point of GF(2⁶¹ − 1) gives an equation for
-//! the a_j. Points are added until two of them in a row say nothing new; the null space is then read back as
-//! fractions. That is a proposal: only what the graph itself folds to zero is returned.
+//! the a_j. Points are added until two in a row add no equation; the null space is then read back as fractions. This
+//! is a proposal: only relations that the graph itself folds to zero are returned.
 
 use rustc_hash::FxHashMap;
 
@@ -27,9 +27,9 @@ impl Graph {
     /// columns should come first.
     ///
     /// Every relation is certified: Σ_j a_j f_ji is folded to zero for each i, so that with
-    /// [`Folding::Structural`] few are found. Not found are relations whose coefficients, divided by the
-    /// last, are not rational or are p/q with p·q beyond about 2⁵⁰; those that constants beyond the range of
-    /// exact [`Number`]s have blurred; and those that fingerprints do not see, as between logarithms.
+    /// [`Folding::Structural`] few are found. Relations are not found if their coefficients, divided by the last, are
+    /// not rational or are p/q with p·q beyond about 2⁵⁰; those that constants beyond the range of exact [`Number`]s
+    /// have blurred; and those that fingerprints do not see, as between logarithms.
     ///
     /// # Panics
     /// If the columns have different lengths.

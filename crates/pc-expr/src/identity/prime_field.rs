@@ -7,9 +7,9 @@ const SMALL: u64 = 1 << 20;
 
 /// An element of the field GF(p) of the prime p = 2⁶¹ − `C`, by default of Mersenne's prime 2⁶¹ − 1.
 ///
-/// What is true of rational numbers is true of their residues, unless p divides a denominator, and nothing is rounded. So a
-/// matrix of residues at a random point has the rank of the matrix of functions, but for a chance of its degree in p
-/// \[J. T. Schwartz, J. ACM 27 (1980) 701\].
+/// Identities of rational numbers hold for their residues, unless p divides a denominator, and nothing is rounded. So
+/// a matrix of residues at a random point has the rank of the matrix of functions, except with a probability of its
+/// degree in p \[J. T. Schwartz, J. ACM 27 (1980) 701\].
 ///
 /// ```
 /// use pc_expr::{Number, Residue};

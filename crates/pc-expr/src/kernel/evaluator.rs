@@ -80,7 +80,7 @@ impl Evaluator {
         &mut **kernel
     }
 
-    /// The machine code that runs, if any does: [`Kernel::machine_code`].
+    /// The machine code, if there is any: [`Kernel::machine_code`].
     pub fn machine_code(&mut self) -> Option<(Entry, usize)> {
         self.kernel().machine_code()
     }
@@ -90,8 +90,8 @@ impl Evaluator {
         Interpreter::new(Arc::clone(&self.program)).diagnose(t, state, parameters)
     }
 
-    /// What is to blame for results that are not finite: what [`diagnose`](Evaluator::diagnose) names, or, where the
-    /// operations of the interpreter, which are not fused, all end, the fused ones of machine code.
+    /// The error for results that are not finite: that of [`diagnose`](Evaluator::diagnose) or, where the unfused
+    /// operations of the interpreter are all finite, one that names the fused ones of machine code.
     pub fn blame(&self, t: f64, state: &[f64], parameters: &[f64]) -> ExprError {
         let expression = "a result of fused operations".to_owned();
         let fused = || ExprError::NotFinite { expression, value: f64::NAN, t, state: Vec::new() };

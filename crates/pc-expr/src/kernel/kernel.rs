@@ -1,4 +1,4 @@
-//! What runs a program.
+//! Kernels, which run programs.
 
 use std::sync::Arc;
 
@@ -7,10 +7,10 @@ use crate::graph::function::Function;
 use crate::kernel::tape::Tape;
 use crate::program::program::{Instruction, Program, Register};
 
-/// What compiled code is called through: t, the state, the parameters, where the outputs go, scratch memory.
+/// The signature of compiled code: t, the state, the parameters, the outputs, scratch memory.
 ///
-/// The pointers lead to as many numbers as the [`Program`] says, those of scratch to as many as are asked for; a pointer to
-/// no numbers may be anything. Outputs and scratch are written and overlap nothing else: an output may be written before
+/// The pointers lead to as many numbers as the [`Program`] says, scratch to its required length; a pointer to no
+/// numbers may be anything. Outputs and scratch are written and overlap nothing else: an output may be written before
 /// the last input is read. The code keeps no state, so any number of threads may run it at once, each with its own
 /// outputs and scratch. On x86-64, foreign vector code that returned without `vzeroupper` slows it down many times.
 pub type Entry = unsafe extern "C" fn(
@@ -38,7 +38,7 @@ pub trait Kernel: Send {
     }
 }
 
-/// The reference kernel: takes one operation after the other.
+/// The reference kernel: executes one operation after the other.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     program: Arc<Program>,
@@ -61,7 +61,7 @@ impl Interpreter {
         &self.program
     }
 
-    /// Runs the program and answers what is not finite: inputs, or else the innermost expression, if there is one.
+    /// Runs the program and returns what is not finite: inputs, or else the innermost expression, if there is one.
     ///
     /// The slices have the lengths that the program says.
     pub fn diagnose(&mut self, t: f64, state: &[f64], parameters: &[f64]) -> Option<ExprError> {

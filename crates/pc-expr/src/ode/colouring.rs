@@ -1,4 +1,4 @@
-//! Columns that can be told apart in one product.
+//! Columns that one product can separate.
 
 use crate::ode::pattern::Pattern;
 

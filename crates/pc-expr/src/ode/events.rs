@@ -1,8 +1,8 @@
-//! What may happen to a motion on its way: zeros of functions g(t, y), and resets of the state there.
+//! Events of a motion: zeros of functions g(t, y), and resets of the state there.
 
 use crate::ode::vector_field::Failure;
 
-/// In which direction a function passes through zero as the integration goes: against time where it goes backwards.
+/// The direction in which a function passes through zero along the integration: against time where this goes backwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Direction {
     /// From below.
@@ -25,7 +25,7 @@ impl Direction {
     }
 }
 
-/// What is to be known of an event beside its function.
+/// The properties of an event besides its function.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Event {
     name: String,
@@ -89,12 +89,12 @@ impl Event {
 /// Events of a motion: functions g(t, y), evaluated all at once, and resets y⁺ = R(t, y⁻).
 ///
 /// An event occurs where its function passes through zero in its direction: where it changes its sign, or comes to zero to
-/// stay there. A function that touches zero, and is back on its side as soon as rounding tells times apart, causes none. A
+/// stay there. A function that touches zero, and is back on its side within the resolution of time, causes none. A
 /// function that is zero at the
 /// start, or is brought to zero by a reset, has to leave zero first. A reset that carries a function from one sign to
 /// the other is no passage through zero.
 pub trait Events {
-    /// The events, in the order in which simultaneous ones are dealt with.
+    /// The events, in the order in which simultaneous ones are handled.
     fn events(&self) -> &[Event];
 
     /// Writes g_i(t, y) to `values`, as many as there are events.

@@ -1,7 +1,7 @@
-//! Where a matrix may be other than zero.
+//! Zero patterns of matrices.
 
-/// The zero pattern of a matrix in compressed columns: the rows of the entries that may be other than zero,
-/// column after column, ascending in each.
+/// The zero pattern of a matrix in compressed columns: the rows of the entries that may be nonzero, column after
+/// column, ascending in each.
 ///
 /// ```
 /// use pc_expr::Pattern;
@@ -52,7 +52,7 @@ impl Pattern {
         self.starts.len() - 1
     }
 
-    /// Number of entries that may be other than zero.
+    /// Number of entries that may be nonzero.
     pub fn len(&self) -> usize {
         self.indices.len()
     }

@@ -1,4 +1,4 @@
-//! What every integrator takes: ẏ = f(t, y).
+//! Vector fields ẏ = f(t, y), the interface to every integrator.
 
 use std::error::Error;
 use std::fmt;
@@ -19,8 +19,7 @@ pub trait VectorField {
     /// [`Failure`] where f is not defined; a recoverable one lets an integrator try a smaller step.
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
 
-    /// Whether [`rhs`](VectorField::rhs) fails where it would write a number that is not finite; if not, integrators look
-    /// at each.
+    /// Whether [`rhs`](VectorField::rhs) fails where it would write a number that is not finite; if not, integrators check each.
     fn checks_rates(&self) -> bool {
         false
     }
@@ -41,7 +40,7 @@ pub trait VectorField {
         Err(Failure::fatal(NoJacobian))
     }
 
-    /// Where ∂f/∂y may be other than zero, if that is known, with or without a Jacobian: dim × dim.
+    /// The zero pattern of ∂f/∂y, dim × dim, if it is known, with or without a Jacobian.
     fn sparsity(&self) -> Option<&Pattern> {
         None
     }
@@ -110,7 +109,7 @@ pub trait VectorField {
         Err(Failure::fatal(NoParameterJacobian))
     }
 
-    /// The size of parameter `j`, |pⱼ| say, if it is known: what a change of it is small or large against.
+    /// The scale of parameter `j`, such as |pⱼ|, if it is known: changes are small or large relative to it.
     fn parameter_size(&self, _j: usize) -> Option<f64> {
         None
     }
@@ -120,7 +119,7 @@ pub trait VectorField {
         false
     }
 
-    /// Moves `y` to the surface of the states at time t, by as little as a method's error is.
+    /// Moves `y` to the surface of the states at time t, by no more than the error of the method.
     ///
     /// Called only if [`has_projection`](VectorField::has_projection) answers true.
     ///
@@ -130,28 +129,28 @@ pub trait VectorField {
         Ok(())
     }
 
-    /// How f depends on t explicitly: what an integrator must not step over. It is asked for when an integration begins.
+    /// The explicit dependence of f on t, which an integrator must not step over. It is queried when an integration begins.
     fn time_dependence(&self) -> TimeDependence {
         TimeDependence::Unknown
     }
 
-    /// Says that the states go on from `y` at time t, a state that the motion did not come to by itself, such as one after
-    /// an impact: what was to be kept before may have another value.
+    /// Announces that the motion continues from `y` at time t, a state that it did not reach by itself, such as one
+    /// after an impact: conserved quantities may have new values.
     fn restart(&mut self, _t: f64, _y: &[f64]) {}
 
-    /// The times, rising, at which f is not smooth in t, such as those of a table that it reads: no step crosses one.
+    /// The times, in ascending order, at which f is not smooth in t, such as those of a table that it reads: no step crosses one.
     fn breaks(&self) -> &[f64] {
         &[]
     }
 
-    /// Says that the evaluations that follow are on that side of t, a start or a [break](VectorField::breaks), that is towards
-    /// `end`. Whether f jumped there, so that a method that remembers earlier steps has to begin anew.
+    /// Announces that the following evaluations are on the side of t, a start or a [break](VectorField::breaks),
+    /// towards `end`. Returns whether f jumped there, so that a multistep method has to restart.
     fn enter(&mut self, _t: f64, _end: f64) -> bool {
         false
     }
 
-    /// Whether the motion that is at `from` may be that at `to`, both times and states, to which a step of an integrator led: a
-    /// field may have places between which no motion leads.
+    /// Checks whether one motion connects `from` with `to`, both times and states, to which a step of an integrator
+    /// led: a field may have places that no motion crosses.
     ///
     /// # Errors
     /// [`Failure`] where the one does not follow from the other.
@@ -239,7 +238,7 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
 
 /// Why a function of (t, y) could not be evaluated, and whether a nearby state may succeed.
 ///
-/// It speaks as its cause does.
+/// Its message is that of its cause.
 #[derive(Debug)]
 pub struct Failure {
     recoverable: bool,

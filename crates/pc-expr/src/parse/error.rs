@@ -1,4 +1,4 @@
-//! What can be wrong with the text of an expression.
+//! Errors in the text of an expression.
 
 use thiserror::Error;
 
@@ -86,7 +86,7 @@ fn plural(count: usize) -> &'static str {
 }
 
 impl ParseError {
-    /// What would be right, in one sentence.
+    /// A correction, in one sentence.
     pub fn help(&self) -> String {
         match &self.kind {
             ParseErrorKind::Empty => "write a number, such as `0`, or an expression".into(),
@@ -101,7 +101,7 @@ impl ParseError {
                 format!("multiplication is written `{product}`")
             }
             ParseErrorKind::Unclosed => "close it with `)`".into(),
-            ParseErrorKind::Unmatched => "take it out, or open a parenthesis before it".into(),
+            ParseErrorKind::Unmatched => "remove it, or open a parenthesis before it".into(),
             ParseErrorKind::StrayComma => {
                 "commas stand between the arguments of a function; the decimal separator is a point".into()
             }

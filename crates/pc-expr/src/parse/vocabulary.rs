@@ -3,7 +3,7 @@
 /// A function of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Function {
-    /// Its name, which cannot name anything else.
+    /// Its name, which is reserved.
     pub name: &'static str,
     /// How many arguments it takes.
     pub arguments: usize,
@@ -59,7 +59,7 @@ pub(super) fn continues_name(c: char) -> bool {
     starts_name(c) || c.is_ascii_digit()
 }
 
-/// The candidate nearest to `word`, if one is near enough to be a slip of the pen: at most one edit (a letter
+/// The candidate nearest to `word`, if one is near enough to be a misspelling: at most one edit (a letter
 /// more, less, other, or two exchanged) for every three letters.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = word.chars().take(64).collect();

@@ -1,8 +1,8 @@
-//! Names for what is long or comes again on a page of expressions.
+//! Names for long or repeated parts of a page of expressions.
 //!
 //! Expressions share their parts, so that a page which writes all of them out may be as long as 2 to the power of their
-//! depth. Here such parts are named, each once, before it is used: as few as make every piece between two signs fit a line, and
-//! those by which the page becomes shorter.
+//! depth. Here such parts are named, each once, before it is used: as few as needed for every piece between two signs
+//! to fit a line, and those that make the page shorter.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -27,7 +27,7 @@ const WIDE_LINE: usize = 80;
 /// A name as wide as those that are given at last.
 const PLACEHOLDER: &str = "z10";
 
-/// A name that there is for the value of an expression.
+/// An existing name for the value of an expression.
 #[derive(Clone, Debug)]
 pub struct Given<'g> {
     /// The name.
@@ -38,17 +38,17 @@ pub struct Given<'g> {
     pub shorthand: bool,
 }
 
-/// What is to be written, with names for its parts.
+/// An expression to be written, with names for its parts.
 #[derive(Clone, Copy, Debug)]
 pub enum Side<'g> {
-    /// A line: a sum may go on in the next, between two of its terms.
+    /// A line: a sum may continue on the next one, between two of its terms.
     Sum(Expr<'g>),
-    /// What stands beside others in a line, as a coefficient does, and is to fit as a whole.
+    /// A part of a line, such as a coefficient, which has to fit as a whole.
     Factor(Expr<'g>),
 }
 
 impl<'g> Side<'g> {
-    /// What is written.
+    /// The expression.
     pub fn expression(self) -> Expr<'g> {
         match self {
             Side::Sum(expression) | Side::Factor(expression) => expression,
@@ -78,7 +78,7 @@ pub struct Names<'g> {
 }
 
 impl Graph {
-    /// Names for parts of `lines`, so that what stands between two signs of a line has at most `room` columns, with those
+    /// Names for parts of `lines`, so that the text between two signs of a line has at most `room` columns, with those
     /// that are `given`.
     ///
     /// ```
@@ -125,12 +125,12 @@ impl<'g> Names<'g> {
         Names { graph, lines, list: list.into_iter().map(name).collect() }
     }
 
-    /// The names in the order in which they are needed; each stands for what is written with those before it.
+    /// The names in the order in which they are needed; the meaning of each uses only names before it.
     pub fn list(&self) -> &[Name<'g>] {
         &self.list
     }
 
-    /// The lines and what the names stand for, written with the names.
+    /// The lines and the meanings of the names, written with the names.
     pub fn written(&self, style: Style) -> Written {
         let roots = self.lines.iter().chain(self.list.iter().map(|name| &name.value));
         let roots: Vec<Atom> = roots.map(|expression| expression.atom_in(self.graph)).collect();
@@ -175,7 +175,7 @@ impl<'g> Names<'g> {
     }
 }
 
-/// The text of lines, and of what names on their page stand for.
+/// The text of lines, and of the meanings of the names on their page.
 pub struct Written {
     style: Style,
     /// The terms of lines and of what names stand for.
@@ -185,8 +185,8 @@ pub struct Written {
 }
 
 impl Written {
-    /// The terms of a line, all but the first with their sign and a space before them; the name of what has one that is
-    /// no shorthand.
+    /// The terms of a line, all but the first with their sign and a space before them; a named expression is its name,
+    /// unless the name is a shorthand.
     pub fn terms(&self, line: Expr<'_>) -> Vec<String> {
         if self.named.contains(&line.atom()) { vec![self.text(line)] } else { self.meaning(line) }
     }
@@ -196,12 +196,12 @@ impl Written {
         self.terms(line).join(" ")
     }
 
-    /// The terms of what a name stands for.
+    /// The terms of the meaning of a name.
     pub fn meaning(&self, value: Expr<'_>) -> Vec<String> {
         self.terms.get(&value.atom()).cloned().unwrap_or_else(|| vec![value.display(self.style)])
     }
 
-    /// An expression on the page as it stands in others.
+    /// An expression on the page as it appears in others.
     pub fn text(&self, expression: Expr<'_>) -> String {
         match expression.atom() {
             Atom::Node(node) if self.pieces.contains_key(&node) => self.pieces[&node].text.clone(),

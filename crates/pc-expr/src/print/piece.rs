@@ -1,4 +1,4 @@
-//! Pieces of text that know how tightly they bind.
+//! Pieces of text with their binding strength.
 
 use std::f64::consts::PI;
 

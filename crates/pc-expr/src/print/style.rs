@@ -1,11 +1,11 @@
-//! How an expression is written, and the words of each way.
+//! The styles in which expressions are written.
 
 use crate::graph::function::Function;
 use crate::graph::number::Number;
 use crate::print::piece::{Binding, Piece, number};
 use crate::print::{book, latex};
 
-/// How an expression is written.
+/// The style of the text of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
     /// The expression language, which the parser reads back.

@@ -19,8 +19,8 @@ const ROOM: usize = 80;
 impl Expr<'_> {
     /// The text in another style than [`Display`](fmt::Display)'s.
     ///
-    /// All of it: what is long has parts that are named behind it, `z1 + 1/z1 where z1 = …`. To print several expressions
-    /// with names in common there is [`Graph::names`](crate::Graph::names).
+    /// It is complete: parts of a long expression are named after it, `z1 + 1/z1 where z1 = …`.
+    /// [`Graph::names`](crate::Graph::names) prints several expressions with common names.
     pub fn display(self, style: Style) -> String {
         let Some(graph) = self.graph() else {
             return match self.atom() {

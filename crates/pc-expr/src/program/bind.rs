@@ -13,13 +13,13 @@ enum Value {
 }
 
 impl Program {
-    /// The same program with these values of the parameters, which it reads no more: what they alone determine is computed here, and
-    /// what a 0 or a 1 among them makes superfluous is left out. It takes no more operations, and its results are the same to the
-    /// last bit where they are finite, but for the sign of zero.
+    /// The same program with these values of the parameters, which it no longer reads: what they alone determine is
+    /// computed here, and what a 0 or a 1 among them makes superfluous is left out. It takes no more operations, and
+    /// its results are the same to the last bit where they are finite, up to the sign of zero.
     ///
-    /// Numbers put into expressions before these become a program may lead to a shorter one or a longer one: the normal form of
-    /// sums multiplies numbers out, and a sum that stands in several places with a parameter before it, computed once in the free
-    /// program, is another one before each number.
+    /// Numbers put into expressions before these become a program may make it shorter or longer: the normal form of
+    /// sums multiplies numbers out, so a sum that is computed once in the free program and multiplied by several
+    /// parameters becomes a different sum for each number.
     ///
     /// ```
     /// use pc_expr::{Graph, Inputs, Program};
@@ -42,7 +42,7 @@ impl Program {
         self.binding(&values)
     }
 
-    /// The same with values of those parameters alone whose names have one.
+    /// The same with values only for the parameters for which `value` gives one.
     #[must_use]
     pub fn bound_where(&self, value: impl Fn(&str) -> Option<f64>) -> Program {
         let names = &self.names[self.names.len() - self.parameters..];

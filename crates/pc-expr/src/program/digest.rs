@@ -1,11 +1,11 @@
-//! Programs by a number, to tell whether two are the same in two runs.
+//! Digests of programs, to tell whether they are the same in two runs.
 
 use std::fmt::{self, Write};
 
 use crate::program::program::Program;
 
-/// A number for the text that is written to it, the same on every run and every machine (FNV-1a, 64 bits). It tells by accident,
-/// not against intent.
+/// A number for the text that is written to it, the same on every run and every machine (FNV-1a, 64 bits). It detects
+/// accidental differences, not deliberate ones.
 ///
 /// ```
 /// use std::fmt::Write;
@@ -19,17 +19,17 @@ use crate::program::program::Program;
 pub struct Digest(u64);
 
 impl Digest {
-    /// The number of all that was written.
+    /// The digest of everything written so far.
     pub fn value(self) -> u64 {
         self.0
     }
 
-    /// Adds a name, and that it has ended.
+    /// Adds a name and its end.
     pub fn name(&mut self, name: &str) {
         let _ = write!(self, "{name}\0"); // writing to it cannot fail
     }
 
-    /// Adds a program: its inputs by their names, and its operations; no values of parameters are among it.
+    /// Adds a program: its inputs by name, and its operations, without values of parameters.
     pub fn program(&mut self, program: &Program) {
         program.input_names().iter().for_each(|name| self.name(name));
         for constant in program.constants() {

@@ -1,4 +1,4 @@
-//! Straight-line programs: chosen outputs of a graph as a tape that needs the graph no more.
+//! Straight-line programs: chosen outputs of a graph as a tape that is independent of the graph.
 
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
@@ -150,7 +150,7 @@ impl Program {
         self.first_result() + self.code.len()
     }
 
-    /// Text of what a register holds, abbreviated where it is deep.
+    /// The contents of a register as text, abbreviated where they are deep.
     pub fn describe(&self, register: Register) -> String {
         self.piece(register, 0).text
     }

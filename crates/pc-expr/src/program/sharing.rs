@@ -1,4 +1,4 @@
-//! Which factors products have in common: reciprocals and pairs that are worth computing once.
+//! Common factors of products: reciprocals and pairs that are worth computing once.
 
 use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! Enclosures of real functions over intervals [Moore 1966].
 //!
-//! Ends are rounded to nearest, not outwards: they are off by a few units of rounding, which is nothing beside what is
-//! looked for here, and never decide anything by themselves.
+//! Ends are rounded to nearest, not outwards: they are off by a few units of rounding, which is negligible for the
+//! features sought here, and they decide nothing by themselves.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::{Add, Mul, Neg, Sub};

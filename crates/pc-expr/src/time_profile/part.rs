@@ -1,4 +1,4 @@
-//! What of a program is to be watched along time, and what that takes.
+//! The part of a program that is watched along time, and what it needs.
 
 use super::interval::Interval;
 use super::jet::Jet;

@@ -1,10 +1,10 @@
-//! How a vector field depends on time explicitly.
+//! The explicit dependence of a vector field on time.
 //!
-//! An integrator evaluates f at the ends of its steps. What f does between them because t itself stands in it (a pulse, a
-//! switch) leaves no trace there, and a body at rest is carried over it in one step. But a program of f tells where that
-//! may be: over any interval of time its parts are enclosed, with their first two derivatives, by interval arithmetic
-//! [Moore 1966]. Where the enclosures say that a part rises, or falls, and bends one way, nothing is hidden; else the
-//! interval is halved. So no pulse is missed for being short.
+//! An integrator evaluates f at the ends of its steps. What f does between them because it contains t itself (a pulse,
+//! a switch) leaves no trace there, and a body at rest is carried over it in one step. But a program of f shows where
+//! that may be: over any interval of time its parts are enclosed, with their first two derivatives, by interval
+//! arithmetic [Moore 1966]. Where the enclosures say that a part rises, or falls, and bends one way, nothing is
+//! hidden; else the interval is halved. So no pulse is missed for being short.
 
 use crate::program::program::Program;
 use crate::time_profile::part::{Analysis, Line, Part};
@@ -13,11 +13,11 @@ use crate::time_profile::scan::{Feature, Kind, Scan};
 /// How f(t, y) depends on t explicitly.
 #[derive(Clone, Debug, Default)]
 pub enum TimeDependence {
-    /// Not at all.
+    /// f does not depend on t explicitly.
     Absent,
-    /// As a profile shows.
+    /// It does, as the profile shows.
     Known(Box<TimeProfile>),
-    /// Only evaluations can tell.
+    /// Only evaluations can show it.
     #[default]
     Unknown,
 }
@@ -26,7 +26,8 @@ pub enum TimeDependence {
 const LONGEST: usize = 256;
 
 impl TimeDependence {
-    /// That of rates computed by these programs, whose states begin with `dim` components of y, for values of the parameters.
+    /// The time dependence of rates computed by these programs, whose states begin with `dim` components of y, for
+    /// these values of the parameters.
     pub fn of(programs: &[&Program], dim: usize, parameters: &[f64]) -> TimeDependence {
         let mut profile =
             TimeProfile { parts: Vec::new(), mixed: Vec::new(), sampled: false, room: Vec::new() };
@@ -49,7 +50,7 @@ impl TimeDependence {
         if explicit { TimeDependence::Known(Box::new(profile)) } else { TimeDependence::Absent }
     }
 
-    /// That of rates to which something unknown adds.
+    /// The time dependence after an unknown term is added to the rates.
     #[must_use]
     pub fn with_unknown(self) -> TimeDependence {
         match self {
@@ -64,8 +65,8 @@ impl TimeDependence {
 
 /// Where the parts of f that contain t turn, bend, jump or have corners.
 ///
-/// Functions of t alone are followed wherever the motion goes. Of steep functions of t and the state, such as a pulse that
-/// travels, it is seen what they do along the direction of the motion.
+/// Functions of t alone are followed wherever the motion goes. Steep functions of t and the state, such as a
+/// travelling pulse, are followed along the direction of the motion.
 /// ```
 /// use pc_expr::{Graph, Inputs, Program, TimeDependence};
 ///
@@ -91,16 +92,16 @@ pub struct TimeProfile {
     room: Vec<Seen>,
 }
 
-/// Times at which something may be that nobody would see at both ends of an interval, in order.
+/// Times of features that the two ends of an interval would not show, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surprises {
-    /// Those of functions that have no more than 32 of them there.
+    /// Those of functions with at most 32 of them.
     pub few: Vec<f64>,
-    /// Those of functions that have more, such as fast oscillations.
+    /// Those of functions with more, such as fast oscillations.
     pub many: Vec<f64>,
-    /// Up to where they are known, if not to the end of the interval.
+    /// The time up to which they are known, if it is not the end of the interval.
     pub until: Option<f64>,
-    /// Whether there are so many that some function of t turns faster than numbers tell times apart.
+    /// Whether some function of t turns faster than floating-point times can resolve.
     pub noise: bool,
 }
 
@@ -124,21 +125,21 @@ struct Watched {
 }
 
 impl TimeProfile {
-    /// Whether only evaluations can tell what some steep functions of t and the state do.
+    /// Whether only evaluations can show what some steep functions of t and the state do.
     pub fn is_partial(&self) -> bool {
         self.sampled
     }
 
-    /// Whether it is asked along the motion: there are steep functions of t and the state.
+    /// Whether it has to be queried along the motion, because there are steep functions of t and the state.
     pub fn follows_states(&self) -> bool {
         !self.mixed.is_empty()
     }
 
-    /// The times between `t` and `to`, in order, at which something may be that nobody would see at both ends of that
-    /// interval: jumps and corners, and the turns and bends of what may rise and fall between.
+    /// The times between `t` and `to`, in order, of features that the two ends of that interval would not show: jumps
+    /// and corners, and the turns and bends of functions that may rise and fall in between.
     ///
-    /// `at` is (y, ẏ) at t. Where there are thousands, they are known up to one of them; but with `enough`, what is beyond is
-    /// looked at coarsely. Later calls go on from `to` or before, up to `end` and beyond.
+    /// `at` is (y, ẏ) at t. Where there are thousands, they are given up to one of them; with `enough`, the rest is
+    /// examined coarsely. Later calls continue from `to` or before, up to `end` and beyond.
     pub fn surprises(
         &mut self,
         (t, to): (f64, f64),

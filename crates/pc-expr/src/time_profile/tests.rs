@@ -26,7 +26,7 @@ fn found(program: &Program, from: f64, to: f64) -> Vec<f64> {
 }
 
 #[test]
-fn a_field_without_time_has_none() {
+fn a_field_without_time_has_no_profile() {
     let program = program(|_, _, y| -y.sin());
     assert!(matches!(TimeDependence::of(&[&program], 1, &[]), TimeDependence::Absent));
 }
@@ -90,7 +90,7 @@ fn pulses_are_found_however_short() {
 
 /// A step that does not outrun an oscillation is not looked at.
 #[test]
-fn what_steps_resolve_needs_no_look() {
+fn features_resolved_by_steps_are_not_examined() {
     let program = program(|_, t, y| t.sin() + (0.3 * t).cos() * y - t * t);
     let mut profile = profile(&program);
     let (mut t, mut count) = (0.0, 0);
@@ -119,7 +119,7 @@ fn a_fast_oscillation_is_known_piece_by_piece() {
 /// What turns faster than numbers tell times apart is said to, and looked at no closer from then on. Jumps are no such thing,
 /// however many.
 #[test]
-fn what_time_does_not_resolve_is_noise() {
+fn features_beyond_the_resolution_of_time_are_noise() {
     let noise = program(|_, t, y| (1e21 * t).sin() + y);
     let mut of_noise = profile(&noise);
     let found = of_noise.surprises((0.0, 1.0), (&[0.0], &[0.0]), 10.0, false);

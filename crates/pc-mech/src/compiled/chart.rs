@@ -1,4 +1,4 @@
-//! Where quasi-velocities that are defined by velocities determine these.
+//! Where quasi-velocities that are defined by velocities no longer determine these, or these them.
 
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
@@ -10,11 +10,24 @@ use crate::system::system::System;
 /// A part of the velocities that is rounding: what the motion is without it is what it is with it.
 const AT_REST: f64 = 1e-9;
 
+/// Where the slope of the determinant is taken, as a part of the step from either end.
+const SLOPE: f64 = 1e-4;
+
+/// A determinant that falls to this part of its values at both ends of a step vanishes between them: no step that resolves
+/// the motion passes such a change.
+const VANISHES: f64 = 1e-6;
+
+/// Halvings, or golden sections, of a step: down to about 1e-9 of it.
+const SECTIONS: usize = 45;
+
 /// The matrix a of η = a ẋ + a_0 along a motion.
 ///
 /// Where det a = 0 the state (x, η) says nothing of ẋ along ker a. All motions that come there have the same state, whatever
-/// this part of ẋ was, so that what follows is an accident of rounding. Its passages are seen by the sign of det a at the ends
-/// of a step; two within one step are not, nor one at which det a has a double zero.
+/// this part of ẋ was, so that what follows is an accident of rounding. Where det a is infinite η is lost in the same way.
+/// Between the ends of a step the states are taken on the line that joins them: it crosses each surface that separates its
+/// ends.
+///
+/// Frames that are given by b are not watched: the determinant of b would take as long as a step of a small system does.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
     coordinates: usize,
@@ -24,6 +37,19 @@ pub(crate) struct Chart {
     size: usize,
     of_velocities: bool,
     room: Vec<f64>,
+    /// A place between the ends of a step.
+    between: Vec<f64>,
+    /// Time, coordinates, parameters and determinant at the end of the last step: the start of the next one.
+    last: Vec<f64>,
+}
+
+/// How a determinant passes from one end of a step to the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Passage {
+    /// Through zero, or touching it.
+    Zero,
+    /// Through infinity, or touching it.
+    Pole,
 }
 
 impl Chart {
@@ -33,7 +59,7 @@ impl Chart {
     /// [`MechError`] for a symbol without a value.
     pub(crate) fn of(system: &System<'_>) -> Result<Option<Chart>, MechError> {
         match system.frame().definition_matrix() {
-            Some(a) => Chart::watching(system, a, true),
+            Some(a) => Chart::new(system, a, true),
             None => Ok(None),
         }
     }
@@ -50,16 +76,23 @@ impl Chart {
         let (graph, frame) = (system.graph(), system.frame());
         let Some(a) = frame.definition_matrix() else {
             let of_velocities = frame.velocities(system.quasi_velocities()) == system.quasi_velocities();
-            return Chart::watching(system, change, of_velocities);
+            return Chart::new(system, change, of_velocities);
         };
         let product = Matrix::from_fn(change.rows(), a.columns(), |u, i| {
             graph.dot(change.row(u).iter().copied(), a.column(i))
         });
-        Chart::watching(system, &product, true)
+        Chart::new(system, &product, true)
     }
 
-    /// The sign of the determinant of a square matrix; none where it is constant.
+    /// That of a square matrix by which some quasi-velocities determine others; none where it is constant.
     pub(crate) fn watching<'g>(
+        system: &System<'g>,
+        a: &Matrix<Expr<'g>>,
+    ) -> Result<Option<Chart>, MechError> {
+        Chart::new(system, a, false)
+    }
+
+    fn new<'g>(
         system: &System<'g>,
         a: &Matrix<Expr<'g>>,
         of_velocities: bool,
@@ -75,58 +108,157 @@ impl Chart {
             state: frame.coordinates().to_vec(),
             parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
         };
-        let entries =
-            Evaluator::new(Program::new(system.graph(), &inputs, &a.entries())?, Backend::Interpreter);
+        let program = Program::new(system.graph(), &inputs, &a.entries())?;
+        let entries = Evaluator::new(program, Backend::Interpreter);
         let (coordinates, parameters) = (inputs.state.len(), inputs.parameters.len());
         let size = a.rows();
         let room = vec![0.0; size * size];
-        Ok(Some(Chart { coordinates, parameters, entries, size, of_velocities, room }))
+        let between = vec![0.0; coordinates];
+        let last = Vec::with_capacity(coordinates + parameters + 2);
+        Ok(Some(Chart { coordinates, parameters, entries, size, of_velocities, room, between, last }))
     }
 
-    /// a at (t, y), row after row.
-    fn matrix(&mut self, t: f64, y: &[f64], parameters: &[f64]) -> &mut [f64] {
-        self.entries.eval(t, &y[..self.coordinates], &parameters[..self.parameters], &mut self.room);
+    /// The matrix at (t, x), row after row.
+    fn matrix(&mut self, t: f64, x: &[f64], parameters: &[f64]) -> &mut [f64] {
+        self.entries.eval(t, &x[..self.coordinates], &parameters[..self.parameters], &mut self.room);
         &mut self.room
     }
 
-    /// Whether det a has another sign at the end of a step than at its start.
-    pub(crate) fn is_left(&mut self, from: (f64, &[f64]), to: (f64, &[f64]), parameters: &[f64]) -> bool {
+    fn determinant(&mut self, t: f64, x: &[f64], parameters: &[f64]) -> f64 {
         let n = self.size;
-        let mut sign = |(t, y): (f64, &[f64])| sign_of_determinant(self.matrix(t, y, parameters), n);
-        sign(from) * sign(to) < 0.0
+        determinant(self.matrix(t, x, parameters), n)
     }
 
-    /// Whether a motion with these velocities does not move along the direction in which a is nearest to singular: then it needs
-    /// no quasi-velocity to say how it does. Said of no motion where the directions are not those of ẋ.
-    pub(crate) fn rests(&mut self, (t, y): (f64, &[f64]), velocities: &[f64], parameters: &[f64]) -> bool {
+    /// The determinant at the start of a step, which is that at the end of the one before unless the state has jumped.
+    fn at_start(&mut self, (t, y): (f64, &[f64]), parameters: &[f64]) -> f64 {
+        let here =
+            [t].into_iter().chain(y[..self.coordinates].iter().copied()).chain(parameters.iter().copied());
+        match self.last.split_last() {
+            Some((&known, place)) if here.eq(place.iter().copied()) => known,
+            _ => self.determinant(t, y, parameters),
+        }
+    }
+
+    fn remember(&mut self, (t, y): (f64, &[f64]), parameters: &[f64], value: f64) {
+        self.last.clear();
+        self.last.push(t);
+        self.last.extend_from_slice(&y[..self.coordinates]);
+        self.last.extend_from_slice(parameters);
+        self.last.push(value);
+    }
+
+    /// The determinant on the line from one end of a step to the other, at the part `s` of it.
+    fn along(&mut self, s: f64, from: (f64, &[f64]), to: (f64, &[f64]), parameters: &[f64]) -> f64 {
+        let mut x = std::mem::take(&mut self.between);
+        for (x, (a, b)) in x.iter_mut().zip(from.1.iter().zip(to.1)) {
+            *x = a + s * (b - a);
+        }
+        let value = self.determinant(from.0 + s * (to.0 - from.0), &x, parameters);
+        self.between = x;
+        value
+    }
+
+    /// How the determinant passes zero or infinity on the way from one end of a step to the other, if it does.
+    pub(crate) fn passage(
+        &mut self,
+        from: (f64, &[f64]),
+        to: (f64, &[f64]),
+        parameters: &[f64],
+    ) -> Option<Passage> {
+        let start = self.at_start(from, parameters);
+        let end = self.determinant(to.0, to.1, parameters);
+        self.remember(to, parameters, end);
+        let mut along = |s: f64| self.along(s, from, to, parameters);
+        let (least, most) = (start.abs().min(end.abs()), start.abs().max(end.abs()));
+        if start * end < 0.0 {
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..SECTIONS {
+                let middle = 0.5 * (low + high);
+                if along(middle) * start > 0.0 { low = middle } else { high = middle }
+            }
+            let there = along(low).abs().max(along(high).abs());
+            return Some(if there < most { Passage::Zero } else { Passage::Pole });
+        }
+        // With one sign at both ends, whether it goes towards zero, or infinity, and comes back.
+        let slope = along(SLOPE).abs() - start.abs();
+        let comes_back = |slope: f64, before: f64| slope * (end.abs() - before.abs()) < 0.0;
+        if slope == 0.0 || !comes_back(slope, along(1.0 - SLOPE)) {
+            return None;
+        }
+        if slope < 0.0 {
+            let there = smallest(|s| along(s).abs());
+            (there <= VANISHES * least).then_some(Passage::Zero)
+        } else {
+            let there = smallest(|s| along(s).abs().recip());
+            (there * most <= VANISHES).then_some(Passage::Pole)
+        }
+    }
+
+    /// Whether a motion with these velocities, which has passed so, does not move in the direction that is lost there: then it
+    /// needs no quasi-velocity to say how it does, or no velocity to say which quasi-velocity it has. Said of no motion where
+    /// the columns are not those of ẋ.
+    pub(crate) fn rests(
+        &mut self,
+        passage: Passage,
+        (t, y): (f64, &[f64]),
+        velocities: &[f64],
+        parameters: &[f64],
+    ) -> bool {
         let n = self.size;
         if !self.of_velocities {
             return false;
         }
         let entries = self.matrix(t, y, parameters);
         let a = Matrix::from_fn(n, n, |i, j| entries[i * n + j]);
-        let Ok(SingularValues { right, .. }) = SingularValues::of(&a) else {
+        let Ok(SingularValues { values, right, .. }) = SingularValues::of(&a) else {
             return false;
         };
-        let last = right.columns() - 1;
-        let along: f64 = velocities.iter().enumerate().map(|(i, v)| right[(i, last)] * v).sum();
-        along.abs() <= AT_REST * velocities.iter().fold(0.0f64, |largest, v| largest.max(v.abs()))
+        let part =
+            |k: usize| velocities.iter().enumerate().map(|(i, v)| right[(i, k)] * v).sum::<f64>().abs();
+        match passage {
+            Passage::Zero => {
+                part(n - 1) <= AT_REST * velocities.iter().fold(0.0f64, |largest, v| largest.max(v.abs()))
+            }
+            Passage::Pole => {
+                values[0] * part(0) <= AT_REST * (0..n).map(|k| values[k] * part(k)).fold(0.0, f64::max)
+            }
+        }
     }
 }
 
-/// The sign of det A, n × n and row after row, by elimination with row pivots; 0 where a pivot is 0 or no number.
-fn sign_of_determinant(a: &mut [f64], n: usize) -> f64 {
+/// The least value of a function that falls and then rises between 0 and 1, by golden sections.
+fn smallest(mut f: impl FnMut(f64) -> f64) -> f64 {
+    let part = 0.5 * (5.0f64.sqrt() - 1.0);
+    let (mut low, mut high) = (0.0, 1.0);
+    let (mut left, mut right) = (1.0 - part, part);
+    let (mut at_left, mut at_right) = (f(left), f(right));
+    for _ in 0..SECTIONS {
+        if at_left < at_right {
+            (high, right, at_right) = (right, left, at_left);
+            left = high - part * (high - low);
+            at_left = f(left);
+        } else {
+            (low, left, at_left) = (left, right, at_right);
+            right = low + part * (high - low);
+            at_right = f(right);
+        }
+    }
+    at_left.min(at_right)
+}
+
+/// det A, n × n and row after row, by elimination with row pivots.
+fn determinant(a: &mut [f64], n: usize) -> f64 {
     let at = |i: usize, j: usize| i * n + j;
-    let mut sign = 1.0;
+    let mut product = 1.0;
     for k in 0..n {
         let Some(best) = (k..n).max_by(|&i, &j| a[at(i, k)].abs().total_cmp(&a[at(j, k)].abs())) else {
             break;
         };
         let pivot = a[at(best, k)];
-        if pivot == 0.0 || pivot.is_nan() {
+        product *= if best == k { pivot } else { -pivot };
+        if pivot == 0.0 {
             return 0.0;
         }
-        sign *= if best == k { pivot.signum() } else { -pivot.signum() };
         for j in k..n {
             a.swap(at(k, j), at(best, j));
         }
@@ -137,7 +269,7 @@ fn sign_of_determinant(a: &mut [f64], n: usize) -> f64 {
             }
         }
     }
-    sign
+    product
 }
 
 #[cfg(test)]
@@ -145,12 +277,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn determinants_have_the_sign_of_their_permutation() {
-        let of = |rows: [[f64; 3]; 3]| sign_of_determinant(&mut rows.concat(), 3);
+    fn determinants_are_those_of_the_permuted_rows() {
+        let of = |rows: [[f64; 3]; 3]| determinant(&mut rows.concat(), 3);
         assert_eq!(of([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]), 1.0);
-        assert_eq!(of([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 2.0]]), -1.0);
-        // 1 (4·1 − 1·2) − 2 (3·1 − 1·1) + 0 = −2
-        assert_eq!(of([[1.0, 2.0, 0.0], [3.0, 4.0, 1.0], [1.0, 2.0, 1.0]]), -1.0);
+        assert_eq!(of([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 2.0]]), -2.0);
+        // 1 (4·1 − 1·2) − 2 (3·1 − 1·1) + 0 = −2, by three roundings of numbers below 4
+        assert!((of([[1.0, 2.0, 0.0], [3.0, 4.0, 1.0], [1.0, 2.0, 1.0]]) + 2.0).abs() < 1e-14);
         assert_eq!(of([[1.0, 2.0, 0.0], [2.0, 4.0, 0.0], [1.0, 2.0, 1.0]]), 0.0);
+    }
+
+    #[test]
+    fn the_least_value_is_found_wherever_it_is() {
+        // Golden sections leave 0.618⁴⁵ = 4e-10 of the interval, so that squares are below its square.
+        for place in [1e-3, 0.2, 0.5, 0.999] {
+            assert!(smallest(|s| (s - place).powi(2)) < 1e-18, "{place}");
+            assert!((smallest(|s| (s - place).powi(2) + 0.5) - 0.5).abs() < 1e-15, "{place}");
+        }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! `cost` finds from the zeros of M which is cheaper. `symbolic` writes M⁻¹ out by `symbolic_ldl`; `numeric` factorises
 //! at each state by `dense_ldl`. Under constraints w has multipliers and the matrix is a saddle point's: `saddle_point`,
-//! by `solver`. `columns` leaves out what is zero, `pivots` watches that the choice of pivots stays sound.
+//! by `solver`. `columns` leaves out zeros, `pivots` watches that the choice of pivots stays sound.
 
 pub(crate) mod columns;
 pub(crate) mod cost;

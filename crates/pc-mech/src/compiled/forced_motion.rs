@@ -108,8 +108,8 @@ fn derived(options: CompileOptions) -> CompileOptions {
 
 impl Motion {
     /// The motion under the forces of `force` on the quasi-velocities called `names`: those for which external forces were
-    /// [declared](crate::SystemBuilder::external_force), in that order. What it [keeps](Motion::keep) it keeps. It has a
-    /// Jacobian if this motion has one and [that by its parameters](CompileOptions::parameter_jacobian).
+    /// [declared](crate::SystemBuilder::external_force), in that order. It [keeps](Motion::keep) the same integrals.
+    /// It has a Jacobian if this motion has one and [that by its parameters](CompileOptions::parameter_jacobian).
     ///
     /// # Errors
     /// [`ForceError::NoneDeclared`] without names; [`ShapeError`] for more names than the motion has inputs.
@@ -177,10 +177,10 @@ impl<F: ExternalForce> ForcedMotion<F> {
         Ok(self.motion.parameters())
     }
 
-    /// What should be zero of each constraint at (t, y), as [`Motion::constraint_residuals`] gives it.
+    /// The residual of each constraint at (t, y), as [`Motion::constraint_residuals`] gives it.
     ///
     /// # Panics
-    /// If `y` has not the length of the state.
+    /// If `y` does not have the length of the state.
     pub fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         self.motion.constraint_residuals(t, y)
     }
@@ -189,7 +189,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
     /// computed are not finite.
     ///
     /// # Panics
-    /// If `y` has not the length of the state.
+    /// If `y` does not have the length of the state.
     pub fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut values = vec![f64::NAN; self.motion.observable_names().len()];
         self.observe_to(t, y, &mut values);
@@ -216,7 +216,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         self.motion.watch(t, y, values, false);
     }
 
-    /// Writes what should be zero of each constraint at (t, y), as [`Motion::constraint_residuals_to`] does.
+    /// Writes the residual of each constraint at (t, y), as [`Motion::constraint_residuals_to`] does.
     ///
     /// # Panics
     /// As there.

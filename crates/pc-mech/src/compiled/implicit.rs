@@ -1,4 +1,4 @@
-//! Unknowns that do not stand linearly in their equations: Newton's method with line search.
+//! Unknowns of nonlinear equations: Newton's method with line search.
 
 use pc_expr::{Backend, Evaluator, ExprError, Pattern, Program};
 

@@ -1,4 +1,4 @@
-//! Motions under constraints with momenta for the components of their state.
+//! Motions under constraints whose state consists of coordinates and momenta.
 
 use std::ops::Range;
 
@@ -21,13 +21,12 @@ impl Multipliers<'_> {
     ///
     ///   ẏ_s = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α,   ẋ = b η + b_0,   C η + c_0 = 0.
     ///
-    /// No velocities are chosen for independent ones, so that no position is singular but those of the constraints
-    /// themselves. States are projected as those of [`compile_for`](Multipliers::compile_for) are, and what is observed or
-    /// [kept](Motion::keep) is the same; to keep integrals, those of these multipliers are to be given. There is no product with
-    /// the Jacobian.
+    /// No velocities are chosen as independent, so only positions where the constraints themselves are singular are
+    /// singular. States are projected as those of [`compile_for`](Multipliers::compile_for) are, with the same
+    /// observables and [kept](Motion::keep) integrals; integrals to be kept must be those of these multipliers. There
+    /// is no product with the Jacobian.
     ///
-    /// `guess` are η from which solutions of y = ∂L/∂η are looked for where L is not quadratic in η, or a constraint is not
-    /// affine.
+    /// `guess` are η from which y = ∂L/∂η is solved where L is not quadratic in η, or a constraint is not affine.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System, VectorField};

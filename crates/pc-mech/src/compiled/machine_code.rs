@@ -1,4 +1,4 @@
-//! f as bare machine code.
+//! f as plain machine code.
 
 use std::sync::Arc;
 
@@ -6,11 +6,11 @@ use pc_expr::Entry;
 
 use crate::compiled::elimination::pivots::PivotPartition;
 
-/// The machine code of f, for callers that manage memory themselves, and what its outputs are.
+/// The machine code of f, for callers that manage memory themselves, and the meaning of its outputs.
 ///
-/// [`entry`](MachineCode::entry) writes ẏ, then what changes with the state of the pivots of M and of what they are
-/// compared with; whether ẏ can be trusted, [`is_regular`](MachineCode::is_regular) says. Valid as long as the motion it
-/// was asked of, or a clone made since.
+/// [`entry`](MachineCode::entry) writes ẏ, then the pivots of M and the numbers they are compared with, as far as
+/// these change with the state; [`is_regular`](MachineCode::is_regular) says whether ẏ can be trusted. Valid as long
+/// as the motion it came from, or a clone made since.
 #[derive(Clone, Debug)]
 pub struct MachineCode {
     entry: Entry,
@@ -35,7 +35,7 @@ impl MachineCode {
         self.entry
     }
 
-    /// How many numbers of scratch it needs.
+    /// The length of the scratch memory it needs.
     pub fn scratch_len(&self) -> usize {
         self.scratch
     }
@@ -52,14 +52,15 @@ impl MachineCode {
         self.outputs
     }
 
-    /// How many [`fixed_pivots`](crate::Motion::fixed_pivots) there are.
+    /// The number of [`fixed_pivots`](crate::Motion::fixed_pivots).
     pub fn fixed_len(&self) -> usize {
         self.pivots.fixed_len()
     }
 
     /// Whether no pivot of M vanishes, by the outputs after the rates and the
-    /// [`fixed_pivots`](crate::Motion::fixed_pivots), of which `fixed` gives one by its place. Where it says no,
-    /// [`rhs`](pc_expr::VectorField::rhs) fails; so it does where a rate is not finite, which is not looked at here.
+    /// [`fixed_pivots`](crate::Motion::fixed_pivots), of which `fixed` gives one by its index. Where it returns false,
+    /// [`rhs`](pc_expr::VectorField::rhs) fails; that also fails where a rate is not finite, which is not checked
+    /// here.
     ///
     /// # Panics
     /// If there are not as many outputs.

@@ -1,4 +1,4 @@
-//! A mass matrix in numbers, to be solved with.
+//! Numerical factors of a mass matrix.
 
 use pc_expr::Pattern;
 
@@ -23,7 +23,7 @@ pub struct MassFactors {
     values: Vec<f64>,
 }
 
-/// A matrix has no inverse, as far as its numbers tell.
+/// A matrix that is numerically singular.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the matrix is singular: its pivot number {index} (from 0) is {pivot}")]
 pub struct SingularMatrix {
@@ -34,7 +34,7 @@ pub struct SingularMatrix {
 }
 
 impl MassFactors {
-    /// Room for those of a k × k matrix.
+    /// Workspace for the factors of a k × k matrix.
     pub fn new(k: usize) -> MassFactors {
         let lower = Pattern::from_columns(k, (0..k).map(|j| j..k));
         MassFactors { factors: DenseLdl::new(k), values: vec![0.0; lower.len()], lower }
@@ -62,7 +62,7 @@ impl MassFactors {
         })
     }
 
-    /// Replaces v by M⁻¹ v, and so each of several columns.
+    /// Replaces each of the columns v by M⁻¹ v.
     pub fn solve(&mut self, columns: &mut [f64]) {
         self.factors.solve(columns);
     }

@@ -1,4 +1,4 @@
-//! Compiled equations of motion: a vector field with its derivatives, and the quantities watched along it.
+//! Compiled equations of motion: a vector field with its derivatives, and the quantities observed along it.
 
 use pc_algebra::Matrix;
 use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, VectorField};
@@ -200,7 +200,7 @@ impl Motion {
         }
     }
 
-    /// The motion of the quasi-velocities, where that of momenta under constraints is made from it; else this one.
+    /// The motion in quasi-velocities from which one in momenta under constraints is made; else this one.
     pub fn in_quasi_velocities(&self) -> &Motion {
         match &self.form {
             Form::InMomenta(motion) => motion.inner(),
@@ -255,8 +255,7 @@ impl Motion {
         &self.observable_names
     }
 
-    /// Number of observables, the first ones, that the motion should keep constant: the integrals and the
-    /// energy.
+    /// Number of observables that the motion should keep constant, the integrals and the energy, which come first.
     pub fn conserved_len(&self) -> usize {
         self.conserved
     }
@@ -265,7 +264,7 @@ impl Motion {
     /// that it is [driven by](Motion::driven_by) has no value.
     ///
     /// # Panics
-    /// If `y` has not the length of the state.
+    /// If `y` does not have the length of the state.
     pub fn observe(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut values = vec![f64::NAN; self.observable_names.len()];
         self.observe_to(t, y, &mut values);
@@ -275,7 +274,7 @@ impl Motion {
     /// Writes the observables at (t, y) to `values`, as [`observe`](Motion::observe) gives them.
     ///
     /// # Panics
-    /// If `y` has not the length of the state, or `values` not that of [`observable_names`](Motion::observable_names).
+    /// If `y` does not have the length of the state, or `values` not that of [`observable_names`](Motion::observable_names).
     pub fn observe_to(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.watch(t, y, values, true);
     }
@@ -294,17 +293,17 @@ impl Motion {
         }
     }
 
-    /// The same of a system whose quasi-velocities are defined by velocities: it [leads](VectorField::leads) nowhere past a
-    /// place where these do not determine velocities.
+    /// The same motion of a system; it does not [lead](VectorField::leads) past a place where definitions of quasi-velocities by
+    /// velocities do not determine the ones by the others.
     ///
     /// # Errors
-    /// [`MechError`] if a definition contains a symbol that is no coordinate or parameter.
+    /// [`MechError`] if the frame contains a symbol that is neither a coordinate nor a parameter.
     pub fn within_chart(self, system: &System<'_>) -> Result<Motion, MechError> {
         Ok(Motion { charts: Chart::of(system)?.into_iter().collect(), ..self })
     }
 
-    /// The same of a motion in other quasi-velocities η' = A η + A_0 than those of the system, with A for all of these in their
-    /// order: neither past a place where η' do not determine η.
+    /// The same motion in other quasi-velocities η' = A η + A_0, with A for all those of the system in their order;
+    /// nor does it lead past a place where η' do not determine η.
     ///
     /// # Errors
     /// As there.
@@ -316,8 +315,8 @@ impl Motion {
         Ok(Motion { charts: Chart::of_change(system, change)?.into_iter().collect(), ..self })
     }
 
-    /// The same of a motion in independent quasi-velocities of a system: neither past a place where this square matrix, with
-    /// which constraints determine the others, is singular.
+    /// The same motion in independent quasi-velocities of a system; nor does it lead past a place where this square
+    /// matrix, by which constraints determine the others, is singular.
     ///
     /// # Errors
     /// As there.
@@ -326,7 +325,7 @@ impl Motion {
         system: &System<'g>,
         square: &Matrix<Expr<'g>>,
     ) -> Result<Motion, MechError> {
-        self.charts.extend(Chart::watching(system, square, false)?);
+        self.charts.extend(Chart::watching(system, square)?);
         Ok(self)
     }
 
@@ -382,21 +381,21 @@ impl Motion {
         &self.constraints
     }
 
-    /// What should be zero of each constraint at (t, y): f(t, x) of those on positions, C η + c_0 of the others.
+    /// The residual of each constraint at (t, y): f(t, x) for conditions on positions, C η + c_0 for the others.
     ///
     /// # Panics
-    /// If `y` has not the length of the state.
+    /// If `y` does not have the length of the state.
     pub fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut residuals = vec![f64::NAN; self.constraints.len()];
         self.constraint_residuals_to(t, y, &mut residuals);
         residuals
     }
 
-    /// Writes what should be zero of each constraint to `residuals`, as
+    /// Writes the residual of each constraint to `residuals`, as
     /// [`constraint_residuals`](Motion::constraint_residuals) gives it.
     ///
     /// # Panics
-    /// If `y` has not the length of the state, or `residuals` not that of [`constraint_names`](Motion::constraint_names).
+    /// If `y` does not have the length of the state, or `residuals` not that of [`constraint_names`](Motion::constraint_names).
     pub fn constraint_residuals_to(&mut self, t: f64, y: &[f64], residuals: &mut [f64]) {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         assert_eq!(residuals.len(), self.constraints.len(), "number of constraints");
@@ -408,8 +407,9 @@ impl Motion {
         }
     }
 
-    /// A number that tells this motion from those of other equations, or with other names: of the names of states, parameters and
-    /// constraints, and of the programs of f. It is the same on every run, whatever the values of the parameters are.
+    /// A number that distinguishes this motion from those of other equations or names: a digest of the names of
+    /// states, parameters and constraints, and of the programs of f. It is the same on every run, whatever the values
+    /// of the parameters.
     pub fn digest(&self) -> u64 {
         let mut digest = Digest::default();
         self.add_to(&mut digest);
@@ -447,8 +447,8 @@ impl Motion {
         }
     }
 
-    /// What does not change with the state of the pivots of M, for the parameters as they are: numbers that
-    /// [`MachineCode::is_regular`] asks for. None where M is factorised in numbers.
+    /// The pivots of M that do not depend on the state, for the current parameters, as [`MachineCode::is_regular`]
+    /// takes them. None where M is factorised in numbers.
     pub fn fixed_pivots(&mut self) -> Option<&[f64]> {
         match &mut self.form {
             Form::Unrolled(unrolled) => Some(unrolled.fixed_pivots(self.names.len(), &self.parameters)),
@@ -466,7 +466,7 @@ impl Motion {
     /// are: the others follow by the shortest way in the kinetic metric.
     ///
     /// # Errors
-    /// A [`Failure`] where there is nothing to come to, or what is left to move is not enough.
+    /// A [`Failure`] where no such state exists, or the other components cannot reach it.
     pub fn project_holding(
         &mut self,
         t: f64,
@@ -508,13 +508,13 @@ impl Motion {
         Ok((state, rates))
     }
 
-    /// Moves the η of a state to where the constraints hold, and leaves its x as they are.
+    /// Moves the η of a state onto the constraints, and leaves its x as they are.
     ///
     /// # Errors
     /// As the [projection](VectorField::project) of the state.
     ///
     /// # Panics
-    /// If `y` has not the length of the state.
+    /// If `y` does not have the length of the state.
     pub fn project_velocities(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         let parameters = &self.parameters;

@@ -1,9 +1,9 @@
-//! What is compiled beside the right-hand side.
+//! Options of compilation.
 
 use pc_expr::Backend;
 
-/// What to compile of equations of motion, and for which kernel. Each derivative takes time to derive, the
-/// Jacobian of a large system most of all.
+/// What to compile besides the right-hand side, and for which kernel. Each derivative takes time to derive, above all
+/// the Jacobian of a large system.
 ///
 /// ```
 /// use pc_mech::{CompileOptions, Graph, System, VectorField};
@@ -73,7 +73,7 @@ impl CompileOptions {
         CompileOptions { backend, ..self }
     }
 
-    /// Whether to have ∂f/∂y, which Newton iterations of implicit methods take and others do not.
+    /// Whether to have ∂f/∂y, which Newton iterations of implicit methods need.
     #[must_use]
     pub fn jacobian(self, jacobian: bool) -> CompileOptions {
         CompileOptions { jacobian, ..self }

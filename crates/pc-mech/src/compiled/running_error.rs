@@ -1,4 +1,4 @@
-//! How large the rounding errors of functions are.
+//! Bounds of the rounding errors of functions.
 //!
 //! The bound is an expression, compiled with its function, for a projection ends by it at each state of a motion; a weight in
 //! numbers, by which a derivation tells zeros at a few points, is in `pc-algebra/src/identity/running_error.rs`.
@@ -210,7 +210,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn terms_that_cancel_count() {
+    fn cancelling_terms_count() {
         let graph = Graph::new();
         let [t, x, y, a] = graph.symbols(["t", "x", "y", "a"]);
         let circle = x.square() + (y - a).square() - a.square();

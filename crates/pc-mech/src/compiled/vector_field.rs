@@ -181,13 +181,13 @@ impl VectorField for Motion {
     fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
         let mut charts = std::mem::take(&mut self.charts);
         let undetermined = charts.iter_mut().any(|chart| {
-            if !chart.is_left(from, to, self.parameters()) {
+            let Some(passage) = chart.passage(from, to, self.parameters()) else {
                 return false;
-            }
+            };
             let mut rates = vec![f64::NAN; to.1.len()];
             let outcome = self.rhs(to.0, to.1, &mut rates);
             let velocities = &rates[..self.coordinates];
-            !(outcome.is_ok() && chart.rests(to, velocities, self.parameters()))
+            !(outcome.is_ok() && chart.rests(passage, to, velocities, self.parameters()))
         });
         self.charts = charts;
         match undetermined {

@@ -8,8 +8,8 @@ use crate::constraints::multipliers::Multipliers;
 use crate::system::bodies::velocity::BodyVelocity;
 use crate::system::system::System;
 
-/// What the reactions of constraints are on one body: of each constraint a force at the body's point, along the axes of
-/// its position, and a torque about this, along the axes of its angular velocity.
+/// The reactions of constraints on one body: for each constraint a force at the body's point, along the axes of its
+/// position, and a torque about this point, along the axes of its angular velocity.
 #[derive(Clone, Debug)]
 pub struct BodyReaction<'g> {
     name: String,
@@ -55,11 +55,12 @@ impl<'g> Multipliers<'g> {
     ///
     /// The force on a body is determined by this if ṙ can be varied independently of the velocities of all other bodies,
     /// of its own ω, and of what has kinetic energy without being a body: if the rank of all these derivatives is that of
-    /// ∂ṙ/∂η and that of the others together. Then it is so but for what is normal to all ṙ that the coordinates
-    /// allow, which is no part of it: that belongs to what holds the coordinates. For torques likewise, with ω.
+    /// ∂ṙ/∂η and that of the others together. It is determined up to a part normal to all ṙ that the coordinates
+    /// allow, which is left out: that part belongs to whatever holds the coordinates. For torques likewise, with ω.
     ///
-    /// Where velocities are tied together by the choice of coordinates, as those of two masses on a rod by its angle, the forces
-    /// between them are not those of constraints and share the load in a way that virtual work does not tell.
+    /// Where velocities are tied together by the choice of coordinates, as those of two masses on a rod by its angle,
+    /// the forces between them are not those of constraints, and share the load in a way that virtual work does not
+    /// determine.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, Particle, System};

@@ -1,4 +1,4 @@
-//! Which quasi-velocities are taken for independent: those that are asked for, or those whose equations are shortest.
+//! The choice of independent quasi-velocities: those requested, or those whose equations are shortest.
 
 use pc_algebra::Matrix;
 use pc_expr::Expr;
@@ -12,11 +12,11 @@ const MOST_TRIED: usize = 20;
 /// Equations are derived to be compared only where as many constraints are solved, and L is written with so many operations.
 const MOST_SOLVED: usize = 3;
 const LONGEST_TRIED: u32 = 1000;
-/// A choice is regular if its determinant, in the kinetic metric, is this part of the largest: a motion goes on for a while before
-/// the equations are singular.
+/// A choice is regular if its determinant, in the kinetic metric, is this part of the largest: a motion goes on for a
+/// while before the equations are singular.
 const REGULAR: f64 = 0.5;
-/// What part of the largest pivot the shortest may be: equations lose a digit by it. (That more choices are not derived has a second
-/// reason: what is derived in a graph before leaves its forms there.)
+/// What part of the largest pivot the shortest may be: equations lose a digit by it. (That more choices are not
+/// derived has a second reason: what is derived in a graph before leaves its forms there.)
 const PIVOT: f64 = 0.1;
 
 /// C at a state, its rows of length one and its columns divided by the roots of the masses: units do not matter.
@@ -25,11 +25,11 @@ struct Weighed {
 }
 
 impl<'g> Multipliers<'g> {
-    /// The same with these quasi-velocities for the [independent](Multipliers::in_independent_velocities) ones, k − m of them.
+    /// The same with these quasi-velocities, k − m of them, as the [independent](Multipliers::in_independent_velocities) ones.
     ///
     /// # Errors
-    /// [`ConstraintError::NotIndependent`] if they are not as many, or none of the system's, or do not determine the others
-    /// at the values `at` of time, coordinates, quasi-velocities and parameters.
+    /// [`ConstraintError::NotIndependent`] if their number is wrong, one is not the system's, or they do not determine
+    /// the others at the values `at` of time, coordinates, quasi-velocities and parameters.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System};
@@ -61,7 +61,7 @@ impl<'g> Multipliers<'g> {
         };
         let names = || eta.iter().map(Expr::to_string).collect::<Vec<_>>().join(", ");
         if let Some(stray) = independent.iter().find(|name| !eta.contains(name)) {
-            return refuse(format!("`{stray}` is none; they are {}", names()));
+            return refuse(format!("`{stray}` is not among them; they are {}", names()));
         }
         let dependent: Vec<usize> = (0..eta.len()).filter(|&s| !independent.contains(&eta[s])).collect();
         let m = self.constraints().len();
@@ -76,10 +76,10 @@ impl<'g> Multipliers<'g> {
     }
 
     /// The same with the independent quasi-velocities whose equations, as `derive` makes them, are shortest in print among those
-    /// that are regular at the values `at`; the ones that the constraints determine best where others are no shorter.
+    /// that are regular at the values `at`; among equally short ones, those whose constraints are solved best.
     ///
-    /// With more than 20 choices, more than 3 constraints or a long Lagrangian no equations are compared: then C is eliminated
-    /// with the pivot that is shortest in print among those that are no less than a tenth of the largest.
+    /// With more than 20 choices, more than 3 constraints or a long Lagrangian no equations are compared: C is then
+    /// eliminated with the pivot that is shortest in print among those of at least a tenth of the largest.
     ///
     /// # Errors
     /// Those of [`dependent_at`](Multipliers::dependent_at).

@@ -16,7 +16,7 @@ pub struct Constraint<'g> {
 }
 
 impl<'g> Constraint<'g> {
-    /// The condition that `expression` vanishes: on velocities, affine in η, if a quasi-velocity stands in it, on
+    /// The condition that `expression` vanishes: on velocities, affine in η, if it contains a quasi-velocity, on
     /// positions otherwise. The name is for messages and reactions.
     pub fn new(name: impl Into<String>, expression: Expr<'g>) -> Constraint<'g> {
         Constraint { name: name.into(), expression, nonlinear: false }
@@ -46,7 +46,7 @@ impl<'g> Constraint<'g> {
         Constraint { name: name.into(), expression, nonlinear: true }
     }
 
-    /// Whether it was said to be [nonlinear](Constraint::nonlinear).
+    /// Whether it was declared [nonlinear](Constraint::nonlinear).
     pub fn is_nonlinear(&self) -> bool {
         self.nonlinear
     }
@@ -56,7 +56,7 @@ impl<'g> Constraint<'g> {
         &self.name
     }
 
-    /// What vanishes.
+    /// The vanishing expression.
     pub fn expression(&self) -> Expr<'g> {
         self.expression
     }
@@ -66,8 +66,7 @@ impl<'g> Constraint<'g> {
         !system.quasi_velocities.iter().any(|&eta| self.expression.depends_on(eta))
     }
 
-    /// What vanishes of the velocities of the system: its expression if it is one on velocities, X_0 f + η_s X_s f
-    /// otherwise.
+    /// The condition on velocities: its expression if it is one on velocities, X_0 f + η_s X_s f otherwise.
     pub fn velocity(&self, system: &System<'g>) -> Expr<'g> {
         if !self.is_holonomic(system) {
             return self.expression;
@@ -78,7 +77,7 @@ impl<'g> Constraint<'g> {
         graph.directional(&[self.expression], &along)[0]
     }
 
-    /// C_s, length k, and c_0 of what [vanishes of the velocities](Constraint::velocity), C_s η_s + c_0.
+    /// C_s, length k, and c_0 of the [condition on velocities](Constraint::velocity) C_s η_s + c_0 = 0.
     ///
     /// # Errors
     /// [`ConstraintError::NotAffine`]

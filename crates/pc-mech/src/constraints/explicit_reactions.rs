@@ -11,8 +11,8 @@ use crate::system::system::System;
 
 impl<'g> Constraint<'g> {
     /// Whether its reaction does no work on the motion: the power of λ ∂g/∂η_s is λ η_s ∂g/∂η_s, and this vanishes
-    /// with g if it is a multiple of g. By Euler's theorem that is so where g is homogeneous in η; of an affine
-    /// g = C η + c_0 it is so if c_0 = 0.
+    /// with g if it is a multiple of g. By Euler's theorem this holds where g is homogeneous in η; for an affine g = C
+    /// η + c_0, if c_0 = 0.
     pub fn is_workless(&self, system: &System<'g>) -> bool {
         if !self.is_nonlinear() {
             return self.coefficients(system).is_ok_and(|(_, drift)| drift.is_zero());
@@ -31,7 +31,7 @@ impl<'g> Multipliers<'g> {
         self.constraints().iter().any(Constraint::is_nonlinear)
     }
 
-    /// The reactions as functions of the state: from M η̇ = r + Cᵀ λ and C η̇ = −ċ, the constraints being held by both,
+    /// The reactions as functions of the state: from M η̇ = r + Cᵀ λ and C η̇ = −ċ,
     ///
     ///   (C M⁻¹ Cᵀ) λ = −ċ − C M⁻¹ r,   ċ = (∂g/∂x) ẋ + ∂g/∂t,
     ///
@@ -83,8 +83,8 @@ impl<'g> Multipliers<'g> {
     }
 
     /// The system of all velocities on which the [reactions](Multipliers::reactions_of_state) act as forces
-    /// Q_s + C_αs λ_α of the state: its equations (9) are the equations of motion, in every form there is of them, and the
-    /// constraints are integrals. Nothing takes numerical errors of these back.
+    /// Q_s + C_αs λ_α of the state: its equations (9) are the equations of motion, in every form, and the constraints
+    /// are integrals. Their numerical errors are not corrected.
     ///
     /// # Errors
     /// As for [`reactions_of_state`](Multipliers::reactions_of_state).

@@ -21,8 +21,8 @@ impl<'g> Multipliers<'g> {
     ///
     /// with X_s = ∂/∂x_s + b_js ∂/∂x_j if the η are velocities. The dependent ones are those that the constraints
     /// determine best at the values `at` of time, coordinates, quasi-velocities and parameters. The equations are
-    /// singular where det C_D = 0, where the constraints themselves are not. Its brackets are those of the system, carried
-    /// over as [`Elimination::structure_coefficients`] says, whatever the rank of the frame.
+    /// singular where det C_D = 0, where the constraints themselves need not be. Its brackets are those of the system,
+    /// carried over as [`Elimination::structure_coefficients`] says, whatever the rank of the frame.
     ///
     /// # Errors
     /// [`ConstraintError::Singular`] if the constraints are dependent there; [`ConstraintError::NotAffine`];
@@ -100,7 +100,7 @@ impl<'g> Multipliers<'g> {
     /// coefficients.
     ///
     /// Its equations (9) are the equations of motion if the constraints are integrable and `structure` is that of the
-    /// velocities they allow. If they are not, the terms of the momenta that were put in are missing, as in (32), and are
+    /// velocities they allow. If they are not, the terms of the eliminated momenta are missing, as in (32), and have
     /// to be [added](System::with_added_forces) to the forces.
     ///
     /// # Errors
@@ -142,7 +142,7 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The same with a preference: the quasi-velocities of the list, k − m of them, are taken for
+    /// The same with a preference: the listed quasi-velocities, k − m of them, are taken as
     /// [independent](Multipliers::in_independent_velocities) wherever they determine the others well.
     #[must_use]
     pub fn preferring(mut self, independent: &[Expr<'g>]) -> Multipliers<'g> {
@@ -162,7 +162,7 @@ impl<'g> Multipliers<'g> {
         Ok(LeastSquares::of(&square).is_ok_and(|square| square.reciprocal_condition() > WELL))
     }
 
-    /// The reactions λ in terms of (t, x) and independent quasi-velocities, which have the accelerations beside them: with the
+    /// The reactions λ in terms of (t, x) and independent quasi-velocities, each given with its acceleration: with the
     /// dependent ones [solved for](Multipliers::solved_for), from their rows of M η̇ = r + Cᵀ λ,
     ///
     ///   C_αD λ_α = (M η̇ − r)_D,
@@ -211,8 +211,8 @@ impl<'g> Multipliers<'g> {
     }
 
     /// The m indices of the quasi-velocities that the constraints determine best at the values `at` of time, coordinates
-    /// and quasi-velocities, rising, or those that [are to](Multipliers::preferring) depend on the others where they do; `at`
-    /// may have other values of parameters.
+    /// and quasi-velocities, in ascending order, or the [preferred](Multipliers::preferring) ones where they can be
+    /// solved for; `at` may have other values of parameters.
     ///
     /// # Errors
     /// [`ConstraintError::Singular`] if the constraints are dependent there;

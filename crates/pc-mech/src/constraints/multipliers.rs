@@ -22,10 +22,10 @@ use crate::system::system::System;
 /// to the condition, with the power −λ_α c_α0. Of [nonlinear](Constraint::nonlinear) conditions g(t, x, η) = 0, C is ∂g/∂η
 /// and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
 ///
-/// All k quasi-velocities are components of the state. At each evaluation those are taken for independent that
-/// determine the others best, so that no position is singular but those of the constraints themselves; the rates do not
-/// depend on the choice. What numerical errors take the motion away from the constraints, its
-/// [projection](pc_expr::VectorField::project) takes back.
+/// All k quasi-velocities are components of the state. At each evaluation those are taken as independent that
+/// determine the others best, so only positions where the constraints themselves are singular are singular; the rates
+/// do not depend on the choice. Its [projection](pc_expr::VectorField::project) corrects numerical drift from the
+/// constraints.
 ///
 /// ```
 /// use pc_mech::{Constraint, Graph, System, VectorField};
@@ -70,7 +70,7 @@ impl<'g> System<'g> {
     /// The equations of motion under constraints, with multipliers.
     ///
     /// # Errors
-    /// [`ConstraintError::NotAffine`] unless it was said to be [nonlinear](Constraint::nonlinear);
+    /// [`ConstraintError::NotAffine`] unless it was declared [nonlinear](Constraint::nonlinear);
     /// [`ConstraintError::TooMany`] if no velocity is left free; [`FrameError::OfState`](crate::FrameError::OfState)
     /// for one on first-order states; [`ConstraintError::Dependent`] for one that follows from those before it, or
     /// contradicts them; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) if the constraints leave
@@ -180,10 +180,10 @@ impl<'g> Multipliers<'g> {
         lagrange.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())
     }
 
-    /// The same with constraints that follow from those held. Those that do so only where these hold are taken instead
-    /// of them where these are nearly dependent, as bars of a mechanism that has one too many take turns in holding it;
-    /// what each reaction is there is not determined, and not a number. A [projection](pc_expr::VectorField::project)
-    /// of the compiled motion to where one of them does not vanish is refused, as [`ConstraintError::Departed`].
+    /// The same with constraints that follow from those held. Those that do so only where these hold replace them
+    /// where these are nearly dependent, as the bars of an overconstrained mechanism take turns in holding it; the
+    /// single reactions are not determined there, and NaN. A [projection](pc_expr::VectorField::project) of the
+    /// compiled motion to a state where one of them does not vanish is refused, as [`ConstraintError::Departed`].
     #[must_use]
     pub fn followed_by(self, followers: &[Constraint<'g>]) -> Multipliers<'g> {
         Multipliers { followers: followers.to_vec(), ..self }
@@ -254,8 +254,8 @@ impl<'g> Multipliers<'g> {
     ///
     ///   ∂L/∂η − Cᵀ μ = y,   C η + c_0 = 0
     ///
-    /// is solved for η and μ, which is regular also where L determines no η without the constraints; of momenta of which
-    /// the constraints hold, μ = 0. `guess` is as for [`compile_in_momenta`](Multipliers::compile_in_momenta).
+    /// is solved for η and μ, which is regular also where L determines no η without the constraints; μ = 0 for momenta
+    /// that satisfy the constraints. `guess` is as for [`compile_in_momenta`](Multipliers::compile_in_momenta).
     ///
     /// # Errors
     /// As there.
@@ -334,13 +334,13 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The indices of the quasi-velocities that are taken for dependent ones wherever the others determine them; none where no
-    /// choice was made.
+    /// The indices of the quasi-velocities that are taken as dependent wherever the others determine them; none where
+    /// no choice was made.
     pub fn dependent(&self) -> &[usize] {
         self.dependent.as_deref().unwrap_or_default()
     }
 
-    /// The same with the quasi-velocities of these m indices for the dependent ones wherever the others determine them.
+    /// The same with the quasi-velocities of these m indices as the dependent ones wherever the others determine them.
     #[must_use]
     pub fn depending(&self, dependent: Vec<usize>) -> Multipliers<'g> {
         Multipliers { dependent: Some(dependent), ..self.clone() }

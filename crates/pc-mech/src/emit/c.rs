@@ -106,7 +106,7 @@ fn header(source: &Source<'_>) -> String {
     ];
     if let Some(start) = &source.options.start {
         sizes.push(("T_START", source.constants([start.t].into_iter()), "time of the start"));
-        sizes.push(("T_END", source.constants([start.t_end].into_iter()), "a time to go to"));
+        sizes.push(("T_END", source.constants([start.t_end].into_iter()), "an end time"));
     }
     if source.states > 0 {
         sizes.insert(2, ("STATES", source.states.to_string(), "first-order states"));

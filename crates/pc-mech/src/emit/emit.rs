@@ -9,8 +9,8 @@ use crate::emit::{c, rust};
 use crate::equations::poincare::Equations;
 use crate::error::{MechError, ShapeError};
 
-/// A right-hand side of so many operations times the length of the state has a Jacobian of some ten thousand operations, which is no
-/// text to be read, and takes compilers minutes.
+/// A right-hand side of so many operations times the length of the state has a Jacobian of some ten thousand
+/// operations, which is no text to be read, and takes compilers minutes.
 const LONG_JACOBIAN: usize = 30_000;
 
 /// Equations longer than this are not shown in the comment at the head of a file.
@@ -18,14 +18,13 @@ const LONG_EQUATION: usize = 160;
 
 impl<'g> Equations<'g> {
     /// The equations as source code: ẏ of y = (x, η), its Jacobian, the mass matrix, the energy, the integrals and the
-    /// outputs, each one straight-line function of (t, y, p) with the parameters p as run-time arguments. Of a right-hand side so
-    /// long that its Jacobian would have some ten thousand operations, that, the mass matrix and the energy go through a table of
-    /// its operations instead, the Jacobian by the chain rule.
+    /// outputs, each one straight-line function of (t, y, p) with the parameters p as run-time arguments. If the
+    /// right-hand side is so long that its Jacobian would have some ten thousand operations, it, the mass matrix and
+    /// the energy are computed from a table of operations instead, and the Jacobian by the chain rule.
     ///
-    /// C comes as a header and a source file, Rust as one file. Both say at their head how they are used. The same
-    /// system in a new graph gives the same text. Its operations are those of a [`Program`] of the
-    /// same expressions, so that the values are those of the interpreter to the last bit where the mathematical library
-    /// is the same.
+    /// C comes as a header and a source file, Rust as one file. Both explain their use at their head. The same system
+    /// in a new graph gives the same text. Its operations are those of a [`Program`] of the same expressions, so that
+    /// the values are those of the interpreter to the last bit where the mathematical library is the same.
     ///
     /// ```
     /// use pc_mech::{EmitOptions, Graph, Language, System};

@@ -116,7 +116,7 @@ fn constants(source: &Source<'_>, text: &mut String) {
     array("OUTPUT_NAMES", "&str", "OUTPUTS", "Names of the outputs", source.strings(source.outputs.iter()));
     if let Some(start) = &source.options.start {
         array("START", "f64", "DIM", "A state to start from", source.constants(start.state.iter().copied()));
-        let times = [("T_START", start.t, "Time of the start"), ("T_END", start.t_end, "A time to go to")];
+        let times = [("T_START", start.t, "Time of the start"), ("T_END", start.t_end, "An end time")];
         for (name, value, purpose) in times {
             let value = source.constants([value].into_iter());
             let _ = writeln!(text, "/// {purpose}.\npub const {name}: f64 = {value};");

@@ -20,7 +20,8 @@ const MOST_COFACTORS: usize = 3;
 ///
 ///   ẏ_s = (c_rs^m ∂H/∂y_r + c_0s^m) y_m − X_s H + Q_s   (10),   ẋ_i = b_i0 + b_is ∂H/∂y_s   (11).
 ///
-/// X_s H being taken at fixed y. With η = ẋ these are Hamilton's equations, in redundant coordinates (17), in quasi-coordinates (19).
+/// X_s H being taken at fixed y. With η = ẋ these are Hamilton's equations, in redundant coordinates (17), in
+/// quasi-coordinates (19).
 #[derive(Clone, Debug)]
 pub struct Canonical<'g> {
     system: System<'g>,
@@ -187,8 +188,8 @@ impl<'g> Canonical<'g> {
 
     /// Whether y = ∂L/∂η is solved for η in an expression, as it is where L is quadratic in η.
     ///
-    /// Otherwise the expressions of these equations contain the symbols η beside (t, x, y), and stand for what they
-    /// are where y = ∂L/∂η; [compiled](Canonical::compile_for), they solve that by Newton's method.
+    /// Otherwise the expressions of these equations contain the symbols η besides (t, x, y), and hold where y = ∂L/∂η;
+    /// [compiled](Canonical::compile_for), they solve that by Newton's method.
     pub fn is_closed(&self) -> bool {
         matches!(self.legendre.inverse, Inverse::Closed { .. })
     }
@@ -204,8 +205,8 @@ impl<'g> Canonical<'g> {
         }
     }
 
-    /// The same equations with the η, k of them, from which Newton's method looks for the solution of y = ∂L/∂η.
-    /// Without it, and in closed equations, which need none, that is η = 0.
+    /// The same equations with a guess η, length k, from which Newton's method solves y = ∂L/∂η. The default is η = 0;
+    /// closed equations need none.
     ///
     /// It should be in the domain of L, not near its boundary, with M = ∂²L/∂η∂η regular. Where L is not convex in η,
     /// several η may have the same momenta, and the guess decides which of them is found.
@@ -278,8 +279,8 @@ impl<'g> Canonical<'g> {
             .collect()
     }
 
-    /// The right sides of the [balance](Canonical::balance) as they are written, in the graph of a page; none of those that
-    /// are no polynomials, which are written as they [are](Canonical::right_hand_side).
+    /// The right sides of the [balance](Canonical::balance) as they are written, in the graph of a page; none for
+    /// those that are not polynomials, which are written as they [are](Canonical::right_hand_side).
     pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
         sums_of_products(&self.system, &self.right, &self.momenta, page)
     }
@@ -289,10 +290,10 @@ impl<'g> Canonical<'g> {
     ///
     /// Where they are not [closed](Canonical::is_closed), each evaluation solves y = ∂L/∂η for η to rounding, from the
     /// same [guess](Canonical::with_guess), so that it depends on (t, x, y) only; from the last solution where the
-    /// guess leads to none. It fails, recoverably, with
-    /// [`EvaluationError::LegendreNotSolved`](crate::EvaluationError::LegendreNotSolved) where neither does, and with
-    /// [`EvaluationError::SingularMassMatrix`](crate::EvaluationError::SingularMassMatrix) where a pivot of
-    /// M = ∂²L/∂η∂η vanishes.
+    /// guess does not converge. It fails, recoverably, with
+    /// [`EvaluationError::LegendreNotSolved`](crate::EvaluationError::LegendreNotSolved) where neither converges, and
+    /// with [`EvaluationError::SingularMassMatrix`](crate::EvaluationError::SingularMassMatrix) where a pivot of M =
+    /// ∂²L/∂η∂η vanishes.
     ///
     /// # Errors
     /// As for [`Equations::compile_for`](crate::Equations::compile_for).

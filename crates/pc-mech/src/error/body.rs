@@ -1,4 +1,4 @@
-//! What can be wrong with a rigid body or a particle.
+//! Errors of rigid bodies and particles.
 
 /// An error of a body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -6,7 +6,7 @@
 pub enum BodyError {
     /// A rotation whose columns are not orthogonal, or not of one length.
     #[error(
-        "the rotation of a body is none: its columns {} and {} are not orthogonal and of one length; they miss it by `{defect}`",
+        "the matrix of a body is not a rotation: its columns {} and {} are not orthogonal and of equal length; the defect is `{defect}`",
         columns.0, columns.1
     )]
     NotARotation {
@@ -15,14 +15,14 @@ pub enum BodyError {
         /// Text of the product of the columns, or of the difference of their squares.
         defect: String,
     },
-    /// A rotation that turns right into left.
+    /// A rotation matrix with a negative determinant.
     #[error("the rotation of a body is a reflection: its determinant is {determinant}")]
     Reflection {
         /// Its determinant.
         determinant: f64,
     },
     /// A part of a body that depends on velocities.
-    #[error("{what} of a body depends on time and coordinates only; here it depends on `{velocity}`")]
+    #[error("{what} of a body may depend on time and coordinates only, but depends on `{velocity}`")]
     OfVelocities {
         /// The part.
         what: &'static str,
@@ -30,7 +30,7 @@ pub enum BodyError {
         velocity: String,
     },
     /// An angular velocity that is not affine in the quasi-velocities.
-    #[error("an angular velocity is affine in the quasi-velocities; its component `{component}` is not")]
+    #[error("an angular velocity must be affine in the quasi-velocities; its component `{component}` is not")]
     AngularVelocityNotAffine {
         /// Text of the component.
         component: String,

@@ -1,4 +1,4 @@
-//! What can be wrong with constraints, everywhere or at a state.
+//! Errors of constraints, everywhere or at a state.
 
 use crate::error::lists::{listed, quoted};
 
@@ -12,8 +12,10 @@ pub enum ConstraintError {
         /// Its name.
         constraint: String,
     },
-    /// Constraints that leave nothing to move.
-    #[error("nothing is left free: constraints {constraints}, quasi-velocities {quasi_velocities}")]
+    /// Constraints that leave no velocity free.
+    #[error(
+        "the constraints leave nothing free: there are {constraints} of them for {quasi_velocities} quasi-velocities"
+    )]
     TooMany {
         /// Number of constraints.
         constraints: usize,
@@ -41,7 +43,7 @@ pub enum ConstraintError {
     },
     /// A constraint that was left to follow from the others, which it does not everywhere.
     #[error(
-        "the constraint `{constraint}`, which followed from the others, does not at t = {t}{}",
+        "the constraint `{constraint}`, which followed from the others, no longer does at t = {t}{}",
         listed(state)
     )]
     Departed {
@@ -52,8 +54,8 @@ pub enum ConstraintError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// Quasi-velocities that were chosen to be independent and are not those that the constraints leave free.
-    #[error("{} cannot be taken for the independent quasi-velocities: {why}", quoted(chosen))]
+    /// Quasi-velocities that were chosen as independent but do not determine the others.
+    #[error("{} cannot be the independent quasi-velocities: {why}", quoted(chosen))]
     NotIndependent {
         /// Those chosen.
         chosen: Vec<String>,

@@ -10,8 +10,7 @@ use crate::error::lists::listed;
 pub enum EvaluationError {
     /// A pivot of the mass matrix vanished on the way.
     #[error(
-        "the mass matrix is singular: the kinetic energy {}`{quasi_velocity}` (pivot {}) at t = {t}{}",
-        if *pivot == 0.0 { "lacks " } else { "hardly knows " },
+        "the mass matrix is singular: its pivot for `{quasi_velocity}` is {} at t = {t}{}",
         readable(*pivot),
         listed(state)
     )]
@@ -27,7 +26,7 @@ pub enum EvaluationError {
     },
     /// Newton's method found no quasi-velocities that have the momenta.
     #[error(
-        "y = ∂L/∂η has no solution η that could be found: after {iterations} steps |y − ∂L/∂η| is {} at t = {t}{}",
+        "no solution η of y = ∂L/∂η was found: after {iterations} steps |y − ∂L/∂η| is {} at t = {t}{}",
         readable(*residual),
         listed(state)
     )]
@@ -41,7 +40,7 @@ pub enum EvaluationError {
         /// Names and values of the state (x, y).
         state: Vec<(String, f64)>,
     },
-    /// A derivative was asked for that was not [compiled](crate::CompileOptions).
+    /// A derivative that was not [compiled](crate::CompileOptions).
     #[error("the motion was compiled without its {what}")]
     NotCompiled {
         /// The derivative.

@@ -1,4 +1,4 @@
-//! What can be wrong with a generalised force, above all with one computed outside.
+//! Errors of generalised forces, above all of those computed outside.
 
 use crate::error::lists::{listed, quoted};
 

@@ -1,17 +1,17 @@
-//! What can be wrong with a frame, ẋ = b η + b_0 (3), and the definitions of its quasi-velocities.
+//! Errors of a frame, ẋ = b η + b_0 (3), and of the definitions of its quasi-velocities.
 
 /// An error of a frame.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrameError {
     /// b or b_0 of ẋ = b η + b_0 depends on a velocity.
-    #[error("the frame contains `{velocity}`, and b and b_0 are functions of time and coordinates alone")]
+    #[error("the frame contains `{velocity}`, but b and b_0 must be functions of time and coordinates alone")]
     OfVelocities {
         /// The quasi-velocity, or velocity of a coordinate.
         velocity: String,
     },
     /// A part of the frame that depends on a first-order state.
-    #[error("{what} depends on the first-order state `{state}`, which is no part of the frame")]
+    #[error("{what} depends on the first-order state `{state}`, which is not part of the frame")]
     OfState {
         /// The part.
         what: &'static str,
@@ -20,8 +20,8 @@ pub enum FrameError {
     },
     /// Definitions that determine velocities before and after a place, but not there.
     #[error(
-        "between t = {from} and t = {to} the definitions of the quasi-velocities become dependent: they do not say how the \
-         motion goes on there"
+        "between t = {from} and t = {to} the quasi-velocities cease to determine the velocities, or these the \
+         quasi-velocities: the state does not say how the motion continues there"
     )]
     Undetermined {
         /// Time at the start of the step that passes it.

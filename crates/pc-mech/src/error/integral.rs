@@ -1,4 +1,4 @@
-//! What can be wrong with integrals that are to be kept.
+//! Errors of integrals that are to be kept.
 
 use crate::error::lists::{listed, quoted};
 
@@ -14,7 +14,7 @@ pub enum IntegralError {
         /// Those there are.
         known: Vec<String>,
     },
-    /// An integral to be kept that is none.
+    /// A function to be kept that is not an integral.
     #[error("`{name}` cannot be kept: it changes along the motion, at t = {t} at the rate {rate}")]
     NotAnIntegral {
         /// The integral.
@@ -25,7 +25,7 @@ pub enum IntegralError {
         rate: f64,
     },
     /// Newton's method found no state with the values of the [kept](crate::Motion::keep) integrals.
-    #[error("no state with the values of the integrals is found near t = {t}{}", listed(state))]
+    #[error("no state with the values of the integrals was found near t = {t}{}", listed(state))]
     NotKept {
         /// Time.
         t: f64,

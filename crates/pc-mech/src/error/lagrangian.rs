@@ -1,4 +1,4 @@
-//! What can be wrong with a Lagrangian for the form of the equations that is asked for.
+//! Errors of a Lagrangian, for the requested form of the equations.
 
 use crate::error::lists::quoted;
 
@@ -11,8 +11,7 @@ pub enum LagrangianError {
     Missing,
     /// ∂²L/∂η∂η is singular at almost all states.
     #[error(
-        "the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank {rank} of {size}, so that {} not \
-         determined by its equation",
+        "the Lagrangian is degenerate: its Hessian in the quasi-velocities has rank {rank} of {size}, so {} not determined by its equation",
         undetermined(quasi_velocities)
     )]
     Degenerate {

@@ -1,11 +1,11 @@
-//! What can be wrong with a matrix.
+//! Errors of matrices.
 
 /// An error of a matrix.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MatrixError {
     /// A matrix that must be antisymmetric and is not.
-    #[error("{what} is antisymmetric; its entries for `{}` and `{}` do not add up to zero", pair[0], pair[1])]
+    #[error("{what} must be antisymmetric, but its entries for `{}` and `{}` do not add up to zero", pair[0], pair[1])]
     NotSkew {
         /// The matrix.
         what: &'static str,

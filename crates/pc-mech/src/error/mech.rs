@@ -1,4 +1,4 @@
-//! The error of this crate, and what is asked of it.
+//! The error of this crate, with its predicates.
 
 use pc_algebra::AlgebraError;
 use pc_expr::{ExprError, Failure};
@@ -14,7 +14,7 @@ use crate::error::matrix::MatrixError;
 use crate::error::shape::ShapeError;
 use crate::error::tree::TreeError;
 
-/// An error of this crate, by what it is about.
+/// An error of this crate, by topic.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MechError {
@@ -80,7 +80,7 @@ impl MechError {
         }
     }
 
-    /// The error of the expressions, also of those of the algebra.
+    /// The error of the expressions, also where the algebra reports it.
     pub fn of_expressions(&self) -> Option<&ExprError> {
         match self {
             MechError::Expr(error) | MechError::Algebra(AlgebraError::Expr(error)) => Some(error),

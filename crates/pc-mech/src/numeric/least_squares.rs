@@ -1,4 +1,4 @@
-//! Linear equations that need be neither square nor independent, in numbers.
+//! Linear equations in numbers, which need be neither square nor independent.
 
 use pc_algebra::Matrix;
 
@@ -21,7 +21,7 @@ use crate::numeric::singular_values::SingularValues;
 pub struct LeastSquares(SingularValues);
 
 impl LeastSquares {
-    /// Those of `matrix`.
+    /// The equations with this `matrix`.
     ///
     /// # Errors
     /// [`MatrixError::NoEigenvalues`](crate::MatrixError::NoEigenvalues) for a matrix with an entry that is not finite.

@@ -10,14 +10,14 @@ use crate::error::{MatrixError, MechError};
 pub struct SingularValues {
     /// U, rows × rows.
     pub left: Matrix<f64>,
-    /// The diagonal of Σ, falling, as many as the lesser of rows and columns.
+    /// The diagonal of Σ, in descending order, as many as the lesser of rows and columns.
     pub values: Vec<f64>,
     /// V, columns × columns.
     pub right: Matrix<f64>,
 }
 
 impl SingularValues {
-    /// Those of `matrix`.
+    /// The singular values of `matrix`.
     ///
     /// # Errors
     /// [`MatrixError::NoEigenvalues`] for a matrix with an entry that is not finite.

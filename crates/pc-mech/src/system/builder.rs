@@ -1,4 +1,4 @@
-//! How a mechanical system is described.
+//! The description of a mechanical system.
 
 use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
 use pc_expr::{Expr, Graph, SymbolPlaces};
@@ -15,10 +15,10 @@ use crate::system::system::{System, check_no_state};
 use crate::tree::system::TreeSystem;
 use crate::tree::tree::Tree;
 
-/// How a system is described; every closure receives (t, x, η).
+/// The description of a system; every closure receives (t, x, η).
 ///
 /// Coordinates and quasi-velocities are named before the closures that use them; apart from that the order is free.
-/// L is the sum of all that is given of it, by [`lagrangian`](SystemBuilder::lagrangian),
+/// L is the sum of all its parts, given by [`lagrangian`](SystemBuilder::lagrangian),
 /// [`kinetic`](SystemBuilder::kinetic), [`potential`](SystemBuilder::potential),
 /// [`lagrangian_in_velocities`](SystemBuilder::lagrangian_in_velocities) and the bodies, and so is Q.
 #[derive(Clone, Debug)]
@@ -98,8 +98,9 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Declares a symbol to be a parameter whose value is a function of time, with its value at the start. What depends on it
-    /// is not taken for an integral. A [`Motion`](crate::Motion::driven_by) is given its [tables](crate::Signals).
+    /// Declares a symbol to be a parameter whose value is a function of time, with its value at the start. A function
+    /// that depends on it does not count as an integral. A [`Motion`](crate::Motion::driven_by) is given its
+    /// [tables](crate::Signals).
     #[must_use]
     pub fn signal(mut self, symbol: Expr<'g>, value: f64) -> Self {
         self.signals.push(symbol);
@@ -122,8 +123,9 @@ impl<'g> SystemBuilder<'g> {
     }
 
     /// Declares a symbol to be a first-order state z with the rate ż(t, x, η, z), such as the current in a motor or the
-    /// integral of a controller's error. It is integrated with the motion after the quasi-velocities; L, forces and what is
-    /// watched may depend on it, the frame may not. With p_s = ∂L/∂η_s, dp_s/dt then has the term ż ∂p_s/∂z.
+    /// integral of a controller's error. It is integrated with the motion after the quasi-velocities; L, forces,
+    /// integrals and outputs may depend on it, the frame may not. With p_s = ∂L/∂η_s, dp_s/dt then has the term ż
+    /// ∂p_s/∂z.
     ///
     /// ```
     /// # use pc_mech::{Graph, System, VectorField};
@@ -187,8 +189,8 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Gives values of symbols near which the system is regular, such as the start of a motion; used where an
-    /// identity can only be tried numerically.
+    /// Gives values of symbols near which the system is regular, such as the start of a motion; used where an identity
+    /// can only be tested numerically.
     #[must_use]
     pub fn near(mut self, values: impl IntoIterator<Item = (Expr<'g>, f64)>) -> Self {
         self.near.centre.extend(values);
@@ -347,7 +349,7 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Adds a function of (t, x, η) that the motion should keep constant: its drift is worth knowing.
+    /// Adds a function of (t, x, η) that the motion should keep constant; its drift can be observed.
     #[must_use]
     pub fn integral(
         mut self,

@@ -30,7 +30,7 @@ pub trait ExternalForce {
 }
 
 /// Writes difference quotients of the forces at (t, y) to `dq`, as [`ExternalForce::jacobian`] does unless it is implemented;
-/// `room` is for numbers on the way.
+/// `room` is workspace.
 ///
 /// # Errors
 /// As [`ExternalForce::force`].

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-/// How a table is read between its times.
+/// The interpolation of a table between its times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
     /// By straight lines.
@@ -14,7 +14,7 @@ pub enum Interpolation {
     Hold,
 }
 
-/// A function of time by its values at rising times.
+/// A function of time given by its values at increasing times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     times: Vec<f64>,
@@ -24,27 +24,27 @@ pub struct Table {
     interpolation: Interpolation,
 }
 
-/// What is wrong with a table.
+/// An error of a table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TableError {
-    /// Numbers of times and values that are not the same.
-    #[error("{times} times and {values} values do not make a table")]
+    /// Different numbers of times and values.
+    #[error("a table needs as many values as times, but has {times} times and {values} values")]
     Lengths {
         /// Number of times.
         times: usize,
         /// Number of values.
         values: usize,
     },
-    /// Less than it takes.
-    #[error("a table needs {least} times at least, not {times}")]
+    /// Too few times.
+    #[error("a table needs at least {least} times, not {times}")]
     TooShort {
         /// Number of times.
         times: usize,
         /// The least number.
         least: usize,
     },
-    /// Times that do not rise.
-    #[error("the times of a table must rise: {time} follows {before}")]
+    /// Times that do not increase.
+    #[error("the times of a table must increase: {time} follows {before}")]
     NotRising {
         /// The place of the later one, from 0.
         place: usize,
@@ -53,8 +53,8 @@ pub enum TableError {
         /// The later one.
         time: f64,
     },
-    /// A time or a value that is no finite number.
-    #[error("{value} at place {place} of a table is no finite number")]
+    /// A time or a value that is not finite.
+    #[error("{value} at place {place} of a table is not a finite number")]
     NotFinite {
         /// The place, from 0.
         place: usize,
@@ -89,7 +89,7 @@ impl Table {
     /// ```
     ///
     /// # Errors
-    /// [`TableError`] unless there are as many times as values, two at least (one if it holds), finite, and the times rise.
+    /// [`TableError`] unless there are as many times as values, two at least (one if it holds), finite, and the times increase.
     pub fn new(times: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Result<Table, TableError> {
         if times.len() != values.len() {
             return Err(TableError::Lengths { times: times.len(), values: values.len() });
@@ -122,12 +122,12 @@ impl Table {
         &self.values
     }
 
-    /// How it is read between them.
+    /// Its interpolation.
     pub fn interpolation(&self) -> Interpolation {
         self.interpolation
     }
 
-    /// Its value at t, at a jump that after it; none outside the times.
+    /// Its value at t, the one after a jump if t is at one; none outside the times.
     pub fn at(&self, t: f64) -> Option<f64> {
         let last = self.times.len() - 1;
         let after = self.times.partition_point(|&time| time <= t);
@@ -193,7 +193,7 @@ fn spline(x: &[f64], u: &[f64]) -> Vec<f64> {
 #[derive(Clone, Debug, Default)]
 pub struct Signals {
     list: Vec<Signal>,
-    /// The times of all tables, rising.
+    /// The times of all tables, in ascending order.
     breaks: Arc<[f64]>,
     /// Between which of them the evaluations are; none until an integrator says it.
     between: Option<(f64, f64)>,
@@ -208,7 +208,7 @@ struct Signal {
 }
 
 impl Signals {
-    /// The inputs of these names and places among the parameters.
+    /// The inputs of these names, with their indices among the parameters.
     pub fn new<S: Into<String>>(inputs: impl IntoIterator<Item = (S, usize, Arc<Table>)>) -> Signals {
         let signal = |(name, place, table): (S, usize, _)| Signal { name: name.into(), place, table };
         let list: Vec<Signal> = inputs.into_iter().map(signal).collect();
@@ -219,7 +219,7 @@ impl Signals {
         Signals { list, breaks: breaks.into(), between: None }
     }
 
-    /// Their places among the parameters.
+    /// Their indices among the parameters.
     pub fn places(&self) -> impl Iterator<Item = usize> {
         self.list.iter().map(|signal| signal.place)
     }
@@ -229,13 +229,14 @@ impl Signals {
         self.list.is_empty()
     }
 
-    /// The times of all tables, rising.
+    /// The times of all tables, in ascending order.
     pub fn breaks(&self) -> &[f64] {
         &self.breaks
     }
 
-    /// Says that what is [read](Signals::read) next are values between the break t, or the breaks around it, and the next one
-    /// towards `end`: at a jump those of this side. Whether an input has jumped since it was said last.
+    /// Announces that the values [read](Signals::read) next lie between the break t, or the breaks around it, and the
+    /// next one towards `end`: at a jump those of this side. Returns whether an input has jumped since the last such
+    /// call.
     pub fn enter(&mut self, t: f64, end: f64) -> bool {
         let next = match end >= t {
             true => self.breaks.partition_point(|&time| time <= t),
@@ -251,8 +252,8 @@ impl Signals {
         before.is_some_and(jumps)
     }
 
-    /// Writes the values at t to their places among the parameters; at a jump those of the side that was
-    /// [entered](Signals::enter), if t is at its end. Whether one is another than before.
+    /// Writes the values at t among the parameters; at a jump those of the side that was [entered](Signals::enter), if
+    /// t is at its end. Returns whether one has changed.
     ///
     /// # Errors
     /// [`OutsideTable`]

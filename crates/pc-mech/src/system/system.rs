@@ -1,4 +1,4 @@
-//! A mechanical system: frame, Lagrangian, forces, and what is watched of its motion.
+//! A mechanical system: frame, Lagrangian, forces, and the observables of its motion.
 
 use pc_algebra::{Frame, StructureCoefficients};
 use pc_expr::{Expr, Graph, SymbolPlaces};
@@ -52,7 +52,7 @@ impl<'g> System<'g> {
         &self.quasi_velocities
     }
 
-    /// The symbols of the first-order states z, which are no part of the frame, each with its rate ż(t, x, η, z).
+    /// The symbols of the first-order states z, which are not part of the frame, each with its rate ż(t, x, η, z).
     pub fn states(&self) -> &[(Expr<'g>, Expr<'g>)] {
         &self.states
     }
@@ -62,7 +62,7 @@ impl<'g> System<'g> {
         self.state_with(&self.quasi_velocities)
     }
 
-    /// The symbols of the state with others in place of η, such as momenta: x, then what moves them, then z.
+    /// The symbols of the state with others, such as momenta, in place of η: x, then these, then z.
     pub fn state_with(&self, moving: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let states = self.states.iter().map(|(symbol, _)| symbol);
         self.frame.coordinates().iter().chain(moving).chain(states).copied().collect()
@@ -96,12 +96,12 @@ impl<'g> System<'g> {
         &self.signals
     }
 
-    /// The signals u with symbols for u̇, of which nothing is known.
+    /// The signals u with symbols for their unknown rates u̇.
     pub fn signal_rates(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         self.signals.iter().map(|&u| (u, self.unused(format!("{u}'"), "_"))).collect()
     }
 
-    /// The parameters that are numbers, with these.
+    /// The parameters that are not signals, with their numbers.
     pub fn numbers(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         let numbers = self.parameters.iter().filter(|(symbol, _)| !self.signals.contains(symbol));
         numbers.map(|&(symbol, value)| (symbol, value.into())).collect()
@@ -128,7 +128,7 @@ impl<'g> System<'g> {
         &self.integrals
     }
 
-    /// The functions of (t, x, η) that are watched along a motion, with their names.
+    /// The functions of (t, x, η) that are observed along a motion, with their names.
     pub fn outputs(&self) -> &[(String, Expr<'g>)] {
         &self.outputs
     }
@@ -145,8 +145,8 @@ impl<'g> System<'g> {
         self.parameters.iter().copied().chain(external).collect()
     }
 
-    /// The symbols of the system: time, state, parameters, external forces, and any other that stands in its frame,
-    /// brackets, Lagrangian or forces.
+    /// The symbols of the system: time, state, parameters, external forces, and any other in its frame, brackets,
+    /// Lagrangian or forces.
     pub fn symbols(&self) -> Vec<Expr<'g>> {
         let inputs = self.run_time_inputs();
         let mut symbols: Vec<Expr<'g>> = [self.frame.time()]
@@ -219,7 +219,7 @@ impl<'g> System<'g> {
         }
     }
 
-    /// The same system with the parameters replaced by their numbers: none is left to be changed at run time but signals.
+    /// The same system with the parameters replaced by their numbers: only signals can still change at run time.
     #[must_use]
     pub fn with_parameters_bound(&self) -> System<'g> {
         let graph = self.graph();

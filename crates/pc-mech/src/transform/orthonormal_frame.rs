@@ -10,8 +10,8 @@ use crate::system::system::System;
 use crate::transform::quasi_velocities::QuasiVelocityChange;
 
 impl<'g> System<'g> {
-    /// The same system in quasi-velocities that are orthonormal in the kinetic metric, η' = D^½ Lᵀ η with M = L D Lᵀ, so
-    /// that T = ½ η'_s η'_s but for parts of lower degree. As many as there are `names` are made, of the first
+    /// The same system in quasi-velocities that are orthonormal in the kinetic metric, η' = D^½ Lᵀ η with M = L D Lᵀ,
+    /// so that T = ½ η'_s η'_s up to parts of lower degree. One is made for each of the `names`, from the first
     /// quasi-velocities; the others, such as those that constraints keep at zero, stay.
     ///
     /// # Errors
@@ -41,7 +41,7 @@ impl<'g> System<'g> {
         Ok(self.orthonormal_change(names)?.system().clone())
     }
 
-    /// The same with what the new quasi-velocities are, and what the old ones are in terms of them.
+    /// The same with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
     ///
     /// # Errors
     /// Those of [`in_orthonormal_frame`](System::in_orthonormal_frame).

@@ -6,8 +6,7 @@ use pc_expr::Expr;
 use crate::error::{MechError, shape};
 use crate::system::system::System;
 
-/// A system in other quasi-velocities η' = A η + A_0, with what these are in terms of the old ones, and these in terms of
-/// them.
+/// A system in other quasi-velocities η' = A η + A_0, with these in terms of the old ones, and the old ones in terms of them.
 #[derive(Clone, Debug)]
 pub struct QuasiVelocityChange<'g> {
     system: System<'g>,
@@ -74,7 +73,7 @@ impl<'g> System<'g> {
         Ok(self.quasi_velocity_change(names, definitions)?.system)
     }
 
-    /// The same with what the new quasi-velocities are, and what the old ones are in terms of them.
+    /// The same with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
     ///
     /// # Errors
     /// Those of [`in_quasi_velocities`](System::in_quasi_velocities).

@@ -16,8 +16,8 @@ impl<'g> System<'g> {
     ///
     ///   d/dt ∂L/∂η_s = c_rs^m η_r ∂L/∂η_m + Q_s,
     ///
-    /// the [canonical](System::canonical) ones those of Lie–Poisson, ẏ_s = c_rs^m ∂H/∂y_r y_m. Integrals and outputs in
-    /// which the others stand are left out. What was left out is found again by integrating ẋ = b η + b_0 (3).
+    /// the [canonical](System::canonical) ones those of Lie–Poisson, ẏ_s = c_rs^m ∂H/∂y_r y_m. Integrals and outputs
+    /// that contain coordinates left out are left out too. Those coordinates follow by integrating ẋ = b η + b_0 (3).
     ///
     /// # Errors
     /// [`MechError::Algebra`] if the parts do not fit together, which those of a system that was built do.

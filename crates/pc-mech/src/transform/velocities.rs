@@ -7,8 +7,8 @@ use crate::system::system::System;
 
 /// States (x, η) and (x, ẋ) of one system turned into each other, ẋ = b η + b_0 (3) and η = a ẋ + a_0 (2); compiled.
 ///
-/// Where n > k, velocities that the frame does not allow are taken to the nearest: a = (bᵀb)⁻¹bᵀ. Where rank b < k, what
-/// comes out is not finite.
+/// Where n > k, velocities that the frame does not allow are replaced by the nearest allowed ones: a = (bᵀb)⁻¹bᵀ.
+/// Where rank b < k, the result is not finite.
 #[derive(Clone, Debug)]
 pub struct VelocityTransform {
     parameters: Vec<f64>,

@@ -1,4 +1,4 @@
-//! The solution of Hamilton–Jacobi's equation that a model says to have.
+//! The solution of Hamilton–Jacobi's equation that a model claims.
 
 use pc_mech::Expr;
 

@@ -51,7 +51,7 @@ impl<'g> Assembler<'g, '_> {
             None => Ok(()),
             Some(rank) => {
                 let cause = format!(
-                    "the frame is singular there: the matrix b of the velocities has rank {rank}, and {everywhere} at most states"
+                    "the frame is singular there: the matrix b of the velocities has rank {rank}, but {everywhere} at most states"
                 );
                 let document = self.model.document();
                 Err(document.error(&document.operator_place(1), MeaningError::SingularStart { cause }))
@@ -249,10 +249,10 @@ impl<'g> Assembler<'g, '_> {
                     let quasi_velocities = document.quasi_velocities.iter().map(|q| q.name.text.clone());
                     let coordinates = document.coordinates.iter().map(|c| c.name.text.clone());
                     let known = quasi_velocities.chain(coordinates).collect();
-                    return Err(self
-                        .model
-                        .document()
-                        .error(&name.place, MeaningError::NothingToPush { name: name.text.clone(), known }));
+                    return Err(self.model.document().error(
+                        &name.place,
+                        MeaningError::UnknownForceTarget { name: name.text.clone(), known },
+                    ));
                 }
             }
         }

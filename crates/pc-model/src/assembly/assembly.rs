@@ -23,18 +23,17 @@ pub struct Assembly<'g> {
     pub t_start: f64,
     /// Start state: coordinates, quasi-velocities, first-order states.
     pub start: Vec<f64>,
-    /// The start state as written, where it was to be moved to the constraints.
+    /// The start state as written, where it was moved onto the constraints.
     pub written_start: Option<Vec<f64>>,
-    /// Number of quasi-velocities that are declared, the first ones; the velocities where none is.
+    /// Number of declared quasi-velocities, which come first; of velocities where none is declared.
     pub declared: usize,
-    /// What happens where, in the order in which simultaneous events are dealt with.
+    /// The events, in the order in which simultaneous ones are handled.
     pub events: Vec<Event<'g>>,
-    /// What the definitions of the text stand for, ẋ = b η + b_0 put in: those that stand for one thing wherever they are
-    /// used.
+    /// The definitions of the text with ẋ = b η + b_0 put in, as far as they mean the same wherever they are used.
     pub definitions: Vec<(String, Expr<'g>)>,
-    /// The quasi-velocities given beside those of the text, as linear forms in those of the system.
+    /// The quasi-velocities given in addition to those of the text, as linear forms in those of the system.
     pub given: Vec<(Expr<'g>, Expr<'g>)>,
-    /// The solution of Hamilton–Jacobi's equation that the text has, if it has one.
+    /// The solution of Hamilton–Jacobi's equation in the text, if there is one.
     pub action: Option<Action<'g>>,
     /// The text, in which errors have their places.
     pub(crate) document: Arc<Document>,
@@ -48,15 +47,15 @@ impl<'g> Assembly<'g> {
         state.zip(self.start.iter().copied()).chain([(frame.time(), self.t_start)]).collect()
     }
 
-    /// What came of a derivation from this system, an error put at the place in the file that is to blame.
+    /// The result of a derivation from this system, with an error located at the entry of the file that causes it.
     ///
     /// # Errors
-    /// [`ModelError`] for the error there is.
+    /// [`ModelError`] for the error of the derivation.
     pub fn placed<T>(&self, derived: Result<T, impl Into<NonholoError>>) -> Result<T, ModelError> {
         derived.map_err(|error| self.document.constraint_error(error.into()))
     }
 
-    /// That what was made of this system until now is what it should be.
+    /// Checks that what was derived from this system so far is complete.
     ///
     /// # Errors
     /// [`ErrorKind::Spent`](crate::ErrorKind::Spent) if the [limits](crate::Model::limit) were reached.
@@ -64,8 +63,8 @@ impl<'g> Assembly<'g> {
         self.document.stage(self.system.graph(), "what was asked for", || Ok(()))
     }
 
-    /// Does some work on this system, unless the [limits](crate::Model::limit) are reached, before or by it: that is the error
-    /// then, and names this stage, whatever the work says.
+    /// Does some work on this system. If the [limits](crate::Model::limit) are reached, before or during the work,
+    /// this is the error, and names this stage, whatever the work returns.
     ///
     /// # Errors
     /// [`ErrorKind::Spent`](crate::ErrorKind::Spent), and those of the work.
@@ -79,8 +78,7 @@ impl<'g> Assembly<'g> {
             .unwrap_or_else(|error| Err(error.into()))
     }
 
-    /// That something could not be derived from this system, for a reason that has no place in the file but that of the
-    /// energy.
+    /// The error that something could not be derived from this system, located at the energy if no other entry causes it.
     pub fn not_derived(&self, message: String) -> ModelError {
         self.document.error(&self.document.energy_place(), MeaningError::Derivation { message })
     }

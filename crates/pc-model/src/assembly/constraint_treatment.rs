@@ -1,4 +1,4 @@
-//! How constraints bind a system, and its equations of motion under them.
+//! The treatment of constraints, and the equations of motion under them.
 
 use std::cell::OnceCell;
 
@@ -6,7 +6,7 @@ use pc_expr::SymbolPlaces;
 use pc_mech::{Constraint, ConstraintError, Equations, Expr, MechError, Multipliers, System};
 use pc_nonholo::{Adapted, Constrained, IntegrableCombination, Kind, NonholoError, Redundant};
 
-/// What a constraint does.
+/// A constraint with its kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClassifiedConstraint {
     /// Its name.
@@ -24,7 +24,7 @@ pub struct ConstraintTreatment<'g> {
     combinations: usize,
     redundant: Vec<Redundant>,
     undetermined: Vec<String>,
-    /// The velocities that are asked for as independent ones; none where the choice is free.
+    /// The velocities chosen as independent; none where the choice is free.
     independent: Vec<Expr<'g>>,
     chosen: OnceCell<Chosen>,
 }
@@ -41,7 +41,7 @@ struct Chosen {
 pub enum ConstraintFormulation<'g> {
     /// There are none.
     Free,
-    /// All say that quasi-velocities of the system vanish: equations (30) of the others.
+    /// Each makes a quasi-velocity of the system vanish: equations (30) of the others.
     Vanishing(Box<Constrained<'g>>),
     /// Any others: multipliers.
     Multipliers(Box<MultiplierFormulation<'g>>),
@@ -109,12 +109,12 @@ impl<'g> ConstraintTreatment<'g> {
         ConstraintTreatment { independent, chosen: OnceCell::new(), ..self }
     }
 
-    /// The velocities that are asked for as independent ones; none where the choice is free.
+    /// The velocities chosen as independent; none where the choice is free.
     pub fn asked_for(&self) -> &[Expr<'g>] {
         &self.independent
     }
 
-    /// The multipliers that hold constraints in what is integrated; none where independent velocities are asked for.
+    /// The multipliers in the integrated equations; none where independent velocities were chosen.
     pub fn held(&self) -> Option<&Multipliers<'g>> {
         match &self.formulation {
             ConstraintFormulation::Multipliers(held) if self.independent.is_empty() => {
@@ -177,22 +177,22 @@ impl<'g> ConstraintTreatment<'g> {
         &self.formulation
     }
 
-    /// What each constraint that binds does.
+    /// The binding constraints with their kinds.
     pub fn classified(&self) -> &[ClassifiedConstraint] {
         &self.classified
     }
 
-    /// How many combinations of the nonholonomic constraints are integrable though none of them is: see
+    /// The number of combinations of the nonholonomic constraints that are integrable though no single constraint is: see
     /// [`ConstraintClassification::integrable_combinations`](pc_nonholo::ConstraintClassification::integrable_combinations).
     pub fn integrable_combinations(&self) -> usize {
         self.combinations
     }
 
-    /// Those of these combinations that are found in closed form, `at` values of time and state where the constraints are
-    /// regular.
+    /// Those of these combinations that are found in closed form; `at` are values of time and state where the
+    /// constraints are regular.
     ///
     /// # Errors
-    /// [`NonholoError`], none for constraints that could be classified there.
+    /// [`NonholoError`]; constraints that could be classified there give none.
     pub fn combinations_found(
         &self,
         at: &[(Expr<'g>, f64)],
@@ -202,7 +202,7 @@ impl<'g> ConstraintTreatment<'g> {
         IntegrableCombination::find(multipliers, &kinds, self.combinations, at)
     }
 
-    /// The f of those conditions f(t, x) = 0 that multipliers hold, if all constraints are integrable.
+    /// The f of the conditions f(t, x) = 0 that multipliers hold, if all constraints are integrable.
     pub fn positions(&self, system: &System<'g>) -> Option<Vec<Expr<'g>>> {
         let is_holonomic =
             |verdict: &ClassifiedConstraint| matches!(verdict.kind, Kind::Position | Kind::Integrable);
@@ -219,13 +219,13 @@ impl<'g> ConstraintTreatment<'g> {
         &self.redundant
     }
 
-    /// Where the forces of reactions on bodies are observed, those that virtual work does not determine, in words: `the
-    /// force on` and the name of the body.
+    /// The forces of reactions on bodies that are observed but not determined by virtual work, in words: `the force
+    /// on` and the name of the body.
     pub fn undetermined(&self) -> &[String] {
         &self.undetermined
     }
 
-    /// The system in a frame in which the constraints are that quasi-velocities vanish: that of the model if it is such,
+    /// The system in a frame in which the constraints make quasi-velocities vanish: that of the model if it is one,
     /// else the one that is best at the values `at` of time and state. None if there are no constraints, only
     /// integrable ones held by multipliers, or some that are not affine in the velocities.
     ///
@@ -248,8 +248,9 @@ impl<'g> ConstraintTreatment<'g> {
     }
 
     /// The symbols λ of the reactions with what they are in the frame of
-    /// [`constrained`](ConstraintTreatment::constrained), functions of time, coordinates and free quasi-velocities, or of all where constraints are not affine in them; none where
-    /// integrable constraints are held by multipliers. Where they are shorter so, the symbols of the accelerations stand in them.
+    /// [`constrained`](ConstraintTreatment::constrained), functions of time, coordinates and free quasi-velocities, or
+    /// of all where constraints are not affine in them; none where integrable constraints are held by multipliers.
+    /// They contain the symbols of the accelerations where that is shorter.
     ///
     /// # Errors
     /// As there.
@@ -279,9 +280,10 @@ impl<'g> ConstraintTreatment<'g> {
         self.multipliers.as_ref().filter(|multipliers| multipliers.is_nonlinear())
     }
 
-    /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Those of constraints held by
-    /// multipliers are for the choice of independent ones that is asked for, or whose equations are shortest of those regular at `at`, and what is observed has the reactions put in.
-    /// Where a constraint is not affine in the velocities, those of all of them, with the reactions put in.
+    /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Under constraints held by
+    /// multipliers they use the requested independent quasi-velocities, or those whose equations are shortest among
+    /// those regular at `at`, and observables have the reactions put in. Where a constraint is not affine in the
+    /// velocities, those of all of them, with the reactions put in.
     ///
     /// # Errors
     /// [`NonholoError`] if they cannot be derived.

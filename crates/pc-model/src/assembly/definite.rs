@@ -9,8 +9,8 @@ use crate::assembly::assembly::Assembly;
 const ROUNDING: f64 = 1e-12;
 
 impl<'g> Assembly<'g> {
-    /// Whether at the start some velocity that the constraints allow has δη·M δη < 0, M = ∂²L/∂η∂η: a mass or a moment
-    /// of inertia has the wrong sign then.
+    /// Whether δη·M δη < 0, M = ∂²L/∂η∂η, for some velocity that the constraints allow at the start: then a mass or a
+    /// moment of inertia has the wrong sign.
     pub fn has_negative_energy(&self) -> bool {
         let (system, graph) = (&self.system, self.system.graph());
         let eta = system.quasi_velocities();

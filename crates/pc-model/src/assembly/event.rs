@@ -1,4 +1,4 @@
-//! What happens to a motion where an expression passes through zero.
+//! Events where an expression passes through zero.
 
 use pc_expr::{Direction, Expr};
 
@@ -7,12 +7,12 @@ use pc_expr::{Direction, Expr};
 pub struct Event<'g> {
     /// Its name.
     pub name: String,
-    /// What passes through zero.
+    /// The expression that passes through zero.
     pub when: Expr<'g>,
-    /// In which direction.
+    /// The direction in which it does.
     pub direction: Direction,
     /// Whether the motion ends there.
     pub terminal: bool,
-    /// The components of (x, η, z) that are given new values, and these: all of the state before the event.
+    /// The components of (x, η, z) that are reset, with their new values as functions of the state before the event.
     pub resets: Vec<(usize, Expr<'g>)>,
 }

@@ -8,12 +8,12 @@ use crate::model::model::Model;
 pub struct NotForced {
     /// The name asked for.
     pub name: String,
-    /// The quasi-velocities there are; the coordinates where none is declared.
+    /// The quasi-velocities; the coordinates where none is declared.
     pub known: Vec<String>,
 }
 
 impl Model {
-    /// Says that a force computed outside, such as that of a controller, acts on a quasi-velocity; on a coordinate where no
+    /// Declares that a force computed outside, such as that of a controller, acts on a quasi-velocity; on a coordinate where no
     /// quasi-velocity is declared. The system then has an [external force](pc_mech::System::external_forces), and a motion
     /// one more input: zero until it is set, or [given by a function](pc_mech::Motion::forced).
     ///

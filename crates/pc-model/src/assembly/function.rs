@@ -1,4 +1,4 @@
-//! Functions of the state that are asked for beside those of the text.
+//! Functions of the state in addition to those of the text.
 
 use pc_mech::Expr;
 
@@ -11,7 +11,7 @@ use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
 impl Model {
-    /// The function of (t, x, η) that a text says in the names of the model, where x' is the velocity of a coordinate x.
+    /// The function of (t, x, η) given by a text in the names of the model, where x' is the velocity of a coordinate x.
     ///
     /// ```
     /// use pc_mech::Graph;
@@ -27,7 +27,7 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`ModelError`] at the place in `text` that is to blame.
+    /// [`ModelError`] at the place in `text` that causes it.
     pub fn function<'g>(&self, assembly: &Assembly<'g>, text: &str) -> Result<Expr<'g>, ModelError> {
         let (system, source) = (&assembly.system, Source::new("expression", text));
         let expression = Expression::of(&source)?;

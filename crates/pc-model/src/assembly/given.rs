@@ -1,4 +1,4 @@
-//! Quasi-velocities that are given beside those of the text.
+//! Quasi-velocities given in addition to those of the text.
 
 use pc_algebra::affine;
 use pc_mech::Expr;

@@ -13,8 +13,8 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::{Document, Expression, InputValue, Name};
 use crate::names::scope::Scope;
 
-/// The values of the parameters of a model, then of its inputs, in the order of declaration. One that is an expression in
-/// those before it follows these, until it is set itself.
+/// The values of the parameters of a model, then of its inputs, in the order of declaration. One that is an expression
+/// in those before it follows them until it is itself set.
 #[derive(Clone, Debug)]
 pub struct Parameters {
     values: Vec<f64>,
@@ -98,7 +98,7 @@ impl Parameters {
         .collect()
     }
 
-    /// Gives number `place` a value, which then stands for its expression. Those that are expressions in it follow.
+    /// Gives number `place` a value, which replaces its expression. Those that are expressions in it follow.
     ///
     /// # Panics
     /// If there is no such parameter.
@@ -108,7 +108,7 @@ impl Parameters {
         self.follow();
     }
 
-    /// Gives all of them values, which then stand for their expressions. Tables are still read.
+    /// Gives all of them values, which replace their expressions. Tables are still read.
     ///
     /// # Panics
     /// Unless there are as many.

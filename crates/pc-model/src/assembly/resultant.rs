@@ -1,4 +1,4 @@
-//! What the forces and torques of reactions on bodies are called.
+//! The names of the forces and torques of reactions on bodies.
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 

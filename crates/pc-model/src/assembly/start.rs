@@ -1,4 +1,4 @@
-//! The start of a motion from what is given of it.
+//! The start of a motion from its given parts.
 
 use pc_algebra::affine;
 use pc_mech::{Expr, Frame, Graph};

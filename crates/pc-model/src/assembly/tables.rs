@@ -10,7 +10,7 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::Place;
 use crate::document::{Document, Input, InputValue, Name, TableFile, read_file_bounded};
 
-const LISTS: &str = "give as many values as times, two at least, and let the times rise";
+const LISTS: &str = "give as many values as times, at least two, with increasing times";
 const COLUMNS: &str = "a file has a line of names, then lines of numbers, with commas between them; the times are in its \
                        column `t`, else in the first, or where `time = \"…\"` says";
 
@@ -83,9 +83,11 @@ fn from_file(document: &Document, file: &TableFile) -> Result<Table, ModelError>
         }
         let parsed = |column: usize| match row[column].parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
-            _ => {
-                Err(wrong(format!("line {} of `{name}`: `{}` is no finite number", number + 1, row[column])))
-            }
+            _ => Err(wrong(format!(
+                "line {} of `{name}`: `{}` is not a finite number",
+                number + 1,
+                row[column]
+            ))),
         };
         times.push(parsed(time)?);
         values.push(parsed(value)?);
@@ -93,7 +95,7 @@ fn from_file(document: &Document, file: &TableFile) -> Result<Table, ModelError>
     }
     Table::new(times, values, file.interpolation).map_err(|error| match error {
         TableError::NotRising { place, before, time } => wrong(format!(
-            "line {} of `{name}`: the times must rise, but {time} follows {before}",
+            "line {} of `{name}`: the times must increase, but {time} follows {before}",
             numbers[place]
         )),
         other => wrong(format!("`{name}`: {other}")),

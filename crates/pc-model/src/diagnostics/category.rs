@@ -1,6 +1,6 @@
-//! What the reader of a message has to change.
+//! Categories of errors, by what has to be changed.
 
-/// What the reader of a message has to change; decides the exit code.
+/// The category of an error, by what has to be changed; decides the exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Category {
     /// The text of the model is wrong.
@@ -9,7 +9,7 @@ pub enum Category {
     Unsupported,
     /// The text is right, but what it says contradicts itself.
     Inconsistent,
-    /// The text may be right, but its equations would take more than they may.
+    /// The text may be right, but its equations exceed the limits.
     Spent,
 }
 

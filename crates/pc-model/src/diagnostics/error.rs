@@ -1,4 +1,4 @@
-//! An error in a model file, and the one way in which it is said.
+//! An error in a model file, and its message.
 
 use std::ops::Range;
 
@@ -9,14 +9,14 @@ use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::source::{Place, Position, Source};
 use crate::document::is_hidden;
 
-/// Something to say about a place in a model file: an error, or a note.
+/// A message about a place in a model file: an error, or a note.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Where.
     pub place: Place,
-    /// What is the matter.
+    /// The message.
     pub message: String,
-    /// What would be right.
+    /// A correction.
     pub help: Option<String>,
 }
 
@@ -48,7 +48,7 @@ fn clipped(text: &str) -> String {
     }
 }
 
-/// An error in a model file. It is shown with its place, the line, and what would be right.
+/// An error in a model file. It is shown with its place, the line, and a correction.
 #[derive(Clone, Debug, Error)]
 #[error("{}", .0.rendered)]
 pub struct ModelError(Box<Details>);
@@ -69,12 +69,12 @@ impl ModelError {
         Self(Box::new(Details { kind, diagnostic, position, rendered }))
     }
 
-    /// What is wrong.
+    /// The kind of the error.
     pub fn kind(&self) -> &ErrorKind {
         &self.0.kind
     }
 
-    /// Bytes of the file that are wrong.
+    /// The bytes of the file at fault.
     pub fn span(&self) -> Range<usize> {
         self.0.diagnostic.place.span.clone()
     }
@@ -89,7 +89,7 @@ impl ModelError {
         &self.0.diagnostic
     }
 
-    /// Whether the text, the model, or this program is to blame.
+    /// Whether the text, the model, or this program is at fault.
     pub fn category(&self) -> Category {
         self.0.kind.category()
     }

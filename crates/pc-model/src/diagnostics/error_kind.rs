@@ -1,4 +1,4 @@
-//! The ways in which a model can be wrong, and what would be right.
+//! The kinds of errors in a model, with corrections.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use crate::diagnostics::category::Category;
 use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::words::{listed, suggest};
 
-/// The ways in which a model can be wrong.
+/// The kinds of errors in a model.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -25,7 +25,7 @@ pub enum ErrorKind {
     Toml {
         /// What the TOML parser says.
         message: String,
-        /// What would be right.
+        /// A correction.
         help: &'static str,
     },
     /// The same key twice in one table.
@@ -34,7 +34,7 @@ pub enum ErrorKind {
         /// The key as written.
         key: String,
     },
-    /// What its equations may take is spent.
+    /// The limits of its derivation are reached.
     #[error("{stage}: {what} ({nodes} expressions were made)")]
     Spent {
         /// What is spent.
@@ -105,7 +105,7 @@ pub enum ErrorKind {
         /// How it could be written.
         example: &'static str,
     },
-    /// An entry that does nothing by itself.
+    /// An entry that has no effect by itself.
     #[error("`{key}` has no effect without `{without}`")]
     NoEffect {
         /// Its key.
@@ -169,8 +169,8 @@ pub enum ErrorKind {
         /// The key.
         key: String,
     },
-    /// A label of a constraint, body or event with characters that are not seen.
-    #[error("the label `{}` has characters that are not seen", label.escape_debug())]
+    /// A label of a constraint, body or event with invisible characters.
+    #[error("the label `{}` contains invisible characters", label.escape_debug())]
     HiddenInLabel {
         /// The label.
         label: String,
@@ -223,7 +223,7 @@ pub enum ErrorKind {
         /// As written.
         text: String,
     },
-    /// A number that makes no sense for its entry.
+    /// A number outside the range of its entry.
     #[error("expected {expected}, found {found}")]
     OutOfRange {
         /// What would make sense, in words.
@@ -246,7 +246,7 @@ pub enum ErrorKind {
     /// Wrong text of an expression.
     #[error(transparent)]
     Expression(#[from] ParseError),
-    /// Text that is well formed and says something that cannot be.
+    /// Text that is well formed but without a valid meaning.
     #[error(transparent)]
     Meaning(#[from] MeaningError),
     /// Something that the program cannot do yet.
@@ -331,7 +331,7 @@ const LEAST: &str = "a model needs at least [coordinates] (or [algebra] and [qua
                      with `kinetic = \"…\"` or `lagrangian = \"…\"`, or [bodies.NAME]";
 
 impl ErrorKind {
-    /// Whether the text, the model, or this program is to blame.
+    /// Whether the text, the model, or this program is at fault.
     pub fn category(&self) -> Category {
         match self {
             Self::Unsupported { .. } => Category::Unsupported,
@@ -341,12 +341,12 @@ impl ErrorKind {
         }
     }
 
-    /// What would be right.
+    /// A correction.
     pub fn help(&self) -> String {
         match self {
             Self::NotText { .. } => "save the model as plain text in UTF-8".into(),
             Self::Toml { help, .. } => (*help).into(),
-            Self::Spent { what: Spent::Cancelled, .. } => "begin anew, if it was not meant".into(),
+            Self::Spent { what: Spent::Cancelled, .. } => "run it again, if this was not intended".into(),
             Self::Spent { .. } => {
                 "raise the limit (`--limit-memory`, `--limit-time`; in C `memory_limit`, `time_limit`), or write the model with fewer or shorter expressions"
                     .into()
@@ -391,7 +391,7 @@ impl ErrorKind {
             Self::NotAPair { .. } => {
                 "a bracket is written `\"w1,w2\" = \"w3\"`, the one with time `\"t,w1\" = \"w2\"`".into()
             }
-            Self::SelfBracket { .. } => "take the entry out".into(),
+            Self::SelfBracket { .. } => "remove the entry".into(),
             Self::BracketTwice { .. } => "keep one of them".into(),
             Self::NotFinite { .. } => "write a number such as `1.0` or `1e-3`".into(),
             Self::IntegerTooLarge { .. } => {
@@ -400,7 +400,7 @@ impl ErrorKind {
             Self::UnknownChoice { allowed, nearest, .. } => possible(*nearest, "choices", allowed),
             Self::Expression(error) => error.help(),
             Self::Meaning(fault) => fault.help(),
-            Self::Unsupported { .. } => "take the entry out".into(),
+            Self::Unsupported { .. } => "remove the entry".into(),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What can be wrong with the meaning of a model whose text is well formed.
+//! Errors in the meaning of a model whose text is well formed.
 
 use pc_mech::acts_as_zero;
 
@@ -31,9 +31,9 @@ pub enum MeaningError {
         /// The coordinates there are.
         coordinates: Vec<String>,
     },
-    /// A force on something that does not move.
+    /// A force on something that is neither a quasi-velocity nor a coordinate.
     #[error("`{name}` is neither a quasi-velocity nor a coordinate")]
-    NothingToPush {
+    UnknownForceTarget {
         /// The name.
         name: String,
         /// The names that can be given a force.
@@ -49,7 +49,7 @@ pub enum MeaningError {
         /// The names that can be reset.
         known: Vec<String>,
     },
-    /// A name that means nothing at this place.
+    /// A name that is not allowed at this place.
     #[error("`{name}` cannot be used in {place}")]
     NotHere {
         /// The name as written.
@@ -59,7 +59,7 @@ pub enum MeaningError {
         /// What can be used.
         allowed: &'static str,
     },
-    /// d() of something that contains velocities, where accelerations mean nothing.
+    /// d() of something that contains velocities, where accelerations are not allowed.
     #[error("`d()` of velocities gives accelerations, which cannot be used in {place}")]
     Acceleration {
         /// The place, in words.
@@ -79,7 +79,7 @@ pub enum MeaningError {
         /// `velocities` or `quasi-velocities`.
         variables: &'static str,
     },
-    /// A constraint that is not affine in the velocities and is not said to be so.
+    /// A constraint that is not affine in the velocities and not declared so.
     #[error("`{text}` is not affine in the velocities")]
     ConstraintNotAffine {
         /// Its name.
@@ -87,7 +87,7 @@ pub enum MeaningError {
         /// The expression as written.
         text: String,
     },
-    /// A constraint called nonlinear that is not.
+    /// A constraint declared nonlinear that is not.
     #[error("the constraint `{constraint}` is called nonlinear and {what}")]
     NotNonlinear {
         /// Its name.
@@ -95,7 +95,7 @@ pub enum MeaningError {
         /// What it does instead, in words.
         what: &'static str,
     },
-    /// A force or torque of a reaction on a body that virtual work does not tell.
+    /// A force or torque of a reaction on a body that virtual work does not determine.
     #[error(
         "`{name}` is not determined: the velocity of the body is tied to others by the choice of coordinates"
     )]
@@ -103,19 +103,19 @@ pub enum MeaningError {
         /// The component.
         name: String,
     },
-    /// A definition that says nothing of velocities.
+    /// A definition without velocities.
     #[error("`{text}` contains no velocity, so it defines no quasi-velocity")]
     NoVelocity {
         /// The definition as written.
         text: String,
     },
-    /// A quasi-velocity that is given twice beside the text.
+    /// A quasi-velocity that is given twice in addition to the text.
     #[error("`{name}` is given twice")]
     GivenTwice {
         /// Its name.
         name: String,
     },
-    /// A quasi-velocity given beside the text that is not a linear form in the velocities.
+    /// A quasi-velocity given in addition to the text that is not a linear form in the velocities.
     #[error("`{text}` is not linear in the velocities")]
     NotLinear {
         /// The definition as written.
@@ -183,7 +183,7 @@ pub enum MeaningError {
         /// What the others say it is.
         found: f64,
     },
-    /// Components of the start that are to be kept where a constraint needs them to move.
+    /// Components of the start that are to be kept but have to move for a constraint.
     #[error("with {} kept, nothing is left to move to the constraint `{constraint}`", listed(held))]
     StartHeld {
         /// The constraint.
@@ -191,9 +191,9 @@ pub enum MeaningError {
         /// What is kept.
         held: Vec<String>,
     },
-    /// A constraint called holonomic that is not.
+    /// A constraint declared holonomic that is not.
     #[error(
-        "the constraint `{constraint}` is not holonomic: velocities it allows lead off every surface (component {residual:.1e})"
+        "the constraint `{constraint}` is not holonomic: the velocities it allows leave every surface (component {residual:.1e})"
     )]
     NotHolonomic {
         /// Its name.
@@ -226,7 +226,7 @@ pub enum MeaningError {
     Constraint {
         /// Why.
         message: String,
-        /// What would be right.
+        /// A correction.
         help: &'static str,
     },
     /// A catalogue name that does not exist.
@@ -276,8 +276,7 @@ pub enum MeaningError {
     AlgebraNeeded,
     /// A frame that does not determine its brackets.
     #[error(
-        "the frame has rank {rank} with {operators} quasi-velocities and does not determine their brackets: \
-         [{}, {}] is no constant combination of them", pair[0], pair[1]
+        "the frame has rank {rank} with {operators} quasi-velocities and does not determine their brackets: [{}, {}] is not a constant combination of them", pair[0], pair[1]
     )]
     RankDeficient {
         /// Rank of b.
@@ -300,7 +299,7 @@ pub enum MeaningError {
     },
     /// A bracket that leaves the span of the frame.
     #[error(
-        "the frame is not closed: [{}, {}] is no combination of the frame (relative residual {residual:.1e})",
+        "the frame is not closed: [{}, {}] is not a combination of the frame (relative residual {residual:.1e})",
         pair[0], pair[1]
     )]
     NotClosed {
@@ -367,12 +366,12 @@ pub enum MeaningError {
         /// NaN or an infinity.
         value: f64,
     },
-    /// The table of an input that is none.
+    /// An invalid table of an input.
     #[error("{what}")]
     BadTable {
         /// What is wrong.
         what: String,
-        /// What would be right.
+        /// A correction.
         help: &'static str,
     },
     /// d() of an input.
@@ -391,7 +390,7 @@ pub enum MeaningError {
         /// Names and values of the start state.
         state: Vec<(String, f64)>,
     },
-    /// Equations that cannot be evaluated at the start though what is written can.
+    /// Equations that cannot be evaluated at the start, though the expressions of the text can.
     #[error("the equations of motion cannot be evaluated at the start: {cause}")]
     SingularStart {
         /// Why.
@@ -405,7 +404,7 @@ pub enum MeaningError {
         /// The integrals there are.
         known: Vec<String>,
     },
-    /// An integral to be kept that is none.
+    /// A function to be kept that is not an integral.
     #[error("`{name}` cannot be kept: it changes along the motion, at t = {} at the rate {}", rounded(*t), rounded(*rate))]
     NotAnIntegral {
         /// The integral.
@@ -424,7 +423,7 @@ pub enum MeaningError {
 }
 
 impl MeaningError {
-    /// Whether the text or the model is to blame.
+    /// Whether the text or the model is at fault.
     pub fn category(&self) -> Category {
         match self {
             MeaningError::DefinitionCount { .. }
@@ -458,7 +457,7 @@ impl MeaningError {
         }
     }
 
-    /// What would be right.
+    /// A correction.
     pub fn help(&self) -> String {
         match self {
             MeaningError::UnknownName { name, known } => suggest(name, known, "declare it, for example in [parameters]"),
@@ -472,7 +471,7 @@ impl MeaningError {
             MeaningError::NotACoordinate { name, coordinates } => {
                 suggest(name, coordinates, &format!("the coordinates are {}", listed(coordinates)))
             }
-            MeaningError::NothingToPush { name, known } => {
+            MeaningError::UnknownForceTarget { name, known } => {
                 suggest(name, known, &format!("a force can act on {}", listed(known)))
             }
             MeaningError::NotReset { name, what, known } => match *what {
@@ -484,12 +483,12 @@ impl MeaningError {
             MeaningError::DivisionByZero { .. } => "the divisor is zero whatever the motion".into(),
             MeaningError::NotAffine { variables, .. } => format!("write a sum of terms linear in the {variables}"),
             MeaningError::ConstraintNotAffine { constraint, .. } => format!(
-                "write a sum of terms linear in the velocities, or say that it is none, with Chetaev's condition for the \
+                "write a sum of terms linear in the velocities, or declare it nonlinear, with Chetaev's condition for the \
                  displacements: `{constraint} = {{ expr = \"…\", kind = \"nonlinear\" }}`"
             ),
-            MeaningError::NotNonlinear { .. } => "leave its kind out".into(),
+            MeaningError::NotNonlinear { .. } => "leave out its kind".into(),
             MeaningError::ForceNotDetermined { .. } => {
-                "take coordinates in which the body moves by itself, and constraints that tie it".into()
+                "use coordinates in which the body moves independently, and constraints that tie it".into()
             }
             MeaningError::NoVelocity { .. } => "write a sum of terms linear in the velocities, such as \"x'\"".into(),
             MeaningError::GivenTwice { .. } => "keep one of them".into(),
@@ -509,9 +508,9 @@ impl MeaningError {
             MeaningError::DefinitionCount { .. } | MeaningError::DependentDefinitions => {
                 "give as many independent definitions (and constraints) as there are coordinates".into()
             }
-            MeaningError::NotHolonomic { .. } => "leave its kind out, or write it as a function of coordinates and t".into(),
+            MeaningError::NotHolonomic { .. } => "leave out its kind, or write it as a function of coordinates and t".into(),
             MeaningError::OffConstraint { .. } => {
-                "give a start that satisfies it, or have it moved there by --project-start".into()
+                "give a start that satisfies it, or move it there with --project-start".into()
             }
             MeaningError::StartOpen { .. } => {
                 "start where they are determined, or define other quasi-velocities".into()
@@ -520,7 +519,7 @@ impl MeaningError {
                 "leave it out, or the `start` of a quasi-velocity, which then follows".into()
             }
             MeaningError::StartHeld { .. } => "keep less".into(),
-            MeaningError::Contradictory { .. } => "no motion satisfies it; mend it or leave it out".into(),
+            MeaningError::Contradictory { .. } => "no motion satisfies it; correct it or leave it out".into(),
             MeaningError::Constraint { help, .. } => (*help).into(),
             MeaningError::UnknownAlgebra { known, .. } => {
                 format!("the catalogue has {}; any other is given by `brackets`", known.join(", "))
@@ -539,7 +538,7 @@ impl MeaningError {
             }
             MeaningError::NotClosed { .. } => {
                 "the kinematics stand for constraints that are not integrable; give them in [constraints], and what has a rate \
-                 but is no coordinate in [states]"
+                 but is not a coordinate in [states]"
                     .into()
             }
             MeaningError::Contradiction { .. } => "check the bracket, or leave [algebra] out to have it computed".into(),

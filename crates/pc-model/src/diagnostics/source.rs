@@ -1,4 +1,4 @@
-//! The text of a model file, and how a place in it is shown.
+//! The text of a model file, and the display of a place in it.
 
 use std::ops::Range;
 
@@ -39,7 +39,7 @@ impl Source {
         Self { name: name.into(), text: text.into(), damage: None }
     }
 
-    /// A model file as read from disk. Bytes that are not UTF-8 are kept in mind and refused later, by
+    /// A model file as read from disk. Bytes that are not UTF-8 are refused later, by
     /// [`Document::parse`](crate::Document::parse).
     pub fn from_bytes(name: impl Into<String>, bytes: &[u8]) -> Self {
         let damage = std::str::from_utf8(bytes).err().map(|error| {

@@ -65,13 +65,13 @@ pub struct Document {
 pub struct Heading {
     /// Name of the system.
     pub name: Option<Located<String>>,
-    /// What it is.
+    /// The description of the system.
     pub description: Option<Located<String>>,
-    /// Where it comes from.
+    /// The source of the model.
     pub reference: Option<Located<String>>,
 }
 
-/// What a program, or a table, gives the system.
+/// A value that a program or a table gives the system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// Its name.
@@ -93,14 +93,14 @@ pub enum InputValue {
         times: Vec<f64>,
         /// The values.
         values: Vec<f64>,
-        /// How they are read between the times.
+        /// The interpolation between the times.
         interpolation: Interpolation,
     },
     /// A column of a file.
     File(TableFile),
 }
 
-/// A column of a file of numbers with commas between them.
+/// A column of a file of comma-separated numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableFile {
     /// Its path, from where the model's file is.
@@ -109,7 +109,7 @@ pub struct TableFile {
     pub column: Located<String>,
     /// That of the times; `t`, else the first one, where it is left out.
     pub time: Option<Located<String>>,
-    /// How they are read between the times.
+    /// The interpolation between the times.
     pub interpolation: Interpolation,
 }
 
@@ -124,7 +124,7 @@ pub struct QuasiVelocity {
     pub start: Option<Expression>,
 }
 
-/// A first-order state z, which is no part of the frame.
+/// A first-order state z, which is not part of the frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Its name.
@@ -140,7 +140,7 @@ pub struct State {
 pub struct Algebra {
     /// The section's header.
     pub place: Place,
-    /// What they are.
+    /// The coefficients.
     pub definition: AlgebraDefinition,
 }
 
@@ -169,18 +169,18 @@ pub struct Bracket {
 pub struct Constraint {
     /// Its label, outside the namespace of the model.
     pub name: Name,
-    /// What stays zero.
+    /// The expression that stays zero.
     pub expression: Expression,
-    /// What the user says it is.
+    /// The declared kind.
     pub kind: Option<Located<ConstraintKind>>,
 }
 
-/// Whether a constraint can be integrated, or is none that is affine in the velocities.
+/// Whether a constraint is integrable, nonholonomic, or not affine in the velocities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConstraintKind {
-    /// It can.
+    /// It is integrable.
     Holonomic,
-    /// It cannot.
+    /// It is not integrable.
     Nonholonomic,
     /// It is not affine in the velocities: Chetaev's condition says which displacements are virtual.
     Nonlinear,
@@ -215,7 +215,7 @@ pub struct Body {
     pub position: [Expression; 3],
     /// Inertia about `position`; given only with an orientation.
     pub inertia: Option<Inertia>,
-    /// How it turns.
+    /// Its orientation.
     pub orientation: Option<Orientation>,
     /// Force acting at `position`.
     pub force: Option<[Expression; 3]>,
@@ -228,11 +228,11 @@ pub struct Body {
 pub struct Gravity {
     /// The section's header.
     pub place: Place,
-    /// The acceleration of what falls, along the axes of the positions.
+    /// The acceleration of free fall, along the axes of the positions.
     pub acceleration: [Expression; 3],
 }
 
-/// How a body turns.
+/// The orientation of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Orientation {
     /// The rows of R, from body to space.
@@ -241,7 +241,7 @@ pub enum Orientation {
     AngularVelocity(Box<[Expression; 3]>),
 }
 
-/// A solution of Hamilton–Jacobi's equation, as the user has it.
+/// A solution of Hamilton–Jacobi's equation, as claimed by the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HamiltonJacobi {
     /// S, a function of time, coordinates and constants.
@@ -250,16 +250,16 @@ pub struct HamiltonJacobi {
     pub constants: Vec<(Name, Located<f64>)>,
 }
 
-/// Something that happens when an expression passes through zero.
+/// An event where an expression passes through zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     /// Its label, outside the namespace of the model.
     pub name: Name,
     /// The section's header.
     pub place: Place,
-    /// What passes through zero.
+    /// The expression that passes through zero.
     pub when: Expression,
-    /// In which direction.
+    /// The direction in which it does.
     pub direction: Option<Located<Direction>>,
     /// Whether the run ends there.
     pub terminal: Option<Located<bool>>,
@@ -291,7 +291,7 @@ pub enum EquationForm {
     Canonical,
 }
 
-/// How the motion is computed; what is left out is left to the program.
+/// The settings of a run; the program chooses those left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Simulation {
     /// The section's header.
@@ -300,7 +300,7 @@ pub struct Simulation {
     pub t_start: Option<Located<f64>>,
     /// End time.
     pub t_end: Option<Located<f64>>,
-    /// Number of rows, from 2 (start and end).
+    /// Number of rows, at least 2 (start and end).
     pub samples: Option<Located<usize>>,
     /// Relative tolerance, positive.
     pub rtol: Option<Located<f64>>,
@@ -308,9 +308,10 @@ pub struct Simulation {
     pub atol: Option<Located<f64>>,
     /// Largest length of a step, positive.
     pub max_step: Option<Located<f64>>,
-    /// In how many parts of a step events are looked for, at least 1.
+    /// The number of parts of each step that are searched for events, at least 1.
     pub samples_per_step: Option<Located<u32>>,
-    /// To which part of their distance those of an event have shrunk when they accumulate, from 0 to less than 1.
+    /// The fraction of the first interval between events to which the remaining time shrinks before they count as
+    /// accumulated, at least 0 and less than 1.
     pub accumulation: Option<Located<f64>>,
     /// Integration method.
     pub method: Option<Located<Method>>,
@@ -321,7 +322,7 @@ pub struct Simulation {
 }
 
 impl Document {
-    /// The end of the file, where what is missing could be added.
+    /// The end of the file, where missing entries could be added.
     pub fn end(&self) -> Place {
         let end = self.source.text().trim_end().len();
         Place { entry: String::new(), span: end..end }

@@ -77,8 +77,8 @@ impl Expression {
 /// `name = "expression"`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedExpression {
-    /// What stands on the left.
+    /// The left side.
     pub name: Name,
-    /// What stands on the right.
+    /// The right side.
     pub expression: Expression,
 }

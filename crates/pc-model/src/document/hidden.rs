@@ -1,7 +1,7 @@
-//! Characters that are not seen, and do something all the same.
+//! Invisible characters with an effect.
 
-/// Control characters, ends of lines and paragraphs, what changes the direction of writing, marks at the beginning of a text,
-/// and what no text may contain (XML 1.0, 2.2).
+/// Control characters, ends of lines and paragraphs, changes of the direction of writing, byte-order marks, and
+/// characters that no text may contain (XML 1.0, 2.2).
 pub fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{2028}' | '\u{2029}' | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{feff}')

@@ -4,11 +4,11 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// The most bytes of a model, or of a table of an input, that are read: 64 MiB. Of a device, which has no end, or of a file of
-/// another kind nothing more is taken into memory.
+/// The most bytes that are read of a model or of a table of an input: 64 MiB. No more is taken into memory even of a
+/// device, which has no end.
 pub const MOST_BYTES: u64 = 64 << 20;
 
-/// All that a model or a table has.
+/// The whole contents of a model or a table.
 ///
 /// # Errors
 /// [`ErrorKind::FileTooLarge`] where it is more than [`MOST_BYTES`]; any other of the reader.
@@ -22,7 +22,7 @@ pub fn read_bounded(from: impl Read) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The same of a file.
+/// The same for a file.
 ///
 /// # Errors
 /// As for [`read_bounded`], and those of opening it.
@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_has_no_end_is_not_read_to_it() {
+    fn endless_input_is_not_read_to_the_end() {
         let error = read_bounded(io::repeat(b'#')).expect_err("endless");
         assert_eq!(error.kind(), ErrorKind::FileTooLarge);
         assert_eq!(error.to_string(), "it has more than 64 MiB, the most that is read");

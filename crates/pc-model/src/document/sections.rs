@@ -1,4 +1,4 @@
-//! The sections that say how the system moves: names, kinematics, algebra, constraints, energy.
+//! The sections on the system: names, kinematics, algebra, constraints, energy.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,4 @@
-//! The sections that say how the motion is followed: events and simulation.
+//! The sections on the run: events and simulation.
 
 use pc_expr::Direction;
 
@@ -95,7 +95,7 @@ fn part(item: &Item<'_>) -> Result<Located<f64>, ModelError> {
         return Ok(number);
     }
     Err(item.error(ErrorKind::OutOfRange {
-        expected: "a part from 0 to less than 1",
+        expected: "a fraction from 0 to less than 1",
         found: number.value.to_string(),
         example: "accumulation = 1e-6",
     }))
@@ -164,7 +164,7 @@ mod tests {
     use crate::document::contents::Document;
 
     #[test]
-    fn the_largest_table_is_that_of_the_message() {
+    fn the_message_states_the_largest_table() {
         let text = |samples: usize| format!("[simulation]\nsamples = {samples}\n");
         let read = |samples: usize| Document::parse(Source::new("m.toml", text(samples))).map(|_| ());
         let refusal = |samples: usize| read(samples).map_err(|error| error.to_string());

@@ -17,7 +17,7 @@ const PROGRAM: &str = "the program of the equations";
 
 impl Model {
     /// Compiles the motion of this model and tries it at the start, which is returned with it: (x, η) with the free
-    /// quasi-velocities if constraints say that the others vanish, with all otherwise.
+    /// quasi-velocities if constraints make the others vanish, with all otherwise.
     ///
     /// # Errors
     /// [`ModelError`] if it cannot be evaluated there.
@@ -59,8 +59,8 @@ impl Model {
         self.started(compiled, (&names, || equations.kept(&names)), t_start, start)
     }
 
-    /// Compiles equations of motion of this model in independent quasi-velocities, whatever these are, and tries them at the start
-    /// (x, η, z), which is returned with them.
+    /// Compiles equations of motion of this model in any independent quasi-velocities, and tries them at the start (x,
+    /// η, z), which is returned with them.
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be evaluated there.
@@ -108,7 +108,8 @@ impl Model {
         })
     }
 
-    /// The names of what is to be kept, but for integrals of the text that a system without some of its coordinates does not have.
+    /// The names of what is to be kept, but for integrals of the text that a system without some of its coordinates
+    /// does not have.
     fn kept_of(&self, system: &System<'_>) -> Vec<String> {
         let is_written =
             |name: &String| self.document().integrals.iter().any(|known| known.name.text == *name);

@@ -1,4 +1,4 @@
-//! The vector field that is integrated, what happens on its way, and what a table shows of its states.
+//! The vector field that is integrated, its events, and the columns of a table of its states.
 
 use pc_mech::{LegendreTransform, MechError, Motion};
 
@@ -12,7 +12,7 @@ use crate::flow::reading::Reading;
 use crate::flow::variables::Variables;
 use crate::model::model::Model;
 
-/// Equations of motion of a model, compiled and tried at the start, with what is read off their states.
+/// Equations of motion of a model, compiled and tried at the start, with the columns of a table.
 #[derive(Clone, Debug)]
 pub struct Flow {
     /// The vector field.
@@ -21,7 +21,7 @@ pub struct Flow {
     pub start: Vec<f64>,
     /// Coordinates, declared quasi-velocities and first-order states, the columns of a table whatever the form.
     pub names: Vec<String>,
-    /// What happens where; none in most models.
+    /// The events; none in most models.
     pub events: FlowEvents,
     pub(super) reading: Reading,
 }
@@ -48,8 +48,8 @@ impl Flow {
             }
             (_, Some(_)) => {
                 let message =
-                    "its constraints are held by multipliers, and this form is of independent velocities";
-                let help = "choose these by --independent, or take the form poincare or canonical";
+                    "its constraints are held by multipliers, but this form needs independent velocities";
+                let help = "choose these with --independent, or use the form poincare or canonical";
                 Err(assembly.no_form(message.to_owned(), help))
             }
             (Variables::Momenta | Variables::ReducedMomenta, None) => {
@@ -82,8 +82,8 @@ impl Flow {
         let motion = assembly.within_chart(motion, form)?;
         let x = form.system.frame().coordinates();
         if x.len() < system.frame().coordinates().len() && !assembly.events.is_empty() {
-            let message = "its events are of all coordinates, and this form has fewer".to_owned();
-            return Err(assembly.no_form(message, "take another form: poincare or canonical"));
+            let message = "its events use all coordinates, but this form has fewer".to_owned();
+            return Err(assembly.no_form(message, "use another form: poincare or canonical"));
         }
         let declared = &system.quasi_velocities()[..assembly.declared];
         let all = assembly.quasi_velocities_of(free)?;
@@ -127,7 +127,8 @@ impl Flow {
         Flow { motion, start, names: self.names.clone(), events, reading }
     }
 
-    /// Coordinates, all quasi-velocities and first-order states of a state. Where momenta have no quasi-velocities, these are no numbers.
+    /// Coordinates, all quasi-velocities and first-order states of a state. Where momenta have no quasi-velocities,
+    /// these are no numbers.
     fn shown(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let n = self.motion.coordinates();
         self.reading.read(t, state).unwrap_or_else(|_| {
@@ -151,13 +152,13 @@ impl Flow {
         row
     }
 
-    /// The rates of all quasi-velocities of the system, where its state moves at these rates; none where the state has quasi-velocities
-    /// of the system, whose rates are there.
+    /// The rates of all quasi-velocities of the system when its state moves at these rates; none where the state
+    /// itself has quasi-velocities of the system, with their rates.
     pub fn rates_of_quasi_velocities(&mut self, t: f64, state: &[f64], rates: &[f64]) -> Option<Vec<f64>> {
         self.reading.rates(t, state, rates)
     }
 
-    /// The state of coordinates and all quasi-velocities of the system, of which those that are not free are not looked at.
+    /// The state for coordinates and all quasi-velocities of the system; those that are not free are ignored.
     ///
     /// # Errors
     /// [`MechError`] where the quasi-velocities have no momenta.
@@ -165,7 +166,7 @@ impl Flow {
         self.reading.write(t, all)
     }
 
-    /// The places, among all quasi-velocities of the system, of the free ones: those of the state, or of its momenta.
+    /// The indices, among all quasi-velocities of the system, of the free ones: those of the state, or of its momenta.
     pub fn free_quasi_velocities(&self) -> &[usize] {
         &self.reading.free
     }
@@ -185,7 +186,7 @@ impl Flow {
         self.motion.constraint_names().to_vec()
     }
 
-    /// What should be zero of each of these.
+    /// The residual of each of these.
     pub fn constraint_residuals(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         self.motion.constraint_residuals(t, state)
     }

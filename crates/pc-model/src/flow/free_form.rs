@@ -11,12 +11,13 @@ use crate::flow::variables::Variables;
 /// A definition of a quasi-velocity that is this part of what those before it say does not say anything more.
 const DEPENDENT: f64 = 1e-6;
 
-/// A system whose equations (9) are the equations of motion, with what its quasi-velocities have to do with those of the model.
+/// A system whose equations (9) are the equations of motion, with the relation between its quasi-velocities and those
+/// of the model.
 #[derive(Clone, Debug)]
 pub struct FreeForm<'g> {
     /// The system.
     pub system: System<'g>,
-    /// The independent quasi-velocities of the model that it was made of, k of them.
+    /// The independent quasi-velocities of the model from which it was made, k of them.
     pub independent: Vec<Expr<'g>>,
     /// Each of these as a function of time, coordinates and the quasi-velocities of the system.
     pub values: Vec<Expr<'g>>,
@@ -48,7 +49,7 @@ impl<'g> FreeForm<'g> {
         }
     }
 
-    /// The quasi-velocities that are not those of the model, each with what it is.
+    /// The quasi-velocities that are not those of the model, each with its definition.
     pub fn defined(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         let all = self.system.quasi_velocities().iter().copied().zip(self.definitions.iter().copied());
         all.filter(|(eta, definition)| eta != definition).collect()
@@ -56,8 +57,8 @@ impl<'g> FreeForm<'g> {
 }
 
 impl<'g> Assembly<'g> {
-    /// The system of the independent quasi-velocities in the coordinates and quasi-velocities of these variables; momenta are those
-    /// of its quasi-velocities.
+    /// The system of the independent quasi-velocities in the coordinates and quasi-velocities of these variables;
+    /// momenta are those of its quasi-velocities.
     ///
     /// # Errors
     /// [`ModelError`] if there is no such form.
@@ -73,7 +74,8 @@ impl<'g> Assembly<'g> {
         }
     }
 
-    /// The equations of motion of the independent quasi-velocities in these variables, which are no momenta, with what these are.
+    /// The equations of motion of the independent quasi-velocities in these variables, which must not be momenta, with
+    /// their definitions.
     ///
     /// # Errors
     /// [`ModelError`] if there is no such form.
@@ -109,7 +111,7 @@ impl<'g> Assembly<'g> {
         let change = free.orthonormal_change(names).map_err(|error| match error.is_not_quadratic() {
             true => {
                 let message = "there is no frame that is orthonormal in the kinetic metric: L is not quadratic in the velocities";
-                self.no_form(message.to_owned(), "take another form: poincare, canonical, or hamel")
+                self.no_form(message.to_owned(), "use another form: poincare, canonical, or hamel")
             }
             false => self.document.derivation_error(error),
         })?;
@@ -119,13 +121,13 @@ impl<'g> Assembly<'g> {
             return Ok(form);
         }
         let message = "there are no quasi-velocities that are orthonormal in the kinetic metric: it is not positive at the start";
-        Err(self.no_form(message.to_owned(), "take another form: poincare, canonical, or hamel"))
+        Err(self.no_form(message.to_owned(), "use another form: poincare, canonical, or hamel"))
     }
 
     /// In the quasi-velocities given beside the text, and as many of the model's as complete them.
     fn in_given(&self, free: &System<'g>) -> Result<FreeForm<'g>, ModelError> {
         let (graph, eta) = (free.graph(), free.quasi_velocities());
-        let help = "give them behind the model, as in `pc derive MODEL --form hamel \"v = r*φ'\"`, each independent of those before";
+        let help = "give them after the model, as in `pc derive MODEL --form hamel \"v = r*φ'\"`, each independent of those before";
         if self.given.is_empty() {
             return Err(self.no_form("no quasi-velocities are given".to_owned(), help));
         }
@@ -145,7 +147,7 @@ impl<'g> Assembly<'g> {
             if left.is_nan() || left <= DEPENDENT {
                 let message = match chosen.len() == eta.len() {
                     true => format!("`{name}` is one quasi-velocity too many: {} are independent", eta.len()),
-                    false => format!("at the start `{name}` says no more than those before it"),
+                    false => format!("at the start `{name}` depends on those before it"),
                 };
                 return Err(self.no_form(message, help));
             }
@@ -187,7 +189,7 @@ impl<'g> Assembly<'g> {
         Ok([self.start_of(form.system.frame().coordinates()), eta, self.start_of(&states)].concat())
     }
 
-    /// Whether the constraints are more than that quasi-velocities vanish.
+    /// Whether the constraints do more than make quasi-velocities vanish.
     pub fn has_multipliers(&self) -> bool {
         matches!(self.constraints.formulation(), ConstraintFormulation::Multipliers(_))
     }

@@ -1,4 +1,4 @@
-//! Derivatives by parameters of a start, and of what is shown of a state.
+//! Derivatives by parameters of a start, and of the columns of a table.
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
@@ -18,8 +18,9 @@ impl Flow {
     /// have parameters.
     ///
     /// # Errors
-    /// [`ModelError`] where the model has no start with the parameter a little larger or smaller, as where the start does not
-    /// follow constraints that depend on it; for an input with a table; for a parameter that others are expressions in.
+    /// [`ModelError`] where the model has no start for nearby values of the parameter, for example because the start
+    /// does not follow constraints that depend on it; for an input with a table; for a parameter that others are
+    /// expressions in.
     ///
     /// # Panics
     /// If there is no such parameter.
@@ -31,7 +32,7 @@ impl Flow {
             model.document().error(&model.parameter_place(j), MeaningError::NoForm { message, help })
         };
         if values.is_table(j) {
-            return Err(refused("it is a function of time", "take them by parameters that are numbers"));
+            return Err(refused("it is a function of time", "choose parameters that are numbers"));
         }
         let value = values.values()[j];
         let mut ends = Vec::new();
@@ -42,7 +43,7 @@ impl Flow {
             if others.into_iter().any(|(i, (moved, held))| i != j && moved != held) {
                 return Err(refused(
                     "other parameters are expressions in it",
-                    "give those numbers, by --set say, or put them into the expressions of the model",
+                    "set those to numbers, for example with --set, or write their expressions out in the model",
                 ));
             }
             let graph = moved.graph();
@@ -53,12 +54,12 @@ impl Flow {
         Ok(ends[0].iter().zip(&ends[1]).map(|(ahead, behind)| (ahead - behind) / length).collect())
     }
 
-    /// The derivatives of what [`names`](Flow::names) says of a state, coordinates, quasi-velocities and first-order states,
-    /// where that moves along `column` with parameter number j. Those that are no components of the state are central
-    /// differences, good for ten digits.
+    /// The derivatives of the columns [`names`](Flow::names), coordinates, quasi-velocities and first-order states, of
+    /// a state that moves along `column` with parameter number j. Those that are not components of the state are
+    /// central differences, accurate to ten digits.
     ///
     /// # Panics
-    /// If there is no such parameter, or `column` has not the length of the state.
+    /// If there is no such parameter, or `column` does not have the length of the state.
     pub fn derivative(&self, t: f64, state: &[f64], column: &[f64], j: usize) -> Vec<f64> {
         assert_eq!(column.len(), state.len(), "length of the state");
         let components = self.motion.names();

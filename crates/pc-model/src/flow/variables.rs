@@ -8,18 +8,19 @@ use crate::diagnostics::error::ModelError;
 /// The variables of the state beside the coordinates, and so which equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variables {
-    /// The quasi-velocities of (9), or of (30): independent ones if constraints say that the others vanish, all of
-    /// them with multipliers otherwise.
+    /// The quasi-velocities of (9), or of (30): independent ones if constraints make the others vanish, all of them
+    /// with multipliers otherwise.
     QuasiVelocities,
     /// The momenta of (10), those of the same quasi-velocities.
     Momenta,
-    /// The quasi-velocities of (9) without the coordinates that nothing depends on: Euler–Poincaré's equations where none is left.
+    /// The quasi-velocities of (9) without the coordinates that nothing depends on: Euler–Poincaré's equations where
+    /// none is left.
     Reduced,
     /// The momenta of the same: Lie–Poisson equations.
     ReducedMomenta,
     /// Quasi-velocities that are orthonormal in the kinetic metric.
     Orthonormal,
-    /// Quasi-velocities [given](crate::Model::give_quasi_velocity) beside those of the text: Hamel's equations in these.
+    /// Quasi-velocities [given](crate::Model::give_quasi_velocity) in addition to those of the text: Hamel's equations in these.
     Given,
 }
 
@@ -34,7 +35,7 @@ impl Variables {
         matches!(self, Variables::QuasiVelocities | Variables::Momenta)
     }
 
-    /// What the form is called on a command line.
+    /// The name of the form on a command line.
     pub fn name(self) -> &'static str {
         match self {
             Variables::QuasiVelocities => "poincare",
@@ -74,8 +75,8 @@ impl<'g> Assembly<'g> {
         }
     }
 
-    /// The canonical equations of the momenta of the [system](Assembly::system_in) in these variables, η looked for from their start where they are
-    /// not closed.
+    /// The canonical equations of the momenta of the [system](Assembly::system_in) in these variables, η looked for
+    /// from their start where they are not closed.
     ///
     /// # Errors
     /// [`ModelError`] if there are none.

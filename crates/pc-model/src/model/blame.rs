@@ -1,4 +1,4 @@
-//! Errors of the derivation, at the place in the file that is to blame.
+//! Errors of the derivation, located at the entry of the file that causes them.
 
 use pc_mech::{AlgebraError, ConstraintError, ExprError, Graph, IntegralError, LagrangianError, MechError};
 use pc_nonholo::NonholoError;
@@ -36,10 +36,10 @@ impl Document {
         let last = self.constraints.last().map_or("", |constraint| constraint.name.text.as_str());
         match error {
             NonholoError::Contradictory { constraint, .. } => {
-                cannot(&constraint, "no motion satisfies it; mend it or leave it out")
+                cannot(&constraint, "no motion satisfies it; correct it or leave it out")
             }
             NonholoError::Nonlinear { constraint, .. } => {
-                cannot(&constraint, "take a form with multipliers: poincare, lagrange, or canonical")
+                cannot(&constraint, "use a form with multipliers: poincare, lagrange, or canonical")
             }
             NonholoError::Mech(MechError::Constraint(error)) => match error {
                 ConstraintError::NotAffine { constraint } => {

@@ -95,7 +95,7 @@ impl Builtin {
     /// Its document.
     ///
     /// # Errors
-    /// [`ModelError`]; the tests show that there is none.
+    /// [`ModelError`], which the tests exclude.
     pub fn document(&self) -> Result<Document, ModelError> {
         Document::parse(Source::new(format!("{}.toml", self.name), self.text))
     }

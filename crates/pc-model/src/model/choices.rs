@@ -1,13 +1,14 @@
-//! What is asked of the equations beside what the text says: other quasi-velocities, independent ones.
+//! Requests in addition to the text: other quasi-velocities, independent ones.
 
 use crate::diagnostics::error::ModelError;
 use crate::model::given::GivenQuasiVelocity;
 use crate::model::model::Model;
 
 impl Model {
-    /// Gives a quasi-velocity beside those of the text, by a linear form in the velocities x' and quasi-velocities of the model, for
-    /// equations in [such ones](crate::Variables::Given). Where these are fewer than the independent ones, quasi-velocities of the
-    /// model complete them, each time the one that those there are determine least at the start. Each is an output too.
+    /// Gives a quasi-velocity in addition to those of the text, by a linear form in the velocities x' and
+    /// quasi-velocities of the model, for equations in [given ones](crate::Variables::Given). Where fewer are given
+    /// than there are independent ones, quasi-velocities of the model complete them, each time the one that is least
+    /// determined so far at the start. Each is an output too.
     ///
     /// ```
     /// use pc_mech::Graph;
@@ -27,8 +28,8 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`ModelError`] if the name is none or is taken, or the text is no expression; what is wrong with its meaning is said when
-    /// the model is assembled.
+    /// [`ModelError`] if the name is invalid or taken, or the text is not an expression; errors in its meaning are
+    /// reported when the model is assembled.
     pub fn give_quasi_velocity(&mut self, name: &str, definition: &str) -> Result<(), ModelError> {
         let given = {
             let taken: Vec<&str> = self.given.iter().map(GivenQuasiVelocity::name).collect();
@@ -38,18 +39,18 @@ impl Model {
         Ok(())
     }
 
-    /// The quasi-velocities given beside those of the text.
+    /// The quasi-velocities given in addition to those of the text.
     pub fn given_quasi_velocities(&self) -> &[GivenQuasiVelocity] {
         &self.given
     }
 
-    /// Asks for these velocities as the independent ones of equations in which multipliers are eliminated: quasi-velocities of the
-    /// model, or velocities x' for the forms in these. Without names the choice is that whose equations are shortest.
+    /// Chooses these velocities as the independent ones of equations in which multipliers are eliminated: quasi-velocities of the
+    /// model, or velocities x' for the forms in these. Without names, those whose equations are shortest are chosen.
     pub fn choose_independent<S: Into<String>>(&mut self, names: impl IntoIterator<Item = S>) {
         self.independent = names.into_iter().map(Into::into).collect();
     }
 
-    /// The names of the velocities that are asked for as independent ones.
+    /// The names of the velocities chosen as independent.
     pub fn independent(&self) -> &[String] {
         &self.independent
     }

@@ -1,4 +1,4 @@
-//! Quasi-velocities that are given beside those of the document.
+//! Quasi-velocities given in addition to those of the document.
 
 use pc_expr::parse::{FUNCTIONS, is_name};
 

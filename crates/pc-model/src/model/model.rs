@@ -1,4 +1,4 @@
-//! A document with the values of its parameters, and what is asked of its motion.
+//! A document with the values of its parameters, and the settings of its derivation.
 
 use std::sync::Arc;
 
@@ -76,17 +76,17 @@ impl Model {
         }
     }
 
-    /// Limits what all further derivations of this model and its clones may take together, from now on.
+    /// Limits the memory and time of all further derivations of this model and its clones together.
     pub fn limit(&mut self, limits: Limits) {
         self.budget = Budget::new(limits);
     }
 
-    /// Has all further derivations of this model and its clones take from a budget, which others may share.
+    /// Makes all further derivations of this model and its clones draw on a budget, which others may share.
     pub fn within(&mut self, budget: Budget) {
         self.budget = budget;
     }
 
-    /// What is left of the limits.
+    /// The remainder of the limits.
     pub fn budget(&self) -> &Budget {
         &self.budget
     }
@@ -105,14 +105,14 @@ impl Model {
         Arc::clone(&self.document)
     }
 
-    /// What the model calls itself, else the name of its file.
+    /// The name given in the model, else the name of its file.
     pub fn title(&self) -> &str {
         let name = self.document.model.name.as_ref();
         name.map_or_else(|| self.document.source.name(), |name| name.value.as_str())
     }
 
-    /// Sets a parameter, or an input that has no table, to another value than that of the file. Parameters that are expressions
-    /// in it follow; one that is an expression itself is no longer.
+    /// Sets a parameter, or an input that has no table, to another value than that of the file. Parameters that are
+    /// expressions in it follow; one that is itself an expression becomes a number.
     ///
     /// # Errors
     /// [`UnknownParameter`] with the parameters there are.
@@ -139,14 +139,14 @@ impl Model {
         names.nth(place).map_or_else(|| self.document.end(), |name| name.place.clone())
     }
 
-    /// The names and values of the parameters, then of the inputs: of those with a table that at the start.
+    /// The names and values of the parameters, then of the inputs; for an input with a table, its value at the start.
     pub fn parameters(&self) -> impl Iterator<Item = (&str, f64)> {
         let parameters = self.document.parameters.iter().map(|p| &p.name);
         let names = parameters.chain(self.document.inputs.iter().map(|input| &input.name));
         names.map(|name| name.text.as_str()).zip(self.parameters.values().iter().copied())
     }
 
-    /// The values of the parameters, to be changed by themselves.
+    /// The values of the parameters, which can be changed independently of the model.
     pub fn parameter_values(&self) -> &Parameters {
         &self.parameters
     }
@@ -156,7 +156,7 @@ impl Model {
         &self.kept
     }
 
-    /// Says that the motion is to be projected to the value that an integral, or `energy`, has at the start.
+    /// Keeps an integral, or `energy`, at its value at the start, by projection.
     ///
     /// # Errors
     /// [`UnknownIntegral`] with the integrals there are.
@@ -173,7 +173,7 @@ impl Model {
         Ok(())
     }
 
-    /// Says that the start is to be moved to where the constraints are satisfied.
+    /// Sets whether the start is moved onto the constraints.
     pub fn project_start(&mut self, yes: bool) {
         self.projects_start = yes;
     }
@@ -191,18 +191,18 @@ impl Model {
         &self.held_starts
     }
 
-    /// Says that the reactions of all constraints are outputs, each called `λ_` and the name of its constraint.
+    /// Sets whether the reactions of all constraints are outputs, each called `λ_` and the name of its constraint.
     pub fn observe_reactions(&mut self, yes: bool) {
         self.observes_reactions = yes;
     }
 
-    /// Says that sensitivities will be asked for: motions are compiled with their derivatives by the parameters, and events with
-    /// theirs by time, state and parameters.
+    /// Sets whether sensitivities are needed: motions are then compiled with their derivatives by the parameters, and
+    /// events with theirs by time, state and parameters.
     pub fn differentiate_by_parameters(&mut self, yes: bool) {
         self.by_parameters = yes;
     }
 
-    /// Says that motions are compiled with [∂f/∂t](pc_mech::Motion::time_derivative).
+    /// Sets whether motions are compiled with [∂f/∂t](pc_mech::Motion::time_derivative).
     pub fn differentiate_by_time(&mut self, yes: bool) {
         self.by_time = yes;
     }
@@ -230,7 +230,7 @@ impl Model {
         &self.starts
     }
 
-    /// Whether the start is to be moved to where the constraints are satisfied.
+    /// Whether the start is moved onto the constraints.
     pub fn projects_start(&self) -> bool {
         self.projects_start
     }

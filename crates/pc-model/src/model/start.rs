@@ -1,4 +1,4 @@
-//! The start of a motion with other values than those of the file.
+//! Start values other than those of the file.
 
 use crate::assembly::start;
 use crate::diagnostics::error::ModelError;
@@ -10,7 +10,7 @@ use crate::model::model::Model;
 pub struct UnknownStart {
     /// The name asked for.
     pub name: String,
-    /// The coordinates, quasi-velocities and first-order states there are; velocities x' where no quasi-velocity is declared.
+    /// The coordinates, quasi-velocities and first-order states; velocities x' where no quasi-velocity is declared.
     pub known: Vec<String>,
 }
 
@@ -44,8 +44,8 @@ impl Model {
         }
     }
 
-    /// Says that a start [moved to the constraints](Model::project_start) keeps the value of a coordinate or quasi-velocity: the
-    /// others follow.
+    /// Holds the value of a coordinate or quasi-velocity fixed where the start is [moved onto the
+    /// constraints](Model::project_start): the others follow.
     ///
     /// # Errors
     /// [`UnknownStart`] with the names there are.
@@ -67,15 +67,16 @@ impl Model {
         self.held_starts().iter().map(|&place| names[place].clone()).collect()
     }
 
-    /// Whether quasi-velocities may follow from start velocities of coordinates, which stand beside them: then
-    /// [`start`](Model::start) does not know them.
+    /// Whether quasi-velocities may follow from start velocities of coordinates that are given with them:
+    /// [`start`](Model::start) does not have their values then.
     pub fn derives_start(&self) -> bool {
         let document = self.document();
         !document.quasi_velocities.is_empty() && !document.start_velocities.is_empty()
     }
 
-    /// The start state (x, η, z) with the declared η, or (x, x', z) where none is: the values of [`start_names`](Model::start_names)
-    /// for the parameters as they are, not looked at whether they satisfy the constraints, 0 where none is given.
+    /// The start state (x, η, z) with the declared η, or (x, x', z) where none is: the values of
+    /// [`start_names`](Model::start_names) for the current parameters, whether or not they satisfy the constraints,
+    /// and 0 where none is given.
     ///
     /// # Errors
     /// [`ModelError`] where a start value is not a number.

@@ -1,6 +1,6 @@
-//! What an expression may contain, by the place where it stands.
+//! Which names an expression may contain, depending on its place.
 
-/// What an expression may contain, by the place where it stands.
+/// Which names an expression may contain, depending on its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Stage {
     /// The value of a parameter: parameters before it.

@@ -1,4 +1,4 @@
-//! Which constraints bind a system, and which follow from these.
+//! Binding constraints, and redundant ones that follow from them.
 
 use pc_mech::{Constraint, Expr, Graph, System};
 
@@ -18,7 +18,7 @@ const FOLLOWS: f64 = 1e-9;
 /// The number of places at which constraints are looked at that are dependent where the motion starts.
 const PLACES: u64 = 6;
 
-/// A constraint that says nothing new.
+/// A constraint that follows from others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Redundant {
     /// Its name.
@@ -30,9 +30,9 @@ pub struct Redundant {
 /// Constraints told apart by rank: those that bind a system, and those that follow from them.
 ///
 /// Conditions on velocities are C η + c_0, conditions on positions have the coefficients C_s = X_s f, c_0 = X_0 f. What is
-/// dependent at almost all states is found exactly. A mechanism with more members than it needs has conditions that are
-/// dependent only where all of them hold: where the start shows this, it is looked at in numbers at places around it that
-/// satisfy all conditions on positions, and one of these follows if it vanishes wherever, near the start, those before it
+/// dependent at almost all states is found exactly. An overconstrained mechanism has conditions that are dependent
+/// only where all of them hold: where the start shows this, it is tested numerically at places around it that satisfy
+/// all conditions on positions, and one of these is redundant if it vanishes wherever, near the start, those before it
 /// do.
 ///
 /// ```
@@ -65,8 +65,8 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// That of the constraints of a system; positions come first: a condition on velocities may follow from them, but never
-    /// the other way round. [Nonlinear](Constraint::nonlinear) ones bind and count for no other.
+    /// Sorts the constraints of a system; positions come first: a condition on velocities may follow from them, but never
+    /// the other way round. [Nonlinear](Constraint::nonlinear) ones bind, and no other follows from them.
     ///
     /// `at` are values of time and coordinates where the motion starts, and may be of more.
     ///
@@ -96,12 +96,12 @@ impl Binding {
         Ok(Binding { binding, redundant: found.redundant })
     }
 
-    /// The indices of those that bind, rising.
+    /// The indices of the binding ones, in ascending order.
     pub fn binding(&self) -> &[usize] {
         &self.binding
     }
 
-    /// Those that follow from others.
+    /// The redundant ones.
     pub fn redundant(&self) -> &[Redundant] {
         &self.redundant
     }

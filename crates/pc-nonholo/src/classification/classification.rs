@@ -1,4 +1,4 @@
-//! Constraints sorted by what they do.
+//! Constraints with their kinds.
 
 use pc_mech::{Constraint, Expr, Multipliers, Neighbourhood, System};
 
@@ -6,7 +6,7 @@ use crate::classification::binding::{Binding, Redundant};
 use crate::classification::reach::{Reach, affine};
 use crate::error::NonholoError;
 
-/// What a constraint does, by Frobenius' theorem.
+/// The kind of a constraint, by Frobenius' theorem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// It binds positions, f(t, x) = 0.
@@ -42,7 +42,7 @@ impl<'g> ConstraintClassification<'g> {
     /// Positions come first: a condition on velocities may follow from them, but never the other way round.
     ///
     /// [Nonlinear](Constraint::nonlinear) constraints come last and count neither for the rank nor for the test of the
-    /// others; of one that restricts no velocity at almost all states it is not said whether it follows.
+    /// others; one that restricts no velocity at almost all states is not tested for redundancy.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///
@@ -80,9 +80,11 @@ impl<'g> ConstraintClassification<'g> {
         &self.kinds
     }
 
-    /// How many combinations of the nonholonomic constraints, with coefficients that are functions of time and place, are integrable though
-    /// none of them is (which they are says [`IntegrableCombination`](crate::IntegrableCombination)): the l + m dimensions of all velocities, l of them allowed, less those of the least involutive family of
-    /// fields that contains the allowed ones, less the integrable constraints.
+    /// The number of combinations of the nonholonomic constraints, with coefficients that are functions of time and
+    /// coordinates, that are integrable though no single constraint is
+    /// ([`IntegrableCombination`](crate::IntegrableCombination) finds them): the l + m dimensions of all velocities, l
+    /// of them allowed, less those of the least involutive family of fields that contains the allowed ones, less the
+    /// integrable constraints.
     pub fn integrable_combinations(&self) -> usize {
         self.combinations
     }
@@ -92,7 +94,7 @@ impl<'g> ConstraintClassification<'g> {
         &self.redundant
     }
 
-    /// Whether all constraints bind positions or could.
+    /// Whether all constraints bind positions or are integrable.
     pub fn is_holonomic(&self) -> bool {
         self.kinds.iter().all(|kind| matches!(kind, Kind::Position | Kind::Integrable))
     }

@@ -1,4 +1,4 @@
-//! Combinations of constraints that have an integral though none of them has.
+//! Combinations of constraints that have an integral though no single one has.
 
 use pc_mech::{Constraint, Expr, Graph, Multipliers, Number, System};
 
@@ -26,10 +26,10 @@ struct Form<'g> {
 }
 
 impl<'g> IntegrableCombination<'g> {
-    /// Those that are found in closed form of the `count` independent ones that constraints of these `kinds`
-    /// [have](crate::ConstraintClassification::integrable_combinations): with coefficients that are constant, or functions
-    /// of time and place, or constant for the values of the parameters. They are independent of each other, and proved. None
-    /// is found where there are not as many quasi-velocities as coordinates.
+    /// Finds combinations in closed form among the `count` independent ones that constraints of these `kinds`
+    /// [have](crate::ConstraintClassification::integrable_combinations): with coefficients that are constant, or
+    /// functions of time and coordinates, or constant for the values of the parameters. They are independent of each
+    /// other, and proved. None is found where there are not as many quasi-velocities as coordinates.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///

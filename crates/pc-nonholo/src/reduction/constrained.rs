@@ -53,8 +53,8 @@ impl<'g> Constrained<'g> {
         &self.equations
     }
 
-    /// The system of the free quasi-velocities with the constraints put into L and the terms that this loses among its
-    /// forces: its equations are (32), and in momenta (34).
+    /// The system of the free quasi-velocities with the constraints put into L; the terms that this loses are added to
+    /// its forces. Its equations are (32), and in momenta (34).
     ///
     /// # Errors
     /// [`NonholoError::Mech`] if the parts do not fit together, which they do.

@@ -141,8 +141,8 @@ impl<'g> Voronets<'g> {
         forth.into_iter().zip(back).map(|(forth, back)| forth - back).collect()
     }
 
-    /// The system of the independent velocities whose equations (9) are (35): its Lagrangian is θ + U, and what putting
-    /// the constraints in loses counts among the forces.
+    /// The system of the independent velocities whose equations (9) are (35): its Lagrangian is θ + U, and the terms
+    /// that putting the constraints in loses are added to the forces.
     ///
     /// # Errors
     /// [`NonholoError::Mech`] if the parts do not fit together, which they do.

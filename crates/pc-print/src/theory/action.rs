@@ -16,7 +16,7 @@ pub(crate) fn section(ground: &Ground<'_, '_>) -> Section {
         None => section(Vec::new()),
     };
     if !ground.is_holonomic() {
-        return refused("the theorem is one of holonomic systems, and the constraints are none".to_owned());
+        return refused("the theorem requires holonomic constraints".to_owned());
     }
     let canonical = match &ground.canonical {
         Ok(canonical) => canonical,

@@ -95,7 +95,7 @@ fn jacobi_by_frame(ground: &Ground<'_, '_>) -> Entry {
 /// By the first three variables that do not satisfy it.
 fn jacobi<'g>(ground: &Ground<'_, 'g>, bracket: &PoissonBracket<'g>) -> Entry {
     if bracket.variables().len() > MOST_VARIABLES {
-        return Entry::words("too many variables to look at three by three").with_on(JACOBI, Verdict::Open);
+        return Entry::words("too many variables to test in triples").with_on(JACOBI, Verdict::Open);
     }
     let Some(([f, g, h], defect)) = bracket.jacobi_violation() else {
         return Entry::default().with_on(JACOBI, Verdict::Proved);
@@ -198,7 +198,7 @@ pub(crate) fn group_reduction<'g>(ground: &Ground<'_, 'g>, degree: u32) -> Secti
     let bracket = PoissonBracket::new(&reduced);
     let left: Vec<String> = bracket.variables().iter().map(ToString::to_string).collect();
     let what = if after == 0 { ", by the bracket of Lie and Poisson" } else { "" };
-    let head = Entry::words(format!("nothing depends on other variables than {}{what}", left.join(", ")));
+    let head = Entry::words(format!("nothing depends on variables other than {}{what}", left.join(", ")));
     let rates = canonical.momenta().iter().zip(canonical.right_hand_side());
     let rate = |(&y, &rate): (&Expr<'_>, &Expr<'_>)| {
         Entry::formula(Side::of(reduced.graph().symbol(&format!("{y}'"))), Side::of(rate))

@@ -1,4 +1,4 @@
-//! What is said of a model, whatever it is printed as.
+//! The description of a model, whatever the format.
 
 use pc_mech::{Expr, Identity, Style};
 

@@ -1,4 +1,4 @@
-//! What the motion keeps, and the fields of displacements to which it belongs.
+//! The integrals of the motion, and the fields of displacements to which they belong.
 
 use pc_analysis::{
     AnsatzSearch, ConservationVerdict, Integral, Integrals, NoetherField, Origin, PolynomialAnsatz, Rates,
@@ -13,7 +13,7 @@ use crate::theory::ground::Ground;
 use crate::theory::options::TheoryOptions;
 use crate::words::short;
 
-/// What the motion of a model keeps, that an ansatz finds or that is known without, named for people.
+/// The integrals of a model's motion, known or found by an ansatz, with names for readers.
 pub fn integrals_of<'g>(
     assembly: &Assembly<'g>,
     equations: &Equations<'g>,
@@ -116,7 +116,7 @@ fn verdict(ground: &Ground<'_, '_>, rates: &Rates<'_>, integral: &Integral<'_>) 
         ConservationVerdict::ConservedHere => (Verdict::ProvedHere, between),
         ConservationVerdict::BetweenJumps => (Verdict::Proved, Some("where it does not jump".to_owned())),
         ConservationVerdict::NoFunction => {
-            (Verdict::Open, Some("it is no function of time and state alone".to_owned()))
+            (Verdict::Open, Some("it is not a function of time and state alone".to_owned()))
         }
         ConservationVerdict::Rate { at_start, rate } => {
             let left = rates.part_left(integral.value, &ground.near.centre).ok().flatten();
@@ -169,12 +169,12 @@ pub(crate) fn displacements(ground: &Ground<'_, '_>, integrals: &Integrals<'_>) 
         let right = Side::written(|style| written(&ground.free, &field, style));
         let gauge = (!field.gauge.is_zero()).then(|| {
             let f = field.gauge.display(Style::Book);
-            format!("L changes along it by a rate: to its momentum is added {f}")
+            format!("L changes along it by a total derivative: to its momentum is added {f}")
         });
         let commutes = if field.commutes {
             "commutes with all operators: cyclic in Chetaev's sense"
         } else {
-            "is not seen to commute with all operators"
+            "is not found to commute with all operators"
         };
         let mut entry = Entry::formula(Side::symbol("X", "X"), right).named(integral.name.clone());
         entry.words = [commutes.to_owned()].into_iter().chain(gauge).collect();

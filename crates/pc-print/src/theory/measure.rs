@@ -1,4 +1,4 @@
-//! The measure that the motion keeps, and Chaplygin's reducing multiplier.
+//! The invariant measure of the motion, and Chaplygin's reducing multiplier.
 
 use pc_analysis::{MeasureSearch, ReducingMultiplier};
 use pc_mech::Expr;
@@ -31,7 +31,7 @@ pub(crate) fn section(ground: &Ground<'_, '_>) -> Result<Section, ModelError> {
     let whose = if measure.liouville { ", Liouville's" } else { "" };
     entries.push(Entry::words(format!("the motion keeps N dx dy and Nη dx dη{whose}")));
     if measure.density.is_none() {
-        entries.push(Entry::words("its density is no short expression").with(Verdict::Proved));
+        entries.push(Entry::words("its density is too long to print").with(Verdict::Proved));
     }
     let singular: Vec<String> = measure.singular.iter().map(|p| format!("{p} = 0")).collect();
     let resets = ground.assembly.events.iter().any(|event| !event.resets.is_empty());
@@ -72,8 +72,8 @@ pub(crate) fn multiplier(ground: &Ground<'_, '_>) -> Section {
     ])
 }
 
-/// Chaplygin's reducing multiplier of a model; none also where the equations are not Voronets' in independent coordinates, or have
-/// no closed form.
+/// Chaplygin's reducing multiplier of a model; none also where the equations are not Voronets' in independent
+/// coordinates, or have no closed form.
 pub fn reducing_multiplier<'g>(assembly: &Assembly<'g>) -> Option<ReducingMultiplier<'g>> {
     ReducingMultiplier::of(&voronets(assembly)?).ok()?
 }

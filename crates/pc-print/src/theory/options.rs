@@ -1,9 +1,9 @@
-//! What is asked of the theory.
+//! Options of the theory.
 
-/// What is asked of the theory.
+/// Options of the theory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TheoryOptions {
-    /// The largest degree in the velocities of integrals that are looked for, at least 1.
+    /// The largest degree in the velocities of the integrals sought, at least 1.
     pub degree: u32,
     /// Functions of the place by which their coefficients may be multiplied, in the language of the model.
     pub functions: Vec<String>,

@@ -88,7 +88,7 @@ fn entry(number: usize, found: &FoundSteadyMotion) -> Entry {
     .with_on("stability", verdict)
 }
 
-/// What is known of stability, and by what, in words.
+/// The stability, and how it is known, in words.
 pub fn stability_in_words(stability: &Stability) -> String {
     match stability {
         Stability::BySecondVariation { variables: None } => {
@@ -102,7 +102,7 @@ pub fn stability_in_words(stability: &Stability) -> String {
                 1 => "one neutral direction".to_owned(),
                 count => format!("{count} neutral directions"),
             };
-            format!("asymptotically stable but for {directions}, by the first approximation")
+            format!("asymptotically stable except for {directions}, by the first approximation")
         }
         Stability::Undecided { second_variation: true } => {
             "undecided by the first approximation and by the second variation of the energy".to_owned()

@@ -1,8 +1,8 @@
-//! Where a motion can be taken up again, with the same numbers to the last bit.
+//! Checkpoints, from which a motion is resumed with the same numbers to the last bit.
 //!
-//! A multistep method rests on its history. So a motion with checkpoints is begun anew at each of them, whether it was
-//! interrupted there or not: everything after a checkpoint depends on nothing but what is in it. That changes the
-//! motion within its tolerance, and costs the steps in which the order grows again.
+//! A multistep method depends on its history. So a motion with checkpoints restarts at each of them, whether it was
+//! interrupted there or not: everything after a checkpoint depends only on its contents. That changes the motion
+//! within its tolerance, and costs the steps in which the order grows again.
 //! ```
 //! use pc_solve::{Checkpoint, Integration, Options, from_fn};
 //!
@@ -17,9 +17,10 @@
 //! assert_eq!(motion.state_at(4.0)?, later.state_at(4.0)?);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! With events it keeps, beside the state, what is known of them: on which side of zero each function is, when they
-//! occurred last, and which are due. What a field keeps by projection, such as the energy, is what it kept when made, but
-//! after a [restart](crate::Integration::restart), by a reset say, what it is in the state of the checkpoint.
+//! With events it also keeps their status: on which side of zero each function is, when they last occurred, and which
+//! are due. A quantity that a field keeps by projection, such as the energy, has the value with which the field was
+//! made; after a [restart](crate::Integration::restart), for example by a reset, the value at the state of the
+//! checkpoint.
 
 use crate::events::events::{History, Occurrence};
 use crate::integration::statistics::Statistics;
@@ -84,17 +85,17 @@ impl Checkpoint {
         }
     }
 
-    /// Where the motion stands.
+    /// The time of the checkpoint.
     pub fn time(&self) -> f64 {
         self.time
     }
 
-    /// Its state there.
+    /// The state there.
     pub fn state(&self) -> &[f64] {
         &self.state
     }
 
-    /// Its sensitivities there, column-major; empty if there are none.
+    /// The sensitivities there, column-major; empty if there are none.
     pub fn sensitivities(&self) -> &[f64] {
         &self.sensitivities
     }
@@ -104,7 +105,7 @@ impl Checkpoint {
         &self.outputs
     }
 
-    /// What occurred up to that time in [`solve_checkpointed`](crate::solve_checkpointed).
+    /// The occurrences of [`solve_checkpointed`](crate::solve_checkpointed) up to that time.
     pub fn occurrences(&self) -> &[Occurrence] {
         &self.occurrences
     }

@@ -26,7 +26,7 @@ const VERSION: u64 = 4;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
-    /// Something else.
+    /// They are something else.
     #[error("it is not a checkpoint")]
     Foreign,
     /// A checkpoint of another version of the format.
@@ -93,15 +93,15 @@ impl Checkpoint {
         bytes
     }
 
-    /// Whether these bytes begin as a checkpoint does, of whatever version.
+    /// Whether these bytes begin like a checkpoint of any version.
     pub fn is_one(bytes: &[u8]) -> bool {
         bytes.starts_with(MAGIC)
     }
 
-    /// The checkpoint that these bytes are, and its label.
+    /// The checkpoint in these bytes, and its label.
     ///
     /// # Errors
-    /// [`CheckpointError`] unless they are all that [`to_bytes`](Checkpoint::to_bytes) wrote, unchanged.
+    /// [`CheckpointError`] unless they are exactly what [`to_bytes`](Checkpoint::to_bytes) wrote.
     pub fn from_bytes(bytes: &[u8]) -> Result<(Checkpoint, String), CheckpointError> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
         // Another version may be written in another way from here on.

@@ -18,16 +18,17 @@ use crate::integration::trajectory::Trajectory;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 
-/// As [`Solve::run_observed`](crate::Solve::run_observed), with a checkpoint after `every` so many steps.
+/// As [`Solve::run_observed`](crate::Solve::run_observed), with a checkpoint every `every` steps.
 ///
-/// The motion goes on from the checkpoint `from`, whose outputs are the first of `times`, and is begun anew at each
-/// checkpoint with the vector field and the events that `parts` makes; a field that keeps an integral is told, in the legs
-/// after a reset, to [keep](VectorField::restart) what the motion has then. A part of a step that an event has ended counts as
-/// a step; a checkpoint at its end comes after all that occurs there. So a motion that goes on from any of its checkpoints
-/// gives the same outputs, the same occurrences and the same ending, bit for bit, as one that was never interrupted.
+/// The motion continues from the checkpoint `from`, whose outputs are the first of `times`, and restarts at each
+/// checkpoint with the vector field and the events that `parts` makes; in the legs after a reset, a field that keeps
+/// an integral [keeps](VectorField::restart) the value that the motion has then. A part of a step that an event has
+/// ended counts as a step; a checkpoint at its end comes after all that occurs there. So a motion resumed from any of
+/// its checkpoints gives the same outputs, the same occurrences and the same ending, bit for bit, as one that was
+/// never interrupted.
 ///
-/// Each checkpoint is given to `save`, `from` too, and the last one again with `true` where `step` stops the motion or it
-/// fails: with the outputs beyond it, which are returned, nothing can be begun anew.
+/// Each checkpoint is given to `save`, `from` too, and the last one again with `true` where `step` stops the motion or
+/// it fails; a motion cannot be resumed from the outputs beyond it, which are returned.
 ///
 /// ```
 /// use std::{num::NonZeroU64, ops::ControlFlow};

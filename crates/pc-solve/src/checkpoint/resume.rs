@@ -1,4 +1,4 @@
-//! Where an integration can be taken up again.
+//! Checkpoints of an integration.
 
 use pc_expr::{Events, VectorField};
 
@@ -9,10 +9,10 @@ use crate::integration::integration::{Integration, directions};
 use crate::integration::stepper::Stepper;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// Time, state, sensitivities and work where the integration stands, and what is known of its events, to be gone on from
-    /// by [`resume`](Integration::resume).
+    /// The current time, state, sensitivities and statistics of the integration, and the status of its events, for
+    /// [`resume`](Integration::resume).
     ///
-    /// Events that are due where an observer has stopped it are dealt with after the checkpoint.
+    /// Events that are due where an observer has stopped it are handled after the checkpoint.
     pub fn checkpoint(&self) -> Checkpoint {
         let at_front = self.time() == self.front.t;
         // What the functions do between here and the front is not known here.
@@ -53,7 +53,7 @@ impl<S: Stepper> Integration<S> {
         Integration { jumped: checkpoint.jumped, ..Integration::of(stepper) }
     }
 
-    /// This integration, which has been resumed at a checkpoint, with the events that the checkpoint knows of.
+    /// This integration, resumed at a checkpoint, with the events of the checkpoint.
     ///
     /// # Errors
     /// As for [`with_events`](Integration::with_events); [`InputError::EventCount`] if the checkpoint is of a motion with

@@ -1,4 +1,4 @@
-//! Where an integration by CVODES is taken up again.
+//! Resumption of an integration by CVODES.
 
 use pc_expr::VectorField;
 
@@ -36,10 +36,10 @@ impl<F: VectorField> Cvode<F> {
 }
 
 impl<F: VectorField> Integration<Cvode<F>> {
-    /// Begins anew at a checkpoint, which may be the start of a motion, without its events:
+    /// Restarts at a checkpoint, which may be the start of a motion, without its events:
     /// [`with_events_of`](Integration::with_events_of) adds them.
     ///
-    /// Both the motion that was interrupted there and the one that was not go on from here with the same numbers, if
+    /// The motion that was interrupted there and the one that was not continue from here with the same numbers, if
     /// `field`, events and `options` are the same; fields and events that remember earlier evaluations must be as they were
     /// when made.
     ///
@@ -49,7 +49,7 @@ impl<F: VectorField> Integration<Cvode<F>> {
         Integration::resume_with_sensitivities(field, checkpoint, options, &Sensitivities::new())
     }
 
-    /// Begins anew at a checkpoint as [`resume`](Integration::resume) does, with the sensitivities that it has. Their columns
+    /// Restarts at a checkpoint as [`resume`](Integration::resume) does, with the sensitivities that it has. Their columns
     /// are those of `sensitivities`, whose starts do not matter.
     ///
     /// # Errors

@@ -85,7 +85,7 @@ impl<F: VectorField> Cvode<F> {
         self.earlier.followed_by(&since)
     }
 
-    /// The linear solver of Newton's iteration, as chosen or as the field made it; none for the fixed-point iteration.
+    /// The linear solver of Newton's iteration, as chosen or by default for the field; none for the fixed-point iteration.
     pub fn linear_solver(&self) -> Option<&LinearSolver> {
         self.linear.as_ref().map(Linear::choice)
     }

@@ -1,18 +1,18 @@
-//! What an explicit dependence on time holds between here and the end of the next step.
+//! The explicit dependence on time, examined up to the end of the next step.
 //!
 //! A multistep method sees f at the ends of its steps only. Before a step is tried, f is therefore evaluated where its
-//! explicit dependence on time has something to hide, at the state that the step would predict there: with p the polynomial
-//! through the last steps, the defect
+//! explicit dependence on time may hide something, at the state that the step would predict there: with p the
+//! polynomial through the last steps, the defect
 //! ```text
 //! δ = p′(t) − f(t, p(t))
 //! ```
-//! would change the state by about h δ over a step of length h. If that is large beside the tolerance, the step is to end
-//! no later than there, and the method meets it.
+//! would change the state by about h δ over a step of length h. If that is large compared with the tolerance, the step
+//! ends no later than there, and the method meets it.
 //!
 //! Where the field shows its [profile](TimeDependence::Known), these places are the turns, jumps and corners of what
 //! contains t, however close they are; a step in which nothing turns twice needs none. Where only evaluations can tell, they
-//! are places evenly spaced over the whole integration. What turns faster than numbers tell times apart cannot be followed: it is
-//! an error, unless the tolerances do not feel it.
+//! are places evenly spaced over the whole integration. A function that turns faster than floating-point times can
+//! resolve cannot be followed: it is an error, unless it is below the tolerances.
 
 use pc_expr::{Surprises, TimeDependence, TimeProfile, VectorField};
 use sundials_sys as sys;
@@ -207,12 +207,12 @@ impl<F: VectorField> Cvode<F> {
             }
             self.foresight.terms += 1;
         }
-        // SAFETY: as above; CVODES copies to the vector.
+        // SAFETY: memory and vector are live and of one context; CVODES copies to the vector.
         let code = unsafe { sys::CVodeGetEstLocalErrors(self.memory.raw(), self.work.raw()) };
         self.context.check("CVodeGetEstLocalErrors", code)?;
         self.foresight.errors.copy_from_slice(self.work.as_slice());
         self.foresight.order = order;
-        // SAFETY: as above.
+        // SAFETY: the memory is live and initialised; the last step is a place for the result.
         unsafe { sys::CVodeGetLastStep(self.memory.raw(), &raw mut self.foresight.last_step) };
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! What is looked out for between here and the end of the next step, and the polynomial that tells what is expected.
+//! The features ahead up to the end of the next step, and the polynomial that predicts the motion.
 
 use pc_expr::{TimeDependence, VectorField};
 

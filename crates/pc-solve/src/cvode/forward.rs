@@ -1,8 +1,8 @@
 //! Sensitivities, integrated along with the motion.
 //!
 //! `sensitivities` says which derivatives; `variation` are their equations, with ∂f/∂y by whatever the field offers
-//! (`linearisation`), called by CVODES as `equations`. `columns` is what an integration keeps of them, `forward` what it does
-//! with them, `interpolation` what they are inside a step.
+//! (`linearisation`), called by CVODES as `equations`. `columns` are those of an integration, `forward` integrates
+//! them, `interpolation` gives them inside a step.
 
 pub(crate) mod columns;
 pub(crate) mod equations;

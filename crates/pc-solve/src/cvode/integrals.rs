@@ -12,11 +12,12 @@ use crate::settings::tolerance::Tolerance;
 /// Writes g(t, y) to its last argument.
 pub(crate) type Integrands = Box<dyn FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure> + Send>;
 
-/// Integrals ∫ g(t, y) dt along a motion, for any number of functions g that the motion does not feel: the work of a force,
+/// Integrals ∫ g(t, y) dt along a motion, for any number of functions g that do not act back on it: the work of a force,
 /// the length of a path, a mean value.
 ///
-/// They are computed by the formulas of the method as more components of the state would be, but take no part in its
-/// implicit equations. Steps have to pass the error test of the integrals too, unless that is [left out](Integrals::error_control).
+/// They are computed by the formulas of the method like further components of the state, but take no part in its
+/// implicit equations. Steps have to pass the error test of the integrals too, unless that is [left
+/// out](Integrals::error_control).
 ///
 /// ```
 /// use pc_solve::{Integration, Integrals, Options, from_fn};
@@ -63,13 +64,13 @@ impl Integrals {
         Integrals { count, integrands: Box::new(integrands), error_control: true, tolerances: None }
     }
 
-    /// Whether steps have to pass the error test of the integrals; if not, the motion is that without them.
+    /// Whether steps have to pass the error test of the integrals; if not, the motion is the same as without them.
     pub fn error_control(self, error_control: bool) -> Integrals {
         Integrals { error_control, ..self }
     }
 
-    /// Relative and absolute tolerance of the integrals, positive; those of the state, of the absolute ones the least, unless
-    /// given.
+    /// Relative and absolute tolerance of the integrals, positive; unless given, those of the state, and the least of
+    /// its absolute ones.
     pub fn tolerances(self, relative: f64, absolute: f64) -> Integrals {
         Integrals { tolerances: Some((relative, absolute)), ..self }
     }

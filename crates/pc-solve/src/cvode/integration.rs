@@ -1,4 +1,4 @@
-//! Integration by CVODES: how it is begun, and what no other method tells.
+//! Integration by CVODES: how it begins, and the functions that only this method has.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -61,8 +61,8 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
 impl<F: VectorField> Integration<Cvode<F>> {
     /// Starts at y(t0) = y0 as [`new`](Integration::new) does, with integrals along the motion, which are 0 there.
     ///
-    /// A [checkpoint](Integration::checkpoint) has none of them: what goes on from one is asked for integrals anew, which begin
-    /// at 0.
+    /// A [checkpoint](Integration::checkpoint) has none of them: after resuming from one, integrals have to be
+    /// requested again, and begin at 0.
     ///
     /// # Errors
     /// As for [`Cvode::with_integrals`].
@@ -86,11 +86,11 @@ impl<F: VectorField> Integration<Cvode<F>> {
 }
 
 impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
-    /// The integrals from the start to [`time`](Integration::time), over what occurred, in the order of their integrands.
+    /// The integrals from the start to [`time`](Integration::time), across events, in the order of their integrands.
     ///
     /// # Errors
-    /// [`InputError::NoIntegrals`](crate::InputError::NoIntegrals) unless they were asked for; [`SolveError::Integration`] if
-    /// one has grown beyond the largest number.
+    /// [`InputError::NoIntegrals`](crate::InputError::NoIntegrals) unless they were requested;
+    /// [`SolveError::Integration`] if one has grown beyond the largest number.
     pub fn integrals(&mut self) -> Result<Vec<f64>, SolveError> {
         self.engine.integrals_here()
     }

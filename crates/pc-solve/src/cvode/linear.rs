@@ -1,9 +1,9 @@
-//! The linear systems (I − γ ∂f/∂y) x = b of Newton's iteration, and who solves them.
+//! The linear systems (I − γ ∂f/∂y) x = b of Newton's iteration, and their solvers.
 //!
-//! `solver` says which there are, with `krylov` and its `preconditioner`; `choice` takes one, and `linear` gives it to
-//! CVODES. Direct ones are `dense`, `band` and `sparse` with `sparse_lu` (made known to SUNDIALS by `direct`), and
-//! `quotient_jacobian`, of `quotients`, where the Jacobian is not given; `gmres` iterates. `work` is what the callbacks
-//! keep, `handles` own SUNDIALS' objects.
+//! `solver` lists them, with `krylov` and its `preconditioner`; `choice` selects one, and `linear` gives it to CVODES.
+//! Direct ones are `dense`, `band` and `sparse` with `sparse_lu` (registered with SUNDIALS by `direct`), and
+//! `quotient_jacobian`, of `quotients`, where the Jacobian is not given; `gmres` iterates. `work` is the data of the
+//! callbacks, `handles` own SUNDIALS' objects.
 
 pub(crate) mod band;
 pub(crate) mod choice;

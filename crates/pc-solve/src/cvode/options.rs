@@ -1,4 +1,4 @@
-//! How to integrate by CVODES.
+//! Options of integration by CVODES.
 
 use pc_expr::Deadline;
 
@@ -80,7 +80,7 @@ impl Options {
 
     /// Inequalities to satisfy, one for each component; none unless given.
     ///
-    /// They are not for a field [with a projection](pc_expr::VectorField::has_projection), which moves the states on.
+    /// They exclude a field [with a projection](pc_expr::VectorField::has_projection), which would move the states again.
     pub fn inequalities(self, inequalities: Vec<Inequality>) -> Self {
         Options { inequalities, ..self }
     }
@@ -126,18 +126,18 @@ impl Options {
         Options { stop_time: Some(t), ..self }
     }
 
-    /// In how many equal parts of each internal step events are looked for, at least 1 and 4 unless given; between two
-    /// such places [an even number](crate::Integration) of zeros of a function may be missed.
+    /// The number of equal parts of each internal step that are searched for events, at least 1 and 4 unless given;
+    /// between two such places [an even number](crate::Integration) of zeros of a function may be missed.
     pub fn samples_per_step(self, parts: u32) -> Self {
         Options { samples_per_step: parts, ..self }
     }
 
-    /// When occurrences of an event are taken to accumulate, which is an error.
+    /// When occurrences of an event count as accumulated, which is an error.
     pub fn accumulation(self, accumulation: Accumulation) -> Self {
         Options { accumulation, ..self }
     }
 
-    /// When no further step is begun, which is [an error](crate::Reason::Ended).
+    /// The time after which no further step begins, which is [an error](crate::Reason::Ended).
     pub fn deadline(self, deadline: Deadline) -> Self {
         Options { deadline: Some(deadline), ..self }
     }

@@ -17,8 +17,7 @@ use crate::error::{InputError, NonFinite, Reason, SolveError};
 impl<F: VectorField> Cvode<F> {
     /// Starts at y(t0) = y0 as [`Cvode::new`] does, with integrals along the motion, which are 0 there.
     ///
-    /// They may be had together with [sensitivities](Cvode::with_sensitivities): then
-    /// [`and_integrals`](Cvode::and_integrals) adds them.
+    /// For an integration [with sensitivities](Cvode::with_sensitivities), [`and_integrals`](Cvode::and_integrals) adds them.
     ///
     /// # Errors
     /// As for [`new`](Cvode::new); [`SolveError::Input`] if what is asked for is not valid.

@@ -19,13 +19,13 @@ impl Statistics {
         };
         let number = |get: unsafe extern "C" fn(*mut c_void, *mut f64) -> c_int| {
             let mut value = 0.0;
-            // SAFETY: as above.
+            // SAFETY: the memory is live and initialised; `value` is a place for the result.
             unsafe { get(memory.raw(), &raw mut value) };
             value
         };
         let order = |get: unsafe extern "C" fn(*mut c_void, *mut c_int) -> c_int| {
             let mut value = 0;
-            // SAFETY: as above.
+            // SAFETY: the memory is live and initialised; `value` is a place for the result.
             unsafe { get(memory.raw(), &raw mut value) };
             u32::try_from(value).unwrap_or(0)
         };

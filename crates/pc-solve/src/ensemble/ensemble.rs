@@ -1,8 +1,8 @@
 //! Many motions at once: initial states and parameter sets over all cores.
 //!
 //! Each member has its own vector field and its own solver. Results are given to a consumer in the order of the
-//! members, so that what is made of them does not depend on the number of threads. A member that fails is a result as
-//! any other; the others go on.
+//! members, so that nothing depends on the number of threads. A member that fails is a result like any other; the
+//! others continue.
 //! ```
 //! use std::ops::ControlFlow;
 //! use pc_solve::{Ensemble, Failure, Options, from_fn};
@@ -57,7 +57,7 @@ const MOST_THREADS: usize = 1024;
 /// Bytes of stack of a thread, as the main one usually has: making a member may go deep.
 const STACK: usize = 8 << 20;
 
-/// How the members of an ensemble are computed.
+/// Options of the computation of an ensemble.
 #[derive(Debug, Clone)]
 pub struct Ensemble<'a> {
     threads: NonZeroUsize,
@@ -78,18 +78,18 @@ impl<'a> Ensemble<'a> {
         Ensemble { threads, window: None, flag: None }
     }
 
-    /// So many threads, though not more than 1024. The results are the same for any number.
+    /// The number of threads, at most 1024. The results are the same for any number.
     pub fn threads(self, threads: NonZeroUsize) -> Self {
         Ensemble { threads, ..self }
     }
 
-    /// How many members may be begun and not yet consumed; 64 for each thread unless given. It bounds the memory:
+    /// The number of members that may be begun and not yet consumed; 64 for each thread unless given. It bounds the memory:
     /// results that wait for an earlier one are held.
     pub fn window(self, members: NonZeroUsize) -> Self {
         Ensemble { window: Some(members), ..self }
     }
 
-    /// Stops as soon as `flag` is true: members that are on their way end at their next internal step and are dropped.
+    /// Stops as soon as `flag` is true: members in progress end at their next internal step and are dropped.
     pub fn stopped_by(self, flag: &'a AtomicBool) -> Self {
         Ensemble { flag: Some(flag), ..self }
     }
@@ -100,7 +100,7 @@ impl<'a> Ensemble<'a> {
     /// `make` gives a member its vector field and its state at `t0`. It is called on the thread that integrates.
     ///
     /// # Errors
-    /// [`EnsembleError`] if there can be no threads. What is wrong with a member is its result.
+    /// [`EnsembleError`] if threads cannot be started. An error of a member is its result.
     pub fn solve<F, E>(
         &self,
         members: Range<u64>,
@@ -142,12 +142,12 @@ impl<'a> Ensemble<'a> {
         })
     }
 
-    /// Does any `work` for each member and gives what comes of it to `consume` in the order of the members.
+    /// Does any `work` for each member and gives its result to `consume` in the order of the members.
     ///
-    /// The work should look at [`Stop`] now and then, and end when asked to. `consume` is called on this thread.
+    /// The work should check [`Stop`] now and then, and end on request. `consume` is called on this thread.
     ///
     /// # Errors
-    /// [`EnsembleError`] if there can be no threads. A panic of the work is the result of its member.
+    /// [`EnsembleError`] if threads cannot be started. A panic of the work is the result of its member.
     pub fn map<T: Send>(
         &self,
         members: Range<u64>,

@@ -1,8 +1,8 @@
-//! When the rest of an ensemble is wanted no longer.
+//! Early ends of an ensemble.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether the rest of an ensemble is wanted no longer.
+/// A request to end an ensemble early.
 #[derive(Debug, Clone, Copy)]
 pub struct Stop<'a> {
     pub(super) own: &'a AtomicBool,
@@ -10,7 +10,7 @@ pub struct Stop<'a> {
 }
 
 impl Stop<'_> {
-    /// Whether to end now: the consumer has broken off, or the flag of
+    /// Whether to end now: the consumer has stopped, or the flag of
     /// [`Ensemble::stopped_by`](crate::Ensemble::stopped_by) is set.
     pub fn requested(&self) -> bool {
         self.own.load(Ordering::Relaxed) || self.flag.is_some_and(|flag| flag.load(Ordering::Relaxed))

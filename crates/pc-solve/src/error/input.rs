@@ -11,7 +11,7 @@ pub enum InputError {
     #[error("the vector field has no components")]
     NoComponents,
 
-    /// A list of one number for each component has another length.
+    /// A list with one number for each component has the wrong length.
     #[error("{what}: {found} numbers for {expected} components")]
     Length {
         /// Which list.
@@ -71,8 +71,7 @@ pub enum InputError {
 
     /// A checkpoint of an integration with another number of sensitivities.
     #[error(
-        "the checkpoint has {found} columns of sensitivities, and {expected} are asked for: an integration with \
-         sensitivities is resumed with the same ones"
+        "the checkpoint has {found} columns of sensitivities, but {expected} are requested: an integration with sensitivities must be resumed with the same ones"
     )]
     Sensitivities {
         /// Columns asked for.
@@ -85,27 +84,28 @@ pub enum InputError {
     #[error("there is no functional")]
     NoFunctional,
 
-    /// Integrals of a motion are asked of an integration that has none, or asked for of one that has begun.
-    #[error("integrals are to be asked for once, before the first step")]
+    /// Integrals are read from an integration that has none, or requested from one that has begun.
+    #[error("integrals must be requested once, before the first step")]
     NoIntegrals,
 
-    /// Derivatives of a motion are asked of an integration that has none.
+    /// Derivatives are read from an integration that has none.
     #[error("the integration was begun without sensitivities")]
     NoSensitivities,
 
     /// Derivatives by parameters, with events whose own derivatives by these are not known.
     #[error(
-        "an event resets the state, and it is not known how its function and its reset depend on the parameters that \
-         sensitivities are asked for"
+        "an event resets the state, but it is unknown how its function and its reset depend on the parameters of the sensitivities"
     )]
     EventParameters,
 
-    /// A step is to be looked at for events in 0 parts.
+    /// The number of samples for events in a step is 0.
     #[error("the number of samples per step must be at least 1")]
     SamplesPerStep,
 
-    /// The part of a distance to which those of events shrink when they accumulate.
-    #[error("events accumulate within a part from 0 to less than 1 of their distance, not {within}")]
+    /// The fraction of an interval at which events count as accumulated is out of range.
+    #[error(
+        "the fraction of an interval within which events accumulate is {within}, but must be at least 0 and less than 1"
+    )]
     Accumulation {
         /// The part given.
         within: f64,
@@ -119,9 +119,9 @@ pub enum InputError {
     #[error("a linear solver is chosen, but the fixed-point iteration has no linear systems to solve")]
     LinearSolverUnused,
 
-    /// The sparse linear solver is chosen for a field that does not know the zero pattern of ∂f/∂y.
+    /// The sparse linear solver is chosen for a field without a zero pattern of ∂f/∂y.
     #[error(
-        "the sparse linear solver needs the zero pattern of the Jacobian, which the vector field does not know"
+        "the sparse linear solver needs the zero pattern of the Jacobian, which the vector field does not have"
     )]
     NoPattern,
 
@@ -178,7 +178,7 @@ pub enum InputError {
         value: f64,
     },
 
-    /// Inequalities are given for a field with a projection, which would move the states on.
+    /// Inequalities are given for a field with a projection, which would move the states again.
     #[error("inequalities cannot be kept for a vector field that projects its states")]
     InequalitiesOfProjected,
 
@@ -186,8 +186,8 @@ pub enum InputError {
     #[error("no output times are given")]
     NoTimes,
 
-    /// The output times do not all go one way.
-    #[error("output time {time} (number {index} from 0) does not go on from {previous}")]
+    /// The output times neither increase nor decrease throughout.
+    #[error("output time {time} (number {index} from 0) does not continue in one direction after {previous}")]
     TimesNotMonotonic {
         /// Place in the list.
         index: usize,
@@ -197,8 +197,8 @@ pub enum InputError {
         time: f64,
     },
 
-    /// The time to go to is where the integration stands.
-    #[error("the end is the start, t = {t}")]
+    /// The target time is the current time.
+    #[error("the end time is the start time, t = {t}")]
     EndIsStart {
         /// That time.
         t: f64,
@@ -246,7 +246,7 @@ pub enum InputError {
 
     /// A derivative beyond the degree of the polynomial of the last step.
     #[error(
-        "the derivative of order {order} is asked for, but the last step has derivatives up to order {highest}"
+        "the derivative of order {order} is requested, but the last step has derivatives up to order {highest}"
     )]
     DerivativeOrder {
         /// The order asked for.
@@ -255,12 +255,12 @@ pub enum InputError {
         highest: u32,
     },
 
-    /// Derivatives by parameters are asked for of a vector field that has none.
+    /// Derivatives by parameters are requested from a vector field that has none.
     #[error("the vector field has no derivative by its parameters")]
     NoParameterJacobian,
 
     /// There is no such parameter.
-    #[error("the vector field has {len} parameters, but number {index} (from 0) is asked for")]
+    #[error("the vector field has {len} parameters, but number {index} (from 0) is requested")]
     NoParameter {
         /// The number asked for.
         index: usize,
@@ -269,7 +269,7 @@ pub enum InputError {
     },
 
     /// There is no such component.
-    #[error("the vector field has {dim} components, but number {index} (from 0) is asked for")]
+    #[error("the vector field has {dim} components, but number {index} (from 0) is requested")]
     NoComponent {
         /// The number asked for.
         index: usize,
@@ -277,8 +277,8 @@ pub enum InputError {
         dim: usize,
     },
 
-    /// More Lyapunov exponents are asked for than there are, or none.
-    #[error("{count} exponents are asked for, but a flow in {dim} dimensions has 1 to {dim}")]
+    /// The number of Lyapunov exponents is out of range.
+    #[error("{count} exponents are requested, but a flow in {dim} dimensions has 1 to {dim}")]
     Exponents {
         /// The number asked for.
         count: usize,
@@ -286,11 +286,11 @@ pub enum InputError {
         dim: usize,
     },
 
-    /// A new start of an integration with sensitivities: the derivatives of the new state are not known.
-    #[error("an integration with sensitivities cannot be started anew without those of the new state")]
+    /// A restart of an integration with sensitivities, without the derivatives of the new state.
+    #[error("an integration with sensitivities cannot be restarted without those of the new state")]
     Restart,
 
     /// Interpolation before the first step.
-    #[error("no step has been taken to interpolate in")]
+    #[error("there is no last step to interpolate in")]
     NoStep,
 }

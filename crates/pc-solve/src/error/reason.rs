@@ -68,12 +68,11 @@ pub enum Reason {
         t: f64,
     },
 
-    /// The steps became so short that t + h rounds to t: the motion is singular there, or failures of the vector field
-    /// wall it in.
+    /// The steps became so short that t + h rounds to t: the motion is singular there, or every further step fails.
     Stalled,
 
-    /// The field turns, by its explicit dependence on time, faster than numbers tell times apart, and by more than the
-    /// tolerances.
+    /// By its explicit dependence on time the field turns faster than floating-point times can resolve, and by more
+    /// than the tolerances.
     Unresolved {
         /// Where it was seen.
         t: f64,
@@ -101,7 +100,7 @@ pub enum Reason {
         t: f64,
     },
 
-    /// An event that resets the state is met at no speed: sensitivities have no bound.
+    /// An event that resets the state is reached at zero speed: sensitivities are unbounded.
     Grazing {
         /// Its name.
         event: String,
@@ -109,7 +108,7 @@ pub enum Reason {
         t: f64,
     },
 
-    /// Events that reset the state occur together: sensitivities depend on which of them would come first.
+    /// Events that reset the state occur together: sensitivities depend on their order.
     Together {
         /// Their names.
         events: Vec<String>,
@@ -200,10 +199,10 @@ impl Reason {
                 f,
                 "the state at t = {t} cannot be projected to where it belongs, after reaching t = {time}"
             ),
-            Reason::Stalled => write!(f, "the steps have become too short to go on from t = {time}"),
+            Reason::Stalled => write!(f, "the steps have become too short to continue from t = {time}"),
             Reason::Unresolved { t } => write!(
                 f,
-                "what depends on time explicitly turns faster near t = {t} than numbers tell times apart: no step can follow it"
+                "the explicit time dependence turns faster near t = {t} than floating-point times can resolve: no step can follow it"
             ),
             Reason::Rates { t } => {
                 write!(f, "the rates at t = {t} cannot be computed, after reaching t = {time}")

@@ -1,4 +1,4 @@
-//! Why there is no motion, or no more of it.
+//! Why an integration was not begun or not completed.
 
 use std::error::Error;
 use std::fmt;

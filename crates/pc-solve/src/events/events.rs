@@ -1,4 +1,4 @@
-//! Events given by closures, events that occurred, and when too many do.
+//! Events given by closures, their occurrences, and their accumulation.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -148,7 +148,7 @@ impl Events for FnEvents<'_> {
 pub struct Occurrence {
     /// Its number among the [events](Events::events), from 0.
     pub event: usize,
-    /// When.
+    /// The time.
     pub time: f64,
     /// y⁻
     pub state_before: Vec<f64>,
@@ -156,22 +156,22 @@ pub struct Occurrence {
     pub state_after: Vec<f64>,
 }
 
-/// When occurrences of an event are taken to accumulate, as the bounces of a ball do that comes to rest: no integration
+/// When occurrences of an event count as accumulated, such as the bounces of a ball that comes to rest: no integration
 /// from event to event passes that time.
 ///
-/// So they are if each of their last distances is less than the one before, and going on as a geometric series would bring
-/// them to an end within a small part of the distance from which they have been shrinking; or if rounding hardly tells
-/// their times apart: all of the last ones lie within 1e-12 |t|. Neither depends on how long the integration has been going
-/// on. An event whose function stays below the absolute tolerance of the state between two occurrences is not resolved, and
+/// They do if each of their last intervals is shorter than the one before, and continued as a geometric series they
+/// would end within a small fraction of the first of the shrinking intervals; or if rounding barely separates their
+/// times: all of the last ones lie within 1e-12 |t|. Neither depends on how long the integration has been going on. An
+/// event whose function stays below the absolute tolerance of the state between two occurrences is not resolved, and
 /// may be passed without being seen.
 ///
-/// A sound motion whose flights shrink so far before they grow again needs a smaller part, down to 0: then only rounding
-/// counts.
+/// A regular motion whose intervals shrink so far before they grow again needs a smaller fraction, down to 0: then
+/// only rounding counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accumulation {
-    /// So many occurrences of one event in sequence, at least 4.
+    /// The number of consecutive occurrences of one event that are considered, at least 4.
     pub occurrences: usize,
-    /// The part of the first of the distances that have been shrinking, from 0 to less than 1.
+    /// The fraction of the first of the shrinking intervals, at least 0 and less than 1.
     pub within: f64,
 }
 

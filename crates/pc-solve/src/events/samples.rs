@@ -1,4 +1,4 @@
-//! What the functions of events are at places along a step.
+//! Values of the functions of events along a step.
 
 /// All functions at a time.
 #[derive(Debug, Clone)]

@@ -1,4 +1,4 @@
-//! Whether a motion can begin.
+//! Validation of the input of an integration.
 
 use pc_expr::VectorField;
 

@@ -5,9 +5,9 @@ use crate::error::InputError;
 /// A motion along one internal step, or along a part of it: a polynomial of degree q + 1, q the order of the step.
 ///
 /// With s = (t − end)/(end − start), it is y = Σ_k c_k sᵏ with c_k = y⁽ᵏ⁾(end) (end − start)ᵏ/k! from the method's own
-/// polynomial for k ≤ q. That begins where the step did, to rounding, but where states are projected after a step: then
-/// it misses the start by the error of a step, and the term of degree q + 1 makes up for it. So the segments of a motion
-/// fit together, and are of the order of the method.
+/// polynomial for k ≤ q. The polynomial begins where the step did, to rounding. Where states are projected after a
+/// step it misses the start by the error of a step, and the term of degree q + 1 corrects this. So the segments of a
+/// motion fit together, and are of the order of the method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
     start: f64,
@@ -48,7 +48,7 @@ impl Segment {
         self.dim
     }
 
-    /// Writes y(t) to `state`, of length [`dim`](Segment::dim), not projected; outside the span the polynomial goes on.
+    /// Writes y(t) to `state`, of length [`dim`](Segment::dim), not projected; outside the span the polynomial is extrapolated.
     pub fn evaluate(&self, t: f64, state: &mut [f64]) {
         let s = (t - self.end) / (self.end - self.start);
         state.fill(0.0);
@@ -72,15 +72,15 @@ impl Segment {
     }
 }
 
-/// A motion as a function of time: [`Segment`]s, each from where the one before ends.
+/// A motion as a function of time: [`Segment`]s, each beginning where the one before ends.
 ///
-/// It is continuous but for resets at events, where it is continuous from the right in the direction of integration. At
+/// It is continuous except at resets by events, where it is continuous from the right in the direction of integration. At
 /// its very end it is the limit from before.
 ///
 /// It is made of the polynomials alone and knows no vector field: where that [projects](pc_expr::VectorField::project) its
 /// states, those inside steps are off the constraints, and off the values of the integrals that are kept, by the error of
-/// a step. Outputs and what [`Integration::interpolate`](crate::Integration::interpolate) gives are on them; who needs such states
-/// asks for them on the way, or projects what is evaluated here.
+/// a step. Outputs and what [`Integration::interpolate`](crate::Integration::interpolate) gives are on them; to have
+/// such states, interpolate during the integration, or project what is evaluated here.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DenseOutput {
     segments: Vec<Segment>,
@@ -108,7 +108,7 @@ impl DenseOutput {
         Ok(state)
     }
 
-    /// ẏ(t), which may jump by the error of a step from one step to the next.
+    /// ẏ(t), which may jump by the error of a step where one step meets the next.
     ///
     /// # Errors
     /// [`InputError::OutsideSpan`]

@@ -67,7 +67,7 @@ struct Shape {
 
 /// The vector field of dimension `dim` whose closure writes f(t, y) to its last argument.
 ///
-/// Both slices have length `dim`. The closure reports where f is not defined as [`VectorField::rhs`] does.
+/// Both slices have length `dim`. Where f is not defined, the closure returns an error as [`VectorField::rhs`] does.
 pub fn from_fn<R>(dim: usize, rhs: R) -> FnField<R>
 where
     R: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
@@ -149,7 +149,7 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
 
     /// The same field with a closure that moves its last argument to the surface of the states at time t.
     ///
-    /// It reports where none is near as [`VectorField::project`] does.
+    /// Where none is near, it returns an error as [`VectorField::project`] does.
     pub fn with_projection<K>(self, projection: K) -> FnField<R, J, S, V, P, K, W>
     where
         K: FnMut(f64, &mut [f64]) -> Result<(), Failure>,
@@ -157,7 +157,7 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
         with!(self, projection = projection, jacobian, sparse_jacobian, jvp, parameter_jacobian, vjp)
     }
 
-    /// The same field, which does not depend on t explicitly: an integrator need not look for what t alone may do to it.
+    /// The same field, declared not to depend on t explicitly, so that an integrator need not examine it.
     pub fn autonomous(self) -> Self {
         FnField { shape: Shape { autonomous: true, ..self.shape }, ..self }
     }

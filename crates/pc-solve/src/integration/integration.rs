@@ -17,7 +17,7 @@ use crate::integration::stepper::Stepper;
 ///
 /// It stands at a [`time`](Integration::time) with a [`state`](Integration::state). The method may be up to one step ahead;
 /// outputs in between are interpolated with its polynomial, so that asking for more of them changes no step. The direction of
-/// time is that of the first step. After an error or a panic of the field it stands where it last could.
+/// time is that of the first step. After an error or a panic of the field it stands at the last state it reached.
 ///
 /// # Events
 ///
@@ -25,23 +25,23 @@ use crate::integration::stepper::Stepper;
 /// [projected](VectorField::project) where the field does so: at the ends of so many equal parts of the step as
 /// [asked for](crate::Options::samples_per_step), and where three of these values in sequence suggest that a function
 /// passes through zero twice. Between two of these places an even number of passages of a function may be missed; of an odd
-/// number one is found, so that it is always on the side that it is taken to be on. After a passage the rest of the step is
-/// looked at in as many parts again.
+/// number one is found, so that its side of zero is always known. After a passage the rest of the step is searched in
+/// as many parts again.
 ///
 /// A passage is located to 1e-15 max(|t|, h/1000) in a step of length h, and functions that pass through zero within 16
 /// times that of each other do so together: their resets are applied one after the other, in the order of
 /// the events, each to the state that the one before has left. After a reset the integration
 /// [restarts](Integration::restart) with the same options.
 ///
-/// A function that comes to zero, or beyond it, and is back on its side that much later touches zero: nothing occurs. One
-/// that comes to zero and stays there passes when it comes, and not when it leaves. What counts is the function as it is
-/// computed, with its rounding.
+/// A function that reaches zero, or beyond it, and is back on its side that much later only touches zero: no event
+/// occurs. One that reaches zero and stays there passes when it arrives, not when it leaves. This holds for the
+/// function as computed, with its rounding.
 ///
-/// After a reset the events that caused it have to leave zero before they can occur again: a function that the reset has
-/// left so near to zero that the tolerances do not tell it from zero goes on to the side that it moves to.
+/// After a reset the events that caused it have to leave zero before they can occur again: a function that the reset
+/// has left within the tolerances of zero counts as on the side that it moves to.
 ///
-/// CVODES has a search for roots of its own. It is not used because it knows neither projected states nor what a reset
-/// does to the functions, reports one of two roots in a step at most, and may report a root again after a restart.
+/// CVODES has a search for roots of its own. It is not used because it takes account neither of projected states nor
+/// of resets, reports at most one of two roots in a step, and may report a root again after a restart.
 ///
 /// Where the integration stands at an event, its state is y⁺: states are continuous from the right in the direction of
 /// integration. After an error or a panic it stands where it last could.
@@ -102,7 +102,7 @@ impl<S: Stepper, E: Events> fmt::Debug for Integration<S, E> {
 }
 
 impl<S: Stepper> Integration<S> {
-    /// By a method that has made no step.
+    /// An integration by a method that has made no step.
     pub fn of(stepper: S) -> Self {
         let (t, state) = (stepper.time(), stepper.end_state().to_vec());
         let sides = Sides::new(Vec::new());
@@ -130,8 +130,8 @@ impl<S: Stepper> Integration<S> {
     /// This integration, with events from where it stands.
     ///
     /// Its [sensitivities](crate::Cvode::with_sensitivities), if there are any, are those of the motion with its events: they
-    /// jump where a reset does. For that resets are also applied to states near by, and events that reset have to tell their
-    /// [derivatives](Events::by_parameter) by the parameters that are asked for.
+    /// jump where a reset does. For this, resets are also applied to nearby states, and events that reset must have
+    /// [derivatives](Events::by_parameter) by the parameters of the sensitivities.
     ///
     /// # Errors
     /// [`SolveError::Integration`] with [`Reason::Event`] if a function of an event cannot be evaluated there;
@@ -174,7 +174,7 @@ impl<S: Stepper> Integration<S> {
         Ok(integration)
     }
 
-    /// Integrates to `t` and returns the state there, at once if it is where the integration stands.
+    /// Integrates to `t` and returns the state there, at once if it is the current time.
     ///
     /// # Errors
     /// As for [`advance_to`](Integration::advance_to).
@@ -198,14 +198,14 @@ pub(crate) fn directions(events: &impl Events) -> Vec<Direction> {
 }
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// When occurrences of an event accumulate, which is an error; as the [options](crate::Options::accumulation) say unless
-    /// given.
+    /// When occurrences of an event count as accumulated, which is an error; as in the
+    /// [options](crate::Options::accumulation) unless given.
     pub fn accumulation(mut self, accumulation: Accumulation) -> Self {
         self.engine.limits_mut().accumulation = accumulation;
         self
     }
 
-    /// Where the integration stands: the time last advanced to, or that of the event that stopped it.
+    /// The current time: the time last advanced to, or that of the event that stopped the integration.
     pub fn time(&self) -> f64 {
         self.engine.time()
     }
@@ -245,7 +245,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.statistics()
     }
 
-    /// Gives the integration as much time from now on as its [deadline](crate::Options::deadline) gave it at first, if it has one.
+    /// Restarts the clock of the [deadline](crate::Options::deadline), if there is one.
     pub fn renew_deadline(&mut self) {
         if let Some(deadline) = &mut self.engine.limits_mut().deadline {
             deadline.renew();
@@ -267,15 +267,16 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.set_stop_time(stop_time)
     }
 
-    /// Starts anew at y(t) = y, after a jump of the state, say.
+    /// Restarts at y(t) = y, for example after a jump of the state.
     ///
-    /// Options and stop time stay, and the [statistics](Integration::statistics) count on. A multistep method begins at order
-    /// 1; the next step may go either way. Events are on the side of zero that they are on there.
+    /// Options and stop time stay, and the [statistics](Integration::statistics) continue. A multistep method begins
+    /// at order 1; the next step may go either way. The functions of events are on the side of zero that they have
+    /// there.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all is finite and of the right length, or if there are sensitivities, which
     /// [have to be given too](Integration::restart_with_sensitivities); [`SolveError::Setup`] if CVODES refuses. The
-    /// integration is then where it was.
+    /// integration is then unchanged.
     pub fn restart(&mut self, t: f64, y: &[f64]) -> Result<(), SolveError> {
         if !self.engine.column_parameters().is_empty() {
             return Err(InputError::Restart.into());
@@ -308,8 +309,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(())
     }
 
-    /// Changes the field where the integration stands, such as the value of an input, and [begins
-    /// anew](Integration::restart) there: what was computed ahead of [`time`](Integration::time) is forgotten.
+    /// Changes the field at the current time, such as the value of an input, and [restarts](Integration::restart)
+    /// there: the part of a step ahead of [`time`](Integration::time) is discarded.
     ///
     /// # Errors
     /// As for [`restart`](Integration::restart); the field is changed nevertheless.

@@ -1,23 +1,23 @@
-//! What an integration keeps to, whatever the method.
+//! Limits of an integration, whatever the method.
 
 use pc_expr::Deadline;
 
 use crate::events::events::Accumulation;
 use crate::settings::inequality::Inequality;
 
-/// What an integration keeps to, whatever the method.
+/// Limits of an integration, whatever the method.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Limits {
     /// Most steps from one output to the next.
     pub max_steps: u64,
-    /// In how many parts of a step events are looked for.
+    /// The number of parts of each step that are searched for events.
     pub samples_per_step: u32,
-    /// When occurrences of an event accumulate.
+    /// When occurrences of an event count as accumulated.
     pub accumulation: Accumulation,
     /// Signs that components keep; empty if none does.
     pub inequalities: Vec<Inequality>,
-    /// When no further step is begun, if at any time.
+    /// The time after which no further step begins, if there is one.
     pub deadline: Option<Deadline>,
 }
 

@@ -1,17 +1,17 @@
-//! Who is told of a motion as it is integrated.
+//! Observers of a motion as it is integrated.
 
 use std::ops::ControlFlow;
 
 use crate::events::events::Occurrence;
 
-/// Who is told of a motion as it is integrated, and may stop it.
+/// An observer of a motion as it is integrated, which may stop it.
 ///
-/// [`Observed`] puts one together of closures.
+/// [`Observed`] makes one from closures.
 pub trait Observer {
     /// An output.
     fn output(&mut self, t: f64, y: &[f64]) -> ControlFlow<()>;
 
-    /// What occurs, at the time of events. All that occurs together is told, also where one of them stops the motion.
+    /// An event that occurred. All simultaneous ones are reported, even where one of them stops the motion.
     fn occurred(&mut self, _occurrence: &Occurrence) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
@@ -22,7 +22,7 @@ pub trait Observer {
     }
 }
 
-/// An [`Observer`] of a closure for each of what there is to be told.
+/// An [`Observer`] made of closures for outputs, events and steps.
 ///
 /// ```
 /// use std::ops::ControlFlow::Continue;
@@ -47,19 +47,19 @@ type Occurred = fn(&Occurrence) -> ControlFlow<()>;
 type Step = fn(f64, &[f64]) -> ControlFlow<()>;
 
 impl<O: FnMut(f64, &[f64]) -> ControlFlow<()>> Observed<O, Occurred, Step> {
-    /// What is told the outputs.
+    /// An observer whose closure receives the outputs.
     pub fn new(output: O) -> Self {
         Observed { output, occurred: |_| ControlFlow::Continue(()), step: |_, _| ControlFlow::Continue(()) }
     }
 }
 
 impl<O, C, S> Observed<O, C, S> {
-    /// What is told what occurs.
+    /// Adds a closure that receives the events.
     pub fn occurrences<T: FnMut(&Occurrence) -> ControlFlow<()>>(self, occurred: T) -> Observed<O, T, S> {
         Observed { output: self.output, occurred, step: self.step }
     }
 
-    /// What is told the ends of steps.
+    /// Adds a closure that receives the ends of steps.
     pub fn steps<T: FnMut(f64, &[f64]) -> ControlFlow<()>>(self, step: T) -> Observed<O, C, T> {
         Observed { output: self.output, occurred: self.occurred, step }
     }

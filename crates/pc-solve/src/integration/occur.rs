@@ -1,4 +1,4 @@
-//! What happens to the state at events.
+//! The effect of events on the state.
 
 use std::ops::ControlFlow;
 

@@ -1,4 +1,4 @@
-//! Going on from event to event, through output times.
+//! Integration from event to event, through output times.
 
 use std::ops::ControlFlow;
 
@@ -12,9 +12,9 @@ use crate::integration::observer::{Observed, Observer};
 use crate::integration::stepper::Stepper;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// Integrates to `t`, or to a terminal event before, and tells what occurs, events at `t` included, to `occurred`,
-    /// which may stop it. All that occurs together is told; if one of these events is terminal, it ends the integration, also
-    /// where `occurred` stops it.
+    /// Integrates to `t`, or to a terminal event before, and reports events, those at `t` included, to `occurred`,
+    /// which may stop it. All simultaneous events are reported; if one of them is terminal, it ends the integration,
+    /// even where `occurred` stops it.
     ///
     /// # Errors
     /// [`SolveError::Input`] if `t` is not finite, lies behind or beyond the stop time; [`SolveError::Integration`] if the
@@ -30,10 +30,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(self.advance(t, t, &mut observer)?.unwrap_or(Ending::Completed))
     }
 
-    /// Integrates through `times`, which go one way from where the integration stands, and gives each (t, y) to `output`,
-    /// which may stop it.
+    /// Integrates through `times`, which go one way from the current time, and gives each (t, y) to `output`, which may stop it.
     ///
-    /// The first time may be where the integration stands, the last may not. The output at the time of an event is y⁺; a
+    /// The first may be the current time, the last may not. The output at the time of an event is y⁺; a
     /// terminal event is the last output.
     ///
     /// # Errors
@@ -46,7 +45,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.run_observed(times, Observed::new(output))
     }
 
-    /// As [`run`](Integration::run), and tells an [`Observer`] all that there is to be told.
+    /// As [`run`](Integration::run), and reports to an [`Observer`].
     ///
     /// # Errors
     /// As for [`run`](Integration::run).

@@ -33,8 +33,8 @@ pub struct Statistics {
     pub preconditioner_evaluations: u64,
     /// Systems solved with the preconditioner.
     pub preconditioner_solves: u64,
-    /// Steps that were to end no later than where the explicit dependence on time shows something that the motion up to there
-    /// does not let expect: the beginning of a pulse, a jump.
+    /// Steps shortened to end where the explicit dependence on time shows something that the motion so far gives no
+    /// hint of: the beginning of a pulse, a jump.
     pub limited_steps: u64,
     /// Order of the last step, 0 before the first.
     pub last_order: u32,
@@ -44,14 +44,14 @@ pub struct Statistics {
     pub first_step: f64,
     /// Length of the last step, with the sign of the direction; 0 before the first.
     pub last_step: f64,
-    /// Length that the next step will be tried with, with the sign of the direction; 0 before the first.
+    /// Length with which the next step is tried, with the sign of the direction; 0 before the first.
     pub current_step: f64,
     /// End of the last step.
     pub current_time: f64,
 }
 
 impl Statistics {
-    /// Those of an integration that went on after these.
+    /// The sum of these and those of an integration that continued after them.
     pub fn followed_by(&self, later: &Statistics) -> Statistics {
         Statistics {
             steps: self.steps.saturating_add(later.steps),

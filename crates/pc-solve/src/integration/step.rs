@@ -12,10 +12,10 @@ use crate::integration::observer::{Observed, Observer};
 use crate::integration::stepper::Stepper;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// Takes one step in the direction of `towards`, or the part of it before the next event, and tells what occurs at its
-    /// end, which may lie beyond `towards`, to `occurred`.
+    /// Takes one step in the direction of `towards`, or the part of it before the next event, and reports events at
+    /// its end, which may lie beyond `towards`, to `occurred`.
     ///
-    /// If the integration stands inside such a step, goes to the end of that instead. It stands at y⁺ then.
+    /// If the integration stands inside such a step, goes to its end instead. It then stands at y⁺.
     ///
     /// # Errors
     /// As for [`advance_to`](Integration::advance_to); [`InputError::EndIsStart`] if `towards` is where it stands.
@@ -38,14 +38,14 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(self.occur(&mut occurred)?.unwrap_or(Ending::Completed))
     }
 
-    /// The derivative of y of the given order at `t` in the last step, by the polynomial of the method, up to where it is
-    /// known what occurs.
+    /// The derivative of y of the given order at `t` in the last step, by the polynomial of the method, as far as
+    /// events have been searched.
     ///
     /// Order 0 is y itself, [projected](pc_expr::VectorField::project) where the field does so. The polynomial of a multistep
     /// method has the degree of the order of that step.
     ///
     /// # Errors
-    /// [`InputError::NoStep`] before the first step, and after a reset, which makes a new start; [`InputError::OutsideStep`]
+    /// [`InputError::NoStep`] before the first step, and after a reset, which is a new start; [`InputError::OutsideStep`]
     /// outside the last step, and beyond the next event; [`InputError::DerivativeOrder`] above the degree;
     /// [`Reason::Projection`](crate::Reason::Projection).
     pub fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
@@ -53,10 +53,10 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.interpolate(t, order)
     }
 
-    /// Integrates to `end`, gives the motion as [`Segment`]s, one for each step or part of it between events, and tells what
-    /// occurs to `occurred`, after the segment that ends there.
+    /// Integrates to `end`, gives the motion as [`Segment`]s, one for each step or part of it between events, and
+    /// reports events to `occurred`, after the segment that ends there.
     ///
-    /// Only the last step is kept here: what is wanted of the others is for `segment` to keep.
+    /// Only the last step is kept here: `segment` has to keep the others if they are needed.
     ///
     /// # Errors
     /// As for [`run`](Integration::run); segments before the failure have been given.

@@ -7,11 +7,11 @@ use crate::integration::checks::finite;
 use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
 
-/// A method that makes steps: what [`Integration`](crate::Integration) needs to know of it.
+/// A method that makes steps: the interface to [`Integration`](crate::Integration).
 ///
-/// A stepper has made a last step, of which it knows the states from its start to its end, and stands at a
-/// [`time`](Stepper::time) in it. Outputs, events and their resets, dense output and checkpoints are no matter of a method:
-/// `Integration` makes them of these functions, for every method alike.
+/// A stepper has made a last step, whose states it knows from start to end, and stands at a [`time`](Stepper::time) in
+/// it. Outputs, events and their resets, dense output and checkpoints are not the task of a method: `Integration`
+/// makes them from these functions, for every method alike.
 ///
 /// ```
 /// use pc_solve::{FixedStep, Integration, RungeKutta4, from_fn};
@@ -36,7 +36,7 @@ pub trait Stepper {
     where
         Self: Sized;
 
-    /// What an integration keeps to, whatever the method.
+    /// The limits of the integration.
     fn limits(&self) -> &Limits;
 
     /// The same, to be changed.
@@ -48,17 +48,17 @@ pub trait Stepper {
     /// y at the end of the last step.
     fn end_state(&self) -> &[f64];
 
-    /// Where it stands: a time in the last step.
+    /// The current time, in the last step.
     fn time(&self) -> f64;
 
-    /// Stands at a time in the last step, where derivatives and integrals are asked for next, if it has such.
+    /// Moves to a time in the last step, for which derivatives and integrals, if there are any, are read next.
     fn stand_at(&mut self, t: f64);
 
-    /// Makes a step from the end of the last one in the direction of `towards`, beyond which it may lead, but not beyond
-    /// the stop time, and stands at its end.
+    /// Makes a step from the end of the last one in the direction of `towards`, possibly beyond it, but not beyond the
+    /// stop time, and stands at its end.
     ///
     /// # Errors
-    /// [`SolveError::Integration`]; the last step is that before then, and it stands at its end.
+    /// [`SolveError::Integration`]; the last step is then the one before, and the stepper stands at its end.
     fn step(&mut self, towards: f64) -> Result<(), SolveError>;
 
     /// The derivative of y of the given order at `t` in the last step, both of which have been checked; order 0 is y itself,
@@ -68,12 +68,12 @@ pub trait Stepper {
     /// [`SolveError::Integration`]
     fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError>;
 
-    /// Starts anew at y(t) = y, which has been checked, with these [columns](Stepper::columns); statistics count on.
+    /// Restarts at y(t) = y, which has been checked, with these [columns](Stepper::columns); statistics continue.
     ///
-    /// Events keep the direction that the integration had; without one the next step may go either way.
+    /// With events the direction of integration stays; without, the next step may go either way.
     ///
     /// # Errors
-    /// [`SolveError`] if that cannot be. It is where it was then.
+    /// [`SolveError`] if this is not possible; the stepper is then unchanged.
     fn restart(
         &mut self,
         t: f64,
@@ -94,10 +94,10 @@ pub trait Stepper {
     /// The work so far.
     fn statistics(&self) -> Statistics;
 
-    /// What of component `i` is too little to matter where it is y.
+    /// The tolerance of component `i` where its value is y.
     fn tolerance(&self, i: usize, y: f64) -> f64;
 
-    /// What the tolerances take for nothing is no measure of a state: the size of a component that matters.
+    /// The least size of a component that matters: values below the tolerances are not a measure of a state.
     fn least_size(&self) -> f64;
 
     /// The derivatives of the motion that are integrated with it, where it stands, column-major; empty if there are none.
@@ -113,7 +113,7 @@ pub trait Stepper {
         &[]
     }
 
-    /// The error of what did not succeed beyond the end of the last step, where it stands then.
+    /// The error of a failure beyond the end of the last step, where the stepper then stands.
     fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
         let (time, state) = (self.last_step().end, self.end_state().to_vec());
         self.stand_at(time);
@@ -124,9 +124,9 @@ pub trait Stepper {
 /// The last step of a method: the states between its start and its end are known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LastStep {
-    /// Where it began.
+    /// Its start.
     pub start: f64,
-    /// Where it ended; where a method that has made no step since its start begins.
+    /// Its end; the start of a method that has made no step yet.
     pub end: f64,
     /// The degree of the polynomial that the states along it lie on; none where there is no step but a start.
     pub degree: Option<u32>,

@@ -9,7 +9,7 @@ use crate::integration::checks::positive;
 use crate::integration::integration::Integration;
 use crate::lyapunov::orthonormal::{length, orthonormalise};
 
-/// How many exponents, from how long a motion.
+/// Options of the computation of Lyapunov exponents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LyapunovOptions {
     count: usize,
@@ -21,13 +21,13 @@ pub struct LyapunovOptions {
 impl LyapunovOptions {
     /// The `count` largest exponents, from `intervals` intervals of time of length `interval`.
     ///
-    /// The vectors are made orthogonal after each interval. It should be short enough that they do not become alike: the
+    /// The vectors are made orthogonal after each interval. It should be short enough for them to stay distinct: the
     /// difference of the largest and the least exponent times `interval` below about 10.
     pub fn new(count: usize, interval: f64, intervals: u32) -> Self {
         LyapunovOptions { count, interval, intervals, transient: 0 }
     }
 
-    /// Intervals before those that count, in which the motion comes to where it stays and the vectors find their
+    /// Intervals before those that count, in which the motion approaches its attractor and the vectors find their
     /// directions; none unless given.
     pub fn transient(self, intervals: u32) -> Self {
         LyapunovOptions { transient: intervals, ..self }
@@ -64,12 +64,11 @@ pub struct Lyapunov {
 /// ```text
 /// λ_j = lim 1/(kτ) (ln R_jj⁽¹⁾ + … + ln R_jj⁽ᵏ⁾).
 /// ```
-/// The first vectors span a parallelepiped whose volume grows as their exponents together; all vectors of a flow make its
-/// mean divergence. The mean over a finite time converges no faster than as 1/t.
+/// The first vectors span a parallelepiped whose volume grows as their exponents together; the sum over all vectors of
+/// a flow is its mean divergence. The mean over a finite time converges no faster than as 1/t.
 ///
 /// Products with ∂f/∂y are as for [`Sensitivities`]; the vectors have to pass the error test with the tolerances of the
-/// state. The method starts anew with each interval. The first vectors are always the same, and in no direction that
-/// a field written by hand would have.
+/// state. The method restarts with each interval. The first vectors are always the same, in generic directions.
 ///
 /// ```
 /// use pc_solve::{LyapunovOptions, Options, from_fn, lyapunov_exponents};
@@ -88,7 +87,7 @@ pub struct Lyapunov {
 ///
 /// # Errors
 /// [`SolveError::Input`] if the problem or an option is not valid; [`SolveError::Integration`] if the motion fails, and
-/// with [`Reason::Collapsed`] if intervals are too long to tell the vectors apart.
+/// with [`Reason::Collapsed`] if intervals are too long for the vectors to stay distinct.
 pub fn lyapunov_exponents<F: VectorField>(
     mut field: F,
     t0: f64,

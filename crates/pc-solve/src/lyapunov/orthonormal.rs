@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn dependent_columns_have_no_length() {
+    fn dependent_columns_have_length_zero() {
         let diagonal = orthonormalise(&mut [1.0, 0.0, 2.0, 0.0], 2);
         assert_eq!(diagonal, [1.0, 0.0]);
     }

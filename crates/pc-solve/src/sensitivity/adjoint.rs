@@ -19,17 +19,17 @@ use crate::sensitivity::functional::{Functional, Gradient};
 /// Comput. 24 (2003) 1076]. The motion is integrated to t₁ and, from one checkpoint to the next, once again on the way
 /// back, where it is looked up by the polynomials of the method. Each evaluation of λ̇ takes a
 /// [product](VectorField::vjp) with (∂f/∂y)ᵀ if the field has these, else its Jacobian:
-/// [sparse](VectorField::sparse_jacobian) if its [pattern](VectorField::sparsity) is known. If it has none that is put together
-/// from [products](VectorField::jvp), or pairs of evaluations of f, one for each colour of the pattern, or for each
-/// component.
+/// [sparse](VectorField::sparse_jacobian) if its [pattern](VectorField::sparsity) is known. A field without a Jacobian
+/// has one assembled from [products](VectorField::jvp), or pairs of evaluations of f, one for each colour of the
+/// pattern, or for each component.
 ///
-/// What is held of n components are the states at checkpoints, and up to 13 vectors for each step of one
+/// The memory for n components is the states at checkpoints, and up to 13 vectors for each step of one
 /// [interval](AdjointOptions::checkpoint_interval) between them: for large n an interval of few steps takes less.
 ///
 /// Where states lie on a surface, λ follows the [projected](VectorField::project) motion, but is not projected itself:
-/// ∂G/∂y₀ is that of the field in all of space, and its part tangent to the surface what starts on it feel. Where motions
-/// off the surface drift away from it λ grows large across the surface, and its errors are relative to that: smaller
-/// tolerances are in place.
+/// ∂G/∂y₀ is the gradient of the field in all of space, of which the part tangent to the surface applies to starts on
+/// it. Where motions off the surface drift away from it, λ grows large across the surface, and its errors are relative
+/// to that: choose smaller tolerances.
 ///
 /// ```
 /// use pc_solve::{AdjointOptions, Failure, Functional, Options, adjoint_gradient, from_fn};
@@ -69,9 +69,9 @@ pub fn adjoint_gradient<F: VectorField, G: Functional>(
     first.ok_or_else(|| InputError::NoFunctional.into())
 }
 
-/// As [`adjoint_gradient`], of several functionals, [boxed](Box) if of several kinds: they share the motion there, the
-/// checkpoints, and the motion from one to the next on the way back, on which each has its adjoint equations. Each
-/// gradient is that of its functional alone.
+/// As [`adjoint_gradient`], of several functionals, [boxed](Box) if of several kinds: they share the forward motion,
+/// the checkpoints, and the motion between checkpoints on the way back, along which each has its adjoint equations.
+/// Each gradient is that of its functional alone.
 ///
 /// # Errors
 /// As there; [`InputError::NoFunctional`]
@@ -91,12 +91,14 @@ pub fn adjoint_gradients<F: VectorField, G: Functional>(
 /// ```text
 /// λ⁻ = R_yᵀ λ⁺ − κ γ_y,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + g⁻ − g⁺)/(γ_t + γ_y f⁻),
 /// ```
-/// and ∂G/∂p grows by R_pᵀ λ⁺ − κ γ_p: what is written for [sensitivities](crate::Sensitivities), read from the left. The
-/// [derivatives](Events::by_parameter) of the events by parameters are asked for if the field has such.
+/// and ∂G/∂p grows by R_pᵀ λ⁺ − κ γ_p: the transpose of the rule for [sensitivities](crate::Sensitivities). The
+/// [derivatives](Events::by_parameter) of the events by parameters are needed if the field has derivatives by
+/// parameters.
 ///
 /// # Errors
-/// As there; [`Reason::EndsEarly`](crate::Reason::EndsEarly) at a terminal event before t1, [`Reason::Together`](crate::Reason::Together) where several events reset the state
-/// at once, [`Reason::Grazing`](crate::Reason::Grazing) where one is met at no speed, and [`InputError::EventParameters`].
+/// As there; [`Reason::EndsEarly`](crate::Reason::EndsEarly) at a terminal event before t1,
+/// [`Reason::Together`](crate::Reason::Together) where several events reset the state at once,
+/// [`Reason::Grazing`](crate::Reason::Grazing) where one is met at no speed, and [`InputError::EventParameters`].
 pub fn adjoint_gradients_with_events<F: VectorField, E: Events, G: Functional>(
     field: F,
     events: E,

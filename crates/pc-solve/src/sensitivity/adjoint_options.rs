@@ -1,4 +1,4 @@
-//! How to integrate a motion and its adjoint equations.
+//! Options of the integration of a motion and its adjoint equations.
 
 use crate::cvode::linear::krylov::Krylov;
 use crate::cvode::linear::solver::LinearSolver;
@@ -11,7 +11,7 @@ use crate::settings::tolerance::Tolerance;
 /// Largest dimension of the Krylov subspaces of the way back, unless a solver is chosen.
 const SUBSPACE: u32 = 30;
 
-/// How to integrate a motion and the adjoint equations.
+/// Options of the integration of a motion and its adjoint equations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AdjointOptions {
     pub(crate) motion: Options,
@@ -22,7 +22,7 @@ pub struct AdjointOptions {
 }
 
 impl AdjointOptions {
-    /// The motion as these options say, the way back by the same method with the same tolerances (the least of the
+    /// The motion by these options, the way back by the same method with the same tolerances (the least of the
     /// absolute ones) and limit of steps, and a checkpoint every 200 steps.
     pub fn new(motion: Options) -> Self {
         let absolute_tolerance = match &motion.absolute_tolerance {
@@ -47,7 +47,7 @@ impl AdjointOptions {
     /// Steps from one checkpoint to the next, at least 1.
     ///
     /// The states at checkpoints are held, and of one interval at a time all steps with their derivatives, at most 13
-    /// vectors a step. The method starts anew at each checkpoint, so an interval should be longer than its start.
+    /// vectors a step. The method restarts at each checkpoint, so an interval should be longer than its starting phase.
     pub fn checkpoint_interval(self, steps: u32) -> Self {
         AdjointOptions { checkpoint_interval: steps, ..self }
     }

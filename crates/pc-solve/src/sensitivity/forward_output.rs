@@ -49,9 +49,9 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         self.engine.sensitivity_statistics()
     }
 
-    /// Starts anew at y(t) = y as [`restart`](Integration::restart) does, with these columns of S.
+    /// Restarts at y(t) = y as [`restart`](Integration::restart) does, with these columns of S.
     ///
-    /// Behind a jump that depends on the state, S jumps too.
+    /// At a jump that depends on the state, S jumps too.
     ///
     /// # Errors
     /// As for [`restart`](Integration::restart); [`SolveError::Input`] unless `matrix` is finite and as long as

@@ -1,4 +1,4 @@
-//! Functionals of a motion, and what their gradients are.
+//! Functionals of a motion, and their gradients.
 
 use pc_expr::Failure;
 

@@ -103,7 +103,7 @@ pub fn solve_with_sensitivities<F: VectorField>(
 pub struct SensitivitySolution {
     /// The states and S at the output times, y⁺ and S⁺ at those of events; a terminal event is the last.
     pub trajectory: SensitivityTrajectory,
-    /// What occurred, in order.
+    /// The occurrences, in order.
     pub occurrences: Vec<Occurrence>,
     /// How it ended; none if it failed.
     pub ending: Option<Ending>,

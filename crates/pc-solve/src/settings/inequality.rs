@@ -4,7 +4,7 @@ use std::fmt;
 
 /// What a component of y must satisfy at the end of every step, so that f is not evaluated far from where it makes sense.
 ///
-/// A step whose end does not satisfy it is corrected if it errs by little, and else tried again, shorter. Inside a step
+/// A step whose end does not satisfy it is corrected if the violation is small, and otherwise tried again, shorter. Inside a step
 /// the polynomial of the method may err by the tolerance. Where the motion itself leads out, the steps become ever
 /// shorter, until the number of steps or the least step ends the integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -1,4 +1,4 @@
-//! What is too little to matter.
+//! Absolute tolerances.
 
 /// Absolute tolerance: one for all components, or one for each.
 #[derive(Debug, Clone, PartialEq)]

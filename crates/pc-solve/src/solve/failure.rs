@@ -1,4 +1,4 @@
-//! What had been reached before a failure.
+//! Failures of an integration, with what had been reached before.
 
 use std::error::Error;
 use std::fmt;

@@ -1,4 +1,4 @@
-//! What comes of an integration.
+//! The result of an integration.
 
 use crate::events::events::Occurrence;
 use crate::integration::integration::Ending;
@@ -9,7 +9,7 @@ use crate::integration::trajectory::Trajectory;
 pub struct Solution {
     /// The states at the output times, y⁺ at those of events; a terminal event is the last.
     pub trajectory: Trajectory,
-    /// What occurred, in order.
+    /// The occurrences, in order.
     pub occurrences: Vec<Occurrence>,
     /// How it ended; none if it failed.
     pub ending: Option<Ending>,

@@ -96,7 +96,7 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         Integration::of(method.begin(field, t0, y0, end)?).with_events(events)
     }
 
-    /// The states at `times`, and what occurs on the way.
+    /// The states at `times`, and the occurrences on the way.
     ///
     /// The times go one way, forwards or backwards; the first may be t0. The vector field is not evaluated beyond the last,
     /// nor beyond the stop time of the method.
@@ -136,8 +136,8 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         }
     }
 
-    /// As [`run_observed`](Solve::run_observed), and gives each (t, y) to `output`, which may stop it, instead of keeping it: of the
-    /// trajectory there are the statistics alone.
+    /// As [`run_observed`](Solve::run_observed), and gives each (t, y) to `output`, which may stop it, instead of
+    /// keeping it: the trajectory of the solution has only the statistics.
     ///
     /// # Errors
     /// As for [`run`](Solve::run).

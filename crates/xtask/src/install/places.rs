@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn ways_stay_below_the_prefix() {
+    fn relative_paths_stay_below_the_prefix() {
         let places = of("--prefix /usr --libdir lib/x86_64-linux-gnu --includedir /opt/include").unwrap();
         let way = |from: &Path, to: &Path| places.way(from, to);
         assert_eq!(way(&places.libdir, &places.prefix), Some("../..".into()));

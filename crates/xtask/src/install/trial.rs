@@ -77,7 +77,7 @@ fn with_cmake(libdir: &Path, work: &Path) {
 
 /// In places with blanks, in those of a distribution, and in some that have nothing to do with each other.
 #[test]
-fn a_library_is_found_wherever_it_is() {
+fn a_library_is_found_in_any_prefix() {
     if !there_are(&["cc", "ar", "ld", "objcopy", "pkg-config", "cmake"]) {
         return;
     }
@@ -131,7 +131,7 @@ fn a_library_is_found_wherever_it_is() {
 
 /// The library is small, and debuggers still find lines and functions, in the file beside it.
 #[test]
-fn what_debuggers_read_stands_beside_the_library() {
+fn debugging_information_is_beside_the_library() {
     if !there_are(&["cc", "ar", "ld", "objcopy", "nm", "readelf", "addr2line"]) {
         return;
     }

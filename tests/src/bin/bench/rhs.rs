@@ -253,7 +253,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_by_hand_is_what_is_derived() -> Result<(), Error> {
+    fn equations_written_by_hand_are_those_derived() -> Result<(), Error> {
         let mut random = SplitMix64::new(2);
         for system in SYSTEMS.iter().chain(FURTHER) {
             let graph = Graph::new();

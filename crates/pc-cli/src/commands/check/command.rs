@@ -1,4 +1,4 @@
-//! `pc check`: whether a model holds together.
+//! `pc check`: the consistency and the properties of a model.
 
 use pc_analysis::{FrameFacts, Integral, Integrals, SteadySearch};
 use pc_mech::{Equations, Expr, Identity, MechError, Motion, Neighbourhood, System, VectorField};
@@ -21,7 +21,7 @@ use crate::report::notes::{NEGATIVE_ENERGY, dropped, say_moved};
 use crate::report::text::{assignments, labelled, short, small, wrapped};
 use crate::report::verification;
 
-/// Prints what can be said of a model before it is run.
+/// Prints the properties of a model before it is run.
 ///
 /// # Errors
 /// [`CliError`]; of an inconsistent model that is the answer.
@@ -336,7 +336,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_does_not_hold_is_not_said_to_hold() {
+    fn a_condition_that_fails_is_not_reported_as_holding() {
         assert_eq!(held(0.0), "holds identically");
         assert_eq!(held(2.5e-16), "open: holds to 2.5e-16");
         assert_eq!(held(2e-9), "open: holds to 2.0e-9");

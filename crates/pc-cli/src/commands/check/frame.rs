@@ -1,4 +1,4 @@
-//! What the frame and its brackets say before any Lagrangian does, in words.
+//! The frame and its brackets, in words.
 
 use pc_algebra::{AlgebraError, LieAlgebra};
 use pc_analysis::{FrameConstraints, FrameFacts, QuasiVelocityKind};
@@ -86,7 +86,7 @@ pub(super) fn algebra(structure: &StructureCoefficients<'_>, constant: &str) -> 
 /// What kind of algebra it is, its rank and its index.
 fn facts(algebra: &LieAlgebra) -> Result<String, AlgebraError> {
     let kind = if algebra.is_abelian() {
-        "commutative but for time"
+        "commutative except for time"
     } else if algebra.is_nilpotent()? {
         "nilpotent"
     } else if algebra.is_solvable()? {

@@ -1,4 +1,4 @@
-//! What the motion keeps, in words.
+//! The conserved quantities, in words.
 
 use pc_analysis::{ConservationVerdict, Integral, Origin};
 use pc_mech::Style;
@@ -31,7 +31,7 @@ fn words(verdict: ConservationVerdict<'_>, jumps: bool) -> String {
         ConservationVerdict::ConservedHere => format!("conserved{between} for these parameters (proved)"),
         ConservationVerdict::BetweenJumps => "conserved where it does not jump (proved)".to_owned(),
         ConservationVerdict::NoFunction => {
-            "not decided: it is no function of time and state alone".to_owned()
+            "not decided: it is not a function of time and state alone".to_owned()
         }
         // Rounding of a rate that is zero there.
         ConservationVerdict::Rate { at_start: Some(rate), .. } if rate.abs() < 1e-12 => {

@@ -1,4 +1,4 @@
-//! The measure that the motion keeps, in words.
+//! The invariant measure, in words.
 
 use pc_analysis::{MeasureSearch, PhaseMeasure};
 use pc_mech::{Expr, Style, System};

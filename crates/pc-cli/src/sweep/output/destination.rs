@@ -1,4 +1,4 @@
-//! Where the table of a sweep goes.
+//! The destination of the table of a sweep.
 
 use std::path::Path;
 

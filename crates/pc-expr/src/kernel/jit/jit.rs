@@ -77,7 +77,7 @@ impl Jit {
         self.code.entry()
     }
 
-    /// How many numbers the scratch memory of [`entry`](Jit::entry) holds; their values do not matter.
+    /// The length of the scratch memory of [`entry`](Jit::entry); its contents do not matter.
     pub fn scratch_len(&self) -> usize {
         self.scratch.len()
     }
@@ -130,7 +130,7 @@ impl fmt::Debug for Jit {
 
 impl Kernel for Jit {
     /// # Panics
-    /// If a slice has not the length that the program says: the code would read or write beyond it.
+    /// If a slice does not have the length that the program says: the code would read or write beyond it.
     fn eval(&mut self, t: f64, state: &[f64], parameters: &[f64], outputs: &mut [f64]) {
         // One by one, in registers: this is entered for every evaluation.
         let [of_state, of_parameters, of_outputs] = self.lengths;

@@ -1,4 +1,4 @@
-//! What is computed when, and which values wait in memory.
+//! The order of computation, and which values wait in memory.
 //!
 //! Straight-line code of thousands of operations does not fit sixteen registers, and register allocators spill it
 //! badly. So the order is chosen here: depth first from the outputs, the operand that needs more registers first. And

@@ -1,4 +1,4 @@
-//! A matrix of expressions that computes only what is not zero.
+//! A matrix of expressions of which only the nonzero entries are computed.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Program};
 

@@ -1,4 +1,4 @@
-//! How much an elimination takes, from the zeros of the matrix alone.
+//! The cost of an elimination, from the zeros of the matrix alone.
 
 use std::collections::BTreeSet;
 

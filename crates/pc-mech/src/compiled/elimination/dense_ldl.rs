@@ -160,7 +160,7 @@ mod tests {
 
     /// The second leading minor of ((a², a, 1), (a, 1, 0), (1, 0, 1)) is 0, its determinant −1.
     #[test]
-    fn a_minor_that_vanishes_is_no_singularity() {
+    fn a_vanishing_minor_is_not_a_singularity() {
         let a = 1.0 / 3.0f64;
         let mut ldl = factorised([a * a, a, 1.0, 1.0, 0.0, 1.0]).unwrap();
         let mut column = [a * a + 2.0 * a + 3.0, a + 2.0, 4.0];
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pivot_that_vanishes_is_found() {
+    fn a_vanishing_pivot_is_found() {
         for (entries, vanishing) in
             [([1.0, 1.0, 0.0, 1.0, 0.0, 1.0], 1), ([0.0; 6], 0), ([3.0, 1.0, 0.0, 1.0 / 3.0, 0.0, 1.0], 1)]
         {

@@ -16,9 +16,9 @@ const SPARE: f64 = 1e-2;
 ///   ⎡ M  Cᵀ ⎤
 ///   ⎣ C  0  ⎦
 ///
-/// with M of k rows and C of m, of which r are independent, as a rule all. C is eliminated first, always by the largest coefficient left, so that r unknowns
-/// depend on the others, w_D = G w_I + C_D⁻¹ γ, and (1, Gᵀ) M (1, Gᵀ)ᵀ is factorised. The m − r rows that are left then are
-/// taken to agree with the others. The choice of the independent
+/// with M of k rows and C of m, of which r are independent, as a rule all. C is eliminated first, always by the
+/// largest coefficient left, so that r unknowns depend on the others, w_D = G w_I + C_D⁻¹ γ, and (1, Gᵀ) M (1, Gᵀ)ᵀ is
+/// factorised. The m − r rows that are left then are taken to agree with the others. The choice of the independent
 /// unknowns is made anew each time and does not show in the solution.
 #[derive(Clone, Debug)]
 pub(crate) struct Saddle {
@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_to_spare_takes_over_where_the_first_ones_are_dependent() {
+    fn a_spare_row_takes_over_where_the_first_ones_are_dependent() {
         // w_1 = w_2 twice, and w_2 = w_3 to spare: M = 1, r = (3, 0, 0).
         let whole = [
             vec![1.0, 0.0, 0.0, 1.0, 1.0, 0.0],

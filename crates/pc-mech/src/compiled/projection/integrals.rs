@@ -1,4 +1,4 @@
-//! First integrals that a motion is brought back to.
+//! First integrals that a motion is kept at.
 
 use pc_expr::{Backend, Evaluator, Expr, Program};
 
@@ -144,8 +144,8 @@ impl KeptIntegrals {
         Err(EvaluationFailure::NotKept)
     }
 
-    /// Leaves in `change` the shortest δ with ∂I_j/∂y · δ = I_j − I_j0, by orthogonalising the gradients one after the other. A difference
-    /// that is rounding of the terms of I_j moves nothing: near an equilibrium it would far.
+    /// Leaves in `change` the shortest δ with ∂I_j/∂y · δ = I_j − I_j0, by orthogonalising the gradients one after the
+    /// other. A difference that is rounding of the terms of I_j moves nothing: near an equilibrium it would far.
     fn find_shortest(&mut self, at: Point<'_>) -> Result<(), EvaluationFailure> {
         self.find_gradients(at);
         let Room { entries, basis, change, .. } = &mut self.room;

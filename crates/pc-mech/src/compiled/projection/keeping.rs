@@ -1,4 +1,4 @@
-//! Motions that are brought back to first integrals.
+//! Motions that are kept at first integrals.
 
 use crate::compiled::motion::Motion;
 use crate::compiled::point::Point;
@@ -39,7 +39,7 @@ impl<'g> Canonical<'g> {
     ///
     /// # Errors
     /// [`IntegralError::Unknown`]; [`LagrangianError::NotQuadratic`](crate::LagrangianError::NotQuadratic) where η is
-    /// no expression in the momenta.
+    /// not an expression in the momenta.
     pub fn kept<S: AsRef<str>>(&self, names: &[S]) -> Result<KeptIntegrals, MechError> {
         let mut equations = self.observed_first_order()?;
         let closed = self.closed_quasi_velocities()?.iter().copied();
@@ -62,12 +62,13 @@ impl<'g> Multipliers<'g> {
 }
 
 impl Motion {
-    /// The same motion with a [projection](pc_expr::VectorField::project) to the values that these integrals have at (t, y), beside
-    /// that to its constraints: the shortest way in the components of the state as they are. Asked for after each
-    /// step, it changes the state by no more than the error of the step.
+    /// The same motion with a [projection](pc_expr::VectorField::project) to the values that these integrals have at
+    /// (t, y), beside that to its constraints: the shortest way in the components of the state as they are. Asked for
+    /// after each step, it changes the state by no more than the error of the step.
     ///
-    /// An integral whose gradient depends on those before it, such as the energy at rest, is left to itself there. One that
-    /// jumps on the way, as energy does where a potential is a step, is none there, and to keep it changes the motion.
+    /// An integral whose gradient depends on those before it, such as the energy at rest, is not kept there. A
+    /// quantity that jumps on the way, such as the energy where a potential is a step, is not an integral there, and
+    /// keeping it changes the motion.
     ///
     /// # Errors
     /// [`IntegralError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later; what the
@@ -99,8 +100,7 @@ impl Motion {
         Ok(self)
     }
 
-    /// Takes the values at (t, y) for those to be [kept](Motion::keep) from now on: at another start, or with other
-    /// parameters.
+    /// Makes the values at (t, y) those to be [kept](Motion::keep) from now on: at another start, or with other parameters.
     ///
     /// # Errors
     /// As for [`keep`](Motion::keep).

@@ -1,4 +1,4 @@
-//! How bodies move with a frame, and what they add to a system.
+//! The motion of bodies with a frame, and their contributions to a system.
 
 use pc_algebra::Frame;
 use pc_expr::{Expr, SymbolPlaces};

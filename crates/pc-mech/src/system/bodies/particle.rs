@@ -9,8 +9,8 @@ use crate::system::bodies::moving::{Moving, Share};
 ///
 /// Its velocity is ṙ = X_0 r + η_s X_s r, its kinetic energy ½ m |ṙ|². A force F on it, with components along the
 /// same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ by the symbols `x'`. One that depends on the place
-/// alone, is homogeneous in r and has a force function, F · X_s r = X_s U, counts in the energy: L has U, and Q_s nothing. So
-/// does a component of another that is such a force.
+/// alone, is homogeneous in r and has a force function, F · X_s r = X_s U, counts in the energy: U is added to L, and
+/// nothing to Q_s. So does a single component with this property.
 ///
 /// ```
 /// use pc_mech::{Graph, Particle, System};

@@ -11,8 +11,8 @@ use crate::system::bodies::particle::Particle;
 ///
 /// Its kinetic energy is ½ m |ṙ|² + ½ ω·Iω (König). That is right if r is the **mass centre** and I is taken about it, and
 /// also if r is any point of the body that is **at rest** (as the fixed point of a top) and I is taken about that
-/// point. For any other point r the energy has the further term m ṙ·(ω × s), s from r to the mass centre, which is
-/// not written here: give the mass centre.
+/// point. For any other point r the energy has the further term m ṙ·(ω × s), s from r to the mass centre, which is not
+/// supported: give the mass centre.
 ///
 /// The angular velocity ω has components along axes in which I is constant, in general axes fixed in the body. It
 /// follows from a [rotation](RigidBody::rotating), or is [given](RigidBody::turning).
@@ -99,11 +99,11 @@ enum Orientation<'g> {
 impl<'g> RigidBody<'g> {
     /// A body whose attitude is the 3 × 3 matrix R(t, x) from body axes to axes in space: ω̂ = RᵀṘ, along body axes.
     ///
-    /// R may be a multiple of a rotation matrix, such as the |q|² R of a quaternion off the unit sphere: taken is the
-    /// antisymmetric part of RᵀṘ divided by ⅓ tr RᵀR, on which a factor has no influence. Of the matrices of
-    /// groups, those of [`UnitQuaternions`](crate::UnitQuaternions) and [`EulerAngles`](crate::EulerAngles) are such
-    /// multiples everywhere. Nine entries R_ij that are coordinates are so on SO(3) only, and give a long energy:
-    /// there ω is better [given](RigidBody::turning) by the quasi-velocities.
+    /// R may be a multiple of a rotation matrix, such as the |q|² R of a quaternion off the unit sphere: ω̂ is the
+    /// antisymmetric part of RᵀṘ divided by ⅓ tr RᵀR, in which a factor cancels. Of the matrices of groups, those of
+    /// [`UnitQuaternions`](crate::UnitQuaternions) and [`EulerAngles`](crate::EulerAngles) are such multiples
+    /// everywhere. A matrix of nine coordinates R_ij is one on SO(3) only, and gives a long energy: it is better to
+    /// [give](RigidBody::turning) ω by the quasi-velocities.
     pub fn rotating(
         mass: impl Into<Expr<'g>>,
         position: impl IntoIterator<Item = impl Into<Expr<'g>>>,

@@ -20,7 +20,7 @@ impl<F: VectorField> Cvode<F> {
     /// Starts at y(t0) = y0 as [`new`](Cvode::new) does, with derivatives of the motion.
     ///
     /// # Errors
-    /// As for [`new`](Cvode::new); [`SolveError::Input`] if a column asks for what the field does not have.
+    /// As for [`new`](Cvode::new); [`SolveError::Input`] if a column needs a derivative that the field does not have.
     pub fn with_sensitivities(
         field: F,
         t0: f64,

@@ -1,4 +1,4 @@
-//! Which derivatives of a motion to integrate with it, and how.
+//! The derivatives of a motion that are integrated with it.
 
 use pc_expr::VectorField;
 
@@ -12,9 +12,9 @@ use crate::integration::checks::{check_length, finite, positive};
 /// ```text
 /// ṡ = (∂f/∂y) s + ∂f/∂pⱼ,    s(t₀) = ∂y₀/∂pⱼ.
 /// ```
-/// Columns come in the order in which they are asked for. Products with ∂f/∂y are the field's
-/// [own](VectorField::jvp) if it has them, else by its [Jacobian](VectorField::jacobian), else by difference quotients,
-/// which are good for about ten digits. Derivatives by parameters need the field's
+/// Columns come in the order in which they are added. Products with ∂f/∂y are the field's
+/// [own](VectorField::jvp) if it has them, else by its [Jacobian](VectorField::jacobian), else by difference
+/// quotients, which are accurate to about ten digits. Derivatives by parameters need the field's
 /// [`parameter_jacobian`](VectorField::parameter_jacobian).
 ///
 /// Where the states lie on a surface that may move with the parameters, so must y₀: a start that satisfies constraints
@@ -136,8 +136,8 @@ impl Sensitivities {
         Sensitivities { error_control, ..self }
     }
 
-    /// Sizes p̄ of what the columns are derivatives by, positive, one for each: p̄ s has the unit of the state, and the
-    /// absolute tolerance of the column s is that of the state over p̄.
+    /// Scales p̄ of the parameters and start values by which the columns are derivatives, positive, one for each: p̄ s
+    /// has the unit of the state, and the absolute tolerance of the column s is that of the state over p̄.
     ///
     /// Unless given, p̄ is the [size of a parameter](VectorField::parameter_size), or where that is not known the one by which
     /// ∂f/∂p at the start is as large as f; that of a component of the start is its own; and all are at least 1.

@@ -39,12 +39,12 @@ impl Krylov {
         Krylov { dimension, restarts: 0, tolerance: 0.05, preconditioner: None }
     }
 
-    /// How often to go on with the residual from a new space when the first does not suffice.
+    /// How often to restart from the residual with a new space when the first does not suffice.
     pub fn restarts(self, restarts: u32) -> Self {
         Krylov { restarts, ..self }
     }
 
-    /// How small the residual must become, in parts of the tolerance of Newton's iteration; positive.
+    /// The tolerance of the residual, relative to that of Newton's iteration; positive.
     pub fn tolerance(self, tolerance: f64) -> Self {
         Krylov { tolerance, ..self }
     }

@@ -1,4 +1,4 @@
-//! The linear systems (I − γ ∂f/∂y) x = b of Newton's iteration, and who solves them.
+//! The linear systems (I − γ ∂f/∂y) x = b of Newton's iteration, and their solvers.
 //!
 //! γ is the step times a coefficient of the method, so that a solver goes through three stages, each rarer than the
 //! one after it: ∂f/∂y is renewed, I − γ ∂f/∂y is factorised, a system is solved.

@@ -1,10 +1,10 @@
-//! What makes GMRES converge fast.
+//! Preconditioners, which make GMRES converge fast.
 
 use pc_expr::{Failure, VectorField};
 
 /// A matrix P like I − γ ∂f/∂y, with which systems are solved more easily.
 ///
-/// GMRES is then applied to P⁻¹ A or A P⁻¹ in place of A = I − γ ∂f/∂y, and converges the faster the nearer they are to I.
+/// GMRES is then applied to P⁻¹ A or A P⁻¹ in place of A = I − γ ∂f/∂y, and converges faster the nearer these are to I.
 ///
 /// ```
 /// use pc_solve::{Failure, Krylov, LinearSolver, Method, Options, Preconditioner, Side, VectorField, from_fn, solve};

@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_singular_matrix_is_not_solved_with() {
+    fn a_singular_matrix_is_refused() {
         let pattern = Pattern::from_columns(3, [vec![0, 1], vec![0, 1], vec![2]]);
         let mut factors = SparseLu::new(&pattern).unwrap();
         for values in [[1.0, 2.0, 2.0, 4.0, 1.0], [1.0, 0.0, 0.0, 1.0, 0.0], [0.0; 5]] {

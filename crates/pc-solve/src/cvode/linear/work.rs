@@ -1,4 +1,4 @@
-//! What the callbacks of a linear solver work with.
+//! The data of the callbacks of a linear solver.
 
 use crate::cvode::linear::preconditioner::Preconditioner;
 use crate::cvode::linear::quotients::Quotients;

@@ -122,7 +122,7 @@ fn sixteen_full_rows_and_long_chains_are_written_out() {
 
 /// Two systems that do not know each other: the pattern has two blocks, the velocities their places.
 #[test]
-fn bodies_that_are_not_coupled_stay_apart_in_the_pattern() {
+fn uncoupled_bodies_stay_apart_in_the_pattern() {
     let graph = Graph::new();
     let equations = System::builder(&graph)
         .coordinates(["a", "b", "c", "d"])
@@ -179,7 +179,7 @@ fn a_metric_of_both_signs_is_regular_where_a_pivot_vanishes() {
 }
 
 #[test]
-fn a_pivot_that_vanishes_names_quasi_velocity_and_state_in_both_forms() {
+fn a_vanishing_pivot_names_quasi_velocity_and_state_in_both_forms() {
     let graph = Graph::new();
     // M = ((1, x), (x, x² + (x − 2)²)) has the pivots 1 and (x − 2)².
     let system = System::builder(&graph)
@@ -194,7 +194,8 @@ fn a_pivot_that_vanishes_names_quasi_velocity_and_state_in_both_forms() {
         .unwrap()
         .first_order();
     let y = [2.0, 0.5, -1.0, 0.25];
-    let message = "the mass matrix is singular: the kinetic energy lacks `y'` (pivot 0) at t = 1, x = 2, y = 0.5, x' = -1, y' = 0.25";
+    let message =
+        "the mass matrix is singular: its pivot for `y'` is 0 at t = 1, x = 2, y = 0.5, x' = -1, y' = 0.25";
     for (longest, is_staged) in [(0, true), (usize::MAX, false)] {
         let mut motion = system.compile(&all(), longest).unwrap();
         assert_eq!(motion.is_staged(), is_staged);
