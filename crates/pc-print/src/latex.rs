@@ -114,7 +114,7 @@ impl<'p> Latex<'_, 'p> {
             let term = match size {
                 "1" => operator,
                 _ if is_sum => format!("\\left({size}\\right) {operator}"),
-                _ => format!("{size} {operator}"),
+                _ => format!("{size} \\, {operator}"), // kept apart from the argument of a sine
             };
             let sign = match (terms.is_empty(), sign) {
                 (true, "+") => "",

@@ -10,7 +10,8 @@ pub(crate) enum Factors<'g> {
     /// L D Lᵀ in the order of elimination that fills in least.
     Ldl(Ldl<'g>),
     /// The inverse itself, for a small matrix of both signs, such as that of L = ẋẏ: a pivot may vanish where it is regular.
-    /// And for any without a usable pivot on its diagonal.
+    /// And for any without a usable pivot on its diagonal, and one of two rows whose determinant is much shorter than its
+    /// pivots.
     Inverse(Matrix<Expr<'g>>),
 }
 
@@ -43,7 +44,9 @@ impl<'g> Factors<'g> {
     pub(crate) fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Factors<'g> {
         let undefined = || Matrix::from_fn(m.rows(), m.rows(), |_, _| Expr::ONE / Expr::ZERO);
         let lacks = (0..m.rows()).any(|s| m[(s, s)].is_zero());
-        let inverted = |ldl: &Ldl<'g>| m.rows() <= MOST_INVERTED && (lacks || ldl.has_both_signs(graph));
+        let inverted = |ldl: &Ldl<'g>| {
+            m.rows() <= MOST_INVERTED && (lacks || ldl.has_both_signs(graph)) || ldl.is_longer(graph, m)
+        };
         match Ldl::of(graph, m).filter(|ldl| !inverted(ldl)) {
             Some(ldl) => Factors::Ldl(ldl),
             None => Factors::Inverse(inverse(graph, m).unwrap_or_else(undefined)), // a regular M has an inverse
@@ -87,6 +90,17 @@ impl<'g> Ldl<'g> {
         graph.exact_root(self.diagonal[s]) * graph.sum(below.chain([eta[s]]))
     }
 
+    /// Whether two rows have a determinant that is much shorter than the pivots of which it is the product: of a relativistic
+    /// particle it is a power of what stands under the root of its Lagrangian.
+    fn is_longer(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> bool {
+        let (2, Some(&last)) = (m.rows(), self.order.last()) else { return false };
+        if !graph.know_root_powers(m.entries()) {
+            return false;
+        }
+        let pivot = self.diagonal[last].tree_cost();
+        determinant(graph, m).is_some_and(|determinant| determinant.tree_cost().saturating_mul(2) <= pivot)
+    }
+
     /// Whether D has entries of both signs at some point; parameters that are positive as a rule are so there.
     fn has_both_signs(&self, graph: &'g Graph) -> bool {
         let symbols = graph.symbols_of(&self.diagonal);
@@ -99,7 +113,7 @@ impl<'g> Ldl<'g> {
     }
 
     /// Eliminates one row after the other, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always the row that has
-    /// the fewest entries left; `None` if the diagonal that is left is zero.
+    /// the fewest entries left, of these one whose pivot is a symbol: a wheel before the body that carries it. `None` if the diagonal that is left is zero.
     fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {
         let k = m.rows();
         let entries = |i: usize| m.row(i).iter().copied().enumerate().filter(|(_, x)| !x.is_zero()).collect();
@@ -113,7 +127,7 @@ impl<'g> Ldl<'g> {
         let mut open: BTreeSet<usize> = (0..k).collect();
         while !open.is_empty() {
             let usable = open.iter().copied().filter(|&p| schur[p].contains_key(&p));
-            let pivot = usable.min_by_key(|&p| schur[p].len())?;
+            let pivot = usable.min_by_key(|&p| (schur[p].len(), schur[p][&p].tree_cost() > 0))?;
             open.remove(&pivot);
             ldl.order.push(pivot);
             let mut eliminated = std::mem::take(&mut schur[pivot]);
