@@ -43,11 +43,8 @@ pub struct Plan {
 impl Plan {
     /// The form of the equations as the command line and the file want it.
     pub fn form(model: &Model, arguments: &RunArguments) -> RunForm {
-        let written = model.document().simulation.form.as_ref().map(|form| form.value);
-        arguments.form.unwrap_or(match written {
-            Some(document::EquationForm::Canonical) => RunForm::Canonical,
-            Some(document::EquationForm::Poincare) | None => RunForm::Poincare,
-        })
+        let written = model.document().simulation.form.as_ref().map(|form| form.value.into());
+        arguments.form.or(written).unwrap_or(RunForm::Poincare)
     }
 
     /// The plan for a model as the command line and the file want it.
