@@ -3,6 +3,8 @@
 //! Every function writes ẏ for y = (coordinates, quasi-velocities), in the order of the columns of the built-in
 //! model, without quasi-velocities that constraints say vanish. [`classical`] binds them to the parameters of the models; [`sample`] draws states at which to compare.
 
+mod arm;
+mod attitude;
 mod chains;
 pub(crate) mod nonholonomic;
 mod orbit;
@@ -15,6 +17,10 @@ mod spring;
 mod tests;
 mod tops;
 
+use std::f64::consts::PI;
+
+pub use arm::arm_on_wall;
+pub use attitude::{gimbals, quadrotor, reaction_wheels};
 pub use chains::{pendulum_chain, pendulum_chain_in_the_plane, toda_chain};
 pub use nonholonomic::{
     appell_hamel, ball_in_cylinder, ball_on_turntable, carriage, chaplygin_sleigh, nonholonomic_particle,
@@ -48,6 +54,7 @@ const SATELLITE: Satellite = Satellite { inertia: [0.1, 0.2, 0.25], mass: 1.0 };
 /// Names of the models that [`classical`] and [`sample`] know, in order.
 pub const MODELS: &[&str] = &[
     "appell-hamel",
+    "arm-on-wall",
     "ball-in-cylinder",
     "bouncing-ball",
     "carriage",
@@ -59,6 +66,7 @@ pub const MODELS: &[&str] = &[
     "double-pendulum-cartesian",
     "double-pendulum-links",
     "euler-top",
+    "gimbals",
     "gravity-gradient",
     "heavy-top-euler",
     "heavy-top-euler-symmetric",
@@ -69,6 +77,8 @@ pub const MODELS: &[&str] = &[
     "nonholonomic-particle",
     "pendulum-chain",
     "pendulum-chain-cartesian",
+    "quadrotor",
+    "reaction-wheels",
     "relativistic-constant-force",
     "relativistic-particle",
     "rigid-body-spring",
@@ -100,6 +110,7 @@ pub const MODELS: &[&str] = &[
 pub fn classical(model: &str) -> Option<Rhs> {
     Some(match model {
         "appell-hamel" => |_, y, dy| appell_hamel(y, dy),
+        "arm-on-wall" => |_, y, dy| arm_on_wall(y, dy),
         "ball-in-cylinder" => |_, y, dy| ball_in_cylinder(y, dy),
         "bouncing-ball" => |_, y, dy| dy.copy_from_slice(&[y[1], -9.81]),
         "carriage" => |_, y, dy| carriage(y, dy),
@@ -113,6 +124,7 @@ pub fn classical(model: &str) -> Option<Rhs> {
         "double-pendulum-cartesian" => |_, y, dy| DOUBLE.by_horizontal_velocities(y, dy),
         "double-pendulum-links" => |_, y, dy| DOUBLE.by_rates_of_links(y, dy),
         "euler-top" => |_, y, dy| euler_top([1.0, 2.0, 3.0], y, dy),
+        "gimbals" => |_, y, dy| gimbals(y, dy),
         "gravity-gradient" => |_, y, dy| SATELLITE.in_gravity_gradient(y, dy),
         "heavy-top-euler" => |_, y, dy| TRIAXIAL.in_euler_angles(y, dy),
         "heavy-top-euler-symmetric" => |_, y, dy| LAGRANGE.in_euler_angles(y, dy),
@@ -123,6 +135,8 @@ pub fn classical(model: &str) -> Option<Rhs> {
         "nonholonomic-particle" => |_, y, dy| nonholonomic_particle(y, dy),
         "pendulum-chain" => |_, y, dy| pendulum_chain(y, dy),
         "pendulum-chain-cartesian" => |_, y, dy| pendulum_chain_in_the_plane(y, dy),
+        "quadrotor" => |_, y, dy| quadrotor(y, dy),
+        "reaction-wheels" => |_, y, dy| reaction_wheels(y, dy),
         "relativistic-constant-force" => |_, y, dy| relativistic_constant_force(2.0, 3.0, y, dy),
         "relativistic-particle" => |_, y, dy| relativistic_particle(2.0, 1.0, y, dy),
         "rigid-body-spring" => |_, y, dy| ON_SPRING.on_se3(y, dy),
@@ -158,12 +172,21 @@ pub fn classical(model: &str) -> Option<Rhs> {
 ///
 /// Kept away from the poles of Euler's angles (θ between 0.4 and 2.6), from the centre of polar coordinates
 /// (ρ between 0.5 and 2) and from the velocity of light (speed at most 0.9 c), from horizontal links and the equator
-/// and the poles of the sphere where the frame ends there. Verticals, links and the quaternion of the heavy top are
+/// and the poles of the sphere where the frame ends there, from pitch upright and a straight elbow. Verticals, links and the quaternion of the heavy top are
 /// not normalised: the equations hold off the unit sphere too. Those of the satellite, as printed, do not. Where the
 /// velocities of coordinates are columns they satisfy the constraints, and the heading φ is below 1.2, where the
 /// equations in ẋ and φ̇ alone are regular too.
 pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
     Some(match model {
+        "arm-on-wall" => loop {
+            // The elbow bent, the tool on the wall.
+            let (shoulder, elbow) = (rng.uniform(0.6, 1.2), rng.uniform(-1.3, -0.5));
+            let left = (0.7 - arm::reach([shoulder, elbow, PI / 2.0 - shoulder - elbow])) / 0.3;
+            if left.abs() < 0.95 {
+                let y = [shoulder, elbow, left.acos() - shoulder - elbow, rng.normal(), rng.normal()];
+                break (0.0, y.to_vec());
+            }
+        },
         "ball-in-cylinder" | "turntable" => (0.0, rng.normals(9)),
         "carriage" => {
             let mut y = rng.normals(10);
@@ -191,6 +214,7 @@ pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
             (0.0, y)
         }
         "euler-top" => (0.0, rng.normals(3)),
+        "gimbals" => (0.0, rng.normals(6)),
         "gravity-gradient" => {
             let mut y = rng.normals(13);
             for (part, length) in [(0..3, 2.0), (3..7, 1.0)] {
@@ -214,6 +238,12 @@ pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
             y.extend(rng.normals(4));
             (0.0, y)
         }
+        "quadrotor" => {
+            let mut y = rng.normals(12);
+            y[4] = rng.uniform(-1.2, 1.2);
+            (0.0, y)
+        }
+        "reaction-wheels" => (0.0, rng.normals(11)),
         "relativistic-constant-force" => (0.0, vec![rng.normal(), rng.uniform(-1.8, 1.8)]),
         "relativistic-particle" => {
             let (radius, angle) = (rng.uniform(0.5, 2.0), rng.normal());
