@@ -17,9 +17,7 @@ mod spring;
 mod tests;
 mod tops;
 
-use std::f64::consts::PI;
-
-pub use arm::arm_on_wall;
+pub use arm::{arm_on_wall, arm_sample};
 pub use attitude::{gimbals, quadrotor, reaction_wheels};
 pub use chains::{pendulum_chain, pendulum_chain_in_the_plane, toda_chain};
 pub use nonholonomic::{
@@ -54,7 +52,6 @@ const SATELLITE: Satellite = Satellite { inertia: [0.1, 0.2, 0.25], mass: 1.0 };
 /// Names of the models that [`classical`] and [`sample`] know, in order.
 pub const MODELS: &[&str] = &[
     "appell-hamel",
-    "arm-on-wall",
     "ball-in-cylinder",
     "bouncing-ball",
     "carriage",
@@ -110,7 +107,6 @@ pub const MODELS: &[&str] = &[
 pub fn classical(model: &str) -> Option<Rhs> {
     Some(match model {
         "appell-hamel" => |_, y, dy| appell_hamel(y, dy),
-        "arm-on-wall" => |_, y, dy| arm_on_wall(y, dy),
         "ball-in-cylinder" => |_, y, dy| ball_in_cylinder(y, dy),
         "bouncing-ball" => |_, y, dy| dy.copy_from_slice(&[y[1], -9.81]),
         "carriage" => |_, y, dy| carriage(y, dy),
@@ -172,21 +168,12 @@ pub fn classical(model: &str) -> Option<Rhs> {
 ///
 /// Kept away from the poles of Euler's angles (θ between 0.4 and 2.6), from the centre of polar coordinates
 /// (ρ between 0.5 and 2) and from the velocity of light (speed at most 0.9 c), from horizontal links and the equator
-/// and the poles of the sphere where the frame ends there, from pitch upright and a straight elbow. Verticals, links and the quaternion of the heavy top are
+/// and the poles of the sphere where the frame ends there, from pitch upright. Verticals, links and the quaternion of the heavy top are
 /// not normalised: the equations hold off the unit sphere too. Those of the satellite, as printed, do not. Where the
 /// velocities of coordinates are columns they satisfy the constraints, and the heading φ is below 1.2, where the
 /// equations in ẋ and φ̇ alone are regular too.
 pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
     Some(match model {
-        "arm-on-wall" => loop {
-            // The elbow bent, the tool on the wall.
-            let (shoulder, elbow) = (rng.uniform(0.6, 1.2), rng.uniform(-1.3, -0.5));
-            let left = (0.7 - arm::reach([shoulder, elbow, PI / 2.0 - shoulder - elbow])) / 0.3;
-            if left.abs() < 0.95 {
-                let y = [shoulder, elbow, left.acos() - shoulder - elbow, rng.normal(), rng.normal()];
-                break (0.0, y.to_vec());
-            }
-        },
         "ball-in-cylinder" | "turntable" => (0.0, rng.normals(9)),
         "carriage" => {
             let mut y = rng.normals(10);

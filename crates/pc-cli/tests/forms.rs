@@ -164,7 +164,7 @@ fn a_file_says_its_form() {
     for (more, message) in [
         ("form = \"hamel\"\n", "add `hamel = { v = \"r*θ'\" }`"),
         ("hamel = { v = \"r*φ'\" }\n", "`hamel` has no effect without `form`"),
-        ("form = \"hamel\"\nhamel = { r = \"r*φ'\" }\n", "the name `r`"),
+        ("form = \"hamel\"\nhamel = { r = \"r*φ'\" }\n", "`r` is already the name of a coordinate"),
         ("form = \"hamel\"\nhamel = { v = \"r*φ'^2\" }\n", "model.toml:12:"),
         ("form = \"lagrange\"\n", "lagrange"),
     ] {

@@ -50,7 +50,7 @@ const LONG_LEFT: usize = 24;
 const HANGING: usize = 6;
 
 /// A line whose bracket both opens and closes in it, which then grows with what is in it.
-fn whole(line: String) -> String {
+pub(crate) fn whole(line: String) -> String {
     match (line.matches("\\Bigl(").count(), line.matches("\\Bigr)").count()) {
         (1, 1) => line.replace("\\Bigl(", "\\left(").replace("\\Bigr)", "\\right)"),
         _ => line,

@@ -2,12 +2,23 @@
 
 use nalgebra::{Matrix4, Vector4};
 
+use super::random::SplitMix64;
+
 const LENGTHS: [f64; 3] = [0.5, 0.4, 0.3];
 
-/// How far from the shoulder the links reach at angles of the joints: Σ l_i cos φ_i with φ_i = q_1 + … + q_i.
-pub(super) fn reach(joints: [f64; 3]) -> f64 {
-    let directions = [joints[0], joints[0] + joints[1], joints[0] + joints[1] + joints[2]];
-    LENGTHS.iter().zip(directions).map(|(length, direction)| length * direction.cos()).sum()
+/// How far the wall is.
+const WALL: f64 = 0.7;
+
+/// A random state of the arm with its elbow bent and its tool on the wall.
+pub fn arm_sample(rng: &mut SplitMix64) -> [f64; 5] {
+    loop {
+        let (shoulder, elbow) = (rng.uniform(0.6, 1.2), rng.uniform(-1.3, -0.5));
+        let left = WALL - LENGTHS[0] * shoulder.cos() - LENGTHS[1] * (shoulder + elbow).cos();
+        let cosine = left / LENGTHS[2];
+        if cosine.abs() < 0.95 {
+            return [shoulder, elbow, cosine.acos() - shoulder - elbow, rng.normal(), rng.normal()];
+        }
+    }
 }
 
 /// y = (q, v, ω_3), v the velocity of the tool along the wall: for the directions φ_i = q_1 + … + q_i of the links

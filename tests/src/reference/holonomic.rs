@@ -7,21 +7,6 @@ const POLAR_COLUMNS: &[&str] = &["ρ", "φ", "η1", "η2"];
 
 /// Their reference states, in the order of the models' names.
 pub(super) const HOLONOMIC: &[Reference] = &[
-    // start: the tool on the wall
-    Reference {
-        model: "arm-on-wall",
-        t_end: 0.5,
-        columns: &["q1", "q2", "q3", "rise", "turn"],
-        start: &[1.0, -0.9, 1.3644386514535773, 0.2, 0.3],
-        state: &[
-            0.8075142102371631,
-            -0.37598364960203395,
-            1.1692002996453077,
-            0.1013407238661633,
-            0.4674702901595526,
-        ],
-        conserved: &[],
-    },
     Reference {
         model: "bouncing-ball",
         t_end: 3.0,

@@ -49,7 +49,6 @@ pub const BUILTIN: &[Builtin] = models![
     "pendulum-chain",
     "pendulum-chain-cartesian",
     "toda-chain",
-    "arm-on-wall",
     "chaplygin-sleigh",
     "vertical-disk",
     "vertical-disk-driven",

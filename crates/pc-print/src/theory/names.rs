@@ -6,6 +6,7 @@ use pc_expr::{Folding, Given, Names, Style, Written};
 use pc_mech::Expr;
 use pc_model::Assembly;
 
+use crate::latex::whole;
 use crate::layout::Layout;
 use crate::theory::description::{Section, Side, Theory};
 
@@ -55,7 +56,7 @@ impl<'g> Section<'g> {
         let here = names.list().iter().filter(|name| lines.contains(&name.line));
         let meaning = |name: &pc_expr::Name<'_>| {
             let side = |write: &dyn Fn(&Written) -> String| {
-                let (book, latex, text) = (write(book), write(latex), write(text));
+                let (book, latex, text) = (write(book), whole(write(latex)), write(text));
                 Side { expression: None, book, latex, text }
             };
             (
@@ -67,7 +68,7 @@ impl<'g> Section<'g> {
         let formulas = self.entries.iter_mut().flat_map(|entry| &mut entry.formulas);
         let sides = formulas.flat_map(|(left, right)| [left, right]);
         for (side, &e) in sides.filter(|side| side.expression.is_some()).zip(expressions) {
-            (side.book, side.latex, side.text) = (book.line(e), latex.line(e), text.line(e));
+            (side.book, side.latex, side.text) = (book.line(e), whole(latex.line(e)), text.line(e));
         }
     }
 }
