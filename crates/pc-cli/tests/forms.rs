@@ -165,7 +165,7 @@ fn a_file_says_its_form() {
         ("form = \"hamel\"\n", "add `hamel = { v = \"r*θ'\" }`"),
         ("hamel = { v = \"r*φ'\" }\n", "`hamel` has no effect without `form`"),
         ("form = \"hamel\"\nhamel = { r = \"r*φ'\" }\n", "`r` is already the name of a coordinate"),
-        ("form = \"hamel\"\nhamel = { v = \"r*φ'^2\" }\n", "model.toml:12:"),
+        ("form = \"hamel\"\nhamel = { v = \"r*φ'^2\" }\n", "model.toml:13:16:"),
         ("form = \"lagrange\"\n", "lagrange"),
     ] {
         refused(&["derive", &file(&directory, &format!("{PLANET}{more}"))], 3, message);
