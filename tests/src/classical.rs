@@ -3,6 +3,8 @@
 //! Every function writes ẏ for y = (coordinates, quasi-velocities), in the order of the columns of the built-in
 //! model, without quasi-velocities that constraints say vanish. [`classical`] binds them to the parameters of the models; [`sample`] draws states at which to compare.
 
+mod arm;
+mod attitude;
 mod chains;
 pub(crate) mod nonholonomic;
 mod orbit;
@@ -15,6 +17,8 @@ mod spring;
 mod tests;
 mod tops;
 
+pub use arm::{arm_on_wall, arm_sample};
+pub use attitude::{gimbals, quadrotor, reaction_wheels};
 pub use chains::{pendulum_chain, pendulum_chain_in_the_plane, toda_chain};
 pub use nonholonomic::{
     appell_hamel, ball_in_cylinder, ball_on_turntable, carriage, chaplygin_sleigh, nonholonomic_particle,
@@ -59,6 +63,7 @@ pub const MODELS: &[&str] = &[
     "double-pendulum-cartesian",
     "double-pendulum-links",
     "euler-top",
+    "gimbals",
     "gravity-gradient",
     "heavy-top-euler",
     "heavy-top-euler-symmetric",
@@ -69,6 +74,8 @@ pub const MODELS: &[&str] = &[
     "nonholonomic-particle",
     "pendulum-chain",
     "pendulum-chain-cartesian",
+    "quadrotor",
+    "reaction-wheels",
     "relativistic-constant-force",
     "relativistic-particle",
     "rigid-body-spring",
@@ -113,6 +120,7 @@ pub fn classical(model: &str) -> Option<Rhs> {
         "double-pendulum-cartesian" => |_, y, dy| DOUBLE.by_horizontal_velocities(y, dy),
         "double-pendulum-links" => |_, y, dy| DOUBLE.by_rates_of_links(y, dy),
         "euler-top" => |_, y, dy| euler_top([1.0, 2.0, 3.0], y, dy),
+        "gimbals" => |_, y, dy| gimbals(y, dy),
         "gravity-gradient" => |_, y, dy| SATELLITE.in_gravity_gradient(y, dy),
         "heavy-top-euler" => |_, y, dy| TRIAXIAL.in_euler_angles(y, dy),
         "heavy-top-euler-symmetric" => |_, y, dy| LAGRANGE.in_euler_angles(y, dy),
@@ -123,6 +131,8 @@ pub fn classical(model: &str) -> Option<Rhs> {
         "nonholonomic-particle" => |_, y, dy| nonholonomic_particle(y, dy),
         "pendulum-chain" => |_, y, dy| pendulum_chain(y, dy),
         "pendulum-chain-cartesian" => |_, y, dy| pendulum_chain_in_the_plane(y, dy),
+        "quadrotor" => |_, y, dy| quadrotor(y, dy),
+        "reaction-wheels" => |_, y, dy| reaction_wheels(y, dy),
         "relativistic-constant-force" => |_, y, dy| relativistic_constant_force(2.0, 3.0, y, dy),
         "relativistic-particle" => |_, y, dy| relativistic_particle(2.0, 1.0, y, dy),
         "rigid-body-spring" => |_, y, dy| ON_SPRING.on_se3(y, dy),
@@ -158,7 +168,7 @@ pub fn classical(model: &str) -> Option<Rhs> {
 ///
 /// Kept away from the poles of Euler's angles (θ between 0.4 and 2.6), from the centre of polar coordinates
 /// (ρ between 0.5 and 2) and from the velocity of light (speed at most 0.9 c), from horizontal links and the equator
-/// and the poles of the sphere where the frame ends there. Verticals, links and the quaternion of the heavy top are
+/// and the poles of the sphere where the frame ends there, from pitch upright. Verticals, links and the quaternion of the heavy top are
 /// not normalised: the equations hold off the unit sphere too. Those of the satellite, as printed, do not. Where the
 /// velocities of coordinates are columns they satisfy the constraints, and the heading φ is below 1.2, where the
 /// equations in ẋ and φ̇ alone are regular too.
@@ -191,6 +201,7 @@ pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
             (0.0, y)
         }
         "euler-top" => (0.0, rng.normals(3)),
+        "gimbals" => (0.0, rng.normals(6)),
         "gravity-gradient" => {
             let mut y = rng.normals(13);
             for (part, length) in [(0..3, 2.0), (3..7, 1.0)] {
@@ -214,6 +225,12 @@ pub fn sample(model: &str, rng: &mut SplitMix64) -> Option<(f64, Vec<f64>)> {
             y.extend(rng.normals(4));
             (0.0, y)
         }
+        "quadrotor" => {
+            let mut y = rng.normals(12);
+            y[4] = rng.uniform(-1.2, 1.2);
+            (0.0, y)
+        }
+        "reaction-wheels" => (0.0, rng.normals(11)),
         "relativistic-constant-force" => (0.0, vec![rng.normal(), rng.uniform(-1.8, 1.8)]),
         "relativistic-particle" => {
             let (radius, angle) = (rng.uniform(0.5, 2.0), rng.normal());

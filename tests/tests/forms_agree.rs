@@ -138,6 +138,7 @@ fn lagranges_equations_are_poincares() {
             "euler-top",
             "rigid-body-spring",
             "gravity-gradient",
+            "reaction-wheels",
             "spherical-pendulum-cartesian",
             "spherical-pendulum-meridian",
             "double-pendulum-cartesian",

@@ -198,6 +198,7 @@ fn lagranges_equations_reach_the_references() {
             "gravity-gradient",
             "heavy-top-quaternion",
             "pendulum-chain-cartesian",
+            "reaction-wheels",
             "rigid-body-spring",
             "rocking-block",
             "spherical-pendulum-cartesian",

@@ -127,3 +127,59 @@ fn senseless_requests_are_refused() {
     refused(&["derive", sleigh, "--independent", "v"], 4, "cannot be the independent");
     refused(&["derive", "relativistic-particle", "--form", "orthonormal"], 4, "L is not quadratic");
 }
+
+/// A planet whose file asks for its velocities along and across the radius.
+const PLANET: &str = "[coordinates]\nr = 1.0\n\"φ\" = 0.0\n[quasi_velocities]\n\"φ'\" = 1.1\n[lagrangian]\n\
+                      kinetic = \"(r'^2 + r^2*φ'^2)/2\"\npotential = \"-1/r\"\n[simulation]\nt_end = 1.0\nsamples = 2\n";
+
+fn file(directory: &tempfile::TempDir, text: &str) -> String {
+    let path = directory.path().join("model.toml");
+    std::fs::write(&path, text).expect("written");
+    path.display().to_string()
+}
+
+/// `form` and `hamel` of a file are those of `derive` and `run`; the command line goes first.
+#[test]
+fn a_file_says_its_form() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path =
+        file(&directory, &format!("{PLANET}form = \"hamel\"\nhamel = {{ u = \"r'\", v = \"r*φ'\" }}\n"));
+    let text = said(&["derive", &path]);
+    assert!(text.contains("Hamel's equations") && text.contains("  v' = -u v/r\n"), "{text}");
+    assert!(said(&["derive", &path, "--form", "canonical"]).contains("canonical equations"));
+    let other = said(&["derive", &path, "--form", "hamel", "v=2*φ'"]);
+    assert!(other.contains("v = 2 φ'") && !other.contains("u = r'"), "{other}");
+    let table = said(&["run", &path]);
+    assert!(table.starts_with("t,r,φ,r',φ',energy,u,v\n"), "{table}");
+    // r φ' at the end
+    let end: Vec<f64> =
+        table.lines().last().expect("rows").split(',').map(|x| x.parse().expect("a number")).collect();
+    assert!((end[7] - end[1] * end[4]).abs() < 1e-12, "{table}");
+    let reduced = file(&directory, &format!("{PLANET}form = \"reduced\"\n"));
+    assert!(said(&["derive", &reduced]).contains("Poincaré's equations, reduced"));
+    for (more, message) in [
+        ("form = \"hamel\"\n", "add `hamel = { v = \"r*θ'\" }`"),
+        ("hamel = { v = \"r*φ'\" }\n", "`hamel` has no effect without `form`"),
+        ("form = \"hamel\"\nhamel = { r = \"r*φ'\" }\n", "`r` is already the name of a coordinate"),
+        ("form = \"hamel\"\nhamel = { v = \"r*φ'^2\" }\n", "model.toml:13:16:"),
+        ("form = \"lagrange\"\n", "lagrange"),
+    ] {
+        refused(&["derive", &file(&directory, &format!("{PLANET}{more}"))], 3, message);
+    }
+}
+
+/// `independent` of a file is `--independent`, which goes first.
+#[test]
+fn a_file_says_its_independent_velocities() {
+    let text = include_str!("../../pc-model/models/carriage.toml");
+    let directory = tempfile::tempdir().expect("a directory");
+    let path =
+        file(&directory, &text.replace("[simulation]\n", "[simulation]\nindependent = [\"x'\", \"φ'\"]\n"));
+    assert_eq!(said(&["derive", &path]), said(&["derive", "carriage", "--independent", "x',φ'"]));
+    let other = ["--independent", "ψ1',ψ2'"];
+    assert_eq!(
+        said(&[&["derive", path.as_str()][..], &other].concat()),
+        said(&[&["derive", "carriage"][..], &other].concat())
+    );
+    assert_ne!(said(&["derive", &path]), said(&[&["derive", "carriage"][..], &other].concat()));
+}

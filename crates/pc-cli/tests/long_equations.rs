@@ -22,7 +22,9 @@ fn derived(model: &Path, arguments: &[&str]) -> Option<String> {
 }
 
 fn mechanisms() -> impl Iterator<Item = PathBuf> {
-    ["crank-rocker", "rattleback", "slider-crank", "squeezer", "whipple-bicycle"].into_iter().map(mechanism)
+    ["arm-on-wall", "crank-rocker", "rattleback", "slider-crank", "squeezer", "whipple-bicycle"]
+        .into_iter()
+        .map(mechanism)
 }
 
 /// What stands under a heading, without indentation.
@@ -84,6 +86,17 @@ fn the_rates_of_a_four_bar_linkage() {
          β' = c rocker sin(α - γ)/(l sin(α - β))\n\
          γ' = rocker\n"
     );
+}
+
+/// Those of the joints of an arm, by the same law, from the velocity of its tool along a wall and the turn of its last link.
+#[test]
+fn the_rates_of_an_arm_with_its_tool_on_a_wall() {
+    let text = derived(&mechanism("arm-on-wall"), &[]).expect("equations");
+    let kinematics = section(&text, "Kinematics");
+    for rate in ["q1' = ", "q2' = ", "q3' = "] {
+        let line = kinematics.lines().find(|line| line.starts_with(rate)).expect("a rate");
+        assert!(line.contains("sin(q2)") && !line.contains("cos"), "{kinematics}");
+    }
 }
 
 #[test]

@@ -32,3 +32,47 @@ fn the_tilted_disk_rolls_in_three_lines() {
          parameters bound  26 = 2 cos + 1 div + 5 fma + 15 mul + 2 sin + 1 sub\n"
     );
 }
+
+/// Newton's and Euler's equations, thrusts and torques as any book has them [Mellinger and Kumar 2011, (3), (4)].
+#[test]
+fn a_quadrotor_flies_by_newtons_and_eulers_equations() {
+    assert_eq!(
+        section("quadrotor", "Equations"),
+        "F = f1 + f2 + f3 + f4\n\
+         m v_x' = F (sin(θ) cos(φ) cos(ψ) + sin(φ) sin(ψ))\n\
+         m v_y' = F (sin(θ) cos(φ) sin(ψ) - sin(φ) cos(ψ))\n\
+         m v_z' = cos(φ) cos(θ) F - m g\n\
+         I1 p'  = l (f2 - f4) + q s (I2 - I3)\n\
+         I2 q'  = l (f3 - f1) + p s (I3 - I1)\n\
+         I3 s'  = κ (f1 - f2 + f3 - f4) + p q (I1 - I2)\n"
+    );
+    assert_eq!(section("quadrotor", "Mass matrix"), "diag(m, m, m, I1, I2, I3)\n");
+}
+
+/// [Magnus 1955; Arnold and Maunder 1961].
+#[test]
+fn a_gyroscope_in_gimbals_drifts_by_its_equations() {
+    assert_eq!(
+        section("gimbals", "Equations"),
+        "u' (A0 + C1 sin(β)² + cos(β)² (A1 + A)) = 2 u v sin(β) cos(β) (A1 - C1 + A) - C v n cos(β)\n\
+         v' (B1 + A) = C u n cos(β) - u² sin(β) cos(β) (A1 - C1 + A)\n\
+         C n'        = 0\n"
+    );
+}
+
+/// In momenta Ω are not needed: p_ω is the angular momentum of the whole, ṗ_ω = p_ω × ω, and each wheel has its own.
+#[test]
+fn the_wheels_of_a_satellite_are_collected() {
+    let output = Command::new(env!("CARGO_BIN_EXE_pc"))
+        .args(["derive", "reaction-wheels", "--form", "canonical"])
+        .output()
+        .expect("pc starts");
+    let text = String::from_utf8(output.stdout).expect("UTF-8");
+    for line in [
+        "  p_ω1' = p_ω3 cos(ε) (p_Ω2 - p_Ω4)/I2 - p_ω2 sin(ε) z3/I3 + p_ω2 p_ω3 (1/I3 - 1/I2)\n",
+        "  p_ω2' = p_ω3 cos(ε) (p_Ω3 - p_Ω1)/I1 + p_ω1 sin(ε) z3/I3 + p_ω1 p_ω3 (1/I1 - 1/I3)\n",
+        "  z3 = p_Ω1 + p_Ω2 + p_Ω3 + p_Ω4\n",
+    ] {
+        assert!(text.contains(line), "{text}");
+    }
+}

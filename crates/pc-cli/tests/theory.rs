@@ -245,3 +245,64 @@ fn limits_hold() {
     let (code, text) = said_of(KEPLER, &["--limit-memory", "50K"]);
     assert!(code == 4 && text.contains("--limit-memory"), "{text}");
 }
+
+/// z and a number.
+fn is_named(word: &str) -> bool {
+    word.strip_prefix('z').is_some_and(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit()))
+}
+
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_alphanumeric() && c != '_')
+}
+
+/// What is long has names, each said once and before its use, in text and for programs.
+#[test]
+fn theories_of_mechanisms_name_what_is_long() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/mechanisms");
+    for name in ["crank-rocker", "rattleback"] {
+        let model = folder.join(format!("{name}.toml")).display().to_string();
+        let text = said(&[&model]);
+        let mut known: Vec<String> = Vec::new();
+        for line in text.lines().skip(2) {
+            assert!(line.chars().count() <= 112, "{name}: {line}");
+            let (left, right) = line.split_once(" = ").unwrap_or(("", line));
+            let unknown = words(right).find(|word| is_named(word) && !known.iter().any(|z| z == word));
+            assert_eq!(unknown, None, "{name}: {line}");
+            if is_named(left.trim()) {
+                assert!(!known.iter().any(|z| z == left.trim()), "{name}: {line}");
+                known.push(left.trim().to_owned());
+            }
+        }
+        assert!(!known.is_empty(), "{name} has long formulas: {text}");
+        let object: Value = serde_json::from_str(&said(&[&model, "--format", "json"])).expect("JSON");
+        let definitions = object["definitions"].as_array().expect("definitions");
+        let names: Vec<&str> =
+            definitions.iter().map(|given| given["name"].as_str().expect("a name")).collect();
+        for (place, given) in definitions.iter().enumerate() {
+            let value = given["value"].as_str().expect("text");
+            assert!(parse(value).is_ok(), "{name}: {value}");
+            let later = words(value).find(|word| names[place..].contains(word));
+            assert_eq!(later, None, "{name}: {} = {value}", names[place]);
+        }
+        assert!(known.iter().all(|z| names.contains(&z.as_str())), "{name}: {names:?}");
+    }
+}
+
+/// Some hundred coordinates are some seconds: where quasi-velocities are velocities, no frames are multiplied.
+#[test]
+fn a_theory_of_many_coordinates_ends() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("chain.toml");
+    let n = 200;
+    let coordinates: String = (0..n).map(|i| format!("q{i} = 0.1\n")).collect();
+    let kinetic: Vec<String> = (0..n).map(|i| format!("q{i}'^2/2")).collect();
+    let potential: Vec<String> = (1..n).map(|i| format!("(q{i} - q{})^2/2", i - 1)).collect();
+    let text = format!(
+        "[coordinates]\n{coordinates}[lagrangian]\nkinetic = \"{}\"\npotential = \"{}\"\n",
+        kinetic.join(" + "),
+        potential.join(" + ")
+    );
+    fs::write(&path, text).expect("written");
+    let said = said(&[&path.display().to_string(), "--limit-time", "120"]);
+    assert!(said.contains("Jacobi's identity proved"), "{said}");
+}

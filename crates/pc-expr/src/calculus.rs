@@ -1,13 +1,16 @@
 //! Derivatives of expressions, and short forms of the results.
 //!
 //! `derivative` sweeps backwards for gradients and forwards along a direction; `substitution` puts expressions in place of
-//! symbols; `collect` rebuilds an expression as a polynomial whose coefficients no longer contain what they do not depend on,
-//! where `numbers` finds the same values; `potential` finds a function by its gradient; `typeset` rewrites expressions
-//! to be read.
+//! symbols; `collect` rebuilds an expression as a polynomial whose coefficients have forgotten what they do not depend on,
+//! where `numbers` finds the same values, and `polynomial` writes it out; `potential` finds a function by its gradient; `root_powers` lets powers of roots be recognised; `typeset` rewrites expressions to be read;
+//! `multiplied_out` opens brackets where sines and cosines merge.
 
 pub(crate) mod collect;
 pub(crate) mod derivative;
+pub(crate) mod multiplied_out;
 pub(crate) mod numbers;
+pub(crate) mod polynomial;
 pub(crate) mod potential;
+pub(crate) mod root_powers;
 pub(crate) mod substitution;
 pub(crate) mod typeset;

@@ -44,7 +44,7 @@ mod program;
 mod random;
 mod time_profile;
 
-pub use calculus::collect::Polynomial;
+pub use calculus::polynomial::Polynomial;
 pub use calculus::substitution::Substitution;
 pub use codegen::chain::{Chain, ChainLayout};
 pub use codegen::layout::{Calls, FunctionBody, Language, Layout, Place, Slot};

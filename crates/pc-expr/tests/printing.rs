@@ -207,3 +207,48 @@ fn deep_expressions_are_printed_compactly() {
     let text = deep.to_string();
     assert!(text.contains(" where z1 = ") && text.len() < 1 << 20, "{} bytes", text.len());
 }
+
+/// What is subtracted is turned round where it subtracts as much as it adds: l (g − f), not −l (f − g).
+#[test]
+fn differences_are_subtracted_the_other_way_round() {
+    let graph = Graph::new();
+    let [a, f, g, l, p] = graph.symbols(["a", "f", "g", "l", "p"]);
+    let book = |e: Expr<'_>| e.display(Style::Book);
+    assert_eq!(book(p - l * (f - g)), "l (g - f) + p");
+    assert_eq!(book(-l * (f - g) - p * (a - f)), "l (g - f) + p (f - a)");
+    assert_eq!(book(p - l * (a + f - g)), "p - l (a + f - g)");
+    assert_eq!(book((p - f - g) * l * -1.0), "l (f + g - p)");
+    assert_eq!(book((a * p - f - g) / -2.0), "½ (f - a p + g)");
+    assert_eq!(book(a - (f - g)), "a - f + g");
+    // Terms stay apart, so that a line may end between them.
+    let page = graph.page(Folding::Structural);
+    let [f, g, l] = page.symbols(["f", "g", "l"]);
+    let negative = -(l * f.sin() - g * l.cos() + f.powi(2));
+    let names = page.names(&[Side::Sum(negative)], &[], 80);
+    assert_eq!(names.written(Style::Book).terms(negative).len(), 3);
+}
+
+/// On paper it is 1 − x that stands under a root and is divided by.
+#[test]
+fn differences_from_numbers_begin_with_the_number_on_paper() {
+    let page = Graph::with_folding(Folding::Structural);
+    let [v, c] = page.symbols(["v", "c"]);
+    let w = 1.0 - v.square() / c.square();
+    assert_eq!((v / w.sqrt() / w).display(Style::Book), "v/(sqrt(1 - v²/c²) (1 - v²/c²))");
+    assert_eq!((c * (v.square() - 1.0)).display(Style::Book), "c (v² - 1)");
+}
+
+/// J (x − y) sin ε where that is shorter than J x sin ε − J y sin ε.
+#[test]
+fn monomials_of_one_coefficient_are_collected() {
+    let graph = Graph::new();
+    let [e, j, u, x, y, z] = graph.symbols(["e", "j", "u", "x", "y", "z"]);
+    let page = graph.page(Folding::Structural);
+    page.symbols(["e", "j", "u", "x", "y", "z"]);
+    let written = |expression: Expr<'_>| {
+        let polynomial = graph.polynomial(expression, &[u, x, y, z]).unwrap();
+        polynomial.expanded(&graph, &page).display(Style::Book)
+    };
+    assert_eq!(written(j * e.sin() * u * (x + y - z)), "j u sin(e) (x + y - z)");
+    assert_eq!(written(j * e.sin() * u * (x + y) + j * e.cos() * u * z), "j u z cos(e) + j u sin(e) (x + y)");
+}

@@ -50,7 +50,7 @@ const LONG_LEFT: usize = 24;
 const HANGING: usize = 6;
 
 /// A line whose bracket both opens and closes in it, which then grows with what is in it.
-fn whole(line: String) -> String {
+pub(crate) fn whole(line: String) -> String {
     match (line.matches("\\Bigl(").count(), line.matches("\\Bigr)").count()) {
         (1, 1) => line.replace("\\Bigl(", "\\left(").replace("\\Bigr)", "\\right)"),
         _ => line,
@@ -114,7 +114,7 @@ impl<'p> Latex<'_, 'p> {
             let term = match size {
                 "1" => operator,
                 _ if is_sum => format!("\\left({size}\\right) {operator}"),
-                _ => format!("{size} {operator}"),
+                _ => format!("{size} \\, {operator}"), // kept apart from the argument of a sine
             };
             let sign = match (terms.is_empty(), sign) {
                 (true, "+") => "",

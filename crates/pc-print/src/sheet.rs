@@ -202,6 +202,14 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         if self.page.size(&products) > longest { right.to_vec() } else { products }
     }
 
+    /// Each ẋ_i with its value, sines and cosines merged where that is shorter: the rates of links by the law of sines.
+    fn rates(&self, values: &[Expr<'g>]) -> Vec<(Expr<'p>, Expr<'p>)> {
+        let plain = self.all(values);
+        let merged = self.all(&self.system.graph().merged_angles(values));
+        let shorter = if self.page.size(&merged) < self.page.size(&plain) { merged } else { plain };
+        self.system.frame().coordinates().iter().map(|x| self.rate(x)).zip(shorter).collect()
+    }
+
     /// The symbol of a rate.
     fn rate(&self, x: &Expr<'g>) -> Expr<'p> {
         self.page.symbol(&format!("{x}'"))
@@ -243,7 +251,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
             changed: changed.collect(),
             constraints,
             frame: (self.matrix(frame.b()), self.all(frame.b0())),
-            rates: with_rates(frame.coordinates(), parts.velocities),
+            rates: self.rates(parts.velocities),
             brackets: self.brackets(parts.vanishing),
             balance,
             states: with_rates(&states, parts.states),

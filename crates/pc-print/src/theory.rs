@@ -1,8 +1,8 @@
 //! The analysis of a model's motions, in print.
 //!
 //! An assembled model becomes text. Read `description` first, the content whatever the format; then `ground`, from
-//! which all parts start, and the parts: `brackets`, `integrals`, `measure`, `action`, `steady`, `routh`. `text`,
-//! `latex` and `json` are the three ways to print, `folded` breaks long formulas into several lines, and `page` puts
+//! which all parts start, and the parts: `brackets`, `integrals`, `measure`, `action`, `steady`, `routh`. `names` writes the
+//! formulas, with names for what is long; `text`, `latex` and `json` are the three ways to print, `folded` breaks long formulas into several lines, and `page` puts
 //! these together.
 
 pub(crate) mod action;
@@ -14,6 +14,7 @@ pub(crate) mod integrals;
 pub(crate) mod json;
 pub(crate) mod latex;
 pub(crate) mod measure;
+pub(crate) mod names;
 pub(crate) mod options;
 pub(crate) mod page;
 pub(crate) mod routh;

@@ -106,6 +106,10 @@ impl<'g> Frame<'g> {
         let (graph, k) = (self.graph(), self.operators());
         shape("the matrix A", a.rows(), k)?;
         shape("the drift A_0", a0.len(), k)?;
+        if is_identity(a, a0) {
+            let back = (a.clone(), a0.to_vec());
+            return Ok(FrameChange { to: self.clone(), matrix: a.clone(), drift: a0.to_vec(), back });
+        }
         let back = inverse(graph, a).ok_or(AlgebraError::SingularDefinitions)?;
         let back0: Vec<Expr<'g>> =
             (0..k).map(|m| -graph.dot(back.row(m).iter().copied(), a0.iter().copied())).collect();
@@ -114,6 +118,12 @@ impl<'g> Frame<'g> {
         let to = Frame::new(graph, self.time(), self.coordinates().to_vec(), b, b0)?;
         Ok(FrameChange { to, matrix: a.clone(), drift: a0.to_vec(), back: (back, back0) })
     }
+}
+
+/// Whether η' = A η + A_0 is η: of many quasi-velocities much is multiplied for that, and nothing found.
+fn is_identity(a: &Matrix<Expr<'_>>, a0: &[Expr<'_>]) -> bool {
+    let entry = |i: usize, j: usize| a[(i, j)] == if i == j { Expr::ONE } else { Expr::ZERO };
+    a0.iter().all(|a0| a0.is_zero()) && (0..a.rows()).all(|i| (0..a.columns()).all(|j| entry(i, j)))
 }
 
 impl<'g> FrameChange<'g> {
@@ -163,6 +173,9 @@ impl<'g> FrameChange<'g> {
     ) -> Result<StructureCoefficients<'g>, AlgebraError> {
         let (graph, k) = (self.to.graph(), self.drift.len());
         shape("the list of operators of the structure coefficients", c.operators(), k)?;
+        if is_identity(&self.matrix, &self.drift) {
+            return Ok(c.clone());
+        }
         let b: Vec<Vec<Expr<'g>>> = (0..=k).map(|s| self.old_components(s)).collect();
         StructureCoefficients::from_pairs(k, pairs(k), |r, s| {
             let forth = self.to.apply(r, &b[s]);

@@ -206,13 +206,15 @@ fn difference<'g>(graph: &'g Graph, x: Expr<'g>, y: Expr<'g>) -> Expr<'g> {
 fn cofactor_inverse<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
     let m = a.rows();
     let all: Vec<usize> = (0..m).collect();
-    let determinant = minor(graph, a, &all, &all);
+    // Of links that are told by their directions these are sines of the angles between them.
+    let short = |minor: Expr<'g>| graph.merged_angles(&[minor])[0];
+    let determinant = short(minor(graph, a, &all, &all));
     if Neighbourhood::anywhere(graph, &[determinant]).vanishes(graph, determinant) {
         return None;
     }
     let without = |skip: usize| -> Vec<usize> { (0..m).filter(|&i| i != skip).collect() };
     Some(Matrix::from_fn(m, m, |i, j| {
-        let cofactor = minor(graph, a, &without(j), &without(i));
+        let cofactor = short(minor(graph, a, &without(j), &without(i)));
         let signed = if (i + j).is_multiple_of(2) { cofactor } else { -cofactor };
         signed / determinant
     }))

@@ -59,7 +59,9 @@ impl Contents {
         for (name, definition) in &self.given {
             model.give_quasi_velocity(name, definition)?;
         }
-        model.choose_independent(self.independent.iter());
+        if !self.independent.is_empty() {
+            model.choose_independent(self.independent.iter());
+        }
         model.project_start(self.projects_start);
         for name in &self.held {
             model.hold_start(name)?;

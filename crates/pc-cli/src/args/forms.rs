@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 use pc_model::Variables;
+use pc_model::document::EquationForm;
 
 /// Form of the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -22,6 +23,19 @@ pub enum Form {
     Orthonormal,
     /// Equations for quasi-velocities given on the command line.
     Hamel,
+}
+
+impl From<EquationForm> for Form {
+    fn from(form: EquationForm) -> Form {
+        match form {
+            EquationForm::Poincare => Form::Poincare,
+            EquationForm::Canonical => Form::Canonical,
+            EquationForm::Reduced => Form::Reduced,
+            EquationForm::LiePoisson => Form::LiePoisson,
+            EquationForm::Orthonormal => Form::Orthonormal,
+            EquationForm::Hamel => Form::Hamel,
+        }
+    }
 }
 
 impl From<Form> for pc_print::Form {
@@ -78,6 +92,19 @@ pub enum RunForm {
     Orthonormal,
     /// Equations for quasi-velocities given on the command line.
     Hamel,
+}
+
+impl From<EquationForm> for RunForm {
+    fn from(form: EquationForm) -> RunForm {
+        match form {
+            EquationForm::Poincare => RunForm::Poincare,
+            EquationForm::Canonical => RunForm::Canonical,
+            EquationForm::Reduced => RunForm::Reduced,
+            EquationForm::LiePoisson => RunForm::LiePoisson,
+            EquationForm::Orthonormal => RunForm::Orthonormal,
+            EquationForm::Hamel => RunForm::Hamel,
+        }
+    }
 }
 
 impl From<RunForm> for Variables {

@@ -54,10 +54,16 @@ pub fn open_in(
     if !is_hamel && let Some(definition) = velocities.definitions.first() {
         return Err(CliError::Definitions { name: definition.name.clone() });
     }
+    // What the command line gives takes the place of what the file does.
+    if !velocities.definitions.is_empty() {
+        model.give_no_quasi_velocities();
+    }
     for Setting { name, value } in &velocities.definitions {
         model.give_quasi_velocity(name, value)?;
     }
-    model.choose_independent(velocities.independent.iter().map(|name| name.trim()));
+    if !velocities.independent.is_empty() {
+        model.choose_independent(velocities.independent.iter().map(|name| name.trim()));
+    }
     Ok(model)
 }
 

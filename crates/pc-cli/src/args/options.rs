@@ -103,9 +103,9 @@ pub struct DeriveArguments {
     /// Form of the equations: poincare, canonical (in momenta), lagrange (in velocities, with multipliers where there
     /// are constraints), voronets (constraints solved for velocities), reduced (without coordinates that nothing depends on:
     /// Euler–Poincaré), lie-poisson (the same in momenta), orthonormal (in a frame that is so in the kinetic metric) or hamel (in
-    /// the quasi-velocities NAME=EXPR)
-    #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = form)]
-    pub form: Form,
+    /// the quasi-velocities NAME=EXPR) [default: that of the file, or poincare]
+    #[arg(long, value_name = "FORM", value_parser = form)]
+    pub form: Option<Form>,
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Page,

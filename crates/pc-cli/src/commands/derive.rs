@@ -14,13 +14,16 @@ use crate::report::notes::{say_dropped, say_moved};
 /// # Errors
 /// [`CliError`].
 pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
-    let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == Form::Hamel)?;
+    let is_hamel = arguments.form == Some(Form::Hamel);
+    let model = input::open_in(&arguments.model, &arguments.velocities, is_hamel)?;
+    let written = model.document().simulation.form.as_ref().map(|form| form.value.into());
+    let form = arguments.form.or(written).unwrap_or(Form::Poincare);
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly);
     say_moved(&assembly);
     let layout = Layout { width: arguments.width.into(), brief: arguments.brief, inline: arguments.inline };
-    let page = page(arguments.form.into(), arguments.format.into(), &layout, model.title(), &assembly)?;
+    let page = page(form.into(), arguments.format.into(), &layout, model.title(), &assembly)?;
     assembly.within_limits()?;
     print(|out| write!(out, "{page}"))
 }

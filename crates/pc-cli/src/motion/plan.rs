@@ -43,11 +43,8 @@ pub struct Plan {
 impl Plan {
     /// The form of the equations, from the command line or the file.
     pub fn form(model: &Model, arguments: &RunArguments) -> RunForm {
-        let written = model.document().simulation.form.as_ref().map(|form| form.value);
-        arguments.form.unwrap_or(match written {
-            Some(document::EquationForm::Canonical) => RunForm::Canonical,
-            Some(document::EquationForm::Poincare) | None => RunForm::Poincare,
-        })
+        let written = model.document().simulation.form.as_ref().map(|form| form.value.into());
+        arguments.form.or(written).unwrap_or(RunForm::Poincare)
     }
 
     /// The plan for a model, from the command line and the file.

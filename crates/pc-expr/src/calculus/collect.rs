@@ -7,6 +7,7 @@ use std::collections::HashSet;
 
 use rustc_hash::FxHashMap;
 
+use crate::calculus::polynomial::Polynomial;
 use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
@@ -27,15 +28,6 @@ const MANY_TERMS: usize = 64;
 const TOO_LONG: u32 = 20_000;
 /// A number at which no divisor is likely to vanish.
 const ODD: Number = Number::Rational { num: 355, den: 452 };
-
-/// A polynomial Σ c·z_1^e_1 z_2^e_2 ….
-#[derive(Clone, Debug)]
-pub struct Polynomial<'g> {
-    /// The variables z.
-    pub variables: Vec<Expr<'g>>,
-    /// Exponents of the variables, and the coefficient.
-    pub terms: Vec<(Vec<u32>, Expr<'g>)>,
-}
 
 impl Graph {
     /// Each expression in the shortest form found: collected by powers of `variables` in this order, every
@@ -484,20 +476,6 @@ fn call_node(dag: &mut Dag, function: Function, angle: NodeId) -> Option<NodeId>
     match dag.call(function, &[Atom::Node(angle)]) {
         Atom::Node(node) => Some(node),
         Atom::Constant(_) => None,
-    }
-}
-
-impl<'g> Polynomial<'g> {
-    /// The polynomial written out in another graph, coefficients in front of their monomials, not nested.
-    pub fn expanded<'h>(&self, from: &'g Graph, into: &'h Graph) -> Expr<'h> {
-        let terms = self.terms.iter().map(|(exponents, coefficient)| {
-            let present = self.variables.iter().zip(exponents).filter(|(_, e)| **e > 0);
-            let monomial = present.fold(Expr::ONE, |product, (z, &e)| {
-                product * into.symbol(&z.symbol_name().unwrap_or_default()).powi(e as i32)
-            });
-            from.typeset(&[*coefficient], into)[0] * monomial
-        });
-        into.sum(terms.collect::<Vec<_>>())
     }
 }
 

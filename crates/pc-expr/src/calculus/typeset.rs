@@ -17,13 +17,13 @@ use crate::graph::subgraph::Cone;
 const MOST_TERMS: usize = 60;
 
 /// Powers of nodes, by ascending node.
-type Factors = Vec<(NodeId, i32)>;
+pub(super) type Factors = Vec<(NodeId, i32)>;
 
 /// q Π nᵢ^eᵢ
 #[derive(Clone, Debug)]
-struct Term {
-    q: Number,
-    factors: Factors,
+pub(super) struct Term {
+    pub(super) q: Number,
+    pub(super) factors: Factors,
 }
 
 impl Graph {
@@ -59,7 +59,8 @@ impl Graph {
                                 dag.factors(factors).iter().map(|&(n, e)| (set[&n], e)).collect();
                             let powers: Vec<Atom> =
                                 powers.into_iter().map(|(x, e)| paper.powi(x, e)).collect();
-                            paper.product_of(Number::ONE, &powers)
+                            let product = paper.product_of(Number::ONE, &powers);
+                            paper.cancelled(product)
                         }
                         Node::Sum { constant, terms } => {
                             let terms: Vec<(Atom, Number)> =
@@ -111,8 +112,41 @@ impl Dag {
         if self.columns(other) < self.columns(sum) { other } else { sum }
     }
 
+    /// A product with what all terms of a sum have in common with its divisors cancelled: (a² + a b)/a is a + b.
+    fn cancelled(&mut self, product: Atom) -> Atom {
+        let Atom::Node(node) = product else { return product };
+        let Node::Product { factors } = self.node(node) else { return product };
+        let factors = self.factors(factors).to_vec();
+        let divisors: Factors = factors.iter().filter(|(_, e)| *e < 0).map(|&(node, e)| (node, -e)).collect();
+        if divisors.is_empty() {
+            return product;
+        }
+        for (place, &(sum, e)) in factors.iter().enumerate() {
+            let is_sum = e == 1 && matches!(self.node(sum), Node::Sum { .. });
+            let Some((scale, constant, terms)) = self.terms_of(Atom::Node(sum)).filter(|_| is_sum) else {
+                continue;
+            };
+            if !constant.is_zero() {
+                continue;
+            }
+            let common = terms.iter().fold(divisors.clone(), |common, term| shared(&common, &term.factors));
+            if common.is_empty() {
+                continue;
+            }
+            let inverse: Factors = common.iter().map(|&(node, e)| (node, -e)).collect();
+            let divided = |term: Term| Term { factors: [term.factors, inverse.clone()].concat(), ..term };
+            let terms: Vec<Term> = terms.into_iter().map(divided).collect();
+            let bracket = self.sum_of_terms(Number::ZERO, &terms);
+            let others: Factors = [&factors[..place], &factors[place + 1..], &common].concat();
+            let others = self.product(scale, &others);
+            let shorter = self.product_of(Number::ONE, &[others, bracket]);
+            return self.cancelled(shorter);
+        }
+        product
+    }
+
     /// Columns of an expression in print, about: what is below `DEPTH` levels of it counts as a name.
-    fn columns(&self, atom: Atom) -> usize {
+    pub(super) fn columns(&self, atom: Atom) -> usize {
         const DEPTH: usize = 5;
         match atom {
             Atom::Constant(c) => c.to_string().len(),
@@ -155,7 +189,7 @@ impl Dag {
     }
 
     /// q and the terms of a sum q (c + Σ …).
-    fn terms_of(&self, sum: Atom) -> Option<(Number, Number, Vec<Term>)> {
+    pub(super) fn terms_of(&self, sum: Atom) -> Option<(Number, Number, Vec<Term>)> {
         let Atom::Node(node) = sum else { return None };
         let (node, scale) = self.split_coefficient(node, Number::ONE);
         let Node::Sum { constant, terms } = self.node(node) else { return None };
@@ -169,7 +203,7 @@ impl Dag {
         Some((scale, constant, self.terms(terms).iter().map(term).collect()))
     }
 
-    fn sum_of_terms(&mut self, constant: Number, terms: &[Term]) -> Atom {
+    pub(super) fn sum_of_terms(&mut self, constant: Number, terms: &[Term]) -> Atom {
         let mut all = vec![(Atom::Constant(constant), Number::ONE)];
         for term in terms {
             all.push((self.product(term.q, &term.factors), Number::ONE));
@@ -178,7 +212,7 @@ impl Dag {
     }
 
     /// Puts sines and cosines of sums of angles for sums of their products, as long as there are any.
-    fn merge_angles(&mut self, terms: &mut Vec<Term>) -> bool {
+    pub(super) fn merge_angles(&mut self, terms: &mut Vec<Term>) -> bool {
         let mut merged = false;
         'again: loop {
             for i in 0..terms.len() {
@@ -303,7 +337,7 @@ impl Dag {
     }
 
     /// The sum as a product of what all its terms have in common and the rest, if they have something in common.
-    fn before_brackets(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
+    pub(super) fn before_brackets(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
         let (first, rest) = terms.split_first().filter(|_| constant.is_zero())?;
         let common = rest.iter().fold(first.factors.clone(), |common, term| shared(&common, &term.factors));
         if common.is_empty() {

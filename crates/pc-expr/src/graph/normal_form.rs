@@ -5,7 +5,7 @@
 
 use crate::graph::dag::Dag;
 use crate::graph::function::Function;
-use crate::graph::node::{Atom, Candidate, Node, NodeId};
+use crate::graph::node::{Atom, Candidate, Folding, Node, NodeId};
 use crate::graph::number::Number;
 
 /// Sums of at most this many terms are merged into the sums that contain them. A bound keeps an accumulation
@@ -43,6 +43,9 @@ impl Dag {
             &[(node, q)] if constant.is_zero() => self.scaled(q, node),
             _ => {
                 let content = content(constant, &gathered);
+                // On paper it is 1 − x that stands under a root, not −(x − 1).
+                let turned = self.folding == Folding::Structural && (constant * content).is_negative();
+                let content = if turned { -content } else { content };
                 if content.is_one() {
                     return self.admit(&Candidate::Sum(constant, &gathered));
                 }

@@ -107,7 +107,7 @@ impl<'d> Writer<'d> {
         };
         let terms = self.dag.terms(terms);
         if let (true, &[(node, q)]) = (constant.is_zero(), terms)
-            && let Some(turned) = self.turned(node, q)
+            && let Some(turned) = self.turned(node, q, subtracts)
         {
             return vec![(false, turned)];
         }
@@ -141,7 +141,10 @@ impl<'d> Writer<'d> {
                 Some((constant, terms)) if depth < DEEP => {
                     self.signed_terms(coefficient, constant, terms, depth + 1, out);
                 }
-                _ => out.push((coefficient.is_negative(), self.term(coefficient.abs(), node))),
+                _ => out.push(match self.turned(node, coefficient, subtracts_most) {
+                    Some(turned) => (false, turned),
+                    None => (coefficient.is_negative(), self.term(coefficient.abs(), node)),
+                }),
             }
         }
         let constant = constant * q;
@@ -185,17 +188,30 @@ impl<'d> Writer<'d> {
         Some(inside.into_iter().enumerate().map(term).collect())
     }
 
-    /// q x (a − b) with q < 0 as −q x (b − a).
-    fn turned(&self, node: NodeId, q: Number) -> Option<Piece> {
-        let Node::Product { factors } = self.dag.node(node) else { return None };
+    /// q x (a − b) with q < 0 as −q x (b − a), if the bracket is one `to_turn`.
+    fn turned(
+        &self,
+        node: NodeId,
+        q: Number,
+        to_turn: fn(Number, &[(NodeId, Number)]) -> bool,
+    ) -> Option<Piece> {
         if !q.is_negative() || self.named.contains(&node) {
             return None;
         }
-        let turned = |&(factor, e): &(NodeId, i32)| {
-            let terms = (e == 1).then(|| self.turned_sum(factor)).flatten()?;
-            Some((factor, join(terms)))
+        let own = [(node, 1)];
+        if self.opened(node, q).is_some() {
+            return None;
+        }
+        let factors = match self.dag.node(node) {
+            Node::Product { factors } => self.dag.factors(factors),
+            _ => &own,
         };
-        let given = self.dag.factors(factors).iter().find_map(turned)?;
+        let turned = |&(factor, e): &(NodeId, i32)| {
+            let Node::Sum { constant, terms } = self.dag.node(factor) else { return None };
+            let is_one = e == 1 && to_turn(constant, self.dag.terms(terms));
+            Some((factor, join(is_one.then(|| self.turned_sum(factor)).flatten()?)))
+        };
+        let given = factors.iter().find_map(turned)?;
         Some(self.monomial(q.abs(), node, Some(&given)))
     }
 
@@ -203,8 +219,7 @@ impl<'d> Writer<'d> {
     fn turned_sum(&self, sum: NodeId) -> Option<Vec<(bool, Piece)>> {
         let Node::Sum { constant, terms } = self.dag.node(sum) else { return None };
         let terms = self.dag.terms(terms);
-        let subtracts = constant.is_negative() || terms.iter().any(|(_, q)| q.is_negative());
-        if !subtracts || self.named.contains(&sum) {
+        if !subtracts(constant, terms) || self.named.contains(&sum) {
             return None;
         }
         let mut signed = Vec::new();
@@ -290,6 +305,18 @@ fn opens(q: Number, constant: Number, terms: &[(NodeId, Number)]) -> bool {
     let becomes_whole = || whole(q * constant) || terms.iter().any(|&(_, c)| whole(q * c));
     let several = terms.len() > 1 || !constant.is_zero();
     q.abs().is_one() || fraction && several && becomes_whole()
+}
+
+/// Whether a sum subtracts something.
+fn subtracts(constant: Number, terms: &[(NodeId, Number)]) -> bool {
+    constant.is_negative() || terms.iter().any(|(_, q)| q.is_negative())
+}
+
+/// Whether it subtracts as many terms as it adds, so that its negative is no longer.
+fn subtracts_most(constant: Number, terms: &[(NodeId, Number)]) -> bool {
+    let signs = terms.iter().map(|&(_, q)| q).chain((!constant.is_zero()).then_some(constant));
+    let (negative, positive): (Vec<Number>, Vec<Number>) = signs.partition(|q| q.is_negative());
+    negative.len() >= positive.len()
 }
 
 fn positive_first(mut signed: Vec<(bool, Piece)>) -> Vec<(bool, Piece)> {

@@ -63,6 +63,7 @@ impl Document {
         ] {
             names.extend(entries.iter().map(|entry| (&entry.name, role)));
         }
+        names.extend(self.simulation.hamel.iter().map(|given| (&given.name, Role::QuasiVelocity)));
         names
     }
 }

@@ -289,6 +289,14 @@ pub enum EquationForm {
     Poincare,
     /// Equations for the momenta.
     Canonical,
+    /// Equations for η without coordinates that nothing depends on.
+    Reduced,
+    /// Those for the momenta.
+    LiePoisson,
+    /// Equations in a frame that is orthonormal in the kinetic metric.
+    Orthonormal,
+    /// Equations for the quasi-velocities that the section gives.
+    Hamel,
 }
 
 /// The settings of a run; the program chooses those left out.
@@ -317,6 +325,10 @@ pub struct Simulation {
     pub method: Option<Located<Method>>,
     /// Form of the equations.
     pub form: Option<Located<EquationForm>>,
+    /// The quasi-velocities of the form `hamel`, by linear forms in the velocities.
+    pub hamel: Vec<NamedExpression>,
+    /// The velocities that are to be independent; the program's choice where there are none.
+    pub independent: Vec<Located<String>>,
     /// Integrals, or `energy`, to whose values at the start the motion is projected.
     pub project: Vec<Located<String>>,
 }

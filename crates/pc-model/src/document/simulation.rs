@@ -41,7 +41,15 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
                 result.form = Some(item.choice(&[
                     ("poincare", EquationForm::Poincare),
                     ("canonical", EquationForm::Canonical),
+                    ("reduced", EquationForm::Reduced),
+                    ("lie-poisson", EquationForm::LiePoisson),
+                    ("orthonormal", EquationForm::Orthonormal),
+                    ("hamel", EquationForm::Hamel),
                 ])?);
+            }
+            "hamel" => result.hamel = hamel(&item)?,
+            "independent" => {
+                result.independent = item.texts("a list of names of velocities", "[\"v\", \"x'\"]")?;
             }
             "project" => result.project = item.texts("a list of names of integrals", "[\"energy\"]")?,
             _ => {
@@ -56,12 +64,31 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
                     "accumulation",
                     "method",
                     "form",
+                    "hamel",
+                    "independent",
                     "project",
                 ]));
             }
         }
     }
-    Ok(result)
+    let is_hamel = result.form.as_ref().is_some_and(|form| form.value == EquationForm::Hamel);
+    match (is_hamel, result.hamel.is_empty()) {
+        (true, true) => Err(table.error(ErrorKind::Missing { key: "hamel", example: HAMEL })),
+        (false, false) => {
+            let (key, example) = ("hamel".to_owned(), "form = \"hamel\"");
+            Err(table.error(ErrorKind::NoEffect { key, without: "form", example }))
+        }
+        _ => Ok(result),
+    }
+}
+
+const HAMEL: &str = "hamel = { v = \"r*θ'\" }";
+
+fn hamel(item: &Item<'_>) -> Result<Vec<NamedExpression>, ModelError> {
+    let entries = item.table("a table of quasi-velocities", "{ v = \"r*θ'\" }")?;
+    let given =
+        |entry: Item<'_>| Ok(NamedExpression { name: entry.new_name()?, expression: entry.expression()? });
+    entries.items().map(given).collect()
 }
 
 fn samples(item: &Item<'_>) -> Result<Located<usize>, ModelError> {

@@ -39,6 +39,11 @@ impl Model {
         Ok(())
     }
 
+    /// Forgets the quasi-velocities that `[simulation]` of the text or calls before this one give.
+    pub fn give_no_quasi_velocities(&mut self) {
+        self.given.clear();
+    }
+
     /// The quasi-velocities given in addition to those of the text.
     pub fn given_quasi_velocities(&self) -> &[GivenQuasiVelocity] {
         &self.given

@@ -6,7 +6,7 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::{Place, Source};
-use crate::document::{Document, Expression};
+use crate::document::{Document, Expression, Name};
 
 /// A quasi-velocity with its definition, a linear form in the velocities of a model or its quasi-velocities.
 #[derive(Clone, Debug)]
@@ -40,13 +40,24 @@ impl GivenQuasiVelocity {
         if taken.contains(&name) {
             return refuse(ErrorKind::Meaning(MeaningError::GivenTwice { name: name.to_owned() }));
         }
-        if let Some((known, first)) =
-            document.declared_names().into_iter().find(|(known, _)| known.text == name)
-        {
+        // Those of the file are replaced.
+        let of_file = |known: &Name| document.simulation.hamel.iter().any(|given| given.name == *known);
+        let mut declared = document.declared_names().into_iter().filter(|(known, _)| !of_file(known));
+        if let Some((known, first)) = declared.find(|(known, _)| known.text == name) {
             let line = document.source.position(known.place.span.start).line;
             return refuse(ErrorKind::NameTaken { name: name.to_owned(), first, line });
         }
         Ok(GivenQuasiVelocity { name: name.to_owned(), expression: Expression::of(&source)?, source })
+    }
+
+    /// Those of the document, for which nothing is left to be checked.
+    pub(crate) fn of_document(document: &Document) -> Vec<Self> {
+        let given = document.simulation.hamel.iter().map(|given| GivenQuasiVelocity {
+            name: given.name.text.clone(),
+            source: document.source.clone(),
+            expression: given.expression.clone(),
+        });
+        given.collect()
     }
 
     /// Its name.

@@ -61,6 +61,8 @@ impl Model {
         let kept = document.simulation.project.iter().map(|name| name.value.clone()).collect();
         Model {
             parameters: Parameters::new(&document),
+            given: GivenQuasiVelocity::of_document(&document),
+            independent: document.simulation.independent.iter().map(|name| name.value.clone()).collect(),
             document: Arc::new(document),
             starts: Vec::new(),
             projects_start: false,
@@ -71,8 +73,6 @@ impl Model {
             kept,
             budget: Budget::default(),
             external: Vec::new(),
-            given: Vec::new(),
-            independent: Vec::new(),
         }
     }
 

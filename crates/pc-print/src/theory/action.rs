@@ -8,8 +8,9 @@ use crate::theory::ground::Ground;
 use crate::words::{short, small};
 
 /// X_0 S + H(t, x, X_s S) = 0, and the action of the model.
-pub(crate) fn section(ground: &Ground<'_, '_>) -> Section {
-    let section = |entries| Section { key: "hamilton_jacobi", title: "Hamilton–Jacobi", entries };
+pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {
+    let section =
+        |entries| Section { key: "hamilton_jacobi", title: "Hamilton–Jacobi", names: Vec::new(), entries };
     let action = ground.assembly.action.as_ref();
     let refused = |why: String| match action {
         Some(_) => section(vec![Entry::words(why).with_on("the action", Verdict::Open)]),
@@ -73,7 +74,7 @@ fn residual(checked: &ProposedAction<'_>) -> Vec<String> {
 }
 
 /// The equation, X_s S as a symbol `S_` and the name of the coordinate or quasi-velocity.
-fn equation(ground: &Ground<'_, '_>) -> Vec<Entry> {
+fn equation<'g>(ground: &Ground<'_, 'g>) -> Vec<Entry<'g>> {
     let (Ok(canonical), system) = (&ground.canonical, &ground.free) else { return Vec::new() };
     if system.forces().iter().any(|q| !q.is_zero()) {
         return Vec::new();

@@ -16,15 +16,15 @@ const MOST_RANKED: usize = 400;
 const MOST_VARIABLES: usize = 16;
 
 /// y_s = ∂L/∂η_s, and H.
-pub(crate) fn momenta(ground: &Ground<'_, '_>) -> Section {
-    let section = |entries| Section { key: "momenta", title: "Momenta", entries };
+pub(crate) fn momenta<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {
+    let section = |entries| Section { key: "momenta", title: "Momenta", names: Vec::new(), entries };
     if ground.assembly.constraints.nonlinear().is_some() {
         return section(Vec::new()); // the velocities are not independent
     }
     let (system, graph) = (&ground.free, ground.free.graph());
     let values = graph.shorten(&system.momenta(), system.quasi_velocities());
     let pairs = system.momentum_symbols().into_iter().zip(values);
-    let mut entries: Vec<Entry> =
+    let mut entries: Vec<Entry<'g>> =
         pairs.map(|(y, value)| Entry::formula(Side::of(y), Side::of(value))).collect();
     entries.push(match &ground.canonical {
         Ok(canonical) => Entry::formula(Side::symbol("H", "H"), Side::of(canonical.hamiltonian())),
@@ -56,11 +56,12 @@ fn is_stationary(system: &System<'_>) -> bool {
 }
 
 /// The brackets that are not zero, Jacobi's identity, and what they generate.
-pub(crate) fn brackets<'g>(ground: &Ground<'_, 'g>, bracket: Option<&PoissonBracket<'g>>) -> Section {
+pub(crate) fn brackets<'g>(ground: &Ground<'_, 'g>, bracket: Option<&PoissonBracket<'g>>) -> Section<'g> {
     let is_poisson = ground.constrained.is_none();
     let section = |entries| Section {
         key: if is_poisson { "poisson_brackets" } else { "almost_poisson_brackets" },
         title: if is_poisson { "Poisson brackets" } else { "Almost-Poisson brackets" },
+        names: Vec::new(),
         entries,
     };
     let Some(bracket) = bracket else { return section(Vec::new()) };
@@ -74,7 +75,7 @@ pub(crate) fn brackets<'g>(ground: &Ground<'_, 'g>, bracket: Option<&PoissonBrac
 }
 
 /// (z_i, z_j) = … for i < j, where it is not zero.
-fn nonzero(bracket: &PoissonBracket<'_>) -> Vec<Entry> {
+fn nonzero<'g>(bracket: &PoissonBracket<'g>) -> Vec<Entry<'g>> {
     let (z, tensor) = (bracket.variables(), bracket.tensor());
     let pairs = (0..z.len()).flat_map(|i| (i + 1..z.len()).map(move |j| (i, j)));
     let nonzero = pairs.filter(|&(i, j)| !tensor[(i, j)].is_zero());
@@ -84,7 +85,7 @@ fn nonzero(bracket: &PoissonBracket<'_>) -> Vec<Entry> {
 const JACOBI: &str = "Jacobi's identity";
 
 /// The bracket (12) of operators that close is Poisson's where their brackets satisfy Jacobi's identity.
-fn jacobi_by_frame(ground: &Ground<'_, '_>) -> Entry {
+fn jacobi_by_frame<'g>(ground: &Ground<'_, 'g>) -> Entry<'g> {
     let (frame, structure) = (ground.free.frame(), ground.free.structure());
     let residuals =
         [frame.closure_residual(structure, &ground.near), frame.jacobi_residual(structure, &ground.near)];
@@ -93,7 +94,7 @@ fn jacobi_by_frame(ground: &Ground<'_, '_>) -> Entry {
 }
 
 /// By the first three variables that do not satisfy it.
-fn jacobi<'g>(ground: &Ground<'_, 'g>, bracket: &PoissonBracket<'g>) -> Entry {
+fn jacobi<'g>(ground: &Ground<'_, 'g>, bracket: &PoissonBracket<'g>) -> Entry<'g> {
     if bracket.variables().len() > MOST_VARIABLES {
         return Entry::words("too many variables to test in triples").with_on(JACOBI, Verdict::Open);
     }
@@ -124,8 +125,8 @@ pub(crate) fn casimirs<'g>(
     ground: &Ground<'_, 'g>,
     bracket: Option<&PoissonBracket<'g>>,
     degree: u32,
-) -> Section {
-    let section = |entries| Section { key: "casimirs", title: "Casimirs", entries };
+) -> Section<'g> {
+    let section = |entries| Section { key: "casimirs", title: "Casimirs", names: Vec::new(), entries };
     let canonical = ground.canonical.as_ref().ok();
     section(bracket.map_or_else(Vec::new, |bracket| casimir_entries(bracket, canonical, degree)))
 }
@@ -135,7 +136,7 @@ fn casimir_entries<'g>(
     bracket: &PoissonBracket<'g>,
     canonical: Option<&Canonical<'g>>,
     degree: u32,
-) -> Vec<Entry> {
+) -> Vec<Entry<'g>> {
     let size = bracket.variables().len();
     if size > MOST_RANKED {
         return vec![Entry::words(format!("not looked for: there are {size} variables")).with(Verdict::Open)];
@@ -158,11 +159,11 @@ fn casimir_entries<'g>(
             found.extend(bracket.casimirs_by(&ansatz, moving).unwrap_or_default());
         }
     }
-    let known = |(number, &casimir): (usize, &Expr<'_>)| {
+    let known = |(number, &casimir): (usize, &Expr<'g>)| {
         let left = Side::symbol(&format!("C{number}"), &format!("C_{{{number}}}"));
         Entry::formula(left, Side::of(casimir)).with(Verdict::Proved)
     };
-    let mut entries: Vec<Entry> = (1..).zip(&found).map(known).collect();
+    let mut entries: Vec<Entry<'g>> = (1..).zip(&found).map(known).collect();
     let missing = corank - found.len().min(corank);
     let all = format!("rank {rank} of {size}: {corank} independent near almost every point");
     entries.push(match (missing, tried) {
@@ -183,8 +184,9 @@ fn binomial(n: usize, d: usize) -> usize {
 
 /// The system without the coordinates on which nothing depends, where there are any: on a group with invariant L the bracket of
 /// Lie and Poisson.
-pub(crate) fn group_reduction<'g>(ground: &Ground<'_, 'g>, degree: u32) -> Section {
-    let section = |entries| Section { key: "reduction", title: "Reduction by symmetry", entries };
+pub(crate) fn group_reduction<'g>(ground: &Ground<'_, 'g>, degree: u32) -> Section<'g> {
+    let section =
+        |entries| Section { key: "reduction", title: "Reduction by symmetry", names: Vec::new(), entries };
     let is_closed = ground.canonical.is_ok() && ground.is_unbound();
     let Some(reduced) = is_closed.then(|| ground.free.reduced().ok()).flatten() else {
         return section(Vec::new());
@@ -200,7 +202,7 @@ pub(crate) fn group_reduction<'g>(ground: &Ground<'_, 'g>, degree: u32) -> Secti
     let what = if after == 0 { ", by the bracket of Lie and Poisson" } else { "" };
     let head = Entry::words(format!("nothing depends on variables other than {}{what}", left.join(", ")));
     let rates = canonical.momenta().iter().zip(canonical.right_hand_side());
-    let rate = |(&y, &rate): (&Expr<'_>, &Expr<'_>)| {
+    let rate = |(&y, &rate): (&Expr<'g>, &Expr<'g>)| {
         Entry::formula(Side::of(reduced.graph().symbol(&format!("{y}'"))), Side::of(rate))
     };
     let hamiltonian = Entry::formula(Side::symbol("H", "H"), Side::of(canonical.hamiltonian()));

@@ -6,26 +6,28 @@ use crate::words::short;
 
 /// What can be said of a model, part by part.
 #[derive(Clone, Debug)]
-pub(crate) struct Theory {
+pub(crate) struct Theory<'g> {
     pub(crate) title: String,
-    pub(crate) sections: Vec<Section>,
+    pub(crate) sections: Vec<Section<'g>>,
 }
 
 /// A part of it.
 #[derive(Clone, Debug)]
-pub(crate) struct Section {
+pub(crate) struct Section<'g> {
     /// Its name for programs.
     pub(crate) key: &'static str,
     /// Its name for people.
     pub(crate) title: &'static str,
-    pub(crate) entries: Vec<Entry>,
+    /// Names that are first needed here, each with what it stands for.
+    pub(crate) names: Vec<(Side<'g>, Side<'g>)>,
+    pub(crate) entries: Vec<Entry<'g>>,
 }
 
 /// Formulas that belong together, with what is known of them.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Entry {
+pub(crate) struct Entry<'g> {
     pub(crate) name: Option<String>,
-    pub(crate) formulas: Vec<(Side, Side)>,
+    pub(crate) formulas: Vec<(Side<'g>, Side<'g>)>,
     /// Names with numbers.
     pub(crate) values: Vec<(String, f64)>,
     /// What is known, and of what if not of the formulas.
@@ -50,9 +52,11 @@ pub(crate) enum Verdict {
     Open,
 }
 
-/// A side of a formula, in each of the ways in which it is printed.
-#[derive(Clone, Debug)]
-pub(crate) struct Side {
+/// A side of a formula, in each of the ways in which it is printed; an expression is written when all that stand on the page are
+/// known.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Side<'g> {
+    pub(crate) expression: Option<Expr<'g>>,
     /// As in a book.
     pub(crate) book: String,
     pub(crate) latex: String,
@@ -89,24 +93,30 @@ impl Verdict {
     }
 }
 
-impl Side {
+impl<'g> Side<'g> {
     /// An expression.
-    pub(crate) fn of(e: Expr<'_>) -> Side {
-        Side::written(|style| e.display(style))
+    pub(crate) fn of(e: Expr<'g>) -> Side<'g> {
+        Side { expression: Some(e), ..Side::default() }
     }
 
     /// What is written in each style.
-    pub(crate) fn written(write: impl Fn(Style) -> String) -> Side {
-        Side { book: write(Style::Book), latex: write(Style::Latex), text: write(Style::Text) }
+    pub(crate) fn written(write: impl Fn(Style) -> String) -> Side<'g> {
+        Side {
+            expression: None,
+            book: write(Style::Book),
+            latex: write(Style::Latex),
+            text: write(Style::Text),
+        }
     }
 
     /// A symbol of mathematics that is the same in plain text everywhere.
-    pub(crate) fn symbol(plain: &str, latex: &str) -> Side {
-        Side { book: plain.to_owned(), latex: latex.to_owned(), text: plain.to_owned() }
+    pub(crate) fn symbol(plain: &str, latex: &str) -> Side<'g> {
+        let (book, latex, text) = (plain.to_owned(), latex.to_owned(), plain.to_owned());
+        Side { expression: None, book, latex, text }
     }
 
     /// (f, g)
-    pub(crate) fn bracket(f: Expr<'_>, g: Expr<'_>) -> Side {
+    pub(crate) fn bracket(f: Expr<'_>, g: Expr<'_>) -> Side<'g> {
         Side::written(|style| match style {
             Style::Latex => format!("({},\\, {})", f.display(style), g.display(style)),
             Style::Book | Style::Text => format!("({}, {})", f.display(style), g.display(style)),
@@ -114,9 +124,10 @@ impl Side {
     }
 
     /// df/dt of what has a name.
-    pub(crate) fn rate_of(name: &str) -> Side {
+    pub(crate) fn rate_of(name: &str) -> Side<'g> {
         let plain = format!("d/dt {name}");
         Side {
+            expression: None,
             latex: format!("\\frac{{d}}{{dt}}\\text{{{}}}", in_text(name)),
             book: plain.clone(),
             text: plain,
@@ -142,31 +153,31 @@ pub(crate) fn in_text(words: &str) -> String {
     text
 }
 
-impl Entry {
+impl<'g> Entry<'g> {
     /// Left = right.
-    pub(crate) fn formula(left: Side, right: Side) -> Entry {
+    pub(crate) fn formula(left: Side<'g>, right: Side<'g>) -> Entry<'g> {
         Entry { formulas: vec![(left, right)], ..Entry::default() }
     }
 
     /// Something to be said.
-    pub(crate) fn words(words: impl Into<String>) -> Entry {
+    pub(crate) fn words(words: impl Into<String>) -> Entry<'g> {
         Entry { words: vec![words.into()], ..Entry::default() }
     }
 
-    pub(crate) fn named(self, name: impl Into<String>) -> Entry {
+    pub(crate) fn named(self, name: impl Into<String>) -> Entry<'g> {
         Entry { name: Some(name.into()), ..self }
     }
 
-    pub(crate) fn with(self, verdict: Verdict) -> Entry {
+    pub(crate) fn with(self, verdict: Verdict) -> Entry<'g> {
         Entry { verdict: Some((None, verdict)), ..self }
     }
 
     /// With a verdict on something else than its formulas.
-    pub(crate) fn with_on(self, subject: &'static str, verdict: Verdict) -> Entry {
+    pub(crate) fn with_on(self, subject: &'static str, verdict: Verdict) -> Entry<'g> {
         Entry { verdict: Some((Some(subject), verdict)), ..self }
     }
 
-    pub(crate) fn say(mut self, words: impl Into<String>) -> Entry {
+    pub(crate) fn say(mut self, words: impl Into<String>) -> Entry<'g> {
         self.words.push(words.into());
         self
     }

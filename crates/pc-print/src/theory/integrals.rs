@@ -82,13 +82,13 @@ pub(crate) fn found<'g>(
 }
 
 /// Each with its verdict.
-pub(crate) fn section(
-    ground: &Ground<'_, '_>,
-    (integrals, made): &(Integrals<'_>, AnsatzSearch),
+pub(crate) fn section<'g>(
+    ground: &Ground<'_, 'g>,
+    (integrals, made): &(Integrals<'g>, AnsatzSearch),
     options: &TheoryOptions,
-) -> Section {
+) -> Section<'g> {
     let rates = Rates::poincare(&ground.equations);
-    let entry = |integral: &Integral<'_>| {
+    let entry = |integral: &Integral<'g>| {
         let (verdict, words) = verdict(ground, &rates, integral);
         let of_rate = match integral.verdict {
             ConservationVerdict::Rate { rate, .. } => {
@@ -103,9 +103,9 @@ pub(crate) fn section(
         let words = words.into_iter().chain(dependent).collect();
         Entry { formulas, words, ..Entry::default() }.named(integral.name.clone()).with(verdict)
     };
-    let mut entries: Vec<Entry> = integrals.list().iter().map(entry).collect();
+    let mut entries: Vec<Entry<'g>> = integrals.list().iter().map(entry).collect();
     entries.push(Entry::words(tried(*made, options)));
-    Section { key: "integrals", title: "Integrals", entries }
+    Section { key: "integrals", title: "Integrals", names: Vec::new(), entries }
 }
 
 /// What is known of an integral: where its rate is not seen to vanish, numbers at the start tell whether it does.
@@ -158,8 +158,13 @@ fn tried(made: AnsatzSearch, options: &TheoryOptions) -> String {
 }
 
 /// X = a_s X_s of those integrals that are linear in the momenta.
-pub(crate) fn displacements(ground: &Ground<'_, '_>, integrals: &Integrals<'_>) -> Section {
-    let section = |entries| Section { key: "cyclic_displacements", title: "Cyclic displacements", entries };
+pub(crate) fn displacements<'g>(ground: &Ground<'_, 'g>, integrals: &Integrals<'g>) -> Section<'g> {
+    let section = |entries| Section {
+        key: "cyclic_displacements",
+        title: "Cyclic displacements",
+        names: Vec::new(),
+        entries,
+    };
     let Ok(canonical) = &ground.canonical else { return section(Vec::new()) };
     if ground.constrained.is_some() {
         return section(Vec::new()); // constraints let through no displacement that is a symmetry of L alone

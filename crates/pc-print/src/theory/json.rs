@@ -5,16 +5,22 @@ use serde_json::{Map, Value, json};
 use crate::theory::description::{Entry, Theory, Verdict};
 
 /// Sections by their keys, each a list of entries.
-pub(crate) fn written(theory: &Theory, title: &str) -> Value {
+pub(crate) fn written(theory: &Theory<'_>, title: &str) -> Value {
     let mut object = Map::new();
     object.insert("model".to_owned(), json!(title));
+    let names = theory.sections.iter().flat_map(|section| &section.names);
+    let names: Vec<Value> =
+        names.map(|(name, value)| json!({ "name": name.text, "value": value.text })).collect();
+    if !names.is_empty() {
+        object.insert("definitions".to_owned(), json!(names));
+    }
     for section in &theory.sections {
         object.insert(section.key.to_owned(), section.entries.iter().map(entry).collect());
     }
     Value::Object(object)
 }
 
-fn entry(entry: &Entry) -> Value {
+fn entry(entry: &Entry<'_>) -> Value {
     let mut object = Map::new();
     let mut insert = |key: &str, value: Value| object.insert(key.to_owned(), value);
     if let Some(name) = &entry.name {

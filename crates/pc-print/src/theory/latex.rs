@@ -10,7 +10,7 @@ use crate::words::short;
 const WIDTH: usize = 140;
 
 /// A display for each section, with a comment above it; what is said without formulas stands in comments under it.
-pub(crate) fn written(theory: &Theory) -> String {
+pub(crate) fn written(theory: &Theory<'_>) -> String {
     let mut page = format!("% {}: theory (needs amsmath)\n", theory.title);
     for section in &theory.sections {
         // Writing to a string cannot fail.
@@ -26,14 +26,15 @@ pub(crate) fn written(theory: &Theory) -> String {
     page
 }
 
-fn display(page: &mut String, section: &Section) {
-    let lines: Vec<String> = section.entries.iter().flat_map(lines).collect();
+fn display(page: &mut String, section: &Section<'_>) {
+    let names = section.names.iter().flat_map(|(name, value)| formula(&name.latex, &value.latex, ""));
+    let lines: Vec<String> = names.chain(section.entries.iter().flat_map(lines)).collect();
     if !lines.is_empty() {
         let _ = write!(page, "\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"));
     }
 }
 
-fn lines(entry: &Entry) -> Vec<String> {
+fn lines(entry: &Entry<'_>) -> Vec<String> {
     let verdict = entry.verdict.map_or_else(String::new, |(subject, verdict)| {
         let subject = subject.map_or_else(String::new, |subject| format!("{subject} "));
         format!(" && \\text{{{}}}", in_text(&format!("{subject}{}", verdict.in_words())))
@@ -42,17 +43,22 @@ fn lines(entry: &Entry) -> Vec<String> {
     let formulas = entry.formulas.iter().map(|(left, right)| (left.latex.clone(), right.latex.clone()));
     let mut lines: Vec<String> = Vec::new();
     for (i, (left, right)) in formulas.chain(values).enumerate() {
-        let parts = folded_outside(&right, WIDTH);
-        lines.extend(parts.iter().enumerate().map(|(j, part)| {
-            let (start, end) = (if j == 0 { format!("  {left} &= ") } else { "  &\\quad ".to_owned() }, "");
-            let verdict = if i == 0 && j + 1 == parts.len() { verdict.as_str() } else { end };
-            format!("{start}{part}{verdict}")
-        }));
+        lines.extend(formula(&left, &right, if i == 0 { &verdict } else { "" }));
     }
     if lines.is_empty() && !verdict.is_empty() {
         lines.push(format!(" {verdict}"));
     }
     lines
+}
+
+/// Left = right, in as many lines as it needs, with something behind it.
+fn formula(left: &str, right: &str, end: &str) -> Vec<String> {
+    let parts = folded_outside(right, WIDTH);
+    let line = |(j, part): (usize, &String)| {
+        let start = if j == 0 { format!("  {left} &= ") } else { "  &\\quad ".to_owned() };
+        format!("{start}{part}{}", if j + 1 == parts.len() { end } else { "" })
+    };
+    parts.iter().enumerate().map(line).collect()
 }
 
 /// A name of the model as a symbol.

@@ -9,8 +9,10 @@ use crate::theory::description::{Entry, Section, Side, Verdict};
 use crate::theory::ground::Ground;
 
 /// N of N dx dy.
-pub(crate) fn section(ground: &Ground<'_, '_>) -> Result<Section, ModelError> {
-    let section = |entries| Ok(Section { key: "invariant_measure", title: "Invariant measure", entries });
+pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Result<Section<'g>, ModelError> {
+    let section = |entries| {
+        Ok(Section { key: "invariant_measure", title: "Invariant measure", names: Vec::new(), entries })
+    };
     if ground.assembly.constraints.nonlinear().is_some() {
         return section(vec![open("not looked for: a constraint is not affine in the velocities")]);
     }
@@ -22,12 +24,12 @@ pub(crate) fn section(ground: &Ground<'_, '_>) -> Result<Section, ModelError> {
         MeasureSearch::TooLong => return section(vec![open("not looked for: the equations are too long")]),
         MeasureSearch::Found(measure) => measure,
     };
-    let density = |plain: &str, latex: &str, density: Option<Expr<'_>>| {
+    let density = |plain: &str, latex: &str, density: Option<Expr<'g>>| {
         let formula = |density| Entry::formula(Side::symbol(plain, latex), Side::of(density));
         density.map(|density| formula(density).with(Verdict::Proved))
     };
     let densities = [density("N", "N", measure.density), density("Nη", "N_{\\eta}", measure.in_velocities)];
-    let mut entries: Vec<Entry> = densities.into_iter().flatten().collect();
+    let mut entries: Vec<Entry<'g>> = densities.into_iter().flatten().collect();
     let whose = if measure.liouville { ", Liouville's" } else { "" };
     entries.push(Entry::words(format!("the motion keeps N dx dy and Nη dx dη{whose}")));
     if measure.density.is_none() {
@@ -44,13 +46,18 @@ pub(crate) fn section(ground: &Ground<'_, '_>) -> Result<Section, ModelError> {
     section(entries)
 }
 
-fn open(words: &str) -> Entry {
+fn open<'g>(words: &str) -> Entry<'g> {
     Entry::words(words).with(Verdict::Open)
 }
 
 /// N of dτ = N dt, and the Lagrangian in that time.
-pub(crate) fn multiplier(ground: &Ground<'_, '_>) -> Section {
-    let section = |entries| Section { key: "reducing_multiplier", title: "Chaplygin's multiplier", entries };
+pub(crate) fn multiplier<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {
+    let section = |entries| Section {
+        key: "reducing_multiplier",
+        title: "Chaplygin's multiplier",
+        names: Vec::new(),
+        entries,
+    };
     if ground.is_holonomic() || ground.assembly.constraints.nonlinear().is_some() {
         return section(Vec::new());
     }

@@ -6,7 +6,7 @@ use crate::page::Page;
 use crate::theory::description::{Section, Theory};
 use crate::theory::ground::Ground;
 use crate::theory::options::TheoryOptions;
-use crate::theory::{action, brackets, integrals, json, latex, measure, routh, steady, text};
+use crate::theory::{action, brackets, integrals, json, latex, measure, names, routh, steady, text};
 use crate::visible::{one_line, visible, visible_json};
 
 /// What can be said of the motions of a model without integrating them, printed: momenta and their brackets, Casimirs, integrals
@@ -48,11 +48,11 @@ fn described<'g>(
     model: &Model,
     assembly: &Assembly<'g>,
     options: &TheoryOptions,
-) -> Result<Theory, ModelError> {
+) -> Result<Theory<'g>, ModelError> {
     let ground = Ground::new(assembly)?;
     let bracket = ground.placed(brackets::bracket(&ground))?;
     let found = integrals::found(&ground, model, options)?;
-    let sections: Vec<Section> = vec![
+    let sections: Vec<Section<'g>> = vec![
         brackets::momenta(&ground),
         brackets::brackets(&ground, bracket.as_ref()),
         brackets::casimirs(&ground, bracket.as_ref(), options.degree),
@@ -66,5 +66,7 @@ fn described<'g>(
         routh::section(&ground)?,
     ];
     let sections = sections.into_iter().filter(|section| !section.entries.is_empty()).collect();
-    Ok(Theory { title: one_line(model.title()).into_owned(), sections })
+    let mut theory = Theory { title: one_line(model.title()).into_owned(), sections };
+    names::write(&mut theory, assembly);
+    Ok(theory)
 }

@@ -8,8 +8,9 @@ use crate::theory::description::{Entry, Section, Side};
 use crate::theory::ground::Ground;
 
 /// The momenta of cyclic coordinates, the Routhian, and the equations that remain.
-pub(crate) fn section(ground: &Ground<'_, '_>) -> Result<Section, ModelError> {
-    let section = |entries| Ok(Section { key: "routh", title: "Routh's reduction", entries });
+pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Result<Section<'g>, ModelError> {
+    let section =
+        |entries| Ok(Section { key: "routh", title: "Routh's reduction", names: Vec::new(), entries });
     if !ground.is_unbound() {
         return section(Vec::new());
     }
@@ -17,7 +18,7 @@ pub(crate) fn section(ground: &Ground<'_, '_>) -> Result<Section, ModelError> {
     let Some(routh) = found else { return section(Vec::new()) };
     let graph = ground.free.graph();
     let momenta = routh.momenta.iter().zip(&routh.momenta_of_velocities);
-    let mut entries: Vec<Entry> =
+    let mut entries: Vec<Entry<'g>> =
         momenta.map(|(&p, &value)| Entry::formula(Side::of(p), Side::of(value))).collect();
     let rates = routh.cyclic.iter().zip(&routh.rates);
     entries.extend(
@@ -32,7 +33,7 @@ pub(crate) fn section(ground: &Ground<'_, '_>) -> Result<Section, ModelError> {
     let sides = [Style::Book, Style::Latex, Style::Text].map(|style| equations.balance(style));
     let side = |i: usize, of: fn(&(String, String)) -> &String| {
         let [book, latex, text] = [0, 1, 2].map(|style: usize| of(&sides[style][i]).clone());
-        Side { book, latex, text }
+        Side { expression: None, book, latex, text }
     };
     let count = sides[0].len();
     entries.extend((0..count).map(|i| Entry::formula(side(i, |pair| &pair.0), side(i, |pair| &pair.1))));

@@ -16,8 +16,12 @@ const ZERO: f64 = 1e-9;
 const MOST_LISTED: usize = 8;
 
 /// All that are found, the nearest of many.
-pub(crate) fn section<'g>(ground: &Ground<'_, 'g>, integrals: &Integrals<'g>) -> Result<Section, ModelError> {
-    let section = |entries| Ok(Section { key: "steady_motions", title: "Steady motions", entries });
+pub(crate) fn section<'g>(
+    ground: &Ground<'_, 'g>,
+    integrals: &Integrals<'g>,
+) -> Result<Section<'g>, ModelError> {
+    let section =
+        |entries| Ok(Section { key: "steady_motions", title: "Steady motions", names: Vec::new(), entries });
     if ground.assembly.constraints.nonlinear().is_some() {
         return section(vec![Entry::words("not looked for: a constraint is not affine in the velocities")]);
     }
@@ -55,7 +59,7 @@ pub(crate) fn section<'g>(ground: &Ground<'_, 'g>, integrals: &Integrals<'g>) ->
     })
 }
 
-fn entry(number: usize, found: &FoundSteadyMotion) -> Entry {
+fn entry<'g>(number: usize, found: &FoundSteadyMotion) -> Entry<'g> {
     let motion = &found.motion;
     let clean = |value: f64| if value.abs() <= ZERO { 0.0 } else { value };
     let state = motion.state.iter().map(|(name, value)| (name.clone(), clean(*value)));

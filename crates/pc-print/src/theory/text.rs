@@ -2,7 +2,7 @@
 
 use crate::lines::columns;
 use crate::text::underlined;
-use crate::theory::description::{Entry, Theory};
+use crate::theory::description::{Entry, Section, Theory};
 use crate::theory::folded::folded;
 use crate::words::{short, wrapped};
 
@@ -10,9 +10,13 @@ use crate::words::{short, wrapped};
 const WIDTH: usize = 100;
 
 /// Titles with the entries under them.
-pub(crate) fn written(theory: &Theory) -> String {
-    let section = |section: &crate::theory::description::Section| {
-        let lines = section.entries.iter().flat_map(lines);
+pub(crate) fn written(theory: &Theory<'_>) -> String {
+    let section = |section: &Section<'_>| {
+        let names = section
+            .names
+            .iter()
+            .flat_map(|(name, value)| indented(&format!("{} = {}", name.book, value.book), false));
+        let lines = names.chain(section.entries.iter().flat_map(lines));
         let lines: String = lines.map(|line| format!("  {line}\n")).collect();
         format!("{}\n{lines}", section.title)
     };
@@ -21,7 +25,7 @@ pub(crate) fn written(theory: &Theory) -> String {
 }
 
 /// Name, formulas with the verdict on them, then what else is said, further in.
-fn lines(entry: &Entry) -> Vec<String> {
+fn lines(entry: &Entry<'_>) -> Vec<String> {
     let mut verdict = entry.verdict.map(|(subject, verdict)| match subject {
         None => verdict.in_words(),
         Some(subject) => format!("{subject} {}", verdict.in_words()),

@@ -13,7 +13,8 @@ pub(crate) enum Factors<'g> {
     /// L D Lᵀ in the order of elimination that fills in least.
     Ldl(Ldl<'g>),
     /// The inverse itself, for a small matrix of both signs, such as that of L = ẋẏ: a pivot may vanish where it is regular.
-    /// And for any without a usable pivot on its diagonal.
+    /// And for any without a usable pivot on its diagonal, and one of two rows whose determinant is much shorter than its
+    /// pivots.
     Inverse(Matrix<Expr<'g>>),
     /// Joint after joint.
     Tree(Rc<TreeEquations<'g>>),
@@ -50,7 +51,9 @@ impl<'g> Factors<'g> {
     pub(crate) fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Factors<'g> {
         let undefined = || Matrix::from_fn(m.rows(), m.rows(), |_, _| Expr::ONE / Expr::ZERO);
         let lacks = (0..m.rows()).any(|s| m[(s, s)].is_zero());
-        let inverted = |ldl: &Ldl<'g>| m.rows() <= MOST_INVERTED && (lacks || ldl.has_both_signs(graph));
+        let inverted = |ldl: &Ldl<'g>| {
+            m.rows() <= MOST_INVERTED && (lacks || ldl.has_both_signs(graph)) || ldl.is_longer(graph, m)
+        };
         match Ldl::of(graph, m).filter(|ldl| !inverted(ldl)) {
             Some(ldl) => Factors::Ldl(ldl),
             None => Factors::Inverse(inverse(graph, m).unwrap_or_else(undefined)), // a regular M has an inverse
@@ -129,6 +132,17 @@ impl<'g> Ldl<'g> {
         graph.exact_root(self.diagonal[s]) * graph.sum(below.chain([eta[s]]))
     }
 
+    /// Whether two rows have a determinant that is much shorter than the pivots of which it is the product: of a relativistic
+    /// particle it is a power of what stands under the root of its Lagrangian.
+    fn is_longer(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> bool {
+        let (2, Some(&last)) = (m.rows(), self.order.last()) else { return false };
+        if !graph.know_root_powers(&m.nonzero_entries()) {
+            return false;
+        }
+        let pivot = self.diagonal[last].tree_cost();
+        determinant(graph, m).is_some_and(|determinant| determinant.tree_cost().saturating_mul(2) <= pivot)
+    }
+
     /// Whether D has entries of both signs at some point; parameters that are positive as a rule are so there.
     fn has_both_signs(&self, graph: &'g Graph) -> bool {
         let symbols = graph.symbols_of(&self.diagonal);
@@ -141,7 +155,7 @@ impl<'g> Ldl<'g> {
     }
 
     /// Eliminates one row after the other, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always the row that has
-    /// the fewest entries left; `None` if the diagonal that is left is zero.
+    /// the fewest entries left, of these one whose pivot is a symbol: a wheel before the body that carries it. `None` if the diagonal that is left is zero.
     fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {
         let k = m.rows();
         let mut schur: Vec<BTreeMap<usize, Expr<'g>>> = (0..k).map(|i| m.nonzero(i).collect()).collect();
@@ -152,13 +166,13 @@ impl<'g> Ldl<'g> {
             columns: vec![Vec::new(); k],
             diagonal: vec![Expr::ONE; k],
         };
-        // The rows that are left and have a pivot, by their number of entries.
+        // The rows that are left and have a pivot, by their number of entries; of these a symbol first.
         let usable = |schur: &[BTreeMap<usize, Expr<'g>>], p: usize| {
-            schur[p].contains_key(&p).then(|| (schur[p].len(), p))
+            schur[p].get(&p).map(|pivot| (schur[p].len(), pivot.tree_cost() > 0, p))
         };
-        let mut open: BTreeSet<(usize, usize)> = (0..k).filter_map(|p| usable(&schur, p)).collect();
+        let mut open: BTreeSet<(usize, bool, usize)> = (0..k).filter_map(|p| usable(&schur, p)).collect();
         while ldl.order.len() < k {
-            let (_, pivot) = open.pop_first()?;
+            let (_, _, pivot) = open.pop_first()?;
             ldl.turn[pivot] = ldl.order.len();
             ldl.order.push(pivot);
             let mut eliminated = std::mem::take(&mut schur[pivot]);

@@ -1,0 +1,41 @@
+//! Powers of roots, so that what is one is seen to be one.
+
+use crate::graph::expr::Expr;
+use crate::graph::function::Function;
+use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Node};
+use crate::graph::number::Number;
+use crate::graph::subgraph::Cone;
+
+/// Up to w^3.
+const HIGHEST: i32 = 6;
+
+impl Graph {
+    /// Makes the powers w^(p/2), |p| ≤ 6, of what stands under the square roots in some expressions: what is built later and has
+    /// the value of one is that power, as it is the shorter form. Answers whether there are roots.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [u, v] = graph.symbols(["u", "v"]);
+    /// let w = 1.0 - u.square() - v.square();
+    /// assert!(graph.know_root_powers(&[w.sqrt()]));
+    /// let hessian = [1.0 / w + u.square() / w.powi(2), u * v / w.powi(2), 1.0 / w + v.square() / w.powi(2)];
+    /// assert_eq!(hessian[0] * hessian[2] - hessian[1].square(), w.powi(-3));
+    /// ```
+    pub fn know_root_powers(&self, expressions: &[Expr<'_>]) -> bool {
+        let outputs: Vec<Atom> = expressions.iter().map(|expression| expression.atom_in(self)).collect();
+        self.with(|dag| {
+            let is_root = |&&node: &&_| matches!(dag.node(node), Node::Call { function: Function::Sqrt, .. });
+            let cone = Cone::below(dag, outputs);
+            let roots: Vec<_> = cone.order.iter().filter(is_root).copied().collect();
+            for &root in &roots {
+                for e in 1..=HIGHEST {
+                    dag.product(Number::ONE, &[(root, e)]);
+                    dag.product(Number::ONE, &[(root, -e)]);
+                }
+            }
+            !roots.is_empty()
+        })
+    }
+}
