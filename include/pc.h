@@ -1023,6 +1023,154 @@ pc_status pc_model_set_body_rotation(pc_model *model,
                                      pc_error **error);
 
 /**
+ * Adds a body that hangs on another, or on the world if `parent` is null, by a joint of this
+ * kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. Its
+ * origin is the point of the joint. Inertia, force and torque are set as those of other bodies,
+ * start values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names that
+ * the joint gives: `NAME` and `NAME'` of a revolute one.
+ */
+pc_status pc_model_add_jointed_body(pc_model *model,
+                                    const char *name,
+                                    const char *parent,
+                                    const char *kind,
+                                    pc_error **error);
+
+/**
+ * Sets the mass of a body that hangs by a joint.
+ */
+pc_status pc_model_set_body_mass(pc_model *model,
+                                 const char *body,
+                                 const char *mass,
+                                 pc_error **error);
+
+/**
+ * Sets the mass centre of a body that hangs by a joint, in axes of the body from its origin.
+ */
+pc_status pc_model_set_body_center(pc_model *model,
+                                   const char *body,
+                                   const char *x,
+                                   const char *y,
+                                   const char *z,
+                                   pc_error **error);
+
+/**
+ * Sets the point of a joint, in axes of the parent from its origin.
+ */
+pc_status pc_model_set_joint_place(pc_model *model,
+                                   const char *body,
+                                   const char *x,
+                                   const char *y,
+                                   const char *z,
+                                   pc_error **error);
+
+/**
+ * Sets the axis of a joint, in axes of the joint; `axis` has 3 numbers, of any length but 0.
+ */
+pc_status pc_model_set_joint_axis(pc_model *model,
+                                  const char *body,
+                                  const double *axis,
+                                  pc_error **error);
+
+/**
+ * Sets the two axes of a universal joint, of 3 numbers each: the first stands still in the
+ * parent, the second in the body.
+ */
+pc_status pc_model_set_joint_axes(pc_model *model,
+                                  const char *body,
+                                  const double *first,
+                                  const double *second,
+                                  pc_error **error);
+
+/**
+ * Sets the advance of a screw, a length a radian.
+ */
+pc_status pc_model_set_joint_pitch(pc_model *model,
+                                   const char *body,
+                                   const char *pitch,
+                                   pc_error **error);
+
+/**
+ * Sets how the axes of a joint stand in those of the parent: the 9 entries of the matrix from
+ * the former to the latter, row by row. Excludes pc_model_set_joint_turns.
+ */
+pc_status pc_model_set_joint_rotation(pc_model *model,
+                                      const char *body,
+                                      const char *const *entries,
+                                      size_t length,
+                                      pc_error **error);
+
+/**
+ * Sets the same by turns about axes: `axes` has a letter x, y or z for each of the `length`
+ * angles, every turn being about an axis as turned by those before it.
+ */
+pc_status pc_model_set_joint_turns(pc_model *model,
+                                   const char *body,
+                                   const char *axes,
+                                   const char *const *angles,
+                                   size_t length,
+                                   pc_error **error);
+
+/**
+ * Gives the coordinates of a joint other names than those of its kind.
+ */
+pc_status pc_model_name_joint_coordinates(pc_model *model,
+                                          const char *body,
+                                          const char *const *names,
+                                          size_t length,
+                                          pc_error **error);
+
+/**
+ * Gives the quasi-velocities of a joint other names than those of its kind.
+ */
+pc_status pc_model_name_joint_quasi_velocities(pc_model *model,
+                                               const char *body,
+                                               const char *const *names,
+                                               size_t length,
+                                               pc_error **error);
+
+/**
+ * Adds a point of a body that hangs by a joint, in axes of the body from its origin. Expressions
+ * know its place as `NAME_x`, `NAME_y`, `NAME_z`.
+ */
+pc_status pc_model_add_point(pc_model *model,
+                             const char *name,
+                             const char *body,
+                             const char *x,
+                             const char *y,
+                             const char *z,
+                             pc_error **error);
+
+/**
+ * Joins two bodies that hang by joints already: kind point, revolute or rod. `places` has 6
+ * expressions: the point of the first in its axes, then that of the second.
+ */
+pc_status pc_model_add_loop(pc_model *model,
+                            const char *name,
+                            const char *kind,
+                            const char *first,
+                            const char *second,
+                            const char *const *places,
+                            pc_error **error);
+
+/**
+ * Sets the axis of a revolute loop, in axes of the first body and in those of the second, of 3
+ * numbers each.
+ */
+pc_status pc_model_set_loop_axes(pc_model *model,
+                                 const char *name,
+                                 const double *first,
+                                 const double *second,
+                                 pc_error **error);
+
+/**
+ * Sets the distance of the two points of a rod.
+ */
+pc_status pc_model_set_loop_length(pc_model *model,
+                                   const char *name,
+                                   const char *length,
+                                   pc_error **error);
+
+/**
  * Sets a function S of time, coordinates and constants that is said to solve Hamilton–Jacobi's
  * equation, which pc_system_theory looks at. No motion needs it.
  */

@@ -165,6 +165,80 @@ public:
         return entries_of_body(pc_model_set_body_rotation, body, entries);
     }
 
+    /// A body that hangs on another by a joint, on the world if `parent` is empty.
+    model &jointed_body(const std::string &name, const std::string &parent, const std::string &kind)
+    {
+        return say(pc_model_add_jointed_body, name.c_str(), parent.empty() ? nullptr : parent.c_str(),
+                   kind.c_str());
+    }
+    model &body_mass(const std::string &body, const std::string &mass)
+    {
+        return say(pc_model_set_body_mass, body.c_str(), mass.c_str());
+    }
+    model &body_center(const std::string &body, const components &center)
+    {
+        return of_body(pc_model_set_body_center, body, center);
+    }
+    model &joint_place(const std::string &body, const components &place)
+    {
+        return of_body(pc_model_set_joint_place, body, place);
+    }
+    model &joint_axis(const std::string &body, const std::array<double, 3> &axis)
+    {
+        return say(pc_model_set_joint_axis, body.c_str(), axis.data());
+    }
+    /// Those of a universal joint.
+    model &joint_axes(const std::string &body, const std::array<double, 3> &first,
+                      const std::array<double, 3> &second)
+    {
+        return say(pc_model_set_joint_axes, body.c_str(), first.data(), second.data());
+    }
+    model &joint_pitch(const std::string &body, const std::string &pitch)
+    {
+        return say(pc_model_set_joint_pitch, body.c_str(), pitch.c_str());
+    }
+    model &joint_rotation(const std::string &body, const matrix &entries)
+    {
+        return entries_of_body(pc_model_set_joint_rotation, body, entries);
+    }
+    /// Turns about axes, a letter and an angle each.
+    model &joint_turns(const std::string &body, const std::string &axes, const std::vector<std::string> &angles)
+    {
+        const std::vector<const char *> texts = of_texts(angles);
+        return say(pc_model_set_joint_turns, body.c_str(), axes.c_str(), texts.data(), texts.size());
+    }
+    model &joint_coordinates(const std::string &body, const std::vector<std::string> &names)
+    {
+        return entries_of_body(pc_model_name_joint_coordinates, body, names);
+    }
+    model &joint_quasi_velocities(const std::string &body, const std::vector<std::string> &names)
+    {
+        return entries_of_body(pc_model_name_joint_quasi_velocities, body, names);
+    }
+    model &point(const std::string &name, const std::string &body, const components &place)
+    {
+        return say(pc_model_add_point, name.c_str(), body.c_str(), place[0].c_str(), place[1].c_str(),
+                   place[2].c_str());
+    }
+    /// Joins two bodies at a place of each.
+    model &loop(const std::string &name, const std::string &kind, const std::string &first,
+                const std::string &second, const components &here, const components &there)
+    {
+        const std::array<const char *, 6> places{here[0].c_str(),  here[1].c_str(),  here[2].c_str(),
+                                                 there[0].c_str(), there[1].c_str(), there[2].c_str()};
+        return say(pc_model_add_loop, name.c_str(), kind.c_str(), first.c_str(), second.c_str(),
+                   places.data());
+    }
+    model &loop_axes(const std::string &name, const std::array<double, 3> &first,
+                     const std::array<double, 3> &second)
+    {
+        return say(pc_model_set_loop_axes, name.c_str(), first.data(), second.data());
+    }
+    model &loop_length(const std::string &name, const std::string &length)
+    {
+        return say(pc_model_set_loop_length, name.c_str(), length.c_str());
+    }
+
     model &integral(const std::string &name, const std::string &expression)
     {
         return say(pc_model_add_integral, name.c_str(), expression.c_str());
@@ -246,11 +320,17 @@ private:
     template <class Function, class Entries>
     model &entries_of_body(Function function, const std::string &body, const Entries &entries)
     {
+        const std::vector<const char *> texts = of_texts(entries);
+        return say(function, body.c_str(), texts.data(), texts.size());
+    }
+    template <class Entries>
+    static std::vector<const char *> of_texts(const Entries &entries)
+    {
         std::vector<const char *> texts;
         for (const std::string &entry : entries) {
             texts.push_back(entry.c_str());
         }
-        return say(function, body.c_str(), texts.data(), texts.size());
+        return texts;
     }
 
     handle handle_;

@@ -1,7 +1,7 @@
 //! The functions of pc.h, a file for each group of them.
 //!
 //! In go numbers and pointers, which `ffi` checks, out come those of the crates below; what is remembered between two calls
-//! stands in `machinery`. Models: `model`, `builder`, `bodies`, `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
+//! stands in `machinery`. Models: `model`, `builder`, `bodies`, `joints`, `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
 //! `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`, `cancel`, `solver`, `observe`, `events`, `occurrences`,
 //! `force`, `dense`, `checkpoint`, `statistics`, `ensemble`. The library: `version`.
 
@@ -15,6 +15,7 @@ pub(crate) mod dense;
 pub(crate) mod ensemble;
 pub(crate) mod events;
 pub(crate) mod force;
+pub(crate) mod joints;
 pub(crate) mod kernel;
 pub(crate) mod legendre;
 pub(crate) mod mechanics;

@@ -54,6 +54,35 @@ fn list(
     call(|error| unsafe { function(model.0, body.as_ptr(), pointers.as_ptr(), pointers.len(), error) })
 }
 
+/// Sets the turns of a joint.
+fn turns(model: &Model, body: &str, axes: &str, angles: &[&str]) -> Result<(), Refusal> {
+    let (body, axes, angles) = (c(body), c(axes), angles.iter().map(|angle| c(angle)).collect::<Vec<_>>());
+    let pointers: Vec<*const c_char> = angles.iter().map(|angle| angle.as_ptr()).collect();
+    // SAFETY: a live model, and texts that live as long as the call.
+    call(|error| unsafe {
+        let (data, length) = (pointers.as_ptr(), pointers.len());
+        pc_model_set_joint_turns(model.0, body.as_ptr(), axes.as_ptr(), data, length, error)
+    })
+}
+
+/// Joins two bodies at six components of places.
+fn closed(
+    model: &Model,
+    name: &str,
+    kind: &str,
+    [first, second]: [&str; 2],
+    places: &[&str; 6],
+) -> Result<(), Refusal> {
+    let (name, kind, first, second) = (c(name), c(kind), c(first), c(second));
+    let places = places.map(c);
+    let pointers: Vec<*const c_char> = places.iter().map(|place| place.as_ptr()).collect();
+    // SAFETY: a live model, and texts that live as long as the call.
+    call(|error| unsafe {
+        let bodies = (first.as_ptr(), second.as_ptr());
+        pc_model_add_loop(model.0, name.as_ptr(), kind.as_ptr(), bodies.0, bodies.1, pointers.as_ptr(), error)
+    })
+}
+
 /// The keys that the reader knows where `before` stands before one that it does not: its refusal names them.
 fn keys(before: &str) -> BTreeSet<String> {
     let refusal = Model::text(&format!("{before}zzzzzz = 1\n")).err().unwrap();
@@ -106,6 +135,25 @@ fn everything() -> Model {
     say!(model, pc_model_set_body_angular_velocity, "bob", "0", "0", "v").unwrap();
     list(&model, pc_model_set_body_inertia, "bob", &["1", "1", "m"]).unwrap();
     list(&model, pc_model_set_body_rotation, "bob", &["1", "0", "0", "0", "1", "0", "0", "0", "1"]).unwrap();
+    say!(model, pc_model_add_jointed_body, "arm", "world", "universal").unwrap();
+    say!(model, pc_model_set_body_mass, "arm", "m").unwrap();
+    say!(model, pc_model_set_body_center, "arm", "0", "0", "-m").unwrap();
+    list(&model, pc_model_set_body_inertia, "arm", &["1", "1", "m"]).unwrap();
+    say!(model, pc_model_set_body_force, "arm", "0", "0", "-m").unwrap();
+    say!(model, pc_model_set_body_torque, "arm", "0", "0", "m").unwrap();
+    say!(model, pc_model_set_joint_place, "arm", "0", "m", "0").unwrap();
+    say!(model, pc_model_set_joint_pitch, "arm", "0.1").unwrap();
+    say!(model, pc_model_set_joint_axis, "arm"; [0.0, 0.0, 1.0].as_ptr()).unwrap();
+    let (first, second) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+    say!(model, pc_model_set_joint_axes, "arm"; first.as_ptr(), second.as_ptr()).unwrap();
+    list(&model, pc_model_set_joint_rotation, "arm", &["1", "0", "0", "0", "1", "0", "0", "0", "1"]).unwrap();
+    turns(&model, "arm", "zx", &["m", "0.1"]).unwrap();
+    list(&model, pc_model_name_joint_coordinates, "arm", &["a", "b"]).unwrap();
+    list(&model, pc_model_name_joint_quasi_velocities, "arm", &["c", "d"]).unwrap();
+    say!(model, pc_model_add_point, "tip", "arm", "0", "0", "-1").unwrap();
+    closed(&model, "closed", "revolute", ["arm", "world"], &["0", "0", "-1", "m", "0", "0"]).unwrap();
+    say!(model, pc_model_set_loop_axes, "closed"; first.as_ptr(), second.as_ptr()).unwrap();
+    say!(model, pc_model_set_loop_length, "closed", "m").unwrap();
     say!(model, pc_model_add_force, "v", "1").unwrap();
     say!(model, pc_model_add_integral, "half", "v/2").unwrap();
     say!(model, pc_model_add_output, "place", "x").unwrap();
@@ -161,10 +209,17 @@ fn there_is_a_call_for_every_key_of_the_text() {
         ("[lagrangian]\n", "lagrangian", None),
         ("[hamilton_jacobi]\n", "hamilton_jacobi", None),
         ("[bodies.b]\n", "bodies", Some("bob")),
+        ("[bodies.b]\njoint.kind = \"fixed\"\n", "bodies", Some("arm")),
+        ("[points.p]\n", "points", Some("tip")),
+        ("[loops.l]\n", "loops", Some("closed")),
         ("[events.e]\n", "events", Some("hit")),
     ] {
         assert_eq!(written(&text, header, table), keys(before), "{text}");
     }
+    let of_joint = text.lines().filter_map(|line| line.strip_prefix("\"arm\".\"joint\".\""));
+    let of_joint: BTreeSet<String> =
+        of_joint.map(|rest| rest.split_once('"').unwrap().0.to_owned()).collect();
+    assert_eq!(of_joint, keys("[bodies.b.joint]\n"), "{text}");
     let mut simulation = keys("[simulation]\n");
     // pc_model_keep is a setting beside the text.
     assert!(simulation.remove("project"));
@@ -209,6 +264,41 @@ fn bodies_arrive() {
     list(&by_calls, pc_model_set_body_rotation, "bob", &["1"]).unwrap();
     let refusal = say!(by_calls, pc_model_check).unwrap_err();
     assert!(refusal.message.contains("rotation"), "{}", refusal.message);
+}
+
+/// A double pendulum and a crank of calls are those of the text.
+#[test]
+fn joints_arrive() {
+    let model = empty("A double pendulum");
+    say!(model, pc_model_add_parameter, "l"; 0.5).unwrap();
+    say!(model, pc_model_set_gravity, "0", "0", "-9.81").unwrap();
+    for (name, parent, place) in [("upper", "world", "0"), ("lower", "upper", "-l")] {
+        say!(model, pc_model_add_jointed_body, name, parent, "revolute").unwrap();
+        say!(model, pc_model_set_joint_axis, name; [0.0, 1.0, 0.0].as_ptr()).unwrap();
+        say!(model, pc_model_set_joint_place, name, "0", "0", place).unwrap();
+        say!(model, pc_model_set_body_mass, name, "1").unwrap();
+        say!(model, pc_model_set_body_center, name, "0", "0", "-l").unwrap();
+    }
+    say!(model, pc_model_add_coordinate, "upper"; 0.3).unwrap();
+    let system = model.system(PC_POINCARE).unwrap();
+    assert_eq!(system.start().1, [0.3, 0.0, 0.0, 0.0]);
+    let y: [f64; 4] = [0.3, -0.5, 0.0, 0.0];
+    let (g, l, sum) = (9.81f64, 0.5f64, y[0] + y[1]);
+    // Angles from the vertical θ1 = q, θ2 = q + p: (2, c; c, 1) l² θ̈ = -g l (2 sin θ1, sin θ2), c = cos(θ1 - θ2).
+    let c = y[1].cos();
+    let (r1, r2) = (-2.0 * g / l * y[0].sin(), -g / l * sum.sin());
+    let det = 2.0 - c * c;
+    let (first, second) = ((r1 - c * r2) / det, (2.0 * r2 - c * r1) / det);
+    let rates = system.at(pc_system_rhs, 0.0, &y, 4).unwrap();
+    for (rate, expected) in rates.iter().zip([0.0, 0.0, first, second - first]) {
+        assert!((rate - expected).abs() < 1e-12, "{rates:?}"); // some dozen roundings of numbers of some tens
+    }
+    // A loop that fixes the tip leaves nothing to move but the knee.
+    closed(&model, "tip", "rod", ["lower", "world"], &["0", "0", "-l", "0", "0", "0"]).unwrap();
+    say!(model, pc_model_set_loop_length, "tip", "0.8").unwrap();
+    assert!(text(&model).contains("[loops]\n\"tip\".\"kind\" = \"rod\"\n"));
+    let refusal = turns(&model, "upper", "zxz", &["1"]).unwrap_err();
+    assert_eq!(refusal.message, "there are 3 axes and 1 angles");
 }
 
 fn start(model: &Model) -> Vec<f64> {

@@ -110,6 +110,9 @@ pub(crate) enum Input {
 impl<'g> Printed<'g> {
     /// What is printed in a form; none where there is no such form of the equations.
     pub(crate) fn new(form: Form, assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
+        if assembly.system.large_tree().is_some() {
+            return None; // what is printed of it are its bodies, not its equations
+        }
         let (_, derived) = Derived::new(form, assembly).ok()?;
         let sheet = match form {
             // The same as Lagrange's.

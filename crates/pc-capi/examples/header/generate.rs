@@ -48,7 +48,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 34] = [
+const FILES: [&str; 35] = [
     "api/version.rs",
     "ffi/status.rs",
     "ffi/error.rs",
@@ -57,6 +57,7 @@ const FILES: [&str; 34] = [
     "api/model.rs",
     "api/builder.rs",
     "api/bodies.rs",
+    "api/joints.rs",
     "api/action.rs",
     "api/settings.rs",
     "api/cancel.rs",

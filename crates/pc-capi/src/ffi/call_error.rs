@@ -27,6 +27,8 @@ pub(crate) enum CallError {
     NotText { what: &'static str, offset: usize },
     #[error("{what} is {value}, but must be finite")]
     NotFinite { what: &'static str, value: f64 },
+    #[error("there are {axes} axes and {angles} angles")]
+    TurnsOfAxes { axes: usize, angles: usize },
     #[error("{first} and {second} share memory")]
     Overlap { first: &'static str, second: &'static str },
     #[error("{what} has no value here: it is {value}")]
@@ -110,6 +112,7 @@ impl CallError {
             | CallError::Misaligned { .. }
             | CallError::NotText { .. }
             | CallError::NotFinite { .. }
+            | CallError::TurnsOfAxes { .. }
             | CallError::Overlap { .. }
             | CallError::Choice { .. }
             | CallError::Reserved { .. }

@@ -38,6 +38,8 @@ pub(crate) enum Section {
     Constraints,
     Lagrangian,
     Bodies,
+    Points,
+    Loops,
     Gravity,
     Forces,
     Integrals,
@@ -47,7 +49,7 @@ pub(crate) enum Section {
     Simulation,
 }
 
-const SECTIONS: [(Section, &str); 20] = [
+const SECTIONS: [(Section, &str); 22] = [
     (Section::Heading, "model"),
     (Section::Parameters, "parameters"),
     (Section::Inputs, "inputs"),
@@ -61,6 +63,8 @@ const SECTIONS: [(Section, &str); 20] = [
     (Section::Constraints, "constraints"),
     (Section::Lagrangian, "lagrangian"),
     (Section::Bodies, "bodies"),
+    (Section::Points, "points"),
+    (Section::Loops, "loops"),
     (Section::Gravity, "gravity"),
     (Section::Forces, "forces"),
     (Section::Integrals, "integrals"),

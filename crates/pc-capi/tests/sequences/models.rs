@@ -123,7 +123,7 @@ unsafe fn say(
     let entries = entries.as_ptr();
     // SAFETY: as promised.
     unsafe {
-        match function % 59 {
+        match function % 75 {
             0..4 => pc_model_add_coordinate(model, a, x, error),
             4..8 => pc_model_set_kinetic(model, b, error),
             8 => pc_model_add_quasi_velocity(model, a, b, x, error),
@@ -159,6 +159,27 @@ unsafe fn say(
             41 => pc_model_set_tolerances(model, x, x / 2.0, error),
             42 => pc_model_set_method(model, if yes == 1 { c"bdf".as_ptr() } else { a }, error),
             43 => pc_model_set_form(model, if yes == 1 { c"canonical".as_ptr() } else { a }, error),
+            59 | 60 => pc_model_add_jointed_body(model, a, if yes == 1 { b } else { ptr::null() }, z, error),
+            61 => pc_model_add_jointed_body(model, a, ptr::null(), c"revolute".as_ptr(), error),
+            62 => pc_model_set_body_mass(model, a, b, error),
+            63 => pc_model_set_body_center(model, a, b, z, b, error),
+            64 => pc_model_set_joint_place(model, a, b, z, b, error),
+            65 => pc_model_set_joint_axis(model, a, [x, 1.0, 0.0].as_ptr(), error),
+            66 => pc_model_set_joint_axes(model, a, [x, 1.0, 0.0].as_ptr(), [0.0, x, 1.0].as_ptr(), error),
+            67 => pc_model_set_joint_pitch(model, a, b, error),
+            68 => pc_model_set_joint_rotation(model, a, entries, count, error),
+            69 => pc_model_set_joint_turns(model, a, c"zx".as_ptr(), entries, count, error),
+            70 => pc_model_name_joint_coordinates(model, a, entries, count, error),
+            71 => pc_model_name_joint_quasi_velocities(model, a, entries, count, error),
+            72 => pc_model_add_point(model, a, b, z, b, z, error),
+            73 => {
+                let places = [b, z, b, z, b, z];
+                pc_model_add_loop(model, a, c"point".as_ptr(), b, z, places.as_ptr(), error)
+            }
+            74 => match yes {
+                1 => pc_model_set_loop_length(model, a, b, error),
+                _ => pc_model_set_loop_axes(model, a, [x, 1.0, 0.0].as_ptr(), [0.0, x, 1.0].as_ptr(), error),
+            },
             44 => pc_model_keep(model, if yes == 1 { c"energy".as_ptr() } else { a }, error),
             45 => pc_model_project_start(model, yes, error),
             46 => pc_model_observe_reactions(model, yes, error),

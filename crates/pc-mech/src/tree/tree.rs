@@ -59,7 +59,7 @@ pub struct Tree<'g> {
 }
 
 /// Elementary joints up to which a tree is also looked at as a whole: the equations of more do not fit on a page.
-const MANY_LINKS: usize = 12;
+const MANY_LINKS: usize = 4;
 
 /// Where a body stands still.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,323 @@
+//! Bodies that hang on others by joints, points of them and loops, call by call.
+
+use std::ffi::c_char;
+
+use crate::api::builder::draft;
+use crate::api::model::pc_model;
+use crate::ffi::call_error::CallError;
+use crate::ffi::error::pc_error;
+use crate::ffi::pointer::{numbers, text, texts};
+use crate::ffi::status::pc_status;
+use crate::machinery::draft::{Draft, Section, list, numbers as written, quoted};
+
+/// Adds a body that hangs on another, or on the world if `parent` is null, by a joint of this
+/// kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. Its
+/// origin is the point of the joint. Inertia, force and torque are set as those of other bodies,
+/// start values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names that
+/// the joint gives: `NAME` and `NAME'` of a revolute one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_jointed_body(
+    model: *mut pc_model,
+    name: *const c_char,
+    parent: *const c_char,
+    kind: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, kind) = unsafe { (text(name, "name")?, text(kind, "kind")?) };
+        draft.add(Section::Bodies, &[name, "joint", "kind"], quoted(kind));
+        if !parent.is_null() {
+            // SAFETY: text, as the preamble demands.
+            let parent = unsafe { text(parent, "parent") }?;
+            draft.add(Section::Bodies, &[name, "parent"], quoted(parent));
+        }
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_jointed_body", write) }
+}
+
+/// Sets the mass of a body that hangs by a joint.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_body_mass(
+    model: *mut pc_model,
+    body: *const c_char,
+    mass: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: null or text, as the preamble demands.
+    let mass = || Ok(quoted(unsafe { text(mass, "mass") }?));
+    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["mass"], mass);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_body_mass", write) }
+}
+
+/// Sets the mass centre of a body that hangs by a joint, in axes of the body from its origin.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_body_center(
+    model: *mut pc_model,
+    body: *const c_char,
+    x: *const c_char,
+    y: *const c_char,
+    z: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let center = || place([x, y, z]);
+    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["center"], center);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_body_center", write) }
+}
+
+/// Sets the point of a joint, in axes of the parent from its origin.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_place(
+    model: *mut pc_model,
+    body: *const c_char,
+    x: *const c_char,
+    y: *const c_char,
+    z: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let at = || place([x, y, z]);
+    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "at"], at);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_place", write) }
+}
+
+/// Sets the axis of a joint, in axes of the joint; `axis` has 3 numbers, of any length but 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_axis(
+    model: *mut pc_model,
+    body: *const c_char,
+    axis: *const f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let axis = || direction(axis, "axis");
+    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "axis"], axis);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_axis", write) }
+}
+
+/// Sets the two axes of a universal joint, of 3 numbers each: the first stands still in the
+/// parent, the second in the body.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_axes(
+    model: *mut pc_model,
+    body: *const c_char,
+    first: *const f64,
+    second: *const f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let axes = || Ok(format!("[{}, {}]", direction(first, "first")?, direction(second, "second")?));
+    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "axes"], axes);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_axes", write) }
+}
+
+/// Sets the advance of a screw, a length a radian.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_pitch(
+    model: *mut pc_model,
+    body: *const c_char,
+    pitch: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: null or text, as the preamble demands.
+    let pitch = || Ok(quoted(unsafe { text(pitch, "pitch") }?));
+    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "pitch"], pitch);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_pitch", write) }
+}
+
+/// Sets how the axes of a joint stand in those of the parent: the 9 entries of the matrix from
+/// the former to the latter, row by row. Excludes pc_model_set_joint_turns.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_rotation(
+    model: *mut pc_model,
+    body: *const c_char,
+    entries: *const *const c_char,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: null or texts, as the preamble demands.
+    let entries = || Ok(list(&unsafe { texts(entries, length, "entries") }?));
+    let write =
+        |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "rotation"], entries);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_rotation", write) }
+}
+
+/// Sets the same by turns about axes: `axes` has a letter x, y or z for each of the `length`
+/// angles, every turn being about an axis as turned by those before it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_turns(
+    model: *mut pc_model,
+    body: *const c_char,
+    axes: *const c_char,
+    angles: *const *const c_char,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let turns = || {
+        // SAFETY: null or text, and null or texts, as the preamble demands.
+        let (axes, angles) = unsafe { (text(axes, "axes")?, texts(angles, length, "angles")?) };
+        if axes.chars().count() != length {
+            return Err(CallError::TurnsOfAxes { axes: axes.chars().count(), angles: length });
+        }
+        let turn = |(axis, angle): (char, &&str)| list(&[&axis.to_string(), angle]);
+        Ok(format!("[{}]", axes.chars().zip(&angles).map(turn).collect::<Vec<_>>().join(", ")))
+    };
+    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "turns"], turns);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_turns", write) }
+}
+
+/// Gives the coordinates of a joint other names than those of its kind.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_name_joint_coordinates(
+    model: *mut pc_model,
+    body: *const c_char,
+    names: *const *const c_char,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: null or texts, as the preamble demands.
+    let names = || Ok(list(&unsafe { texts(names, length, "names") }?));
+    let write =
+        |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "coordinates"], names);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_name_joint_coordinates", write) }
+}
+
+/// Gives the quasi-velocities of a joint other names than those of its kind.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_name_joint_quasi_velocities(
+    model: *mut pc_model,
+    body: *const c_char,
+    names: *const *const c_char,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: null or texts, as the preamble demands.
+    let names = || Ok(list(&unsafe { texts(names, length, "names") }?));
+    let write = |draft: &mut Draft| {
+        part(draft, (body, "body"), Section::Bodies, &["joint", "quasi_velocities"], names)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_name_joint_quasi_velocities", write) }
+}
+
+/// Adds a point of a body that hangs by a joint, in axes of the body from its origin. Expressions
+/// know its place as `NAME_x`, `NAME_y`, `NAME_z`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_point(
+    model: *mut pc_model,
+    name: *const c_char,
+    body: *const c_char,
+    x: *const c_char,
+    y: *const c_char,
+    z: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, body) = unsafe { (text(name, "name")?, text(body, "body")?) };
+        draft.add(Section::Points, &[name, "body"], quoted(body));
+        draft.add(Section::Points, &[name, "at"], place([x, y, z])?);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_point", write) }
+}
+
+/// Joins two bodies that hang by joints already: kind point, revolute or rod. `places` has 6
+/// expressions: the point of the first in its axes, then that of the second.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_loop(
+    model: *mut pc_model,
+    name: *const c_char,
+    kind: *const c_char,
+    first: *const c_char,
+    second: *const c_char,
+    places: *const *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, kind) = unsafe { (text(name, "name")?, text(kind, "kind")?) };
+        // SAFETY: as the preamble demands.
+        let bodies = unsafe { [text(first, "first")?, text(second, "second")?] };
+        // SAFETY: null or six texts, as the preamble demands.
+        let places = unsafe { texts(places, 6, "places") }?;
+        draft.add(Section::Loops, &[name, "kind"], quoted(kind));
+        draft.add(Section::Loops, &[name, "bodies"], list(&bodies));
+        let at = format!("[{}, {}]", list(&places[..3]), list(&places[3..]));
+        draft.add(Section::Loops, &[name, "at"], at);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_loop", write) }
+}
+
+/// Sets the axis of a revolute loop, in axes of the first body and in those of the second, of 3
+/// numbers each.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_loop_axes(
+    model: *mut pc_model,
+    name: *const c_char,
+    first: *const f64,
+    second: *const f64,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let axes = || Ok(format!("[{}, {}]", direction(first, "first")?, direction(second, "second")?));
+    let write = |draft: &mut Draft| part(draft, (name, "name"), Section::Loops, &["axis"], axes);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_loop_axes", write) }
+}
+
+/// Sets the distance of the two points of a rod.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_loop_length(
+    model: *mut pc_model,
+    name: *const c_char,
+    length: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: null or text, as the preamble demands.
+    let length = || Ok(quoted(unsafe { text(length, "length") }?));
+    let write = |draft: &mut Draft| part(draft, (name, "name"), Section::Loops, &["length"], length);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_loop_length", write) }
+}
+
+/// Writes an entry of a body or a loop; the name comes with what it is called.
+fn part(
+    draft: &mut Draft,
+    (name, what): (*const c_char, &'static str),
+    section: Section,
+    keys: &[&str],
+    value: impl FnOnce() -> Result<String, CallError>,
+) -> Result<(), CallError> {
+    // SAFETY: null or text, as the preamble demands of the callers.
+    let name = unsafe { text(name, what) }?;
+    let keys: Vec<&str> = std::iter::once(name).chain(keys.iter().copied()).collect();
+    draft.put(section, &keys, value()?);
+    Ok(())
+}
+
+/// Three expressions as a list.
+fn place([x, y, z]: [*const c_char; 3]) -> Result<String, CallError> {
+    // SAFETY: null or text, as the preamble demands of the callers.
+    Ok(list(&unsafe { [text(x, "x")?, text(y, "y")?, text(z, "z")?] }))
+}
+
+/// Three numbers as a list.
+fn direction(axis: *const f64, what: &'static str) -> Result<String, CallError> {
+    // SAFETY: null or three numbers, as the preamble demands of the callers.
+    let axis = unsafe { numbers(axis, 3, 3, what) }?;
+    match axis.iter().find(|component| !component.is_finite()) {
+        None => Ok(written(axis)),
+        Some(&value) => Err(CallError::NotFinite { what, value }),
+    }
+}
