@@ -185,16 +185,16 @@ impl<'a> Tree<'a> {
 
 /// Whether an expression is made of numbers and known names alone.
 fn is_constant(ast: &Ast, known: &HashSet<&str>) -> bool {
-    let all = |parts: &mut dyn Iterator<Item = &Ast>| parts.map(|part| is_constant(part, known)).all(|is| is);
+    let all = |parts: Vec<&Ast>| parts.into_iter().all(|part| is_constant(part, known));
     match &ast.kind {
         AstKind::Number(_) => true,
         AstKind::Name(name) => name == "pi" || known.contains(name.as_str()),
         AstKind::Velocity(_) | AstKind::TotalDerivative(_) => false,
         AstKind::Negate(inner) => is_constant(inner, known),
-        AstKind::Sum(terms) => all(&mut terms.iter().map(|(_, term)| term)),
-        AstKind::Product(factors) => all(&mut factors.iter().map(|(_, factor)| factor)),
-        AstKind::Power(base, exponent) => all(&mut [&**base, &**exponent].into_iter()),
-        AstKind::Call(_, _, arguments) => all(&mut arguments.iter()),
+        AstKind::Sum(terms) => all(terms.iter().map(|(_, term)| term).collect()),
+        AstKind::Product(factors) => all(factors.iter().map(|(_, factor)| factor).collect()),
+        AstKind::Power(base, exponent) => all(vec![base, exponent]),
+        AstKind::Call(_, _, arguments) => all(arguments.iter().collect()),
     }
 }
 

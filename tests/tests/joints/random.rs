@@ -86,7 +86,7 @@ fn tree(random: &mut Random) -> String {
 #[test]
 fn random_trees_are_derived_alike_by_both_routes() {
     let mut compared = 0;
-    for number in 0..60 {
+    for number in 0..24 {
         let text = tree(&mut Random::new(17, number));
         let model = Model::new(document(&text));
         let agreement = verify(&model, &Options { states: 3, seed: number });
@@ -95,5 +95,5 @@ fn random_trees_are_derived_alike_by_both_routes() {
         compared += agreement.states;
     }
     // Some end where nothing is regular: a universal joint whose axes are in line.
-    assert!(compared > 150, "{compared}");
+    assert!(compared > 60, "{compared}");
 }

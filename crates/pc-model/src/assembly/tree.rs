@@ -43,7 +43,7 @@ impl<'g> Assembler<'g, '_> {
             }
             bodies.push(made);
         }
-        let tree = Tree::new(self.graph, bodies).map_err(|error| document.derivation_error(error.into()))?;
+        let tree = Tree::new(self.graph, bodies).map_err(|error| document.derivation_error(error))?;
         Ok(Some(tree))
     }
 
@@ -54,7 +54,7 @@ impl<'g> Assembler<'g, '_> {
         for body in &document.tree {
             bodies.push(hung(body, self.scope.joint(&body.joint)?));
         }
-        let tree = Tree::new(self.graph, bodies).map_err(|error| document.derivation_error(error.into()))?;
+        let tree = Tree::new(self.graph, bodies).map_err(|error| document.derivation_error(error))?;
         Ok(tree.velocities())
     }
 
