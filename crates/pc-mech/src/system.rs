@@ -2,7 +2,7 @@
 //!
 //! The description of a system, as books give it, becomes a [`System`](system::System). Read `system`, then `builder`,
 //! which takes each part in its usual form; `bodies` are the contributions of particles and rigid bodies, `forces` the
-//! forms of Q_s (8), `external_force` forces computed outside, `signals` inputs that are functions of time;
+//! forms of Q_s (8), `external_force` forces computed outside, `states` what contains no first-order state, `signals` inputs that are functions of time;
 //! `energy_rate` is the rate of the energy.
 
 pub(crate) mod bodies;
@@ -11,4 +11,5 @@ pub(crate) mod energy_rate;
 pub(crate) mod external_force;
 pub(crate) mod forces;
 pub(crate) mod signals;
+pub(crate) mod states;
 pub(crate) mod system;

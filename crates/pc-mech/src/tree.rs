@@ -5,12 +5,13 @@
 //! of the body along or about one of which it moves. `spatial` has the vectors and matrices of three components, `kinematics`
 //! the recursion of velocities from body to body, `energy` what it adds to a system. Joint after joint, in O(N), its equations are
 //! solved by `dynamics`, on `articulated` inertias of masses that `regrouping` has made small; `turning` takes them from one body
-//! to the next. `system` is a system that is a tree, `reactions` what its joints bear.
+//! to the next. `system` is a system that is a tree, `equations` are its, `reactions` what its joints bear.
 
 pub(crate) mod articulated;
 pub(crate) mod body;
 pub(crate) mod dynamics;
 pub(crate) mod energy;
+pub(crate) mod equations;
 pub(crate) mod joint;
 pub(crate) mod kinematics;
 pub(crate) mod link;

@@ -11,8 +11,6 @@ use serde_json::{Value, json};
 
 use crate::layout::Layout;
 use crate::operations::Operations;
-use crate::page::Page;
-use crate::visible::visible_json;
 
 /// What is the same for all bodies, for people and for a paper.
 const LAWS: [(&str, &str, &str); 5] = [
@@ -43,24 +41,8 @@ const LAWS: [(&str, &str, &str); 5] = [
     ),
 ];
 
-/// The page of a tree; `heading` is its title with the name of the form.
-pub(crate) fn page(
-    heading: &str,
-    (title, system, tree): (&str, &System<'_>, &Tree<'_>),
-    operations: &Operations,
-    (kind, layout): (Page, &Layout),
-    paper: &Graph,
-) -> String {
-    let bodies = bodies(system, tree, paper);
-    match kind {
-        Page::Text => text(heading, &bodies, operations, layout),
-        Page::Latex => latex(heading, &bodies),
-        Page::Json => visible_json(&programs(title, system, &bodies, operations)) + "\n",
-    }
-}
-
 /// A body with what is its own.
-struct BodyOnPage<'p> {
+pub(crate) struct BodyOnPage<'p> {
     name: String,
     parent: String,
     /// Letters of a book, those of a program, and what they are.
@@ -72,7 +54,8 @@ struct BodyOnPage<'p> {
     kinematics: Vec<(Expr<'p>, Expr<'p>)>,
 }
 
-fn bodies<'p>(system: &System<'_>, tree: &Tree<'_>, paper: &'p Graph) -> Vec<BodyOnPage<'p>> {
+/// The bodies of a tree, in the graph of a page.
+pub(crate) fn bodies<'p>(system: &System<'_>, tree: &Tree<'_>, paper: &'p Graph) -> Vec<BodyOnPage<'p>> {
     let graph = system.graph();
     let one = |expression: Expr<'_>| graph.typeset(&[expression], paper)[0];
     let all = |vector: [Expr<'_>; 3]| vector.map(one);
@@ -116,7 +99,13 @@ fn vanishes(vector: &[Expr<'_>; 3]) -> bool {
     vector.iter().all(|component| component.is_zero())
 }
 
-fn text(heading: &str, bodies: &[BodyOnPage<'_>], operations: &Operations, layout: &Layout) -> String {
+/// For people; `heading` is the title with the name of the form.
+pub(crate) fn text(
+    heading: &str,
+    bodies: &[BodyOnPage<'_>],
+    operations: &Operations,
+    layout: &Layout,
+) -> String {
     let mut page = crate::text::underlined(heading);
     page +=
         "Written from body to body: as a whole the equations would be longer than a page.\n\nFor each body\n";
@@ -161,7 +150,8 @@ fn text(heading: &str, bodies: &[BodyOnPage<'_>], operations: &Operations, layou
     page
 }
 
-fn latex(heading: &str, bodies: &[BodyOnPage<'_>]) -> String {
+/// For a paper.
+pub(crate) fn latex(heading: &str, bodies: &[BodyOnPage<'_>]) -> String {
     let mut page =
         format!("% {heading}, from body to body (needs amsmath)\n\n% For each body\n\\begin{{align*}}\n");
     page += &LAWS.map(|(_, _, law)| law).join(" \\\\\n");
@@ -199,7 +189,13 @@ fn latex(heading: &str, bodies: &[BodyOnPage<'_>]) -> String {
     page
 }
 
-fn programs(title: &str, system: &System<'_>, bodies: &[BodyOnPage<'_>], operations: &Operations) -> Value {
+/// For programs.
+pub(crate) fn programs(
+    title: &str,
+    system: &System<'_>,
+    bodies: &[BodyOnPage<'_>],
+    operations: &Operations,
+) -> Value {
     let text = |expression: &Expr<'_>| expression.to_string();
     let list = |vector: &[Expr<'_>; 3]| vector.iter().map(text).collect::<Vec<_>>();
     let body = |body: &BodyOnPage<'_>| {

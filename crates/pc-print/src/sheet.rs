@@ -4,7 +4,7 @@
 //! is cheapest to compute.
 
 use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
-use pc_expr::{Given, Graph};
+use pc_expr::{Function, Given, Graph};
 use pc_mech::{Canonical, Equations, Expr, Matrix, System};
 use pc_model::Assembly;
 use pc_nonholo::Kind;
@@ -204,8 +204,14 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
 
     /// Each ẋ_i with its value, sines and cosines merged where that is shorter: the rates of links by the law of sines.
     fn rates(&self, values: &[Expr<'g>]) -> Vec<(Expr<'p>, Expr<'p>)> {
+        let (graph, x) = (self.system.graph(), self.system.frame().coordinates());
         let plain = self.all(values);
-        let merged = self.all(&self.system.graph().merged_angles(values));
+        // Nothing is made in the graph in vain: of equal values the form made first is the one that others are made of.
+        let of_angles = |&value: &Expr<'g>| {
+            graph.applies(value, x, |function| matches!(function, Function::Sin | Function::Cos))
+        };
+        let has_angles = values.iter().any(of_angles);
+        let merged = if has_angles { self.all(&graph.merged_angles(values)) } else { plain.clone() };
         let shorter = if self.page.size(&merged) < self.page.size(&plain) { merged } else { plain };
         self.system.frame().coordinates().iter().map(|x| self.rate(x)).zip(shorter).collect()
     }

@@ -11,8 +11,7 @@ use crate::compiled::elimination::columns::{SparseColumn, nonzeros};
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::options::TreeElimination;
 use crate::equations::poincare::Equations;
-use crate::tree::dynamics::TreeDynamics;
-use crate::tree::system::TreeSystem;
+use crate::tree::equations::TreeEquations;
 
 /// ẏ = g(t, y, w) with the unknowns w of M(t, y) w = r(t, y), M symmetric, or, more generally, of
 ///
@@ -64,20 +63,6 @@ pub(crate) struct Implicit<'g> {
     pub(crate) left: Vec<Expr<'g>>,
     /// The w from which the solution is looked for.
     pub(crate) guess: Vec<f64>,
-}
-
-/// The equations of a tree.
-#[derive(Clone, Debug)]
-pub(crate) struct TreeEquations<'g> {
-    pub(crate) system: TreeSystem<'g>,
-    pub(crate) dynamics: TreeDynamics<'g>,
-}
-
-impl TreeEquations<'_> {
-    /// Whether it has more quasi-velocities than a mass matrix that is looked at whole.
-    pub(crate) fn is_large(&self) -> bool {
-        self.system.is_large()
-    }
 }
 
 impl<'g> FirstOrder<'g> {
@@ -182,7 +167,10 @@ impl<'g> Equations<'g> {
         let Some(tree) = self.system.tree.as_ref().filter(|_| elimination != TreeElimination::Whole) else {
             return self.first_order();
         };
-        let dynamics = TreeEquations { dynamics: tree.dynamics(&self.system), system: (**tree).clone() };
+        let dynamics = TreeEquations {
+            dynamics: tree.dynamics(&self.system.frame, &self.system.forces),
+            system: (**tree).clone(),
+        };
         let by_joints = self.first_order_with(Matrix::from_fn(0, 0, |_, _| Expr::ZERO), Vec::new());
         let by_joints = FirstOrder { tree: Some(Rc::new(dynamics)), ..by_joints };
         if elimination == TreeElimination::ByJoints || tree.is_large() {

@@ -11,7 +11,8 @@ use crate::system::bodies::rigid_body::RigidBody;
 use crate::system::bodies::velocity::{Bodies, BodyVelocity};
 use crate::system::external_force;
 use crate::system::forces::Force;
-use crate::system::system::{System, check_no_state};
+use crate::system::states::check_no_state;
+use crate::system::system::System;
 use crate::tree::system::TreeSystem;
 use crate::tree::tree::Tree;
 

@@ -3,8 +3,9 @@
 use pc_algebra::{Frame, StructureCoefficients};
 use pc_expr::{Expr, Graph, SymbolPlaces};
 
-use crate::error::{FrameError, MechError, shape};
+use crate::error::{MechError, shape};
 use crate::system::bodies::velocity::Bodies;
+use crate::system::states::check_no_state;
 use crate::tree::system::TreeSystem;
 use crate::tree::tree::Tree;
 
@@ -291,20 +292,5 @@ impl<'g> System<'g> {
     /// The energy η_s ∂L/∂η_s − L in terms of (t, x, η): T − U where T is a quadratic form in η.
     pub fn energy(&self) -> Expr<'g> {
         self.graph().dot(self.momenta(), self.quasi_velocities.iter().copied()) - self.lagrangian
-    }
-}
-
-/// That `parts`, called `what`, contain none of the first-order `states`.
-///
-/// # Errors
-/// [`FrameError::OfState`]
-pub(crate) fn check_no_state<'g>(
-    states: &[(Expr<'g>, Expr<'g>)],
-    what: &'static str,
-    parts: &[Expr<'g>],
-) -> Result<(), MechError> {
-    match states.iter().find(|(z, _)| parts.iter().any(|part| part.depends_on(*z))) {
-        Some((z, _)) => Err(FrameError::OfState { what, state: z.to_string() }.into()),
-        None => Ok(()),
     }
 }

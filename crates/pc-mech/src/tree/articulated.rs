@@ -243,7 +243,7 @@ impl<'g> Articulated<'g> {
             }
             eliminated.push(Eliminated {
                 parent: link.parent,
-                turning: turnings[i],
+                turning: turnings[i].clone(),
                 place: places[i],
                 freedoms,
             });

@@ -1,4 +1,4 @@
-//! What joints bear.
+//! The forces on joints, and what these bear.
 
 use pc_expr::Expr;
 
@@ -43,12 +43,27 @@ impl<'g> System<'g> {
         let Some(tree) = &self.tree else { return Vec::new() };
         tree.reactions(self)
     }
+
+    /// The generalised forces on the joints of its [tree](System::tree), k of them: of Q + X U what does not come from forces
+    /// and torques on bodies, or from their weight. Without a tree it is Q.
+    pub fn joint_forces(&self) -> Vec<Expr<'g>> {
+        self.tree.as_ref().map_or_else(|| self.forces.clone(), |tree| tree.joint_forces(self))
+    }
 }
 
 impl<'g> TreeSystem<'g> {
+    /// Q + X U without the forces and torques on its bodies: the forces on its joints.
+    fn joint_forces(&self, system: &System<'g>) -> Vec<Expr<'g>> {
+        let graph = self.tree.graph;
+        let frame = &system.frame;
+        let slopes = frame.contract(&graph.gradient(self.others, frame.coordinates()));
+        let loads = self.tree.motions().share(&self.gravity, &system.quasi_velocities).forces;
+        (0..slopes.len()).map(|s| system.forces[s] + slopes[s] - loads[s]).collect()
+    }
+
     fn reactions(&self, system: &System<'g>) -> Vec<JointReaction<'g>> {
         let graph = self.tree.graph;
-        let dynamics = self.dynamics(system).with_own_masses(&self.tree);
+        let dynamics = self.dynamics(&system.frame, &system.forces).with_own_masses(&self.tree);
         let unknowns = self.by_link(&system.accelerations());
         let motions = self.tree.motions();
         // F and N act beside the joints.

@@ -4,8 +4,8 @@ use pc_algebra::Frame;
 use pc_expr::Expr;
 
 use crate::error::{MechError, TreeError};
-use crate::system::system::System;
 use crate::tree::dynamics::TreeDynamics;
+use crate::tree::link::Link;
 use crate::tree::spatial::Vector;
 use crate::tree::tree::Tree;
 
@@ -13,9 +13,9 @@ use crate::tree::tree::Tree;
 #[derive(Clone, Debug)]
 pub(crate) struct TreeSystem<'g> {
     pub(crate) tree: Tree<'g>,
-    gravity: Vector<'g>,
+    pub(crate) gravity: Vector<'g>,
     /// U(t, x)
-    others: Expr<'g>,
+    pub(crate) others: Expr<'g>,
     /// The quasi-velocities of each link, by their places in the system.
     pub(crate) places: Vec<Vec<usize>>,
 }
@@ -31,7 +31,7 @@ impl<'g> TreeSystem<'g> {
         eta: &[Expr<'g>],
     ) -> Option<TreeSystem<'g>> {
         let place = |symbol: &Expr<'g>| eta.iter().position(|eta| eta == symbol);
-        let of_link = |link: &crate::tree::link::Link<'g>| -> Option<Vec<usize>> {
+        let of_link = |link: &Link<'g>| -> Option<Vec<usize>> {
             link.hinge.quasi_velocities().iter().map(place).collect()
         };
         let places: Vec<Vec<usize>> = tree.links.iter().map(of_link).collect::<Option<_>>()?;
@@ -61,23 +61,13 @@ impl<'g> TreeSystem<'g> {
         kinetic - graph.sum(share.weight) - self.others
     }
 
-    /// Its equations, with the forces of the system.
-    pub(crate) fn dynamics(&self, system: &System<'g>) -> TreeDynamics<'g> {
+    /// Its equations, with the forces Q.
+    pub(crate) fn dynamics(&self, frame: &Frame<'g>, forces: &[Expr<'g>]) -> TreeDynamics<'g> {
         let graph = self.tree.graph;
-        let frame = &system.frame;
         let slopes = frame.contract(&graph.gradient(self.others, frame.coordinates()));
-        let applied = |s: &usize| graph.keep(system.forces[*s] + slopes[*s]);
+        let applied = |s: &usize| graph.keep(forces[*s] + slopes[*s]);
         let applied = self.places.iter().map(|places| places.iter().map(applied).collect()).collect();
         TreeDynamics::new(&self.tree, self.gravity, applied)
-    }
-
-    /// Q + X U without the forces and torques on its bodies: the forces on its joints.
-    fn joint_forces(&self, system: &System<'g>) -> Vec<Expr<'g>> {
-        let graph = self.tree.graph;
-        let frame = &system.frame;
-        let slopes = frame.contract(&graph.gradient(self.others, frame.coordinates()));
-        let loads = self.tree.motions().share(&self.gravity, &system.quasi_velocities).forces;
-        (0..slopes.len()).map(|s| system.forces[s] + slopes[s] - loads[s]).collect()
     }
 
     /// Components given link after link, in the order of the quasi-velocities of the system.
@@ -103,14 +93,6 @@ impl<'g> TreeSystem<'g> {
             others: put(self.others),
             places: self.places.clone(),
         }
-    }
-}
-
-impl<'g> System<'g> {
-    /// The generalised forces on the joints of its [tree](System::tree), k of them: of Q + X U what does not come from forces
-    /// and torques on bodies, or from their weight. Without a tree it is Q.
-    pub fn joint_forces(&self) -> Vec<Expr<'g>> {
-        self.tree.as_ref().map_or_else(|| self.forces.clone(), |tree| tree.joint_forces(self))
     }
 }
 

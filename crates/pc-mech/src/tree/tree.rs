@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use pc_algebra::Matrix;
-use pc_expr::{Expr, Graph};
+use pc_expr::{Expr, Graph, Number};
 
 use crate::error::{MechError, TreeError};
 use crate::tree::body::TreeBody;
@@ -409,7 +409,7 @@ fn aligned<'g>(direction: [f64; 3]) -> Option<(usize, Tensor<'g>)> {
 
 /// A vector of numbers.
 fn numbers(v: &Vector<'_>) -> [f64; 3] {
-    v.map(|component| component.constant().map_or(f64::NAN, |number| number.to_f64()))
+    v.map(|component| component.constant().map_or(f64::NAN, Number::to_f64))
 }
 
 impl<'g> Motions<'_, 'g> {

@@ -6,14 +6,14 @@ use crate::tree::link::{Hinge, Link};
 use crate::tree::spatial::{Tensor, Vector, apply, congruent, tensor, transpose, unit, vector};
 
 /// A rotation: that of the hinge, then a constant one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Turning<'g> {
     hinge: HingeTurning<'g>,
     /// None is the unit matrix.
     constant: Option<Tensor<'g>>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum HingeTurning<'g> {
     None,
     /// About a coordinate axis.
@@ -22,7 +22,7 @@ enum HingeTurning<'g> {
         cos: Expr<'g>,
         sin: Expr<'g>,
     },
-    Whole(Tensor<'g>),
+    Whole(Box<Tensor<'g>>),
 }
 
 impl<'g> Turning<'g> {
@@ -32,9 +32,9 @@ impl<'g> Turning<'g> {
                 HingeTurning::Plane { axis: *axis, cos: angle.cos(), sin: angle.sin() }
             }
             Hinge::Slide { .. } => HingeTurning::None,
-            Hinge::Ball { .. } | Hinge::Free { .. } => {
-                HingeTurning::Whole(link.hinge.turning().map(|row| row.map(|entry| graph.keep(entry))))
-            }
+            Hinge::Ball { .. } | Hinge::Free { .. } => HingeTurning::Whole(Box::new(
+                link.hinge.turning().map(|row| row.map(|entry| graph.keep(entry))),
+            )),
         };
         let constant = (link.rotation != unit()).then_some(link.rotation);
         Turning { hinge, constant }

@@ -20,7 +20,7 @@ const LENGTHS: [usize; 7] = [5, 10, 20, 50, 100, 200, 1000];
 fn chain(graph: &Graph, links: usize) -> Result<System<'_>, MechError> {
     let name = |i: usize| format!("q{i}");
     let body = |i: usize| {
-        let axis = if i % 2 == 0 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+        let axis = if i.is_multiple_of(2) { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
         let at = if i == 0 { [0, 0, 0] } else { [0, 0, -1] };
         let body = TreeBody::new(name(i), Joint::revolute(axis).at(at))
             .mass(1)

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use pc_algebra::{Matrix, determinant, inverse};
 use pc_expr::{Expr, Graph};
 
-use crate::compiled::first_order::TreeEquations;
+use crate::tree::equations::TreeEquations;
 
 /// The inverse of a symmetric matrix in the form in which it is applied. Zeros of the matrix cost nothing.
 pub(crate) enum Factors<'g> {

@@ -4,7 +4,7 @@ use pc_algebra::Frame;
 use pc_expr::{Expr, SymbolPlaces};
 
 use crate::error::{BodyError, MechError};
-use crate::system::system::check_no_state;
+use crate::system::states::check_no_state;
 
 /// What a body adds to a system.
 #[derive(Clone, Debug)]
