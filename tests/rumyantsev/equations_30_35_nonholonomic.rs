@@ -144,7 +144,7 @@ fn equation_32_with_the_constrained_energy_is_equation_30() {
         let case = Case::new(described, &graph);
         let (found, expected) =
             (case.constrained.free_system().unwrap().poincare().unwrap(), case.constrained.equations());
-        let masses = [&found, &expected].map(|equations| equations.mass_matrix().entries().into_owned());
+        let masses = [&found, expected].map(|equations| equations.mass_matrix().entries().into_owned());
         let pairs = masses[0].iter().zip(&masses[1]);
         for (found, expected) in pairs.chain(found.right_hand_side().iter().zip(expected.right_hand_side())) {
             assert!((*found - *expected).is_zero(), "{}: {found} instead of {expected}", described.name);
