@@ -221,8 +221,8 @@ fn there_is_a_call_for_every_key_of_the_text() {
         of_joint.map(|rest| rest.split_once('"').unwrap().0.to_owned()).collect();
     assert_eq!(of_joint, keys("[bodies.b.joint]\n"), "{text}");
     let mut simulation = keys("[simulation]\n");
-    // pc_model_keep is a setting beside the text.
-    assert!(simulation.remove("project"));
+    // pc_model_keep, pc_model_give_quasi_velocity and pc_model_add_independent are settings beside the text.
+    assert!(["project", "hamel", "independent"].iter().all(|key| simulation.remove(*key)));
     assert_eq!(written(&text, "simulation", None), simulation, "{text}");
     let algebra: BTreeSet<String> = ["brackets", "name"].map(str::to_owned).into();
     assert_eq!(keys("[algebra]\n"), algebra);

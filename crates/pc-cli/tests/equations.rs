@@ -114,7 +114,7 @@ fn canonical_equations_in_print() {
         "p_ω1 = I1 ω1",
         "p_ω1²/(2 I1) + p_ω2²/(2 I2) + p_ω3²/(2 I3) + mg (r1 sin(φ) sin(θ) + r2 cos(φ) sin(θ) + r3 γ3)",
         "γ3 = cos(θ)",
-        "p_ω1' = r3 mg cos(φ) sin(θ) - r2 mg γ3 - p_ω2 p_ω3 (1/I2 - 1/I3)",
+        "p_ω1' = r3 mg cos(φ) sin(θ) - r2 mg γ3 + p_ω2 p_ω3 (1/I3 - 1/I2)",
     ] {
         assert!(text.contains(line), "{line} not in {text}");
     }

@@ -146,7 +146,7 @@ fn a_rotation_may_have_an_angle_that_is_a_number() {
     let refused = pc("run", &crank(""), &[]);
     let text = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert!(
-        refused.status.code() == Some(4) && text.contains("are not orthogonal and of one length"),
+        refused.status.code() == Some(4) && text.contains("are not orthogonal and of equal length"),
         "{text}"
     );
     let reflected = crank("-").replace("\"cos(phi)\", \"-sin(phi)\", 0", "\"-cos(phi)\", \"sin(phi)\", 0");

@@ -106,6 +106,6 @@ fn a_start_where_the_frame_is_singular_is_refused() {
     let model = block("").replace("x = -0.5", "x = 0.0").replace("x = \"v\"", "x = \"x*v\"");
     let (code, text) = said(&["run", "-"], &model);
     assert_eq!(code, Some(4), "{text}");
-    let why = "the frame is singular there: the matrix b of the velocities has rank 0, and 1 at most states";
+    let why = "the frame is singular there: the matrix b of the velocities has rank 0, but 1 at most states";
     assert!(text.contains(why), "{text}");
 }

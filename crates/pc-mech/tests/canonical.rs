@@ -175,9 +175,9 @@ fn the_canonical_top_prints_as_in_the_paper() {
     let lines: Vec<String> =
         canonical.balance(Style::Text).into_iter().map(|(left, right)| format!("{left} = {right}")).collect();
     let expected = [
-        "p_ω1' = m3*γ2 - m2*γ3 - p_ω2*p_ω3*(1/B - 1/C)",
+        "p_ω1' = m3*γ2 - m2*γ3 + p_ω2*p_ω3*(1/C - 1/B)",
         "p_ω2' = m1*γ3 - m3*γ1 + p_ω1*p_ω3*(1/A - 1/C)",
-        "p_ω3' = m2*γ1 - m1*γ2 - p_ω1*p_ω2*(1/A - 1/B)",
+        "p_ω3' = m2*γ1 - m1*γ2 + p_ω1*p_ω2*(1/B - 1/A)",
     ];
     assert_eq!(lines, expected);
     assert!(matches!(top.in_velocities(), Err(MechError::Algebra(_))));

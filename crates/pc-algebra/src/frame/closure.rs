@@ -241,7 +241,8 @@ impl<'g> Frame<'g> {
         near: &Neighbourhood<'g>,
     ) -> f64 {
         let difference = |(i, terms): (usize, &[Expr<'g>; N])| -> Vec<Expr<'g>> {
-            let combination = self.b().nonzero(i).map(|(s, b)| -(b * c[s]));
+            // There are fewer c^m than operators where some of these are combinations of others.
+            let combination = self.b().nonzero(i).filter_map(|(s, b)| Some(-(b * *c.get(s)?)));
             terms.iter().copied().chain(combination).filter(|term| !term.is_zero()).collect()
         };
         near.residual(self.graph(), &y.iter().enumerate().map(difference).collect::<Vec<_>>())

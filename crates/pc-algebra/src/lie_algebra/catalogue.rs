@@ -221,7 +221,7 @@ mod tests {
         let message = |name: &str| LieAlgebra::named(name).unwrap_err().to_string();
         assert_eq!(message("bianchi6(2)"), "Bianchi type VI has a parameter h ≤ 0, not 2");
         assert_eq!(message("bianchi7(-1/2)"), "Bianchi type VII has a parameter h ≥ 0, not -1/2");
-        assert_eq!(message("so99"), "so(n) is kept up to n = 12, not for n = 99");
+        assert_eq!(message("so99"), "so(n) is available up to n = 12, not for n = 99");
         for undefined in ["bianchi6(nan)", "bianchi6(-inf)", "bianchi7(1/0)"] {
             let error = LieAlgebra::named(undefined).unwrap_err();
             assert!(matches!(error, AlgebraError::BianchiParameter { .. }), "{undefined}: {error}");

@@ -23,7 +23,7 @@ pub(crate) struct Direct {
 }
 
 /// Most numbers that are taken from the stack; for more, whatever they are, an allocation is not felt.
-const ON_STACK: usize = 256;
+const ON_STACK: usize = 4096;
 
 impl Direct {
     /// With the parameters as they are; none where the field is more than machine code. The code is compiled if it was

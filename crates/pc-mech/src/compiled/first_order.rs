@@ -162,6 +162,24 @@ impl<'g> FirstOrder<'g> {
 }
 
 impl<'g> Equations<'g> {
+    /// The accelerations η̇ = M⁻¹ r, length k.
+    pub fn accelerations(&self) -> Vec<Expr<'g>> {
+        let first_order = self.written_first_order();
+        first_order.solve(&first_order.factors())
+    }
+
+    /// With M and r where they are written out.
+    fn written_first_order(&self) -> FirstOrder<'g> {
+        let is_large = self.system.tree.as_ref().is_some_and(|tree| tree.is_large());
+        self.shortest_first_order(if is_large { TreeElimination::ByJoints } else { TreeElimination::Whole })
+    }
+
+    /// Inverse dynamics: the generalised forces that have to be added to Q for accelerations η̇, whose
+    /// [symbols](System::accelerations) they contain, M η̇ − r; length k. Of a large tree from body to body, in O(N).
+    pub fn inverse_dynamics(&self) -> Vec<Expr<'g>> {
+        self.written_first_order().balance().into_iter().map(|left| -left).collect()
+    }
+
     /// The same, of a tree joint after joint where that takes fewer operations.
     pub(crate) fn shortest_first_order(&self, elimination: TreeElimination) -> FirstOrder<'g> {
         let Some(tree) = self.system.tree.as_ref().filter(|_| elimination != TreeElimination::Whole) else {

@@ -5,8 +5,6 @@ use std::cell::OnceCell;
 use pc_algebra::Matrix;
 use pc_expr::Expr;
 
-use crate::compiled::first_order::FirstOrder;
-use crate::compiled::options::TreeElimination;
 use crate::error::{LagrangianError, MechError, ShapeError};
 use crate::system::system::System;
 
@@ -179,24 +177,6 @@ impl<'g> Equations<'g> {
     /// The energy y_s η_s − L in terms of (t, x, η).
     pub fn energy(&self) -> Expr<'g> {
         self.energy
-    }
-
-    /// The accelerations η̇ = M⁻¹ r, length k.
-    pub fn accelerations(&self) -> Vec<Expr<'g>> {
-        let first_order = self.written_first_order();
-        first_order.solve(&first_order.factors())
-    }
-
-    /// With M and r where they are written out.
-    fn written_first_order(&self) -> FirstOrder<'g> {
-        let is_large = self.system.tree.as_ref().is_some_and(|tree| tree.is_large());
-        self.shortest_first_order(if is_large { TreeElimination::ByJoints } else { TreeElimination::Whole })
-    }
-
-    /// Inverse dynamics: the generalised forces that have to be added to Q for accelerations η̇, whose
-    /// [symbols](System::accelerations) they contain, M η̇ − r; length k. Of a large tree from body to body, in O(N).
-    pub fn inverse_dynamics(&self) -> Vec<Expr<'g>> {
-        self.written_first_order().balance().into_iter().map(|left| -left).collect()
     }
 
     /// The same equations with symbols in integrals and outputs replaced, such as those of reactions.

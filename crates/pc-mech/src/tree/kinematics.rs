@@ -99,6 +99,16 @@ pub struct JointMotion<'g> {
 }
 
 impl<'g> Tree<'g> {
+    /// ẋ in terms of η (3).
+    pub fn velocities(&self) -> Vec<Expr<'g>> {
+        self.declared().flat_map(|link| rates(self.graph, &self.links[link].hinge)).collect()
+    }
+
+    /// How all bodies move, as expressions of x and η.
+    pub fn motions(&self) -> Motions<'_, 'g> {
+        Motions::of(self)
+    }
+
     /// How a body moves against its parent, or the world: what its joint does.
     pub fn joint_motion(&self, body: &str) -> Option<JointMotion<'g>> {
         let (graph, i) = (self.graph, self.place_of(body)?);
@@ -126,6 +136,19 @@ impl<'g> Tree<'g> {
 }
 
 impl<'g> Motions<'_, 'g> {
+    /// The place of the origin of a body, along the axes of the world.
+    pub fn place(&self, body: &str) -> Option<[Expr<'g>; 3]> {
+        self.of_body(body).map(|(motion, stand)| {
+            add(&motion.place, &apply(self.tree.graph, &motion.rotation, &stand.place))
+        })
+    }
+
+    /// The matrix from the axes of a body to those of the world, 3 × 3.
+    pub fn rotation(&self, body: &str) -> Option<Matrix<Expr<'g>>> {
+        self.of_body(body)
+            .map(|(motion, stand)| matrix_of(&product(self.tree.graph, &motion.rotation, &stand.rotation)))
+    }
+
     /// The velocity of the mass centre along the axes of the link, with the place of this there.
     fn centre(&self, body: usize) -> (LinkMotion<'g>, Vector<'g>, Vector<'g>) {
         let (graph, stand) = (self.tree.graph, &self.tree.stands[body]);

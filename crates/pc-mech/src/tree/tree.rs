@@ -3,16 +3,14 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use pc_algebra::Matrix;
 use pc_expr::{Expr, Graph, Number};
 
 use crate::error::{MechError, TreeError};
 use crate::tree::body::TreeBody;
 use crate::tree::joint::{Joint, Kind};
-use crate::tree::kinematics::{Motions, rates};
 use crate::tree::link::{Hinge, Link};
 use crate::tree::spatial::{
-    Tensor, Vector, ZERO, add, apply, congruent, entries_of, matrix_of, product, transpose, unit,
+    Tensor, Vector, ZERO, add, apply, congruent, entries_of, product, transpose, unit,
 };
 
 /// Bodies joined by joints: one or more trees that hang on the world.
@@ -108,11 +106,6 @@ impl<'g> Tree<'g> {
         self.declared().flat_map(|link| self.links[link].hinge.quasi_velocities()).collect()
     }
 
-    /// ẋ in terms of η (3).
-    pub fn velocities(&self) -> Vec<Expr<'g>> {
-        self.declared().flat_map(|link| rates(self.graph, &self.links[link].hinge)).collect()
-    }
-
     /// |q|² of each quaternion, which are 1.
     pub fn norms(&self) -> Vec<(String, Expr<'g>)> {
         let quaternions = self.declared().filter_map(|link| match &self.links[link].hinge {
@@ -128,11 +121,6 @@ impl<'g> Tree<'g> {
         &self.bodies
     }
 
-    /// How all bodies move, as expressions of x and η.
-    pub fn motions(&self) -> Motions<'_, 'g> {
-        Motions::of(self)
-    }
-
     /// The coordinates of the joint of a body; none of a body that there is not.
     pub fn joint_coordinates(&self, body: &str) -> Vec<Expr<'g>> {
         let links = self.place_of(body).map_or(0..0, |body| self.own[body].clone());
@@ -145,7 +133,7 @@ impl<'g> Tree<'g> {
     }
 
     /// The links in the order in which the bodies they belong to are declared.
-    fn declared(&self) -> impl Iterator<Item = usize> {
+    pub(crate) fn declared(&self) -> impl Iterator<Item = usize> {
         self.own.iter().cloned().flatten()
     }
 
@@ -410,19 +398,4 @@ fn aligned<'g>(direction: [f64; 3]) -> Option<(usize, Tensor<'g>)> {
 /// A vector of numbers.
 fn numbers(v: &Vector<'_>) -> [f64; 3] {
     v.map(|component| component.constant().map_or(f64::NAN, Number::to_f64))
-}
-
-impl<'g> Motions<'_, 'g> {
-    /// The place of the origin of a body, along the axes of the world.
-    pub fn place(&self, body: &str) -> Option<[Expr<'g>; 3]> {
-        self.of_body(body).map(|(motion, stand)| {
-            add(&motion.place, &apply(self.tree.graph, &motion.rotation, &stand.place))
-        })
-    }
-
-    /// The matrix from the axes of a body to those of the world, 3 × 3.
-    pub fn rotation(&self, body: &str) -> Option<Matrix<Expr<'g>>> {
-        self.of_body(body)
-            .map(|(motion, stand)| matrix_of(&product(self.tree.graph, &motion.rotation, &stand.rotation)))
-    }
 }
