@@ -13,7 +13,12 @@ use crate::layout::Layout;
 use crate::operations::Operations;
 
 /// What is the same for all bodies, for people and for a paper.
-const LAWS: [(&str, &str, &str); 5] = [
+const LAWS: [(&str, &str, &str); 6] = [
+    (
+        "From the axes of a body to those of its parent, by R, and to those of the world",
+        "W = W_p R",
+        r"W &= W_{p} R",
+    ),
     (
         "Velocities of a body against those of its parent p",
         "ω = Rᵀ ω_p + ω_r,   v = Rᵀ (v_p + ω_p × r) + v_r",
@@ -26,13 +31,13 @@ const LAWS: [(&str, &str, &str); 5] = [
     ),
     (
         "Force and moment that its joint exerts, the sums over the bodies k that hang on it",
-        "f = m (a + α × c + ω × (ω × c)) - F + Σ R_k f_k",
-        r"f &= m \bigl(a + \alpha \times c + \omega \times (\omega \times c)\bigr) - F + \sum_{k} R_{k} f_{k}",
+        "f = m (a + α × c + ω × (ω × c)) - Wᵀ F + Σ R_k f_k",
+        r"f &= m \bigl(a + \alpha \times c + \omega \times (\omega \times c)\bigr) - W^{T} F + \sum_{k} R_{k} f_{k}",
     ),
     (
         "",
-        "n = I α + ω × I ω + c × (m (a + α × c + ω × (ω × c)) - F) - N + Σ (R_k n_k + r_k × R_k f_k)",
-        r"n &= I \alpha + \omega \times I \omega + c \times \bigl(m (a + \alpha \times c + \omega \times (\omega \times c)) - F\bigr) - N + \sum_{k} (R_{k} n_{k} + r_{k} \times R_{k} f_{k})",
+        "n = I α + ω × I ω + c × (m (a + α × c + ω × (ω × c)) - Wᵀ F) - N + Σ (R_k n_k + r_k × R_k f_k)",
+        r"n &= I \alpha + \omega \times I \omega + c \times \bigl(m (a + \alpha \times c + \omega \times (\omega \times c)) - W^{T} F\bigr) - N + \sum_{k} (R_{k} n_{k} + r_{k} \times R_{k} f_{k})",
     ),
     (
         "Equation of each quasi-velocity η of its joint",
@@ -41,8 +46,14 @@ const LAWS: [(&str, &str, &str); 5] = [
     ),
 ];
 
+/// The bodies of a tree in the graph of a page, and the acceleration of gravity along the axes of the world.
+pub(crate) struct TreeOnPage<'p> {
+    bodies: Vec<BodyOnPage<'p>>,
+    gravity: [Expr<'p>; 3],
+}
+
 /// A body with what is its own.
-pub(crate) struct BodyOnPage<'p> {
+struct BodyOnPage<'p> {
     name: String,
     parent: String,
     /// Letters of a book, those of a program, and what they are.
@@ -54,8 +65,8 @@ pub(crate) struct BodyOnPage<'p> {
     kinematics: Vec<(Expr<'p>, Expr<'p>)>,
 }
 
-/// The bodies of a tree, in the graph of a page.
-pub(crate) fn bodies<'p>(system: &System<'_>, tree: &Tree<'_>, paper: &'p Graph) -> Vec<BodyOnPage<'p>> {
+/// A tree, in the graph of a page.
+pub(crate) fn tree_on_page<'p>(system: &System<'_>, tree: &Tree<'_>, paper: &'p Graph) -> TreeOnPage<'p> {
     let graph = system.graph();
     let one = |expression: Expr<'_>| graph.typeset(&[expression], paper)[0];
     let all = |vector: [Expr<'_>; 3]| vector.map(one);
@@ -92,7 +103,7 @@ pub(crate) fn bodies<'p>(system: &System<'_>, tree: &Tree<'_>, paper: &'p Graph)
             kinematics: of_joint.iter().filter_map(kinematic).collect(),
         })
     };
-    tree.bodies().iter().filter_map(body).collect()
+    TreeOnPage { bodies: tree.bodies().iter().filter_map(body).collect(), gravity: all(system.gravity()) }
 }
 
 fn vanishes(vector: &[Expr<'_>; 3]) -> bool {
@@ -100,12 +111,7 @@ fn vanishes(vector: &[Expr<'_>; 3]) -> bool {
 }
 
 /// For people; `heading` is the title with the name of the form.
-pub(crate) fn text(
-    heading: &str,
-    bodies: &[BodyOnPage<'_>],
-    operations: &Operations,
-    layout: &Layout,
-) -> String {
+pub(crate) fn text(heading: &str, tree: &TreeOnPage<'_>, operations: &Operations, layout: &Layout) -> String {
     let mut page = crate::text::underlined(heading);
     page +=
         "Written from body to body: as a whole the equations would be longer than a page.\n\nFor each body\n";
@@ -113,10 +119,16 @@ pub(crate) fn text(
         if !about.is_empty() {
             page += &format!("  {about}\n");
         }
-        page += &format!("    {law}\n");
+        let terms: Vec<String> = law.split(' ').map(str::to_owned).collect();
+        let law = Layout { width: layout.width.saturating_sub(4), ..*layout }.flowed("", &terms);
+        law.iter().for_each(|line| page += &format!("    {line}\n"));
     }
-    page += "  F is a force at the mass centre c, along the axes of the body as all vectors, N a torque.\n";
-    for body in bodies {
+    page += "  F is a force at the mass centre c, along the axes of the world, N a torque; other vectors stand along\n  the axes of the body, r along those of its parent.\n";
+    let gravity: Vec<String> = tree.gravity.iter().map(|g| g.display(Style::Book)).collect();
+    if !vanishes(&tree.gravity) {
+        page += &format!("\nGravity\n  g = ({})\n", gravity.join(", "));
+    }
+    for body in &tree.bodies {
         page += &format!("\n{} on {}\n", body.name, body.parent);
         let written = |expression: &Expr<'_>| expression.display(Style::Book);
         let mut put = |left: &str, right: String| {
@@ -151,12 +163,14 @@ pub(crate) fn text(
 }
 
 /// For a paper.
-pub(crate) fn latex(heading: &str, bodies: &[BodyOnPage<'_>]) -> String {
+pub(crate) fn latex(heading: &str, tree: &TreeOnPage<'_>) -> String {
     let mut page =
         format!("% {heading}, from body to body (needs amsmath)\n\n% For each body\n\\begin{{align*}}\n");
     page += &LAWS.map(|(_, _, law)| law).join(" \\\\\n");
+    let gravity: Vec<String> = tree.gravity.iter().map(|g| g.display(Style::Latex)).collect();
+    let _ = write!(page, " \\\\\ng &= ({})", gravity.join(", \\; ")); // writing to a string cannot fail
     page += "\n\\end{align*}\n";
-    for body in bodies {
+    for body in &tree.bodies {
         let set = |expression: &Expr<'_>| expression.display(Style::Latex);
         let mut lines = Vec::new();
         for (letter, _, matrix) in &body.matrices {
@@ -193,7 +207,7 @@ pub(crate) fn latex(heading: &str, bodies: &[BodyOnPage<'_>]) -> String {
 pub(crate) fn programs(
     title: &str,
     system: &System<'_>,
-    bodies: &[BodyOnPage<'_>],
+    tree: &TreeOnPage<'_>,
     operations: &Operations,
 ) -> Value {
     let text = |expression: &Expr<'_>| expression.to_string();
@@ -225,8 +239,9 @@ pub(crate) fn programs(
         "coordinates": names(system.frame().coordinates()),
         "quasi_velocities": names(system.quasi_velocities()),
         "parameters": Value::Object(parameters.collect()),
+        "gravity": list(&tree.gravity),
         "laws": LAWS.map(|(_, law, _)| law),
-        "bodies": bodies.iter().map(body).collect::<Vec<_>>(),
+        "bodies": tree.bodies.iter().map(body).collect::<Vec<_>>(),
         "operations": operations.object(),
     })
 }

@@ -40,11 +40,11 @@ pub fn page(
     if let (Form::Poincare, Some(tree)) = (form, system.large_tree()) {
         let operations = assembly.placed(Operations::of(&derived.equations).map_err(MechError::from))?;
         let heading = format!("{}: {name}", one_line(title));
-        let bodies = bodies::bodies(system, tree, &paper);
+        let tree = bodies::tree_on_page(system, tree, &paper);
         return Ok(match page {
-            Page::Text => on_terminal(bodies::text(&heading, &bodies, &operations, layout)),
-            Page::Latex => bodies::latex(&heading, &bodies),
-            Page::Json => visible_json(&bodies::programs(title, system, &bodies, &operations)) + "\n",
+            Page::Text => on_terminal(bodies::text(&heading, &tree, &operations, layout)),
+            Page::Latex => bodies::latex(&heading, &tree),
+            Page::Json => visible_json(&bodies::programs(title, system, &tree, &operations)) + "\n",
         });
     }
     let (name, sheet, operations) = match form.variables().filter(|variables| variables.has_momenta()) {

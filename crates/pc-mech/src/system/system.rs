@@ -92,6 +92,11 @@ impl<'g> System<'g> {
         self.tree().filter(|tree| tree.is_large())
     }
 
+    /// The acceleration of gravity of a [tree](System::tree), along the axes of the world; zero of a system that is none.
+    pub fn gravity(&self) -> [Expr<'g>; 3] {
+        self.tree.as_ref().map_or([Expr::ZERO; 3], |tree| tree.gravity)
+    }
+
     /// The parameters that are [functions of time](crate::SystemBuilder::signal).
     pub fn signals(&self) -> &[Expr<'g>] {
         &self.signals
