@@ -2,7 +2,7 @@
 //!
 //! Numbers and pointers come in, which `ffi` checks; the crates below compute the results;
 //! what is remembered between two calls is in `machinery`. Models: `model`, `builder`,
-//! `bodies`, `joints`, `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
+//! `bodies`, `joints` (of `entry`s), `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
 //! `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`,
 //! `cancel`, `solver`, `observe`, `events`, `occurrences`, `force`, `dense`, `checkpoint`,
 //! `statistics`, `ensemble`. The library: `version`.
@@ -15,6 +15,7 @@ pub(crate) mod cancel;
 pub(crate) mod checkpoint;
 pub(crate) mod dense;
 pub(crate) mod ensemble;
+pub(crate) mod entry;
 pub(crate) mod events;
 pub(crate) mod force;
 pub(crate) mod joints;

@@ -490,6 +490,74 @@ fn a_pendulum_pulls_at_its_joint() {
     assert_eq!(pendulum.joint_reactions()[0].moment()[1], pendulum.poincare().unwrap().inverse_dynamics()[0]);
 }
 
+/// A mass point on a ball joint, and one on a hinge at it: where all are on one line nothing resists a turn about this.
+#[test]
+fn a_state_in_which_a_joint_loses_its_inertia_is_refused() {
+    let graph = Graph::new();
+    let line = [0.3, 0.0, -1.1]; // no axis, so that each diagonal entry of the inertia is positive
+    let ball = TreeBody::new("ball", Joint::spherical()).mass(2).centre(line);
+    let hinge =
+        TreeBody::new("hinge", Joint::revolute([0.0, 1.0, 0.0]).at(line)).on("ball").mass(0.7).centre(line);
+    let tree = Tree::new(&graph, [ball, hinge]).unwrap();
+    let system = started(&graph, &tree, true).tree(tree).build().unwrap();
+    let options = CompileOptions::default().jacobian(false).elimination(TreeElimination::ByJoints);
+    let mut motion = system.poincare().unwrap().compile_for(options).unwrap();
+    let mut rates = |angle: f64| motion.rates(0.0, &[0.6, 0.0, 0.8, 0.0, angle, 0.1, 0.2, 0.3, 0.4]);
+    for straight in [0.0, 1e-9, std::f64::consts::PI, 2.0 * std::f64::consts::PI] {
+        let error = rates(straight).unwrap_err().to_string();
+        assert!(error.contains("mass matrix is singular"), "{straight}: {error}");
+    }
+    assert!(rates(1.0).is_ok());
+}
+
+/// Where gravity is not the same everywhere L has its slope, and the world does not accelerate.
+#[test]
+fn gravity_may_change_from_place_to_place() {
+    let graph = Graph::new();
+    let weight = TreeBody::new("z", Joint::prismatic([0.0, 0.0, 1.0])).mass(2);
+    let z = graph.symbol("z");
+    let system = System::builder(&graph)
+        .coordinates(["z"])
+        .gravity(|_| [Expr::ZERO, Expr::ZERO, -z])
+        .tree(Tree::new(&graph, [weight]).unwrap())
+        .build()
+        .unwrap();
+    let options = CompileOptions::default().elimination(TreeElimination::ByJoints);
+    let mut motion = system.poincare().unwrap().compile_for(options).unwrap();
+    // L = z'²  - 2 z · z, so that z'' = -2 z.
+    assert_eq!(motion.rates(0.0, &[0.25, 0.5]).unwrap(), [0.5, -0.5]);
+}
+
+/// What is left of a tree when its cyclic coordinates are left out moves as before.
+#[test]
+fn a_tree_without_its_cyclic_coordinates_moves_as_before() {
+    let graph = Graph::new();
+    let bodies: Vec<Hung> = (0..6)
+        .map(|i| Hung {
+            kind: if i == 0 { 8 } else { 1 },
+            axes: [coordinate_axis(i % 3, 1.0); 2],
+            parent: (i > 0).then(|| (i - 1) / 2),
+            place: [0.3, -0.2, 0.1 * i as f64],
+            tilt: [0.0; 3],
+            mass: 1.0,
+            centre: [0.1, 0.2, -0.3],
+            spread: [[0.5, 0.0, 0.1], [0.0, 0.4, 0.0], [0.1, 0.2, 0.6]],
+        })
+        .collect();
+    let system = hung(&graph, &bodies, false);
+    let reduced = system.reduced().unwrap();
+    let (n, kept) = (system.frame().coordinates().len(), reduced.frame().coordinates().len());
+    assert_eq!((n, kept), (12, 5), "a free body has no place and no attitude");
+    let y = state(&bodies, &(0..40).map(|i| (0.7 * f64::from(i)).sin()).collect::<Vec<_>>());
+    let rates = |system: &System<'_>, y: &[f64]| {
+        let options = CompileOptions::default().jacobian(false);
+        system.poincare().unwrap().compile_for(options).unwrap().rates(0.0, y).unwrap()
+    };
+    let whole = rates(&system, &y);
+    let (of_reduced, of_whole) = (rates(&reduced, &y[n - kept..]), &whole[n - kept..]);
+    assert!(difference(&of_reduced, of_whole) < ROUNDING, "{of_reduced:?} {of_whole:?}");
+}
+
 #[test]
 fn what_is_no_tree_is_said() {
     let graph = Graph::new();

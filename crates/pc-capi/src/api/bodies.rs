@@ -3,8 +3,8 @@
 use std::ffi::c_char;
 
 use crate::api::builder::draft;
+use crate::api::entry::{put, vector};
 use crate::api::model::pc_model;
-use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{text, texts};
 use crate::ffi::status::pc_status;
@@ -48,7 +48,11 @@ pub unsafe extern "C" fn pc_model_set_body_force(
 ) -> pc_status {
     let what = ("force", "pc_model_set_body_force");
     // SAFETY: as the preamble demands.
-    unsafe { draft(model, error, what.1, |draft| part(draft, body, what.0, || vector([x, y, z]))) }
+    unsafe {
+        draft(model, error, what.1, |draft| {
+            put(draft, (body, "body"), Section::Bodies, &[what.0], || vector([x, y, z]))
+        })
+    }
 }
 
 /// Sets the torque on a rigid body, in the axes of its angular velocity.
@@ -63,7 +67,11 @@ pub unsafe extern "C" fn pc_model_set_body_torque(
 ) -> pc_status {
     let what = ("torque", "pc_model_set_body_torque");
     // SAFETY: as the preamble demands.
-    unsafe { draft(model, error, what.1, |draft| part(draft, body, what.0, || vector([x, y, z]))) }
+    unsafe {
+        draft(model, error, what.1, |draft| {
+            put(draft, (body, "body"), Section::Bodies, &[what.0], || vector([x, y, z]))
+        })
+    }
 }
 
 /// Sets the angular velocity of a rigid body, in axes of the body. Excludes
@@ -79,7 +87,11 @@ pub unsafe extern "C" fn pc_model_set_body_angular_velocity(
 ) -> pc_status {
     let what = ("angular_velocity", "pc_model_set_body_angular_velocity");
     // SAFETY: as the preamble demands.
-    unsafe { draft(model, error, what.1, |draft| part(draft, body, what.0, || vector([x, y, z]))) }
+    unsafe {
+        draft(model, error, what.1, |draft| {
+            put(draft, (body, "body"), Section::Bodies, &[what.0], || vector([x, y, z]))
+        })
+    }
 }
 
 /// Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions
@@ -94,7 +106,7 @@ pub unsafe extern "C" fn pc_model_set_body_inertia(
 ) -> pc_status {
     // SAFETY: null or texts, as the preamble demands.
     let entries = || Ok(list(&unsafe { texts(entries, length, "entries") }?));
-    let write = |draft: &mut Draft| part(draft, body, "inertia", entries);
+    let write = |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["inertia"], entries);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_body_inertia", write) }
 }
@@ -111,26 +123,7 @@ pub unsafe extern "C" fn pc_model_set_body_rotation(
 ) -> pc_status {
     // SAFETY: null or texts, as the preamble demands.
     let entries = || Ok(list(&unsafe { texts(entries, length, "entries") }?));
-    let write = |draft: &mut Draft| part(draft, body, "rotation", entries);
+    let write = |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["rotation"], entries);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_body_rotation", write) }
-}
-
-/// Writes an entry of a body.
-fn part(
-    draft: &mut Draft,
-    body: *const c_char,
-    key: &str,
-    value: impl FnOnce() -> Result<String, CallError>,
-) -> Result<(), CallError> {
-    // SAFETY: null or text, as the preamble demands of the callers.
-    let body = unsafe { text(body, "body") }?;
-    draft.put(Section::Bodies, &[body, key], value()?);
-    Ok(())
-}
-
-/// Three expressions as a list.
-fn vector([x, y, z]: [*const c_char; 3]) -> Result<String, CallError> {
-    // SAFETY: null or text, as the preamble demands of the callers.
-    Ok(list(&unsafe { [text(x, "x")?, text(y, "y")?, text(z, "z")?] }))
 }

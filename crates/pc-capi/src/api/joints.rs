@@ -3,12 +3,13 @@
 use std::ffi::c_char;
 
 use crate::api::builder::draft;
+use crate::api::entry::{direction, put, vector};
 use crate::api::model::pc_model;
 use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::pointer::{numbers, text, texts};
+use crate::ffi::pointer::{text, texts};
 use crate::ffi::status::pc_status;
-use crate::machinery::draft::{Draft, Section, list, numbers as written, quoted};
+use crate::machinery::draft::{Draft, Section, list, quoted};
 
 /// Adds a body that hangs on another, or on the world if `parent` is null, by a joint of this
 /// kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. Its
@@ -48,7 +49,7 @@ pub unsafe extern "C" fn pc_model_set_body_mass(
 ) -> pc_status {
     // SAFETY: null or text, as the preamble demands.
     let mass = || Ok(quoted(unsafe { text(mass, "mass") }?));
-    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["mass"], mass);
+    let write = |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["mass"], mass);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_body_mass", write) }
 }
@@ -63,8 +64,8 @@ pub unsafe extern "C" fn pc_model_set_body_center(
     z: *const c_char,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let center = || place([x, y, z]);
-    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["center"], center);
+    let center = || vector([x, y, z]);
+    let write = |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["center"], center);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_body_center", write) }
 }
@@ -79,8 +80,8 @@ pub unsafe extern "C" fn pc_model_set_joint_place(
     z: *const c_char,
     error: *mut *mut pc_error,
 ) -> pc_status {
-    let at = || place([x, y, z]);
-    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "at"], at);
+    let at = || vector([x, y, z]);
+    let write = |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["joint", "at"], at);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_joint_place", write) }
 }
@@ -94,7 +95,7 @@ pub unsafe extern "C" fn pc_model_set_joint_axis(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let axis = || direction(axis, "axis");
-    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "axis"], axis);
+    let write = |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["joint", "axis"], axis);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_joint_axis", write) }
 }
@@ -110,7 +111,7 @@ pub unsafe extern "C" fn pc_model_set_joint_axes(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let axes = || Ok(format!("[{}, {}]", direction(first, "first")?, direction(second, "second")?));
-    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "axes"], axes);
+    let write = |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["joint", "axes"], axes);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_joint_axes", write) }
 }
@@ -125,7 +126,7 @@ pub unsafe extern "C" fn pc_model_set_joint_pitch(
 ) -> pc_status {
     // SAFETY: null or text, as the preamble demands.
     let pitch = || Ok(quoted(unsafe { text(pitch, "pitch") }?));
-    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "pitch"], pitch);
+    let write = |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["joint", "pitch"], pitch);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_joint_pitch", write) }
 }
@@ -143,7 +144,7 @@ pub unsafe extern "C" fn pc_model_set_joint_rotation(
     // SAFETY: null or texts, as the preamble demands.
     let entries = || Ok(list(&unsafe { texts(entries, length, "entries") }?));
     let write =
-        |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "rotation"], entries);
+        |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["joint", "rotation"], entries);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_joint_rotation", write) }
 }
@@ -168,7 +169,7 @@ pub unsafe extern "C" fn pc_model_set_joint_turns(
         let turn = |(axis, angle): (char, &&str)| list(&[&axis.to_string(), angle]);
         Ok(format!("[{}]", axes.chars().zip(&angles).map(turn).collect::<Vec<_>>().join(", ")))
     };
-    let write = |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "turns"], turns);
+    let write = |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["joint", "turns"], turns);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_joint_turns", write) }
 }
@@ -185,7 +186,7 @@ pub unsafe extern "C" fn pc_model_name_joint_coordinates(
     // SAFETY: null or texts, as the preamble demands.
     let names = || Ok(list(&unsafe { texts(names, length, "names") }?));
     let write =
-        |draft: &mut Draft| part(draft, (body, "body"), Section::Bodies, &["joint", "coordinates"], names);
+        |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["joint", "coordinates"], names);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_name_joint_coordinates", write) }
 }
@@ -202,7 +203,7 @@ pub unsafe extern "C" fn pc_model_name_joint_quasi_velocities(
     // SAFETY: null or texts, as the preamble demands.
     let names = || Ok(list(&unsafe { texts(names, length, "names") }?));
     let write = |draft: &mut Draft| {
-        part(draft, (body, "body"), Section::Bodies, &["joint", "quasi_velocities"], names)
+        put(draft, (body, "body"), Section::Bodies, &["joint", "quasi_velocities"], names)
     };
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_name_joint_quasi_velocities", write) }
@@ -224,7 +225,7 @@ pub unsafe extern "C" fn pc_model_add_point(
         // SAFETY: null or text, as the preamble demands.
         let (name, body) = unsafe { (text(name, "name")?, text(body, "body")?) };
         draft.add(Section::Points, &[name, "body"], quoted(body));
-        draft.add(Section::Points, &[name, "at"], place([x, y, z])?);
+        draft.add(Section::Points, &[name, "at"], vector([x, y, z])?);
         Ok(())
     };
     // SAFETY: as the preamble demands.
@@ -271,7 +272,7 @@ pub unsafe extern "C" fn pc_model_set_loop_axes(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let axes = || Ok(format!("[{}, {}]", direction(first, "first")?, direction(second, "second")?));
-    let write = |draft: &mut Draft| part(draft, (name, "name"), Section::Loops, &["axis"], axes);
+    let write = |draft: &mut Draft| put(draft, (name, "name"), Section::Loops, &["axis"], axes);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_loop_axes", write) }
 }
@@ -286,38 +287,7 @@ pub unsafe extern "C" fn pc_model_set_loop_length(
 ) -> pc_status {
     // SAFETY: null or text, as the preamble demands.
     let length = || Ok(quoted(unsafe { text(length, "length") }?));
-    let write = |draft: &mut Draft| part(draft, (name, "name"), Section::Loops, &["length"], length);
+    let write = |draft: &mut Draft| put(draft, (name, "name"), Section::Loops, &["length"], length);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_loop_length", write) }
-}
-
-/// Writes an entry of a body or a loop; the name comes with what it is called.
-fn part(
-    draft: &mut Draft,
-    (name, what): (*const c_char, &'static str),
-    section: Section,
-    keys: &[&str],
-    value: impl FnOnce() -> Result<String, CallError>,
-) -> Result<(), CallError> {
-    // SAFETY: null or text, as the preamble demands of the callers.
-    let name = unsafe { text(name, what) }?;
-    let keys: Vec<&str> = std::iter::once(name).chain(keys.iter().copied()).collect();
-    draft.put(section, &keys, value()?);
-    Ok(())
-}
-
-/// Three expressions as a list.
-fn place([x, y, z]: [*const c_char; 3]) -> Result<String, CallError> {
-    // SAFETY: null or text, as the preamble demands of the callers.
-    Ok(list(&unsafe { [text(x, "x")?, text(y, "y")?, text(z, "z")?] }))
-}
-
-/// Three numbers as a list.
-fn direction(axis: *const f64, what: &'static str) -> Result<String, CallError> {
-    // SAFETY: null or three numbers, as the preamble demands of the callers.
-    let axis = unsafe { numbers(axis, 3, 3, what) }?;
-    match axis.iter().find(|component| !component.is_finite()) {
-        None => Ok(written(axis)),
-        Some(&value) => Err(CallError::NotFinite { what, value }),
-    }
 }

@@ -446,6 +446,7 @@ impl<'g> SystemBuilder<'g> {
             let gravity =
                 self.gravity.as_deref().map(three_components).transpose()?.unwrap_or([Expr::ZERO; 3]);
             check_named(&tree, &frame, &eta)?;
+            moving.check_at_rest("the acceleration of gravity", &gravity)?;
             let states = self.states.iter().map(|(z, _)| z);
             let moving = frame.coordinates().iter().chain(&eta).chain([&self.time]).chain(states).copied();
             tree.check_constant(&moving.chain(self.signals.iter().copied()).collect::<Vec<_>>())?;

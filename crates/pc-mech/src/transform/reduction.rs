@@ -76,6 +76,7 @@ impl<'g> System<'g> {
             integrals: known(&self.integrals),
             outputs: known(&self.outputs),
             bodies: Bodies { list: Vec::new(), rest: lagrangian }, // their places are gone
+            tree: None,
             ..self.clone()
         })
     }

@@ -12,7 +12,7 @@
 //! This is the elimination M = Lᵀ D L of the mass matrix of all of the tree, in an order in which it does not fill in
 //! (Featherstone 1983; Rodriguez 1987).
 
-use pc_expr::{Expr, Graph};
+use pc_expr::{Expr, Graph, Number};
 
 use crate::tree::link::{Hinge, Link};
 use crate::tree::spatial::{Tensor, Vector, ZERO, cross, tensor, transpose, vector};
@@ -69,6 +69,16 @@ impl<'g> Inertia6<'g> {
             }
         }
         mapped
+    }
+
+    /// What is left of the inertia of a body alone, if it resists the direction by a number that is no rounding of `size`. Then the
+    /// pivot of the joint is no smaller: what the bodies beyond add is nowhere negative, and what is left of a sum is at least the
+    /// sum of what is left of its parts.
+    fn resisting(&self, graph: &'g Graph, direction: Direction<'g>, size: Expr<'g>) -> Option<Inertia6<'g>> {
+        let column = direction.column(graph, self);
+        let number = |x: Expr<'g>| x.constant().map(Number::to_f64);
+        let (pivot, size) = (number(direction.along(&column))?, number(size)?);
+        (pivot > ROUNDING * size).then(|| self.map(|r, c, entry| entry - column[r] * column[c] / pivot))
     }
 
     fn blocks(&self) -> (Tensor<'g>, Tensor<'g>, Tensor<'g>) {
@@ -138,12 +148,11 @@ pub(crate) struct Freedom<'g> {
     direction: Direction<'g>,
     /// Φ s
     column: Spatial<'g>,
-    pub(crate) pivot: Expr<'g>,
     inverse: Expr<'g>,
     /// Φ s/(s·Φ s), zero at its own component.
     factors: Spatial<'g>,
-    /// Numbers that the pivot cannot be below, if it is not to be looked at.
-    pub(crate) size: Expr<'g>,
+    /// s·Φ s with the size of what it is left of, if it may vanish.
+    pub(crate) watched: Option<(Expr<'g>, Expr<'g>)>,
 }
 
 /// s, one of the six components; of a screw one of the first three, and a multiple of that which belongs to it.
@@ -153,7 +162,33 @@ struct Direction<'g> {
     pitch: Expr<'g>,
 }
 
+/// What is left of a number may be rounding where it is this part of it.
+const ROUNDING: f64 = 1e-12;
+
 impl<'g> Direction<'g> {
+    /// Whether it is this one of the six components.
+    fn is_component(&self, r: usize) -> bool {
+        self.pitch.is_zero() && r == self.component
+    }
+
+    /// Φ s
+    fn column(&self, graph: &'g Graph, phi: &Inertia6<'g>) -> Spatial<'g> {
+        std::array::from_fn(|r| match self.pitch.is_zero() {
+            true => phi.0[r][self.component],
+            false => graph.keep(phi.0[r][self.component] + self.pitch * phi.0[r][self.component + 3]),
+        })
+    }
+
+    /// What s·Φ s can be at most: the trace of J, or of M, in the units of the direction.
+    fn size(&self, graph: &'g Graph, phi: &Inertia6<'g>) -> Expr<'g> {
+        let trace = |first: usize| graph.sum((first..first + 3).map(|r| phi.0[r][r]));
+        match self.component < 3 {
+            true if self.pitch.is_zero() => trace(0),
+            true => trace(0) + self.pitch.square() * trace(3),
+            false => trace(3),
+        }
+    }
+
     /// s · p
     fn along(&self, p: &Spatial<'g>) -> Expr<'g> {
         match self.pitch.is_zero() {
@@ -218,12 +253,13 @@ pub(crate) struct Eliminated<'g> {
 }
 
 impl<'g> Articulated<'g> {
-    /// Eliminates the joints of links with these masses, from the last to the first.
+    /// Eliminates the joints of links with these masses, from the last to the first. Where no inertia is negative, those of the
+    /// bodies by themselves, `own`, tell which pivots cannot vanish.
     pub(crate) fn of(
         graph: &'g Graph,
         links: &[Link<'g>],
         masses: &[MassOnLink<'g>],
-        own: &[MassOnLink<'g>],
+        own: Option<&[MassOnLink<'g>]>,
     ) -> Articulated<'g> {
         let turnings: Vec<Turning<'g>> = links.iter().map(|link| Turning::of(graph, link)).collect();
         let places: Vec<Vector<'g>> = links.iter().map(|link| link.origin(graph)).collect();
@@ -232,10 +268,14 @@ impl<'g> Articulated<'g> {
         for (i, link) in links.iter().enumerate().rev() {
             let rigid = Inertia6::rigid(&masses[i]);
             let mut inertia = left[i].map_or(rigid, |children| children.plus(&rigid, graph));
-            let itself = Inertia6::rigid(&own[i]);
+            let mut itself = own.map(|own| Inertia6::rigid(&own[i]));
+            let (whole, alone) = (inertia, itself);
             let mut freedoms = Vec::new();
             for direction in link.hinge.directions() {
-                freedoms.push(eliminate(graph, &mut inertia, direction, &itself));
+                let size = |of: &Inertia6<'g>| direction.size(graph, of);
+                itself = itself.and_then(|left| left.resisting(graph, direction, alone.as_ref().map(size)?));
+                let size = itself.is_none().then(|| size(&whole));
+                freedoms.push(eliminate(graph, &mut inertia, direction, size));
             }
             if let Some(parent) = link.parent {
                 let seen = inertia.seen(graph, &turnings[i], &places[i]);
@@ -312,36 +352,24 @@ impl<'g> Articulated<'g> {
     }
 }
 
-/// Eliminates a component: what is left of `inertia` does not resist it. `own` is the inertia of the body alone, below which the
-/// pivot cannot be.
+/// Eliminates a component: what is left of `inertia` does not resist it. Its pivot is watched if it has a `size`, which it is left
+/// of.
 fn eliminate<'g>(
     graph: &'g Graph,
     inertia: &mut Inertia6<'g>,
     direction: Direction<'g>,
-    own: &Inertia6<'g>,
+    size: Option<Expr<'g>>,
 ) -> Freedom<'g> {
-    let Direction { component, pitch } = direction;
-    let column = |phi: &Inertia6<'g>| -> Spatial<'g> {
-        std::array::from_fn(|r| match pitch.is_zero() {
-            true => phi.0[r][component],
-            false => graph.keep(phi.0[r][component] + pitch * phi.0[r][component + 3]),
-        })
-    };
-    let phi = column(inertia);
-    let pivot = direction.along(&phi);
-    let least = direction.along(&column(own));
-    // Its own inertia, or, of a body without, what its neighbours leave of theirs.
-    let size = if least.is_zero() { graph.sum((0..6).map(|r| inertia.0[r][r])) } else { least };
+    let column = direction.column(graph, inertia);
+    let pivot = direction.along(&column);
     let inverse = graph.keep(pivot.powi(-1));
-    let closed = pitch.is_zero();
-    let factors: Spatial<'g> = std::array::from_fn(|r| match closed && r == component {
+    let factors: Spatial<'g> = std::array::from_fn(|r| match direction.is_component(r) {
         true => Expr::ZERO,
-        false => graph.keep(phi[r] * inverse),
+        false => graph.keep(column[r] * inverse),
     });
-    *inertia = inertia.map(|r, c, entry| match closed && (r == component || c == component) {
+    *inertia = inertia.map(|r, c, entry| match direction.is_component(r) || direction.is_component(c) {
         true => Expr::ZERO,
-        false => graph.keep(entry - phi[r] * factors[c]),
+        false => graph.keep(entry - column[r] * factors[c]),
     });
-    let watched = if least.is_zero() { pivot } else { least };
-    Freedom { direction, column: phi, pivot: watched, inverse, factors, size }
+    Freedom { direction, column, inverse, factors, watched: size.map(|size| (pivot, size)) }
 }

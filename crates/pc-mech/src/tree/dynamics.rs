@@ -92,7 +92,12 @@ impl<'g> TreeDynamics<'g> {
         let own: Vec<MassOnLink<'g>> = (0..tree.links.len()).map(|link| tree.mass_on(link)).collect();
         TreeDynamics {
             graph: tree.graph,
-            articulated: Articulated::of(tree.graph, &tree.links, &masses, &own),
+            articulated: Articulated::of(
+                tree.graph,
+                &tree.links,
+                &masses,
+                tree.is_definite().then_some(&own),
+            ),
             links: tree.links.clone(),
             masses,
             gravity,

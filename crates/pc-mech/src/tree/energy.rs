@@ -4,7 +4,7 @@ use pc_expr::Expr;
 
 use crate::system::bodies::velocity::BodyVelocity;
 use crate::tree::kinematics::Motions;
-use crate::tree::spatial::{Vector, add, apply, cross, dot};
+use crate::tree::spatial::{Vector, add, apply, apply_transpose, cross, dot};
 
 /// What the bodies of a tree add to L and Q.
 pub(crate) struct TreeShare<'g> {
@@ -45,9 +45,7 @@ impl<'g> Motions<'_, 'g> {
             velocities.push(BodyVelocity {
                 name: body.name.clone(),
                 velocity: in_world.to_vec(),
-                angular_velocity: Some(
-                    crate::tree::spatial::apply_transpose(graph, &stand.rotation, &motion.omega).to_vec(),
-                ),
+                angular_velocity: Some(apply_transpose(graph, &stand.rotation, &motion.omega).to_vec()),
             });
         }
         let forces = graph.substitute(&graph.gradient(graph.sum(power), eta), &values);

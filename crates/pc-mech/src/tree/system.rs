@@ -22,7 +22,7 @@ pub(crate) struct TreeSystem<'g> {
 
 impl<'g> TreeSystem<'g> {
     /// That of a tree, with the rest of the Lagrangian; none if there is other inertia, if the tree does not move as its joints
-    /// say, or if it has not all quasi-velocities.
+    /// say, if it has not all quasi-velocities, or if gravity is not the same everywhere: then the world does not accelerate.
     pub(crate) fn of(
         tree: Tree<'g>,
         gravity: Vector<'g>,
@@ -37,6 +37,9 @@ impl<'g> TreeSystem<'g> {
         let places: Vec<Vec<usize>> = tree.links.iter().map(of_link).collect::<Option<_>>()?;
         let moved: usize = places.iter().map(Vec::len).sum();
         if moved != eta.len() || eta.iter().any(|&eta| others.depends_on(eta)) {
+            return None;
+        }
+        if gravity.iter().any(|g| frame.coordinates().iter().any(|&x| g.depends_on(x))) {
             return None;
         }
         let velocities = frame.velocities(eta);

@@ -6,6 +6,7 @@ use std::rc::Rc;
 use pc_algebra::{Matrix, determinant, inverse};
 use pc_expr::{Expr, Graph};
 
+use crate::tree::articulated::Freedom;
 use crate::tree::equations::TreeEquations;
 
 /// The inverse of a symmetric matrix in the form in which it is applied. Zeros of the matrix cost nothing.
@@ -80,9 +81,10 @@ impl<'g> Factors<'g> {
             Factors::Tree(tree) => {
                 let links = tree.system.places.iter().zip(&tree.dynamics.articulated.links);
                 let freedoms = links.flat_map(|(places, link)| places.iter().zip(&link.freedoms));
-                freedoms
-                    .map(|(&place, joint)| Watched { place, pivot: joint.pivot, size: joint.size })
-                    .collect()
+                let watched = |(&place, joint): (&usize, &Freedom<'g>)| {
+                    joint.watched.map(|(pivot, size)| Watched { place, pivot, size })
+                };
+                freedoms.filter_map(watched).collect()
             }
         }
     }
