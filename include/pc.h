@@ -798,40 +798,6 @@ pc_status pc_model_add_parameter_expression(pc_model *model,
                                             pc_error **error);
 
 /**
- * Adds an input: a value that is constant until it is set, as a parameter is. Inputs come
- * after all parameters. Forces, rates of states, events, integrals and outputs may contain
- * it, but nothing that velocities or momenta depend on.
- */
-pc_status pc_model_add_input(pc_model *model, const char *name, double value, pc_error **error);
-
-/**
- * Adds an input that is a function of time: `length` values at increasing times, interpolated
- * by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the
- * times. Its values cannot be set in any other way.
- */
-pc_status pc_model_add_input_table(pc_model *model,
-                                   const char *name,
-                                   const double *times,
-                                   const double *values,
-                                   size_t length,
-                                   const char *interpolation,
-                                   pc_error **error);
-
-/**
- * Adds an input whose table is a column of a file of comma-separated numbers below a line of
- * names; otherwise as pc_model_add_input_table. `time` is the name of the column of times,
- * NULL for "t" or, without one, the first column. The path is relative to the working
- * directory at the time of the call.
- */
-pc_status pc_model_add_input_file(pc_model *model,
-                                  const char *name,
-                                  const char *path,
-                                  const char *column,
-                                  const char *time,
-                                  const char *interpolation,
-                                  pc_error **error);
-
-/**
  * Adds a first-order state with its value at the start and its rate: an expression of time,
  * coordinates, velocities and states. It is integrated with the motion and comes after the
  * velocities in the state; it is no part of the frame.
@@ -960,6 +926,40 @@ pc_status pc_model_add_output(pc_model *model,
                               const char *name,
                               const char *expression,
                               pc_error **error);
+
+/**
+ * Adds an input: a value that is constant until it is set, as a parameter is. Inputs come
+ * after all parameters. Forces, rates of states, events, integrals and outputs may contain
+ * it, but nothing that velocities or momenta depend on.
+ */
+pc_status pc_model_add_input(pc_model *model, const char *name, double value, pc_error **error);
+
+/**
+ * Adds an input that is a function of time: `length` values at increasing times, interpolated
+ * by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the
+ * times. Its values cannot be set in any other way.
+ */
+pc_status pc_model_add_input_table(pc_model *model,
+                                   const char *name,
+                                   const double *times,
+                                   const double *values,
+                                   size_t length,
+                                   const char *interpolation,
+                                   pc_error **error);
+
+/**
+ * Adds an input whose table is a column of a file of comma-separated numbers below a line of
+ * names; otherwise as pc_model_add_input_table. `time` is the name of the column of times,
+ * NULL for "t" or, without one, the first column. The path is relative to the working
+ * directory at the time of the call.
+ */
+pc_status pc_model_add_input_file(pc_model *model,
+                                  const char *name,
+                                  const char *path,
+                                  const char *column,
+                                  const char *time,
+                                  const char *interpolation,
+                                  pc_error **error);
 
 /**
  * Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of

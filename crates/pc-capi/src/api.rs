@@ -1,7 +1,7 @@
 //! The functions of pc.h, a file for each group of them.
 //!
 //! Numbers and pointers come in, which `ffi` checks; the crates below compute the results;
-//! what is remembered between two calls is in `machinery`. Models: `model`, `builder`,
+//! what is remembered between two calls is in `machinery`. Models: `model`, `builder`, `inputs`,
 //! `bodies`, `joints` (of `entry`s), `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
 //! `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`,
 //! `cancel`, `solver`, `observe`, `events`, `occurrences`, `force`, `dense`, `checkpoint`,
@@ -18,6 +18,7 @@ pub(crate) mod ensemble;
 pub(crate) mod entry;
 pub(crate) mod events;
 pub(crate) mod force;
+pub(crate) mod inputs;
 pub(crate) mod joints;
 pub(crate) mod kernel;
 pub(crate) mod legendre;

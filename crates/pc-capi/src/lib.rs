@@ -26,6 +26,7 @@ pub use api::dense::*;
 pub use api::ensemble::*;
 pub use api::events::*;
 pub use api::force::*;
+pub use api::inputs::*;
 pub use api::joints::*;
 pub use api::kernel::*;
 pub use api::legendre::*;

@@ -1,16 +1,19 @@
 //! Derivatives of expressions, and short forms of the results.
 //!
 //! `derivative` sweeps backwards for gradients and forwards along a direction; `substitution` puts expressions in place of
-//! symbols; `collect` rebuilds an expression as a polynomial whose coefficients have forgotten what they do not depend on,
-//! where `numbers` finds the same values, and `polynomial` writes it out; `potential` finds a function by its gradient; `root_powers` lets powers of roots be recognised; `typeset` rewrites expressions to be read;
-//! `multiplied_out` opens brackets where sines and cosines merge.
+//! symbols. `collect` rebuilds an expression as a polynomial, by its `powers` of each symbol, whose coefficients have
+//! forgotten what they do not depend on: that is `independence`, where `numbers` finds the same values; `polynomial` writes
+//! it out. `potential` finds a function by its gradient; `root_powers` lets powers of roots be recognised; `typeset`
+//! rewrites expressions to be read; `multiplied_out` opens brackets where sines and cosines merge.
 
 pub(crate) mod collect;
 pub(crate) mod derivative;
+pub(crate) mod independence;
 pub(crate) mod multiplied_out;
 pub(crate) mod numbers;
 pub(crate) mod polynomial;
 pub(crate) mod potential;
+pub(crate) mod powers;
 pub(crate) mod root_powers;
 pub(crate) mod substitution;
 pub(crate) mod typeset;

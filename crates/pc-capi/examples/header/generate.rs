@@ -48,7 +48,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 35] = [
+const FILES: [&str; 36] = [
     "api/version.rs",
     "ffi/status.rs",
     "ffi/error.rs",
@@ -56,6 +56,7 @@ const FILES: [&str; 35] = [
     "ffi/strings.rs",
     "api/model.rs",
     "api/builder.rs",
+    "api/inputs.rs",
     "api/bodies.rs",
     "api/joints.rs",
     "api/action.rs",

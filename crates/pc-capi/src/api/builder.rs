@@ -6,9 +6,9 @@ use crate::api::model::{Contents, Origin, boxed, change, pc_model};
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::pointer::{clear, finite, numbers, text, write};
+use crate::ffi::pointer::{clear, finite, text, write};
 use crate::ffi::status::pc_status;
-use crate::machinery::draft::{Draft, Section, list, number, numbers as list_of, quoted};
+use crate::machinery::draft::{Draft, Section, list, number, quoted};
 
 /// An empty model, to be built by the calls below. Kinds of entries may come in any order;
 /// coordinates, quasi-velocities, parameters and so on keep the order of their calls.
@@ -100,110 +100,6 @@ pub unsafe extern "C" fn pc_model_add_parameter_expression(
     };
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_add_parameter_expression", write) }
-}
-
-/// Adds an input: a value that is constant until it is set, as a parameter is. Inputs come
-/// after all parameters. Forces, rates of states, events, integrals and outputs may contain
-/// it, but nothing that velocities or momenta depend on.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_model_add_input(
-    model: *mut pc_model,
-    name: *const c_char,
-    value: f64,
-    error: *mut *mut pc_error,
-) -> pc_status {
-    let write = |draft: &mut Draft| {
-        // SAFETY: null or text, as the preamble demands.
-        let name = unsafe { text(name, "name") }?;
-        draft.add(Section::Inputs, &[name], number(finite(value, "value")?));
-        Ok(())
-    };
-    // SAFETY: as the preamble demands.
-    unsafe { draft(model, error, "pc_model_add_input", write) }
-}
-
-/// Adds an input that is a function of time: `length` values at increasing times, interpolated
-/// by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the
-/// times. Its values cannot be set in any other way.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_model_add_input_table(
-    model: *mut pc_model,
-    name: *const c_char,
-    times: *const f64,
-    values: *const f64,
-    length: usize,
-    interpolation: *const c_char,
-    error: *mut *mut pc_error,
-) -> pc_status {
-    let write = |draft: &mut Draft| {
-        // SAFETY: null or text, null or `length` numbers, as the preamble demands.
-        let (name, times, values) = unsafe {
-            (
-                text(name, "name")?,
-                numbers(times, length, length, "times")?,
-                numbers(values, length, length, "values")?,
-            )
-        };
-        for &number in times.iter().chain(values) {
-            finite(number, "an entry of the table")?;
-        }
-        // SAFETY: null or text, as the preamble demands.
-        let interpolation = unsafe { choice(interpolation, "interpolation") }?;
-        draft.add(Section::Inputs, &[name, "times"], list_of(times));
-        draft.add(Section::Inputs, &[name, "values"], list_of(values));
-        draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
-        Ok(())
-    };
-    // SAFETY: as the preamble demands.
-    unsafe { draft(model, error, "pc_model_add_input_table", write) }
-}
-
-/// Adds an input whose table is a column of a file of comma-separated numbers below a line of
-/// names; otherwise as pc_model_add_input_table. `time` is the name of the column of times,
-/// NULL for "t" or, without one, the first column. The path is relative to the working
-/// directory at the time of the call.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn pc_model_add_input_file(
-    model: *mut pc_model,
-    name: *const c_char,
-    path: *const c_char,
-    column: *const c_char,
-    time: *const c_char,
-    interpolation: *const c_char,
-    error: *mut *mut pc_error,
-) -> pc_status {
-    let write = |draft: &mut Draft| {
-        // SAFETY: null or text, as the preamble demands.
-        let (name, path, column, interpolation) = unsafe {
-            (
-                text(name, "name")?,
-                text(path, "path")?,
-                text(column, "column")?,
-                choice(interpolation, "interpolation")?,
-            )
-        };
-        let absolute =
-            std::path::absolute(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
-        draft.add(Section::Inputs, &[name, "file"], quoted(&absolute.display().to_string()));
-        draft.add(Section::Inputs, &[name, "column"], quoted(column));
-        if !time.is_null() {
-            // SAFETY: text, as the preamble demands.
-            draft.add(Section::Inputs, &[name, "time"], quoted(unsafe { text(time, "time") }?));
-        }
-        draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
-        Ok(())
-    };
-    // SAFETY: as the preamble demands.
-    unsafe { draft(model, error, "pc_model_add_input_file", write) }
-}
-
-/// The word for how a table is read; "linear" where it is NULL.
-///
-/// # Safety
-/// `word` is null or text.
-unsafe fn choice<'a>(word: *const c_char, what: &'static str) -> Result<&'a str, CallError> {
-    // SAFETY: as promised.
-    if word.is_null() { Ok("linear") } else { unsafe { text(word, what) } }
 }
 
 /// Adds a first-order state with its value at the start and its rate: an expression of time,

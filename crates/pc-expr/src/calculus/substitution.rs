@@ -98,6 +98,16 @@ impl Graph {
     ) -> Vec<Expr<'g>> {
         self.substitution(replacements).apply(outputs)
     }
+
+    /// The expressions rebuilt in another graph, symbols of the same names.
+    pub fn transcribe<'g, 'h>(&'g self, expressions: &[Expr<'g>], into: &'h Graph) -> Vec<Expr<'h>> {
+        let symbols: Vec<(Expr<'g>, Expr<'h>)> = self
+            .symbols_of(expressions)
+            .into_iter()
+            .map(|symbol| (symbol, into.symbol(&symbol.symbol_name().unwrap_or_default())))
+            .collect();
+        self.evaluate(expressions, &symbols).unwrap_or_default() // every symbol has its value
+    }
 }
 
 impl Dag {

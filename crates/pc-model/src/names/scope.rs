@@ -50,7 +50,7 @@ pub(crate) struct Scope<'g, 'd> {
     pub(super) document: &'d Document,
     /// Where the expressions stand.
     source: &'d Source,
-    time: Expr<'g>,
+    pub(super) time: Expr<'g>,
     /// The places of the definitions in their section.
     pub(super) places: HashMap<&'d str, usize>,
     /// Definitions that were used already: each is resolved once for a stage.
@@ -183,7 +183,12 @@ impl<'g, 'd> Scope<'g, 'd> {
         self.written.iter().filter(|written| counts(&used, &written.context)).collect()
     }
 
-    fn ast(&mut self, expression: &Expression, ast: &Ast, stage: Stage) -> Result<Expr<'g>, ModelError> {
+    pub(super) fn ast(
+        &mut self,
+        expression: &Expression,
+        ast: &Ast,
+        stage: Stage,
+    ) -> Result<Expr<'g>, ModelError> {
         match &ast.kind {
             AstKind::Number(value) => Ok((*value).into()),
             AstKind::Name(name) => self.name(expression, ast.span, name, stage),
@@ -381,108 +386,6 @@ impl<'g, 'd> Scope<'g, 'd> {
         let moving = coordinates.chain(quasi_velocities).chain(states);
         let inputs = document.inputs.iter().map(|input| &input.name.text);
         parameters.chain(inputs).chain(definitions).chain(moving).cloned().collect()
-    }
-
-    fn velocity_of(
-        &mut self,
-        expression: &Expression,
-        span: Span,
-        name: &str,
-        stage: Stage,
-    ) -> Result<Expr<'g>, ModelError> {
-        let coordinates = &self.document.coordinates;
-        let is_point = self.is_point(name);
-        if !is_point && !coordinates.iter().any(|c| c.name.text == name) {
-            let fault = |_| MeaningError::NotACoordinate {
-                name: name.to_owned(),
-                coordinates: coordinates.iter().map(|c| c.name.text.clone()).collect(),
-            };
-            return Err(self.error(expression, span, fault));
-        }
-        match stage {
-            Stage::Parameter
-            | Stage::Start
-            | Stage::Joint
-            | Stage::Kinematics
-            | Stage::Position
-            | Stage::Inertia
-            | Stage::Action
-            | Stage::Gravity => Err(self.error(expression, span, |text| MeaningError::NotHere {
-                name: text,
-                place: stage.place(),
-                allowed: stage.allowed(),
-            })),
-            _ if is_point => {
-                let place = self.point(name)?;
-                let rates: Vec<_> = self.coordinates().into_iter().zip(self.velocities()).collect();
-                Ok(self.graph.directional(&[place], &rates)[0])
-            }
-            _ => Ok(self.velocity(name)),
-        }
-    }
-
-    /// d(f) = ∂f/∂t + x_i' ∂f/∂x_i + ż ∂f/∂z, and accelerations where f contains velocities.
-    fn total_derivative(
-        &mut self,
-        expression: &Expression,
-        span: Span,
-        inner: &Ast,
-        stage: Stage,
-    ) -> Result<Expr<'g>, ModelError> {
-        let refused = match stage {
-            Stage::Parameter
-            | Stage::Start
-            | Stage::Joint
-            | Stage::Kinematics
-            | Stage::Position
-            | Stage::Inertia
-            | Stage::Action
-            | Stage::Gravity => true,
-            Stage::Definition
-            | Stage::Constraint
-            | Stage::Rate
-            | Stage::Dynamics
-            | Stage::Event
-            | Stage::Function
-            | Stage::Observation => false,
-        };
-        if refused {
-            let fault =
-                |text| MeaningError::NotHere { name: text, place: stage.place(), allowed: stage.allowed() };
-            return Err(self.error(expression, span, fault));
-        }
-        let value = self.ast(expression, inner, stage)?;
-        let input = |input: &&crate::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
-        if let Some(input) = self.document.inputs.iter().find(input) {
-            let name = input.name.text.clone();
-            return Err(self.error(expression, span, |_| MeaningError::RateOfInput { name }));
-        }
-        let (x, velocities, eta) = (self.coordinates(), self.velocities(), self.quasi_velocities());
-        let moves = |z: &Expr<'g>| value.depends_on(*z);
-        if stage != Stage::Observation && velocities.iter().chain(&eta).any(moves) {
-            return Err(self.error(expression, span, |_| MeaningError::Acceleration { place: stage.place() }));
-        }
-        let rate = |symbol: &Expr<'g>| (*symbol, self.graph.symbol(&format!("{symbol}'")));
-        let mut rates: Vec<_> = x.iter().copied().zip(velocities.iter().copied()).collect();
-        rates.extend(velocities.iter().map(rate));
-        rates.extend(eta.iter().filter(|eta| !velocities.contains(eta)).map(rate));
-        rates.push((self.time, Expr::ONE));
-        for (z, state) in self.states().into_iter().zip(&self.document.states) {
-            if !value.depends_on(z) {
-                continue;
-            }
-            if stage == Stage::Rate {
-                // The rates of two states may each contain that of the other.
-                let fault = |text| MeaningError::NotHere {
-                    name: text,
-                    place: stage.place(),
-                    allowed: "rates written out",
-                };
-                return Err(self.error(expression, span, fault));
-            }
-            rates.push((z, self.resolve(&state.rate, Stage::Rate)?));
-        }
-        Ok(self.graph.directional(&[value], &rates)[0])
     }
 }
 

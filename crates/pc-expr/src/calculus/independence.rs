@@ -1,0 +1,235 @@
+//! Expressions written without the symbols that they do not depend on.
+//!
+//! A symbol that cancels is put to a number at which the value stays the same, which its fingerprint decides.
+
+use std::collections::HashSet;
+
+use rustc_hash::FxHashMap;
+
+use crate::graph::dag::Dag;
+use crate::graph::expr::Expr;
+use crate::graph::function::Function;
+use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Node, NodeId};
+use crate::graph::number::Number;
+use crate::graph::places::SymbolPlaces;
+use crate::graph::subgraph::Cone;
+
+/// A number at which no divisor is likely to vanish.
+const ODD: Number = Number::Rational { num: 355, den: 452 };
+
+impl Graph {
+    /// e written without the symbols and angles that it contains but does not depend on: they are put to a regular
+    /// value, `variables` to 0 if that is one.
+    pub(super) fn forget<'g>(&'g self, e: Expr<'g>, variables: &SymbolPlaces) -> Expr<'g> {
+        let mut short = e;
+        for z in self.repeated_symbols(e) {
+            if self.symbols_of(&[short]).contains(&z) && !short.depends_on(z) {
+                short = match variables.contains(z) {
+                    true => self.at_zero(short, z),
+                    false => self.at_regular_point(short, z),
+                };
+            }
+        }
+        for angle in self.composite_angles(short) {
+            short = self.at_regular_angle(short, angle);
+        }
+        short
+    }
+
+    /// e with z = 0, if that does not change its value; e itself otherwise.
+    fn at_zero<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
+        let form = self.at(e, z, Number::ZERO);
+        if !form.is_undefined() && self.is_same_value(form, e) { form } else { e }
+    }
+
+    /// e with sin z and cos z at a point of the circle, and z at a number, that do not change its value; e itself if there
+    /// are none. The first point is taken at which no new divisor comes in, else the first.
+    fn at_regular_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
+        self.most_regular(e, self.forms_without(e, z, true))
+    }
+
+    /// The same with sin z and cos z only.
+    fn at_regular_angle<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
+        self.most_regular(e, self.forms_without(e, z, false))
+    }
+
+    /// The first of the forms of e in which no new divisor comes in, else the first, else e.
+    fn most_regular<'g>(&'g self, e: Expr<'g>, forms: impl Iterator<Item = Expr<'g>>) -> Expr<'g> {
+        let mut forms = forms.peekable();
+        let first = forms.peek().copied();
+        forms.find(|&form| self.is_as_regular(form, e)).or(first).unwrap_or(e)
+    }
+
+    /// e, which does not depend on the symbol z, written without it: so that no new divisor comes in, or else one
+    /// that only vanishes at odd places.
+    pub(crate) fn without_symbol<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
+        let is_without = |form: &Expr<'g>| !form.is_undefined() && !self.symbols_of(&[*form]).contains(&z);
+        let mut odd = None;
+        for form in self.forms_without(e, z, true).filter(is_without) {
+            if self.is_as_regular(form, e) {
+                return form;
+            }
+            odd = Some(form);
+        }
+        // Where constants are rounded, every form has a value a little different.
+        let rounded = || {
+            [ODD, Number::ONE, Number::ZERO].into_iter().map(|value| self.at(e, z, value)).find(is_without)
+        };
+        odd.or_else(rounded).unwrap_or(e)
+    }
+
+    /// `outputs` written without symbols other than `known`, as far as they do not depend on them. Such a symbol
+    /// cancels; it appears where a result has the value of an older and cheaper expression that contains it.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [a, b, z] = graph.symbols(["a", "b", "z"]);
+    /// let written = graph.written_in(&[a * b, a + z], &[a, b]);
+    /// assert_eq!(written, [a * b, a + z]); // z is needed
+    /// ```
+    pub fn written_in<'g>(&'g self, outputs: &[Expr<'g>], known: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let known: HashSet<String> = known.iter().filter_map(|symbol| symbol.symbol_name()).collect();
+        let is_foreign = |symbol: &Expr<'g>| symbol.symbol_name().is_none_or(|name| !known.contains(&name));
+        let foreign = |list: &[Expr<'g>]| -> Vec<Expr<'g>> {
+            self.symbols_of(list).into_iter().filter(is_foreign).collect()
+        };
+        if foreign(outputs).is_empty() {
+            return outputs.to_vec();
+        }
+        let without = |e: Expr<'g>, z: Expr<'g>| {
+            let is_without =
+                |form: &Expr<'g>| !form.is_undefined() && !self.symbols_of(&[*form]).contains(&z);
+            let mut forms = self.forms_without(e, z, true).filter(is_without).peekable();
+            let first = forms.peek().copied();
+            forms.find(|&form| self.is_as_regular(form, e)).or(first).unwrap_or(e)
+        };
+        outputs.iter().map(|&e| foreign(&[e]).into_iter().fold(e, without)).collect()
+    }
+
+    /// e at those points of z, from simple to odd ones, that do not change its value.
+    fn forms_without<'g>(
+        &'g self,
+        e: Expr<'g>,
+        z: Expr<'g>,
+        whole: bool,
+    ) -> impl Iterator<Item = Expr<'g>> + 'g {
+        // A form with a vanishing denominator or another value is not taken: try the next point.
+        let oblique = [Number::ratio(3, 5), Number::ratio(4, 5)];
+        [
+            (Number::ZERO, [Number::ZERO, Number::ONE]),
+            (Number::ZERO, [Number::ONE, Number::ZERO]),
+            (Number::ZERO, oblique),
+            (Number::ONE, oblique),
+            (ODD, [Number::ratio(696, 985), Number::ratio(697, 985)]),
+        ]
+        .into_iter()
+        .map(move |(value, circle)| self.at_point(e, z, whole.then_some(value), circle))
+        .filter(move |&form| self.is_same_value(form, e))
+    }
+
+    /// The angles that are no symbols, of which e contains both sine and cosine: Ω t in sin Ω t and cos Ω t.
+    fn composite_angles<'g>(&'g self, e: Expr<'g>) -> Vec<Expr<'g>> {
+        let Atom::Node(root) = e.atom_in(self) else { return Vec::new() };
+        let angles: Vec<NodeId> = self.with(|dag| {
+            let cone = Cone::below(dag, [Atom::Node(root)]);
+            let (mut sines, mut cosines) = (Vec::new(), Vec::new());
+            for &node in &cone.order {
+                if let Node::Call { function, args } = dag.node(node)
+                    && !matches!(dag.node(args[0]), Node::Symbol(_))
+                {
+                    match function {
+                        Function::Sin => sines.push(args[0]),
+                        Function::Cos => cosines.push(args[0]),
+                        _ => {}
+                    }
+                }
+            }
+            sines.retain(|angle| cosines.contains(angle));
+            sines
+        });
+        angles.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
+    }
+
+    /// The symbols that occur more than once when e is written out: what occurs once does not cancel.
+    fn repeated_symbols<'g>(&'g self, e: Expr<'g>) -> Vec<Expr<'g>> {
+        let Atom::Node(root) = e.atom_in(self) else { return Vec::new() };
+        let repeated: Vec<NodeId> = self.with(|dag| {
+            let cone = Cone::below(dag, [Atom::Node(root)]);
+            let mut occurrences: FxHashMap<NodeId, u32> = FxHashMap::default();
+            occurrences.insert(root, 1);
+            for &node in cone.order.iter().rev() {
+                let above = occurrences[&node];
+                dag.for_each_child(node, |child| {
+                    let count = occurrences.entry(child).or_insert(0);
+                    *count = count.saturating_add(above);
+                });
+            }
+            let is_repeated =
+                |node: &NodeId| matches!(dag.node(*node), Node::Symbol(_)) && occurrences[node] > 1;
+            cone.order.iter().copied().filter(is_repeated).collect()
+        });
+        repeated.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
+    }
+
+    /// e with sin z and cos z as given, and z itself if there is a `value`.
+    fn at_point<'g>(
+        &'g self,
+        e: Expr<'g>,
+        z: Expr<'g>,
+        value: Option<Number>,
+        [sin, cos]: [Number; 2],
+    ) -> Expr<'g> {
+        let Atom::Node(angle) = z.atom_in(self) else { return e };
+        let mut replacements: Vec<(NodeId, Atom)> =
+            value.map(|value| (angle, Atom::Constant(value))).into_iter().collect();
+        for (function, value) in [(Function::Sin, sin), (Function::Cos, cos)] {
+            if let Some(node) = self.with(|dag| call_node(dag, function, angle)) {
+                replacements.push((node, Atom::Constant(value)));
+            }
+        }
+        self.trial(e, &replacements)
+    }
+
+    /// e at a value of the symbol z.
+    fn at<'g>(&'g self, e: Expr<'g>, z: Expr<'g>, value: Number) -> Expr<'g> {
+        self.trial(e, &[(z.symbol_in(self), Atom::Constant(value))])
+    }
+
+    /// e with nodes replaced; a division by zero that it leads to is forgotten.
+    fn trial<'g>(&'g self, e: Expr<'g>, replacements: &[(NodeId, Atom)]) -> Expr<'g> {
+        let output = e.atom_in(self);
+        self.build(|dag| {
+            let divisions = dag.zero_divisions().len();
+            let value = dag.substitute(&[output], replacements)[0];
+            dag.forget_zero_divisions(divisions);
+            value
+        })
+    }
+
+    /// Whether no divisor of the first expression vanishes where the second has a value, judged by the factors of their divisors.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, y] = graph.symbols(["x", "y"]);
+    /// assert!(graph.is_as_regular((x * y) / y, x) && !graph.is_as_regular(y / x, x));
+    /// ```
+    pub fn is_as_regular<'g>(&'g self, some: Expr<'g>, other: Expr<'g>) -> bool {
+        let (some, other) = (some.atom_in(self), other.atom_in(self));
+        self.with(|dag| dag.is_as_regular(some, other))
+    }
+
+    /// Whether a form has the fingerprint of an expression, and its numbers.
+    fn is_same_value<'g>(&'g self, form: Expr<'g>, e: Expr<'g>) -> bool {
+        (form - e).is_zero() && self.has_numbers_of(form, e)
+    }
+}
+
+fn call_node(dag: &mut Dag, function: Function, angle: NodeId) -> Option<NodeId> {
+    match dag.call(function, &[Atom::Node(angle)]) {
+        Atom::Node(node) => Some(node),
+        Atom::Constant(_) => None,
+    }
+}

@@ -1,0 +1,145 @@
+//! The category of an error of meaning, and its correction.
+
+use crate::diagnostics::category::Category;
+use crate::diagnostics::meaning::MeaningError;
+use crate::diagnostics::words::{listed, suggest};
+
+impl MeaningError {
+    /// Whether the text or the model is at fault.
+    pub fn category(&self) -> Category {
+        match self {
+            MeaningError::DefinitionCount { .. }
+            | MeaningError::DependentDefinitions
+            | MeaningError::Jacobi { .. }
+            | MeaningError::AlgebraNeeded
+            | MeaningError::RankDeficient { .. }
+            | MeaningError::Undetermined { .. }
+            | MeaningError::NotClosed { .. }
+            | MeaningError::Contradiction { .. }
+            | MeaningError::Degenerate { .. }
+            | MeaningError::ZeroAxis
+            | MeaningError::NotARotation { .. }
+            | MeaningError::QuaternionNotUnit { .. }
+            | MeaningError::Massless { .. }
+            | MeaningError::NotHolonomic { .. }
+            | MeaningError::StartOpen { .. }
+            | MeaningError::StartVelocity { .. }
+            | MeaningError::StartHeld { .. }
+            | MeaningError::OffConstraint { .. }
+            | MeaningError::Contradictory { .. }
+            | MeaningError::Constraint { .. }
+            | MeaningError::ParameterNotFinite { .. }
+            | MeaningError::NotFinite { .. }
+            | MeaningError::SingularStart { .. }
+            | MeaningError::NotAnIntegral { .. }
+            | MeaningError::ForceNotDetermined { .. }
+            | MeaningError::NoForm { .. }
+            | MeaningError::Derivation { .. } => Category::Inconsistent,
+            _ => Category::Text,
+        }
+    }
+
+    /// A correction.
+    pub fn help(&self) -> String {
+        match self {
+            MeaningError::UnknownName { name, known } => suggest(name, known, "declare it, for example in [parameters]"),
+            MeaningError::UnknownIntegral { name, known } => {
+                suggest(name, known, &format!("the integrals are {}", listed(known)))
+            }
+            MeaningError::NotAnIntegral { .. } => {
+                "leave it out of `project`; `pc check` says what the motion keeps".into()
+            }
+            MeaningError::UsedBeforeDefined { .. } => "what is defined is evaluated in order; move it up".into(),
+            MeaningError::NotACoordinate { name, coordinates } => {
+                suggest(name, coordinates, &format!("the coordinates are {}", listed(coordinates)))
+            }
+            MeaningError::UnknownForceTarget { name, known } => {
+                suggest(name, known, &format!("a force can act on {}", listed(known)))
+            }
+            MeaningError::NotReset { name, what, known } => match *what {
+                "declared nowhere" => suggest(name, known, &format!("an event can reset {}", listed(known))),
+                _ => format!("an event can reset {}", listed(known)),
+            },
+            MeaningError::NotHere { allowed, .. } => format!("use {allowed} only"),
+            MeaningError::Acceleration { .. } => "accelerations can be used in [integrals] and [outputs]".into(),
+            MeaningError::DivisionByZero { .. } => "the divisor is zero whatever the motion".into(),
+            MeaningError::NotAffine { variables, .. } => format!("write a sum of terms linear in the {variables}"),
+            MeaningError::ConstraintNotAffine { constraint, .. } => format!(
+                "write a sum of terms linear in the velocities, or declare it nonlinear, with Chetaev's condition for the \
+                 displacements: `{constraint} = {{ expr = \"…\", kind = \"nonlinear\" }}`"
+            ),
+            MeaningError::NotNonlinear { .. } => "leave out its kind".into(),
+            MeaningError::ForceNotDetermined { .. } => {
+                "use coordinates in which the body moves independently, and constraints that tie it".into()
+            }
+            MeaningError::NoVelocity { .. } => "write a sum of terms linear in the velocities, such as \"x'\"".into(),
+            MeaningError::GivenTwice { .. } => "keep one of them".into(),
+            MeaningError::NotLinear { .. } => {
+                "write a sum of terms linear in the velocities of the coordinates or in the quasi-velocities, which vanishes with \
+                 these, of coordinates, parameters and t"
+                    .into()
+            }
+            MeaningError::NoForm { help, .. } => (*help).into(),
+            MeaningError::KinematicsMissing { coordinate } => {
+                format!("add `{coordinate} = \"…\"`, affine in the quasi-velocities")
+            }
+            MeaningError::Undefined { name } => {
+                format!("give [kinematics] for every coordinate, or define `{name} = {{ is = \"…\", start = 0.0 }}`")
+            }
+            MeaningError::TwoKinematics { .. } => "keep either [kinematics] or the `is`".into(),
+            MeaningError::DefinitionCount { .. } | MeaningError::DependentDefinitions => {
+                "give as many independent definitions (and constraints) as there are coordinates".into()
+            }
+            MeaningError::NotHolonomic { .. } => "leave out its kind, or write it as a function of coordinates and t".into(),
+            MeaningError::OffConstraint { .. } => {
+                "give a start that satisfies it, or move it there with --project-start".into()
+            }
+            MeaningError::StartOpen { .. } => {
+                "start where they are determined, or define other quasi-velocities".into()
+            }
+            MeaningError::StartVelocity { .. } => {
+                "leave it out, or the `start` of a quasi-velocity, which then follows".into()
+            }
+            MeaningError::StartHeld { .. } => "keep less".into(),
+            MeaningError::Contradictory { .. } => "no motion satisfies it; correct it or leave it out".into(),
+            MeaningError::Constraint { help, .. } => (*help).into(),
+            MeaningError::UnknownAlgebra { known, .. } => {
+                format!("the catalogue has {}; any other is given by `brackets`", known.join(", "))
+            }
+            MeaningError::AlgebraDimension { .. } => {
+                "an algebra has one operator for each quasi-velocity; leave [algebra] out if the frame determines it"
+                    .into()
+            }
+            MeaningError::BracketNotLinear { .. } => "write for example \"w3\", \"-2*w1 + w2\" or \"0\"".into(),
+            MeaningError::BracketsNotSkew { .. } => "[X, Y] = -[Y, X]; give one of the two".into(),
+            MeaningError::Jacobi { .. } => "no frame of operators has these brackets; check their signs".into(),
+            MeaningError::AlgebraNeeded | MeaningError::RankDeficient { .. } | MeaningError::Undetermined { .. } => {
+                "give the brackets in [algebra]: `name = \"so3\"` or `brackets = { \"w1,w2\" = \"w3\" }`, or `{}` if all are \
+                 zero"
+                    .into()
+            }
+            MeaningError::NotClosed { .. } => {
+                "the kinematics stand for constraints that are not integrable; give them in [constraints], and what has a rate \
+                 but is not a coordinate in [states]"
+                    .into()
+            }
+            MeaningError::Contradiction { .. } => "check the bracket, or leave [algebra] out to have it computed".into(),
+            MeaningError::Degenerate { .. } => "every quasi-velocity needs kinetic energy of its own".into(),
+            MeaningError::ZeroAxis => "give it a direction, such as `[0, 0, 1]`".into(),
+            MeaningError::NotARotation { .. } => {
+                "its rows are orthogonal unit vectors; angles about axes are given by `turns`".into()
+            }
+            MeaningError::QuaternionNotUnit { .. } => {
+                "a turn by the angle a about the unit vector u has the quaternion cos(a/2), u*sin(a/2)".into()
+            }
+            MeaningError::Massless { .. } => "give it a mass, or make its joint `fixed`".into(),
+            MeaningError::BadTable { help, .. } => (*help).into(),
+            MeaningError::RateOfInput { .. } => "make it a state, whose rate is given in [states], or an input of its own".into(),
+            MeaningError::ParameterNotFinite { .. } => "give the parameters in it other values".into(),
+            MeaningError::NotFinite { .. } | MeaningError::SingularStart { .. } => {
+                "start where the coordinates and functions are regular".into()
+            }
+            MeaningError::Derivation { .. } => "check the model".into(),
+        }
+    }
+}
