@@ -232,6 +232,10 @@ impl<F: VectorField> Stepper for RungeKutta4<F> {
         LastStep { start, end: self.end.t, degree }
     }
 
+    fn end_time(&self) -> f64 {
+        self.end.t
+    }
+
     fn end_state(&self) -> &[f64] {
         &self.end.y
     }

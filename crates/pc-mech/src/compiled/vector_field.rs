@@ -179,6 +179,9 @@ impl VectorField for Motion {
     }
 
     fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
+        if self.charts.is_empty() {
+            return Ok(());
+        }
         let mut charts = std::mem::take(&mut self.charts);
         let undetermined = charts.iter_mut().any(|chart| {
             let Some(passage) = chart.passage(from, to, self.parameters()) else {

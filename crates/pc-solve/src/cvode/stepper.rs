@@ -37,6 +37,10 @@ impl<F: VectorField> Stepper for Cvode<F> {
         self.step_made()
     }
 
+    fn end_time(&self) -> f64 {
+        self.step_time
+    }
+
     fn end_state(&self) -> &[f64] {
         self.step_state.as_slice()
     }

@@ -143,7 +143,7 @@ impl<S: Stepper> Integration<S> {
             return Err(InputError::EventParameters.into());
         }
         let (t, state) = (self.time(), self.state().to_vec());
-        if t != self.engine.last_step().end {
+        if t != self.engine.end_time() {
             let columns = self.engine.columns()?;
             self.engine.restart(t, &state, &columns, None)?;
             (self.jumped, self.restarted, self.direction) = (true, true, None);
@@ -259,7 +259,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     pub fn set_stop_time(&mut self, stop_time: Option<f64>) -> Result<(), SolveError> {
         if let Some(t) = stop_time {
             finite("the stop time", t)?;
-            let current = self.engine.last_step().end;
+            let current = self.engine.end_time();
             if self.direction.is_some_and(|direction| (t - current) * direction < 0.0) {
                 return Err(InputError::Behind { requested: t, current }.into());
             }
@@ -323,13 +323,13 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// Moves the front to the next event or to the end of the next step.
     pub(crate) fn go_on(&mut self, towards: f64) -> Result<(), SolveError> {
         let time = self.engine.time();
-        if self.engine.last_step().end == self.front.t {
+        if self.engine.end_time() == self.front.t {
             if self.arrives(towards)? {
                 return Ok(());
             }
             self.check_deadline()?;
             self.engine.step(towards)?;
-            let to = self.engine.last_step().end;
+            let to = self.engine.end_time();
             self.ahead.copy_from_slice(self.engine.end_state());
             let from = (self.front.t, &self.front_state[..]);
             if let Err(failure) = self.engine.field_mut().leads(from, (to, &self.ahead)) {
@@ -339,14 +339,18 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             self.restarted = false;
             self.direction.get_or_insert(1.0_f64.copysign(towards - self.front.t));
         }
-        let to = self.engine.last_step().end;
+        let to = self.engine.end_time();
+        if self.events.events().is_empty() {
+            // The end of the step is in `ahead`, and there are no other states in it to look for.
+            if time == self.front.t {
+                std::mem::swap(&mut self.output, &mut self.front_state);
+            }
+            std::mem::swap(&mut self.front_state, &mut self.ahead);
+            self.front.t = to;
+            return Ok(());
+        }
         if time == self.front.t {
             self.output.copy_from_slice(&self.front_state);
-        }
-        if self.events.events().is_empty() {
-            self.front.t = to;
-            self.front_state.copy_from_slice(self.engine.end_state());
-            return Ok(());
         }
         let pieces = self.engine.limits().samples_per_step;
         let (engine, events) = (&mut self.engine, &mut self.events);

@@ -45,6 +45,11 @@ pub trait Stepper {
     /// The last step.
     fn last_step(&self) -> LastStep;
 
+    /// Its end alone, which is asked for at each step.
+    fn end_time(&self) -> f64 {
+        self.last_step().end
+    }
+
     /// y at the end of the last step.
     fn end_state(&self) -> &[f64];
 
@@ -115,7 +120,7 @@ pub trait Stepper {
 
     /// The error of a failure beyond the end of the last step, where the stepper then stands.
     fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
-        let (time, state) = (self.last_step().end, self.end_state().to_vec());
+        let (time, state) = (self.end_time(), self.end_state().to_vec());
         self.stand_at(time);
         SolveError::Integration(Box::new(IntegrationError { reason, time, state, failure }))
     }
