@@ -1,19 +1,13 @@
 //! The description of a mechanical system.
 
-use pc_algebra::{AlgebraError, Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
-use pc_expr::{Expr, Graph, SymbolPlaces};
+use pc_algebra::{Frame, LieAlgebra, Matrix, Neighbourhood, StructureCoefficients};
+use pc_expr::{Expr, Graph};
 
-use crate::error::{FrameError, LagrangianError, MechError, TreeError, shape};
 use crate::system::bodies::body::Body;
-use crate::system::bodies::moving::Moving;
 use crate::system::bodies::particle::Particle;
 use crate::system::bodies::rigid_body::RigidBody;
-use crate::system::bodies::velocity::{Bodies, BodyVelocity};
-use crate::system::external_force;
 use crate::system::forces::Force;
-use crate::system::states::check_no_state;
 use crate::system::system::System;
-use crate::tree::system::TreeSystem;
 use crate::tree::tree::Tree;
 
 /// The description of a system; every closure receives (t, x, η).
@@ -24,34 +18,34 @@ use crate::tree::tree::Tree;
 /// [`lagrangian_in_velocities`](SystemBuilder::lagrangian_in_velocities) and the bodies, and so is Q.
 #[derive(Clone, Debug)]
 pub struct SystemBuilder<'g> {
-    graph: &'g Graph,
-    time: Expr<'g>,
-    coordinates: Vec<Expr<'g>>,
-    quasi_velocities: Option<Vec<Expr<'g>>>,
-    kinematics: Kinematics<'g>,
-    structure: Option<StructureCoefficients<'g>>,
-    near: Neighbourhood<'g>,
-    parameters: Vec<(Expr<'g>, f64)>,
-    signals: Vec<Expr<'g>>,
+    pub(super) graph: &'g Graph,
+    pub(super) time: Expr<'g>,
+    pub(super) coordinates: Vec<Expr<'g>>,
+    pub(super) quasi_velocities: Option<Vec<Expr<'g>>>,
+    pub(super) kinematics: Kinematics<'g>,
+    pub(super) structure: Option<StructureCoefficients<'g>>,
+    pub(super) near: Neighbourhood<'g>,
+    pub(super) parameters: Vec<(Expr<'g>, f64)>,
+    pub(super) signals: Vec<Expr<'g>>,
     /// Each z with ż.
-    states: Vec<(Expr<'g>, Expr<'g>)>,
+    pub(super) states: Vec<(Expr<'g>, Expr<'g>)>,
     /// Terms of L(t, x, η).
-    lagrangian: Vec<Expr<'g>>,
+    pub(super) lagrangian: Vec<Expr<'g>>,
     /// Terms of L(t, x, ẋ), with the symbols x'.
-    in_velocities: Vec<Expr<'g>>,
-    bodies: Vec<Body<'g>>,
-    tree: Option<Tree<'g>>,
+    pub(super) in_velocities: Vec<Expr<'g>>,
+    pub(super) bodies: Vec<Body<'g>>,
+    pub(super) tree: Option<Tree<'g>>,
     /// The acceleration of gravity.
-    gravity: Option<Vec<Expr<'g>>>,
-    forces: Vec<Force<'g>>,
+    pub(super) gravity: Option<Vec<Expr<'g>>>,
+    pub(super) forces: Vec<Force<'g>>,
     /// Names of quasi-velocities.
-    external: Vec<String>,
-    integrals: Vec<(String, Expr<'g>)>,
-    outputs: Vec<(String, Expr<'g>)>,
+    pub(super) external: Vec<String>,
+    pub(super) integrals: Vec<(String, Expr<'g>)>,
+    pub(super) outputs: Vec<(String, Expr<'g>)>,
 }
 
 #[derive(Clone, Debug)]
-enum Kinematics<'g> {
+pub(super) enum Kinematics<'g> {
     /// η = ẋ
     Coordinate,
     /// ẋ, affine in η (3)
@@ -374,169 +368,12 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    fn eta(&self) -> Vec<Expr<'g>> {
+    pub(super) fn eta(&self) -> Vec<Expr<'g>> {
         self.quasi_velocities.clone().unwrap_or_else(|| self.velocity_symbols())
     }
 
     /// x_1'..x_n'
-    fn velocity_symbols(&self) -> Vec<Expr<'g>> {
+    pub(super) fn velocity_symbols(&self) -> Vec<Expr<'g>> {
         self.coordinates.iter().map(|x| self.graph.symbol(&format!("{x}'"))).collect()
     }
-
-    /// The system, its frame closed and its structure coefficients known.
-    ///
-    /// # Errors
-    /// [`LagrangianError::Missing`]; [`ShapeError`](crate::ShapeError) for parts that do not fit together;
-    /// [`MechError::Algebra`] for velocities that are not affine in η, a frame that is not closed, or brackets that are
-    /// needed, contradict it, or violate Jacobi's identity; [`FrameError::OfVelocities`] for a frame that contains
-    /// velocities; [`LagrangianError::SignalInMomentum`]; [`FrameError::OfState`] for a frame or a body placed by
-    /// first-order states; [`BodyError::OfVelocities`](crate::BodyError::OfVelocities) and
-    /// [`BodyError::AngularVelocityNotAffine`](crate::BodyError::AngularVelocityNotAffine) of bodies;
-    /// [`MatrixError::NotSkew`](crate::MatrixError::NotSkew) and
-    /// [`ForceError::NotAQuasiVelocity`](crate::ForceError::NotAQuasiVelocity) of forces; [`MechError::Expr`] for what
-    /// divides by zero everywhere.
-    pub fn build(self) -> Result<System<'g>, MechError> {
-        let (eta, velocities) = (self.eta(), self.velocity_symbols());
-        let k = eta.len();
-        let frame = match self.kinematics {
-            Kinematics::Coordinate if self.coordinates.is_empty() => {
-                let b = Matrix::from_fn(0, k, |_, _| Expr::ZERO); // equations on an algebra alone
-                Frame::new(self.graph, self.time, Vec::new(), b, Vec::new())?
-            }
-            Kinematics::Coordinate => Frame::coordinate(self.graph, self.time, self.coordinates),
-            Kinematics::Velocities(velocities) => {
-                Frame::from_velocities(self.graph, self.time, self.coordinates, &eta, &velocities)?
-            }
-            Kinematics::Frame(frame) => *frame,
-        };
-        shape("the list of quasi-velocities", k, frame.operators())?;
-        of_position(&frame, &[&eta[..], &velocities].concat())?;
-        check_no_state(&self.states, "the frame", &[&frame.b().nonzero_entries(), frame.b0()].concat())?;
-        let mut near = self.near;
-        near.centre.extend(self.parameters.iter().copied());
-        let structure = match self.structure {
-            None if frame.coordinates().is_empty() && k > 0 => return Err(AlgebraError::AlgebraNeeded.into()),
-            None => frame.structure_coefficients(&near)?,
-            Some(given) => {
-                frame.check_jacobi(&given, &near)?;
-                frame.check(&given, &near)?;
-                given
-            }
-        };
-        let moving = Moving::new(&frame, &eta, &self.states);
-        let mut terms = self.lagrangian;
-        let velocities: Vec<_> = velocities.into_iter().zip(frame.velocities(&eta)).collect();
-        terms.extend(self.graph.substitute(&self.in_velocities, &velocities));
-        let mut parts = vec![vec![Expr::ZERO; k]];
-        let mut bodies = Bodies { list: Vec::new(), rest: self.graph.sum(terms.clone()) };
-        for body in &self.bodies {
-            let share = body.share(&moving)?;
-            terms.extend([share.kinetic, share.force_function]);
-            if let Some(acceleration) = &self.gravity {
-                moving.check_at_rest("the acceleration of gravity", acceleration)?;
-                terms.push(body.weight(self.graph, acceleration)?);
-            }
-            parts.push(share.forces);
-            let name = body.name().map_or_else(|| format!("body {}", bodies.list.len() + 1), str::to_owned);
-            let (velocity, angular_velocity) = (share.velocity, share.angular_velocity);
-            bodies.list.push(BodyVelocity { name, velocity, angular_velocity });
-        }
-        let mut tree_system = None;
-        if let Some(tree) = self.tree {
-            let gravity =
-                self.gravity.as_deref().map(three_components).transpose()?.unwrap_or([Expr::ZERO; 3]);
-            check_named(&tree, &frame, &eta)?;
-            moving.check_at_rest("the acceleration of gravity", &gravity)?;
-            let states = self.states.iter().map(|(z, _)| z);
-            let moving = frame.coordinates().iter().chain(&eta).chain([&self.time]).chain(states).copied();
-            tree.check_constant(&moving.chain(self.signals.iter().copied()).collect::<Vec<_>>())?;
-            let share = tree.motions().share(&gravity, &eta);
-            let others = self.graph.sum(terms.iter().copied());
-            terms.extend(share.kinetic.into_iter().chain(share.weight));
-            parts.push(share.forces);
-            bodies.list.extend(share.velocities);
-            tree_system = TreeSystem::of(tree, gravity, others, &frame, &eta).map(Box::new);
-        }
-        if terms.is_empty() {
-            return Err(LagrangianError::Missing.into());
-        }
-        for force in &self.forces {
-            parts.push(force.components(&frame, &eta)?);
-        }
-        let external = external_force::symbols(&self.external, &frame, &eta, &self.parameters, &self.states)?;
-        for (name, symbol) in &external {
-            parts.push(
-                eta.iter().map(|eta| if eta.to_string() == *name { *symbol } else { Expr::ZERO }).collect(),
-            );
-        }
-        let lagrangian = self.graph.sum(terms);
-        let forces: Vec<Expr<'g>> = (0..k).map(|s| self.graph.sum(parts.iter().map(|q| q[s]))).collect();
-        self.graph.check(&[lagrangian])?;
-        if !self.signals.is_empty() {
-            let momenta = self.graph.gradient(lagrangian, &eta);
-            let entries = frame.b().nonzero_entries();
-            let moving = |u: &&Expr<'g>| {
-                momenta.iter().chain(&entries).chain(frame.b0()).any(|part| part.depends_on(**u))
-            };
-            if let Some(u) = self.signals.iter().find(moving) {
-                return Err(LagrangianError::SignalInMomentum { input: u.to_string() }.into());
-            }
-        }
-        self.graph.check(&forces)?;
-        let rates: Vec<Expr<'g>> = self.states.iter().map(|&(_, rate)| rate).collect();
-        self.graph.check(&rates)?;
-        self.graph.check(&frame.b().nonzero_entries())?;
-        self.graph.check(frame.b0())?;
-        Ok(System {
-            frame,
-            structure,
-            quasi_velocities: eta,
-            states: self.states,
-            parameters: self.parameters,
-            signals: self.signals,
-            lagrangian,
-            forces,
-            external,
-            integrals: self.integrals,
-            outputs: self.outputs,
-            bodies,
-            tree: tree_system,
-        })
-    }
-}
-
-/// # Errors
-/// [`ShapeError`](crate::ShapeError) if there are not three.
-fn three_components<'g>(acceleration: &[Expr<'g>]) -> Result<[Expr<'g>; 3], MechError> {
-    shape("the acceleration of gravity", acceleration.len(), 3)?;
-    Ok(std::array::from_fn(|i| acceleration[i]))
-}
-
-/// That a system has what moves the joints of a tree.
-///
-/// # Errors
-/// [`TreeError::NotOfTheSystem`]
-fn check_named<'g>(tree: &Tree<'g>, frame: &Frame<'g>, eta: &[Expr<'g>]) -> Result<(), MechError> {
-    let lists = [
-        ("coordinates", tree.coordinates(), frame.coordinates()),
-        ("quasi-velocities", tree.quasi_velocities(), eta),
-    ];
-    for (what, moving, known) in lists {
-        if let Some(name) = moving.iter().find(|symbol| !known.contains(symbol)) {
-            return Err(TreeError::NotOfTheSystem { name: name.to_string(), what }.into());
-        }
-    }
-    Ok(())
-}
-
-/// That b and b_0 are functions of time and coordinates: a quasi-velocity or velocity in them would be taken for a
-/// constant.
-///
-/// # Errors
-/// [`FrameError::OfVelocities`] naming the first that stands there.
-fn of_position<'g>(frame: &Frame<'g>, velocities: &[Expr<'g>]) -> Result<(), MechError> {
-    let entries = [&frame.b().nonzero_entries(), frame.b0()].concat();
-    let velocities = SymbolPlaces::of(velocities);
-    let found = frame.graph().symbols_of(&entries).into_iter().find(|&symbol| velocities.contains(symbol));
-    found.map_or(Ok(()), |symbol| Err(FrameError::OfVelocities { velocity: symbol.to_string() }.into()))
 }
