@@ -374,7 +374,10 @@ mod tests {
     #[test]
     fn unsupported_choices_are_named() {
         assert_eq!(method("bdf"), Ok(Method::Bdf));
-        assert_eq!(method("taylor").unwrap_err(), "`taylor` is not supported yet; use adams, bdf, dop853 or auto");
+        assert_eq!(
+            method("taylor").unwrap_err(),
+            "`taylor` is not supported yet; use adams, bdf, dop853 or auto"
+        );
         assert_eq!(method("rk4").unwrap_err(), "use adams, bdf, dop853 or auto");
     }
 
