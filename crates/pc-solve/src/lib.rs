@@ -1,4 +1,4 @@
-//! Integration of ẏ = f(t, y) with SUNDIALS CVODES, for any [`VectorField`].
+//! Integration of ẏ = f(t, y) with SUNDIALS CVODES or DOP853, for any [`VectorField`].
 //!
 //! A vector field is compiled equations of motion or a closure:
 //! ```
@@ -22,20 +22,26 @@
 //! integration itself, step by step.
 //!
 //! The methods are those of the variable-order, variable-step linear multistep code CVODE [Cohen, Hindmarsh 1996],
-//! in SUNDIALS 7 [Hindmarsh et al. 2005; Gardner et al. 2022].
+//! in SUNDIALS 7 [Hindmarsh et al. 2005; Gardner et al. 2022], the explicit Runge–Kutta method [`Dop853`], and the change
+//! between both where [stiffness is seen](Method::Auto).
 //!
 //! Without the default feature `cvode` the crate builds without SUNDIALS and a C compiler. It then has [`Integration`]
-//! by any [`Stepper`], such as [`RungeKutta4`], with events, dense output and checkpoints.
+//! by any [`Stepper`], such as [`Dop853`] and [`RungeKutta4`], with events, dense output and checkpoints.
 
 #![cfg_attr(feature = "cvode", expect(unsafe_code, reason = "calls of the C library SUNDIALS"))]
 
+#[cfg(feature = "cvode")]
+mod auto;
 mod checkpoint;
+mod chosen;
 #[cfg(feature = "cvode")]
 mod cvode;
+mod dop853;
 #[cfg(feature = "cvode")]
 mod ensemble;
 mod error;
 mod events;
+mod foresight;
 mod integration;
 #[cfg(feature = "cvode")]
 mod lyapunov;
@@ -45,9 +51,12 @@ mod sensitivity;
 mod settings;
 mod solve;
 
+#[cfg(feature = "cvode")]
+pub use auto::switch::Auto;
 pub use checkpoint::checkpoint::Checkpoint;
 pub use checkpoint::encoding::CheckpointError;
 pub use checkpoint::legs::solve_checkpointed;
+pub use chosen::Chosen;
 #[cfg(feature = "cvode")]
 pub use cvode::cvode::Cvode;
 #[cfg(feature = "cvode")]
@@ -60,8 +69,7 @@ pub use cvode::linear::krylov::{Krylov, Side};
 pub use cvode::linear::preconditioner::Preconditioner;
 #[cfg(feature = "cvode")]
 pub use cvode::linear::solver::LinearSolver;
-#[cfg(feature = "cvode")]
-pub use cvode::options::Options;
+pub use dop853::setup::Dop853;
 #[cfg(feature = "cvode")]
 pub use ensemble::ensemble::{Ensemble, EnsembleError, MemberError, Panicked};
 #[cfg(feature = "cvode")]
@@ -98,10 +106,10 @@ pub use sensitivity::trajectory::{
 };
 pub use settings::inequality::Inequality;
 pub use settings::method::{Method, NonlinearSolver};
+pub use settings::options::Options;
 pub use settings::tolerance::Tolerance;
 pub use solve::failure::SolveFailure;
 #[cfg(feature = "cvode")]
 pub use solve::integrals::solve_with_integrals;
 pub use solve::solution::Solution;
-#[cfg(feature = "cvode")]
 pub use solve::solve::{Solve, solve};

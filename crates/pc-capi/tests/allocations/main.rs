@@ -216,7 +216,7 @@ fn evaluations_allocate_nothing() {
 #[test]
 fn steps_allocate_nothing() {
     use pc_linear_solver::{PC_LINEAR_AUTOMATIC, PC_LINEAR_KRYLOV, PC_LINEAR_SPARSE};
-    use pc_method::{PC_ADAMS, PC_BDF};
+    use pc_method::{PC_ADAMS, PC_BDF, PC_DOP853};
     let (mut found, mut with_events) = (Vec::new(), 0);
     for case in cases() {
         let system = system(&case);
@@ -232,6 +232,7 @@ fn steps_allocate_nothing() {
             (bdf, newton, PC_LINEAR_AUTOMATIC),
             (bdf, newton, PC_LINEAR_SPARSE),
             (bdf, newton, PC_LINEAR_KRYLOV),
+            (PC_DOP853 as c_int, pc_iteration::PC_ITERATION_OF_METHOD as c_int, PC_LINEAR_AUTOMATIC),
         ];
         for (method, iteration, linear) in methods {
             let n = system.dim();
