@@ -44,6 +44,7 @@ mod runge_kutta;
 mod sensitivity;
 mod settings;
 mod solve;
+mod taylor;
 
 pub use checkpoint::checkpoint::Checkpoint;
 pub use checkpoint::encoding::CheckpointError;
@@ -82,7 +83,8 @@ pub use integration::trajectory::Trajectory;
 #[cfg(feature = "cvode")]
 pub use lyapunov::lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
 pub use pc_expr::{
-    Deadline, Direction, Event, Events, Failure, Pattern, Spent, TimeDependence, TimeProfile, VectorField,
+    Deadline, Direction, Event, Events, Failure, Pattern, SeriesField, Spent, TimeDependence, TimeProfile,
+    VectorField,
 };
 pub use runge_kutta::{FixedStep, RungeKutta4};
 #[cfg(feature = "cvode")]
@@ -105,3 +107,5 @@ pub use solve::integrals::solve_with_integrals;
 pub use solve::solution::Solution;
 #[cfg(feature = "cvode")]
 pub use solve::solve::{Solve, solve};
+pub use taylor::options::TaylorOptions;
+pub use taylor::stepper::Taylor;

@@ -1,0 +1,99 @@
+//! Order and step from tolerance and coefficients [Jorba, Zou 2005, section 3].
+
+use crate::error::InputError;
+use crate::integration::checks::{check_length, positive};
+use crate::settings::tolerance::Tolerance;
+use crate::taylor::options::TaylorOptions;
+use crate::taylor::polynomial::Polynomial;
+
+/// Orders that are chosen by themselves.
+const ORDERS: std::ops::RangeInclusive<usize> = 6..=40;
+/// Orders that can be asked for.
+pub(super) const ALLOWED: std::ops::RangeInclusive<u32> = 2..=60;
+/// Changes of the state over a step below this part of it are rounding.
+const ROUNDING: f64 = 1e-15;
+/// So are differences of rates below this part of them: of what cancels in f, some hundred roundings are left.
+const ROUNDING_OF_RATES: f64 = 1e-13;
+/// The rates at the end of a step may differ from those of the polynomial by so many times what the first term that is left out
+/// contributes: coefficients scatter, and the errors are of the order of the tolerance only.
+const DEFECT: f64 = 100.0;
+
+/// rtol |yᵢ| + atolᵢ
+#[derive(Debug, Clone)]
+pub(super) struct Tolerances {
+    pub(super) relative: f64,
+    absolute: Tolerance,
+}
+
+impl Tolerances {
+    pub(super) fn new(options: &TaylorOptions, dim: usize) -> Result<Tolerances, InputError> {
+        positive("the relative tolerance", options.relative_tolerance)?;
+        match &options.absolute_tolerance {
+            Tolerance::Scalar(tolerance) => positive("the absolute tolerance", *tolerance)?,
+            Tolerance::Vector(tolerances) => {
+                check_length("the absolute tolerances", tolerances.len(), dim)?;
+                tolerances.iter().try_for_each(|&tolerance| positive("an absolute tolerance", tolerance))?;
+            }
+        }
+        let relative = options.relative_tolerance.max(f64::EPSILON / 4.0);
+        Ok(Tolerances { relative, absolute: options.absolute_tolerance.clone() })
+    }
+
+    pub(super) fn absolute(&self, i: usize) -> f64 {
+        match &self.absolute {
+            Tolerance::Scalar(tolerance) => *tolerance,
+            Tolerance::Vector(tolerances) => tolerances[i],
+        }
+    }
+
+    pub(super) fn largest_absolute(&self) -> f64 {
+        match &self.absolute {
+            Tolerance::Scalar(tolerance) => *tolerance,
+            Tolerance::Vector(tolerances) => tolerances.iter().copied().fold(0.0, f64::max),
+        }
+    }
+
+    /// |yᵢ| + atolᵢ/rtol
+    fn size(&self, i: usize, y: f64) -> f64 {
+        y.abs() + self.absolute(i) / self.relative
+    }
+
+    /// max |cᵢ|/(|yᵢ| + atolᵢ/rtol)
+    fn norm(&self, c: &[f64], y: &[f64]) -> f64 {
+        let inverse = match self.absolute {
+            Tolerance::Scalar(absolute) => {
+                let least = absolute / self.relative;
+                return c.iter().zip(y).map(|(c, y)| c.abs() / (y.abs() + least)).fold(0.0, f64::max);
+            }
+            Tolerance::Vector(_) => |(i, (c, y)): (usize, (&f64, &f64))| c.abs() / self.size(i, *y),
+        };
+        c.iter().zip(y).enumerate().map(inverse).fold(0.0, f64::max)
+    }
+
+    /// The order p that takes least work on the way: cost(p)/h(p) with h = ρ tol^{1/(p+1)}, ρ the same for all p.
+    pub(super) fn order(&self, [a, b, c]: [f64; 3]) -> usize {
+        let work = |p: usize| {
+            let order = p as f64;
+            (a + b * order + c * order * order) / self.relative.powf(1.0 / (order + 1.0))
+        };
+        ORDERS.min_by(|&p, &q| work(p).total_cmp(&work(q))).unwrap_or(*ORDERS.start())
+    }
+
+    /// How far the series holds to the tolerance, by its last two terms; infinite if both are 0.
+    pub(super) fn length(&self, series: &Polynomial) -> f64 {
+        let (p, y) = (series.order(), series.of_order(0));
+        let radius = [p - 1, p].map(|k| self.norm(series.of_order(k), y).powf(-1.0 / k as f64));
+        let order = p as f64;
+        // The last factor, for terms that do not yet fall as a geometric series does, is that of Jorba and Zou.
+        radius[0].min(radius[1]) * self.relative.powf(1.0 / (order + 1.0)) * (-0.7 / (order - 1.0)).exp()
+    }
+
+    /// Whether rates that are wrong by so much, over a step of this length, matter.
+    pub(super) fn feels(&self, rates: &[f64], slope: &[f64], y: &[f64], length: f64, order: usize) -> bool {
+        let allowed = DEFECT * (order + 1) as f64 * self.relative.max(ROUNDING) / length.abs();
+        // So that what is none counts as large.
+        !rates.iter().zip(slope).zip(y).enumerate().all(|(i, ((rate, slope), y))| {
+            (rate - slope).abs() <= allowed * self.size(i, *y) + ROUNDING_OF_RATES * rate.abs()
+        })
+    }
+}
