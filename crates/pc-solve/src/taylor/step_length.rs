@@ -82,10 +82,12 @@ impl Tolerances {
     /// How far the series holds to the tolerance, by its last two terms; infinite if both are 0.
     pub(super) fn length(&self, series: &Polynomial) -> f64 {
         let (p, y) = (series.order(), series.of_order(0));
-        let radius = [p - 1, p].map(|k| self.norm(series.of_order(k), y).powf(-1.0 / k as f64));
+        // Logarithms of the radius of convergence, for the tolerance, and for terms that do not yet fall as a geometric series does, as
+        // Jorba and Zou have it.
+        let radius = [p - 1, p].map(|k| -self.norm(series.of_order(k), y).log2() / k as f64);
         let order = p as f64;
-        // The last factor, for terms that do not yet fall as a geometric series does, is that of Jorba and Zou.
-        radius[0].min(radius[1]) * self.relative.powf(1.0 / (order + 1.0)) * (-0.7 / (order - 1.0)).exp()
+        let tolerance = self.relative.log2() / (order + 1.0);
+        (radius[0].min(radius[1]) + tolerance - 1.01 / (order - 1.0)).exp2()
     }
 
     /// Whether rates that are wrong by so much, over a step of this length, matter.

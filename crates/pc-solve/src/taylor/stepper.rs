@@ -149,10 +149,7 @@ impl<F: SeriesField> Taylor<F> {
         let order = self.ahead.order();
         let refused = |failure: Failure| Refusal::Shorter(Reason::Rates { t }, Some(failure));
         let series = self.field.expand(t, self.ahead.of_order(0), &self.sides, order).map_err(refused)?;
-        for k in 1..=order {
-            self.ahead.coefficients[k * self.ahead.dim..][..self.ahead.dim]
-                .copy_from_slice(series.coefficients(k));
-        }
+        series.copy_coefficients(order, &mut self.ahead.coefficients[self.ahead.dim..]);
         if !self.branches.is_empty() {
             for k in 0..order {
                 self.branch_series.of_order_mut(k).copy_from_slice(series.branch_coefficients(k));
