@@ -78,4 +78,5 @@ pub use program::digest::Digest;
 pub use program::fuse::Cost;
 pub use program::program::{Inputs, Instruction, Program, Register};
 pub use taylor::coefficients::TaylorSeries;
+pub use taylor::separation::{PolynomialMotion, RootSeparation};
 pub use time_profile::profile::{Surprises, TimeDependence, TimeProfile};

@@ -1,6 +1,8 @@
 //! Methods that make steps.
 
-use pc_expr::{Failure, VectorField};
+use std::sync::Arc;
+
+use pc_expr::{Failure, Program, VectorField};
 
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::integration::checks::finite;
@@ -111,6 +113,18 @@ pub trait Stepper {
     /// The parameter by which each column is the derivative, if it is one by a parameter.
     fn column_parameters(&self) -> &[Option<usize>] {
         &[]
+    }
+
+    /// Adds times between `from` and `to`, both in the last step, in the order of the integration and with `to` as the last, between which
+    /// each output of a program along the motion has at most one root. False, with none added, if the method does not know that.
+    fn separate_roots(
+        &mut self,
+        _program: &Arc<Program>,
+        _parameters: &[f64],
+        _span: (f64, f64),
+        _times: &mut Vec<f64>,
+    ) -> bool {
+        false
     }
 
     /// The error of a failure beyond the end of the last step, where the stepper then stands.

@@ -1,6 +1,8 @@
 //! Taylor's method as a stepper.
 
-use pc_expr::{Failure, SeriesField};
+use std::sync::Arc;
+
+use pc_expr::{Failure, PolynomialMotion, Program, RootSeparation, SeriesField};
 
 use crate::error::{InputError, IntegrationError, NonFinite, Reason, SolveError};
 use crate::integration::breaks::{are_close, following};
@@ -57,6 +59,8 @@ pub struct Taylor<F> {
     direction: f64,
     time: f64,
     foresight: Foresight,
+    /// Of the events that were asked about last.
+    separation: Option<RootSeparation>,
     state: Vec<f64>,
     slope: Vec<f64>,
     rates: Vec<f64>,
@@ -126,6 +130,7 @@ impl<F: SeriesField> Taylor<F> {
             direction: 0.0,
             time: t0,
             foresight,
+            separation: None,
             state: zeros(),
             slope: zeros(),
             rates: zeros(),
@@ -498,6 +503,34 @@ impl<F: SeriesField> Stepper for Taylor<F> {
 
     fn statistics(&self) -> Statistics {
         self.statistics
+    }
+
+    fn separate_roots(
+        &mut self,
+        program: &Arc<Program>,
+        parameters: &[f64],
+        (from, to): (f64, f64),
+        times: &mut Vec<f64>,
+    ) -> bool {
+        if program.state_len() != self.series.dim {
+            return false;
+        }
+        let separation = match &mut self.separation {
+            Some(known) if Arc::ptr_eq(known.program(), program) => known,
+            other => other.insert(RootSeparation::new(Arc::clone(program))),
+        };
+        let motion = PolynomialMotion { start: self.start, coefficients: &self.series.coefficients };
+        let (start, low) = (self.start, self.start_low);
+        let place = |t: f64| (t - start) - low;
+        separation.separate(motion, (place(from), place(to)), parameters, times);
+        // What lies beyond by rounding is not looked at.
+        times.pop();
+        for time in &mut *times {
+            *time += start + low;
+        }
+        times.retain(|time| (time - from) * (to - time) > 0.0);
+        times.push(to);
+        true
     }
 
     fn tolerance(&self, i: usize, y: f64) -> f64 {
