@@ -204,6 +204,17 @@ typedef enum {
    * Backward differentiation formulas of orders 1 to 5, for stiff systems.
    */
   PC_BDF = 1,
+  /**
+   * The explicit Runge–Kutta method of order 8 of Dormand and Prince, for systems that are
+   * not stiff at tolerances of 1e-6 and below: the fastest where the equations are short. It
+   * has no sensitivities, no iteration, no linear solver and no highest order to choose.
+   */
+  PC_DOP853 = 2,
+  /**
+   * PC_DOP853 where the motion is not stiff, PC_BDF where stiffness is seen. With
+   * sensitivities it is PC_ADAMS.
+   */
+  PC_AUTO = 4,
 } pc_method;
 
 /**
@@ -211,7 +222,7 @@ typedef enum {
  */
 typedef enum {
   /**
-   * Newton's for PC_BDF, the fixed-point iteration for PC_ADAMS.
+   * Newton's for PC_BDF, also within PC_AUTO, the fixed-point iteration for PC_ADAMS.
    */
   PC_ITERATION_OF_METHOD = 0,
   /**
@@ -565,6 +576,18 @@ typedef struct {
    * motion so far gives no hint of: the beginning of a pulse, a jump.
    */
   uint64_t limited_steps;
+  /**
+   * Of the steps of PC_AUTO, those by PC_BDF.
+   */
+  uint64_t implicit_steps;
+  /**
+   * How often PC_AUTO changed its method.
+   */
+  uint64_t changes;
+  /**
+   * When PC_DOP853 or PC_AUTO saw first that the motion is stiff; NaN if it did not.
+   */
+  double stiff_from;
 } pc_statistics;
 
 /**

@@ -50,6 +50,7 @@ fn members_have_the_offsets_of_the_interface() {
         pc_statistics {
             steps, rhs_evaluations, jacobian_evaluations, error_test_failures, nonlinear_iterations, nonlinear_failures,
             linear_setups, linear_iterations, last_order, last_step, next_step, step_time, limited_steps,
+            implicit_steps, changes, stiff_from,
         }
         pc_member { number, status, message, times, states, rows, dim }
     };

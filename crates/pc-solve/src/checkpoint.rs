@@ -1,11 +1,13 @@
 //! Checkpoints, from which a motion is resumed with the same numbers to the last bit.
 //!
 //! `checkpoint` is what is kept, `encoding` its bytes, `resume` makes one and continues from it, `resume_cvode` by
-//! CVODES; `legs` goes from checkpoint to checkpoint.
+//! CVODES, `resume_chosen` by the method of options; `legs` goes from checkpoint to checkpoint.
 
 pub(crate) mod checkpoint;
 pub(crate) mod encoding;
 pub(crate) mod legs;
 pub(crate) mod resume;
+#[cfg(feature = "cvode")]
+pub(crate) mod resume_chosen;
 #[cfg(feature = "cvode")]
 pub(crate) mod resume_cvode;

@@ -19,7 +19,6 @@ pub(crate) mod integrals;
 pub(crate) mod integration;
 pub(crate) mod interpolation;
 pub(crate) mod linear;
-pub(crate) mod options;
 pub(crate) mod projection;
 pub(crate) mod quadrature;
 pub(crate) mod quadrature_callbacks;

@@ -29,13 +29,18 @@
 
 #![cfg_attr(feature = "cvode", expect(unsafe_code, reason = "calls of the C library SUNDIALS"))]
 
+#[cfg(feature = "cvode")]
+mod auto;
 mod checkpoint;
+mod chosen;
 #[cfg(feature = "cvode")]
 mod cvode;
+mod dop853;
 #[cfg(feature = "cvode")]
 mod ensemble;
 mod error;
 mod events;
+mod foresight;
 mod integration;
 #[cfg(feature = "cvode")]
 mod lyapunov;
@@ -46,9 +51,12 @@ mod settings;
 mod solve;
 mod taylor;
 
+#[cfg(feature = "cvode")]
+pub use auto::switch::Auto;
 pub use checkpoint::checkpoint::Checkpoint;
 pub use checkpoint::encoding::CheckpointError;
 pub use checkpoint::legs::solve_checkpointed;
+pub use chosen::Chosen;
 #[cfg(feature = "cvode")]
 pub use cvode::cvode::Cvode;
 #[cfg(feature = "cvode")]
@@ -61,8 +69,7 @@ pub use cvode::linear::krylov::{Krylov, Side};
 pub use cvode::linear::preconditioner::Preconditioner;
 #[cfg(feature = "cvode")]
 pub use cvode::linear::solver::LinearSolver;
-#[cfg(feature = "cvode")]
-pub use cvode::options::Options;
+pub use dop853::setup::Dop853;
 #[cfg(feature = "cvode")]
 pub use ensemble::ensemble::{Ensemble, EnsembleError, MemberError, Panicked};
 #[cfg(feature = "cvode")]
@@ -100,12 +107,12 @@ pub use sensitivity::trajectory::{
 };
 pub use settings::inequality::Inequality;
 pub use settings::method::{Method, NonlinearSolver};
+pub use settings::options::Options;
 pub use settings::tolerance::Tolerance;
 pub use solve::failure::SolveFailure;
 #[cfg(feature = "cvode")]
 pub use solve::integrals::solve_with_integrals;
 pub use solve::solution::Solution;
-#[cfg(feature = "cvode")]
 pub use solve::solve::{Solve, solve};
 pub use taylor::options::TaylorOptions;
 pub use taylor::stepper::Taylor;

@@ -10,7 +10,7 @@
 use pc_expr::{Failure, VectorField};
 
 use crate::error::{NonFinite, Reason, SolveError};
-use crate::integration::breaks::{are_close, following};
+use crate::integration::breaks::next_break;
 use crate::integration::checks::{check_inequalities, check_start, finite, positive};
 use crate::integration::limits::Limits;
 use crate::integration::method::IntegrationMethod;
@@ -138,14 +138,8 @@ impl<F: VectorField> RungeKutta4<F> {
         let end = self.stop_time.unwrap_or(f64::INFINITY.copysign(direction));
         let mut next = self.stop_time;
         if !self.field.breaks().is_empty() {
-            let mut t = from;
-            next = following(self.field.breaks(), t, end);
-            // A break no farther than rounding, as after an event, has been reached.
-            while let Some(time) = next.filter(|&time| are_close(time, t)) {
-                t = time;
-                next = following(self.field.breaks(), t, end);
-            }
-            next = next.or(self.stop_time);
+            let (t, first) = next_break(self.field.breaks(), from, end);
+            next = first.or(self.stop_time);
             if self.field.enter(t, end) || self.begins {
                 self.rates_at_end()?;
             }

@@ -6,5 +6,4 @@ pub(crate) mod failure;
 #[cfg(feature = "cvode")]
 pub(crate) mod integrals;
 pub(crate) mod solution;
-#[cfg(feature = "cvode")]
 pub(crate) mod solve;

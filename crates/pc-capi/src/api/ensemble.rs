@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use ::pc_model::FlowEvents;
 use pc_solve::{
-    Checkpoint, Cvode, Ending, Ensemble, Observed, Options, Panicked, Sensitivities, Stepper, Stop,
+    Checkpoint, Chosen, Ending, Ensemble, Observed, Options, Panicked, Sensitivities, Stepper, Stop,
 };
 
 use crate::api::options::{pc_solver_options, take};
@@ -216,8 +216,8 @@ pub unsafe extern "C" fn pc_ensemble_run(
         if let Some(&end) = times.last() {
             // A step of one member compiles the derivatives that all need. What goes wrong, each will hear of.
             let first = states.and_then(|all| all.get(..start.len())).unwrap_or(start);
-            let _ = Cvode::new(&mut field, t, first, &options)
-                .and_then(|mut cvode| Stepper::step(&mut cvode, end));
+            let _ = Chosen::new(&mut field, t, first, &options)
+                .and_then(|mut method| Stepper::step(&mut method, end));
         }
         let prototype = Mutex::new((field, events));
         let plan = Plan { prototype, t, start, states, parameters, times, options };

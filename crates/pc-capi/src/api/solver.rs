@@ -1,4 +1,4 @@
-//! Integration by CVODE.
+//! Integration.
 
 use std::ffi::{CString, c_int, c_void};
 use std::ops::ControlFlow;

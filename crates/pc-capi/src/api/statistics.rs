@@ -42,6 +42,12 @@ pub struct pc_statistics {
     /// Steps shortened to end where the explicit dependence on time shows something that the
     /// motion so far gives no hint of: the beginning of a pulse, a jump.
     pub limited_steps: u64,
+    /// Of the steps of PC_AUTO, those by PC_BDF.
+    pub implicit_steps: u64,
+    /// How often PC_AUTO changed its method.
+    pub changes: u64,
+    /// When PC_DOP853 or PC_AUTO saw first that the motion is stiff; NaN if it did not.
+    pub stiff_from: f64,
 }
 
 impl From<Statistics> for pc_statistics {
@@ -60,6 +66,9 @@ impl From<Statistics> for pc_statistics {
             next_step: of.current_step,
             step_time: of.current_time,
             limited_steps: of.limited_steps,
+            implicit_steps: of.implicit_steps,
+            changes: of.changes,
+            stiff_from: of.stiff_from.unwrap_or(f64::NAN),
         }
     }
 }

@@ -1,12 +1,12 @@
-//! An integration by CVODE, and what is remembered of its events.
+//! An integration, and what is remembered of its events.
 
 use std::ffi::c_void;
 use std::ops::ControlFlow;
 
 use pc_expr::{Event, Events};
 use pc_solve::{
-    Checkpoint, Cvode, DenseOutput, Ending, Observed, Occurrence, Options, Sensitivities, SolveError,
-    Statistics, VectorField,
+    Checkpoint, Chosen, DenseOutput, Ending, Observed, Occurrence, Options, Sensitivities, SolveError,
+    Statistics, Stepper, VectorField,
 };
 
 use crate::ffi::call_error::CallError;
@@ -14,8 +14,8 @@ use crate::ffi::user_data::User;
 use crate::machinery::event_set::{Followed, Own};
 use crate::machinery::motion_field::MotionField;
 
-/// The integration by CVODE, with its events.
-pub(crate) type Engine = Box<pc_solve::Integration<Cvode<MotionField>, Followed>>;
+/// The integration, with its events.
+pub(crate) type Engine = Box<pc_solve::Integration<Chosen<MotionField>, Followed>>;
 
 /// From a checkpoint, which may be a start. What `field` keeps by projection are its values there.
 pub(crate) fn engine(
@@ -29,14 +29,8 @@ pub(crate) fn engine(
     if from.state().len() == field.dim() {
         field.restart(from.time(), from.state());
     }
-    // At a start they begin as they say.
-    if !sensitivities.is_empty() && from.sensitivities().is_empty() {
-        let (t, y) = (from.time(), from.state());
-        let begun = pc_solve::Integration::with_sensitivities(field, t, y, options, sensitivities)?;
-        return Ok(Box::new(begun.with_events(events)?));
-    }
-    let resumed = pc_solve::Integration::resume_with_sensitivities(field, from, options, sensitivities)?;
-    Ok(Box::new(resumed.with_events_of(events, from)?))
+    let begun = pc_solve::Integration::begin(field, from, options, sensitivities)?;
+    Ok(Box::new(begun.with_events_of(events, from)?))
 }
 
 /// What a solver remembers of its events: little, however often they occur.
@@ -129,7 +123,7 @@ impl Integration {
 
     /// S where it stands, column-major, and the number of columns.
     pub(crate) fn sensitivities(&mut self) -> Result<(Vec<f64>, usize), SolveError> {
-        let matrix = self.engine.sensitivities()?;
+        let matrix = self.engine.stepper().columns()?;
         Ok((matrix, self.sensitivities.len()))
     }
 

@@ -178,7 +178,8 @@ pub struct RunArguments {
     /// Events.
     #[command(flatten)]
     pub events: EventArguments,
-    /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
+    /// Method: adams or dop853 (not stiff), bdf (stiff) or auto (dop853, and bdf where stiffness is seen); else that of the file,
+    /// else adams
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
     /// Form of the equations: poincare, canonical, reduced, lie-poisson, orthonormal or hamel (see `pc derive --help`); else that
@@ -314,10 +315,14 @@ pub enum Method {
     Adams,
     /// Backward differentiation formulas.
     Bdf,
+    /// Runge–Kutta of order 8 by Dormand and Prince.
+    Dop853,
+    /// The last, or backward differentiation where the motion is stiff.
+    Auto,
 }
 
 pub(crate) fn method(text: &str) -> Result<Method, String> {
-    choice(text, &["auto", "taylor", "dop853"])
+    choice(text, &["taylor"])
 }
 
 fn definition(text: &str) -> Result<Setting, String> {
@@ -369,8 +374,8 @@ mod tests {
     #[test]
     fn unsupported_choices_are_named() {
         assert_eq!(method("bdf"), Ok(Method::Bdf));
-        assert_eq!(method("taylor").unwrap_err(), "`taylor` is not supported yet; use adams or bdf");
-        assert_eq!(method("rk4").unwrap_err(), "use adams or bdf");
+        assert_eq!(method("taylor").unwrap_err(), "`taylor` is not supported yet; use adams, bdf, dop853 or auto");
+        assert_eq!(method("rk4").unwrap_err(), "use adams, bdf, dop853 or auto");
     }
 
     #[test]

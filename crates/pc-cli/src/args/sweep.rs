@@ -62,7 +62,8 @@ pub struct SweepArguments {
     /// Events.
     #[command(flatten)]
     pub events: EventArguments,
-    /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
+    /// Method: adams or dop853 (not stiff), bdf (stiff) or auto (dop853, and bdf where stiffness is seen); else that of the file,
+    /// else adams
     #[arg(long, value_name = "METHOD", value_parser = options::method)]
     pub method: Option<Method>,
     /// Form of the equations: poincare or canonical; else that of the file, else poincare. Columns stay the same

@@ -10,6 +10,27 @@ use crate::args::options::RunArguments;
 use crate::error::CliError;
 use crate::motion::sensitivities;
 
+/// The method of this name on the command line.
+fn of_arguments(method: options::Method) -> Method {
+    match method {
+        options::Method::Adams => Method::Adams,
+        options::Method::Bdf => Method::Bdf,
+        options::Method::Dop853 => Method::Dop853,
+        options::Method::Auto => Method::Auto,
+    }
+}
+
+/// The method of this name in a file; none where the model is refused for it.
+fn of_file(method: document::Method) -> Option<Method> {
+    match method {
+        document::Method::Adams => Some(Method::Adams),
+        document::Method::Bdf => Some(Method::Bdf),
+        document::Method::Dop853 => Some(Method::Dop853),
+        document::Method::Auto => Some(Method::Auto),
+        document::Method::Taylor => None,
+    }
+}
+
 /// Rows of a table if nobody says how many.
 const SAMPLES: usize = 201;
 
@@ -59,10 +80,8 @@ impl Plan {
         if t_end == t_start {
             return Err(CliError::EndIsStart { t: t_end });
         }
-        let method = match (arguments.method, simulation.method.as_ref().map(|method| method.value)) {
-            (Some(options::Method::Bdf), _) | (None, Some(document::Method::Bdf)) => Method::Bdf,
-            _ => Method::Adams,
-        };
+        let written = simulation.method.as_ref().map(|method| method.value);
+        let method = arguments.method.map(of_arguments).or(written.and_then(of_file)).unwrap_or(Method::Adams);
         Ok(Plan {
             t_start,
             t_end,

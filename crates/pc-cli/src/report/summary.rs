@@ -1,6 +1,7 @@
 //! The summary of a run, for readers and for files.
 
 use pc_print::{columns, one_line};
+use pc_solve::Method;
 use serde_json::{Map, Value, json};
 
 use crate::motion::run::{Ending, Run};
@@ -31,6 +32,7 @@ pub fn text(run: &Run) -> String {
     };
     line("time", &[format!("{} to {}, {reached}", short(plan.t_start, 10), short(plan.t_end, 10))]);
     line("work", &[work_done(run)]);
+    line("chosen", &chosen(run));
     line("events", &events(run));
     line("drift", &drifts(run));
     if !run.constraints.is_empty() {
@@ -51,6 +53,30 @@ pub fn text(run: &Run) -> String {
         line(label, &assignments(shown, WIDTH));
     }
     text
+}
+
+/// What a method that chooses did, or one that cannot should have.
+fn chosen(run: &Run) -> Vec<String> {
+    let (plan, work) = (&run.plan, &run.statistics);
+    let times = |n: u64| if n == 1 { "once".to_owned() } else { format!("{n} times") };
+    match (plan.method, work.stiff_from) {
+        (Method::Auto, _) if !plan.sensitivities.is_empty() => {
+            vec!["Adams, since only the methods of CVODES have sensitivities".to_owned()]
+        }
+        (Method::Auto, None) => vec!["DOP853: no stiffness was seen".to_owned()],
+        (Method::Auto, Some(t)) => vec![format!(
+            "DOP853 for {} steps, BDF for {}: stiffness was seen first at t = {}; changed {}",
+            work.steps - work.implicit_steps,
+            work.implicit_steps,
+            short(t, 6),
+            times(work.changes),
+        )],
+        (Method::Dop853, Some(t)) => vec![format!(
+            "stability limits the steps from t = {} on: bdf or auto takes fewer",
+            short(t, 6)
+        )],
+        (Method::Dop853 | Method::Adams | Method::Bdf, _) => Vec::new(),
+    }
 }
 
 fn work_done(run: &Run) -> String {
@@ -148,7 +174,7 @@ pub fn json(run: &Run) -> Value {
         .collect();
     let held: Map<String, Value> =
         run.constraints.iter().map(|(name, worst)| (name.clone(), json!(worst))).collect();
-    json!({
+    let mut summary = json!({
         "ending": run.ending.word(),
         "method": plan.method.to_string().to_lowercase(),
         "rtol": plan.rtol,
@@ -165,5 +191,13 @@ pub fn json(run: &Run) -> Value {
         "keeps_energy": run.keeps_energy,
         "drift": drift,
         "constraints": held,
-    })
+    });
+    if matches!(plan.method, Method::Dop853 | Method::Auto) {
+        summary["stiff_from"] = json!(work.stiff_from);
+    }
+    if plan.method == Method::Auto {
+        summary["implicit_steps"] = json!(work.implicit_steps);
+        summary["changes"] = json!(work.changes);
+    }
+    summary
 }

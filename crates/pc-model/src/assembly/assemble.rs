@@ -33,9 +33,9 @@ impl Model {
         let refuse = |place: &Place, what| Err(self.document().error(place, ErrorKind::Unsupported { what }));
         let simulation = &document.simulation;
         if let Some(method) = &simulation.method
-            && !matches!(method.value, Method::Bdf | Method::Adams)
+            && method.value == Method::Taylor
         {
-            return refuse(&method.place, "methods other than bdf and adams are");
+            return refuse(&method.place, "the method taylor is");
         }
         Ok(())
     }

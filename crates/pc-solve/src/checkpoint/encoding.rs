@@ -1,7 +1,7 @@
 //! Checkpoints as bytes.
 //!
 //! ```text
-//! pc checkpoint 4\n
+//! pc checkpoint 5\n
 //! length of the label, label
 //! t, dim, y; number of outputs, times, states
 //! number of occurrences, of each: event, t, y⁻, y⁺
@@ -20,7 +20,7 @@ use crate::integration::statistics::Statistics;
 use crate::integration::trajectory::Trajectory;
 
 const MAGIC: &[u8] = b"pc checkpoint ";
-const VERSION: u64 = 4;
+const VERSION: u64 = 5;
 
 /// Why bytes are not a checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -75,6 +75,9 @@ impl Checkpoint {
             work.preconditioner_evaluations,
             work.preconditioner_solves,
             work.limited_steps,
+            work.implicit_steps,
+            work.changes,
+            u64::from(work.stiff_from.is_some()),
             u64::from(work.last_order),
             u64::from(work.current_order),
             self.steps_since_output,
@@ -82,6 +85,7 @@ impl Checkpoint {
             put_integer(&mut bytes, count);
         }
         put_numbers(&mut bytes, &[work.first_step, work.last_step, work.current_step, work.current_time]);
+        put_numbers(&mut bytes, &[work.stiff_from.unwrap_or(0.0)]);
         put_integer(&mut bytes, u64::from(self.jumped));
         put_integer(&mut bytes, self.sensitivities.len() as u64);
         put_numbers(&mut bytes, &self.sensitivities);
@@ -184,6 +188,9 @@ fn decode(bytes: &mut &[u8]) -> Option<(Checkpoint, String)> {
         preconditioner_evaluations: integer(bytes)?,
         preconditioner_solves: integer(bytes)?,
         limited_steps: integer(bytes)?,
+        implicit_steps: integer(bytes)?,
+        changes: integer(bytes)?,
+        stiff_from: flag(bytes)?.then_some(0.0),
         last_order: u32::try_from(integer(bytes)?).ok()?,
         current_order: u32::try_from(integer(bytes)?).ok()?,
         ..Statistics::default()
@@ -196,6 +203,8 @@ fn decode(bytes: &mut &[u8]) -> Option<(Checkpoint, String)> {
         current_time: number(bytes)?,
         ..checkpoint.statistics
     };
+    let stiff_from = number(bytes)?;
+    checkpoint.statistics.stiff_from = checkpoint.statistics.stiff_from.map(|_| stiff_from);
     checkpoint.jumped = flag(bytes)?;
     let entries = index(bytes)?;
     checkpoint.sensitivities = numbers(bytes, entries)?;

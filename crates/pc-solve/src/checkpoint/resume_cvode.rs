@@ -5,10 +5,10 @@ use pc_expr::VectorField;
 use crate::checkpoint::checkpoint::Checkpoint;
 use crate::cvode::cvode::Cvode;
 use crate::cvode::forward::sensitivities::Sensitivities;
-use crate::cvode::options::Options;
 use crate::error::{InputError, SolveError};
 use crate::integration::checks::finite;
 use crate::integration::integration::Integration;
+use crate::settings::options::Options;
 
 impl<F: VectorField> Cvode<F> {
     /// Begins at a checkpoint with the columns that it has.

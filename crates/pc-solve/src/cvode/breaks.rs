@@ -5,7 +5,7 @@ use sundials_sys as sys;
 
 use crate::cvode::cvode::Cvode;
 use crate::error::SolveError;
-use crate::integration::breaks::{are_close, following};
+use crate::integration::breaks::next_break;
 
 impl<F: VectorField> Cvode<F> {
     /// The break of the field, or the stop time, at which the next step towards a time ends at the latest; none where the field
@@ -16,13 +16,7 @@ impl<F: VectorField> Cvode<F> {
         }
         // Without a stop time a step may end beyond where it leads.
         let end = self.stop_time.unwrap_or(f64::INFINITY.copysign(towards - self.step_time));
-        let mut t = self.step_time;
-        let mut next = following(self.field().breaks(), t, end);
-        // A break no farther than rounding, as after an event, is too close for a step of CVODES: it has been reached.
-        while let Some(time) = next.filter(|&time| are_close(time, t)) {
-            t = time;
-            next = following(self.field().breaks(), t, end);
-        }
+        let (t, next) = next_break(self.field().breaks(), self.step_time, end);
         let jumped = self.callbacks.field_mut().enter(t, end);
         // Sensitivities are no part of what could be begun anew: error control sees the jump.
         if jumped && self.direction.is_some() && self.sensitivity.is_none() {

@@ -81,7 +81,7 @@ impl<F: VectorField> Cvode<F> {
         let linear = self.linear.as_ref().map(|_| self.callbacks.linear());
         let mut since = Statistics::read(&self.memory, linear);
         since.rhs_evaluations += self.foresight.evaluations;
-        since.limited_steps = self.foresight.limited;
+        since.limited_steps = self.foresight.places.as_ref().map_or(0, |places| places.limited);
         self.earlier.followed_by(&since)
     }
 

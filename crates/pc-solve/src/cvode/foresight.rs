@@ -1,27 +1,22 @@
-//! The features ahead up to the end of the next step, and the polynomial that predicts the motion.
+//! The polynomial that predicts the motion up to the end of the next step, and what it does not let expect.
 
-use pc_expr::{TimeDependence, VectorField};
+use pc_expr::VectorField;
 
-use crate::cvode::options::Options;
+use crate::foresight::places::Places;
+use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
 /// The correction of a step is its local error times at most about this, at the orders at which steps grow.
 const NEXT_TERM: f64 = 20.0;
 
-/// What is to be looked out for, and what that has taken.
+/// What is to be looked out for, and what is to be expected.
 pub(super) struct Foresight {
-    pub(super) dependence: TimeDependence,
-    /// When the integration began.
-    pub(super) begin: f64,
-    /// The least length of a step, if there is one.
-    pub(super) min_step: f64,
+    /// None while it is in use.
+    pub(super) places: Option<Places>,
     pub(super) relative_tolerance: f64,
     pub(super) absolute_tolerance: Tolerance,
-    /// Steps in sequence that were full of places, all as foreseen.
-    pub(super) unsurprising: u32,
-    /// Evaluations and shortened steps since the last restart.
+    /// Evaluations since the last restart.
     pub(super) evaluations: u64,
-    pub(super) limited: u64,
     /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, the first `terms` of them, and work.
     pub(super) polynomial: Vec<Vec<f64>>,
     pub(super) terms: usize,
@@ -32,26 +27,17 @@ pub(super) struct Foresight {
     pub(super) errors: Vec<f64>,
     pub(super) last_step: f64,
     pub(super) order: i32,
-    /// Room for places to be looked at.
-    pub(super) few: Vec<f64>,
 }
 
 impl Foresight {
     pub(super) fn new(field: &impl VectorField, t0: f64, options: &Options) -> Foresight {
-        let (dim, dependence) = (field.dim(), field.time_dependence());
-        let most = match dependence {
-            TimeDependence::Absent => 0,
-            TimeDependence::Known(_) | TimeDependence::Unknown => options.method.highest_order() as usize + 1,
-        };
+        let (dim, places) = (field.dim(), Places::new(field, t0, options.min_step));
+        let most = if places.are_absent() { 0 } else { options.method.highest_order() as usize + 1 };
         Foresight {
-            dependence,
-            begin: t0,
-            min_step: options.min_step.unwrap_or(0.0),
+            places: Some(places),
             relative_tolerance: options.relative_tolerance,
             absolute_tolerance: options.absolute_tolerance.clone(),
-            unsurprising: 0,
             evaluations: 0,
-            limited: 0,
             polynomial: vec![vec![0.0; dim]; most],
             terms: 0,
             state: vec![0.0; dim],
@@ -60,13 +46,15 @@ impl Foresight {
             errors: vec![0.0; dim],
             last_step: 0.0,
             order: 0,
-            few: Vec::new(),
         }
     }
 
     /// For a new start.
     pub(super) fn restart(&mut self) {
-        (self.unsurprising, self.evaluations, self.limited) = (0, 0, 0);
+        self.evaluations = 0;
+        if let Some(places) = &mut self.places {
+            places.restart();
+        }
     }
 
     /// rtol |yᵢ| + atolᵢ

@@ -4,9 +4,9 @@ use std::fmt;
 
 use pc_expr::Failure;
 
-use crate::cvode::options::Options;
 use crate::error::InputError;
 use crate::integration::checks::positive;
+use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
 /// Writes g(t, y) to its last argument.

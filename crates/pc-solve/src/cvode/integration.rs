@@ -8,21 +8,10 @@ use pc_expr::{Events, VectorField};
 use crate::cvode::cvode::Cvode;
 use crate::cvode::integrals::Integrals;
 use crate::cvode::linear::solver::LinearSolver;
-use crate::cvode::options::Options;
 use crate::error::SolveError;
 use crate::integration::integration::{Ending, Integration};
-use crate::integration::method::IntegrationMethod;
 use crate::integration::observer::Observed;
-
-impl<F: VectorField> IntegrationMethod<F> for Options {
-    type Stepper = Cvode<F>;
-
-    fn begin(&self, field: F, t0: f64, y0: &[f64], stop: Option<f64>) -> Result<Cvode<F>, SolveError> {
-        let mut options = self.clone();
-        options.stop_time = options.stop_time.or(stop.filter(|t| t.is_finite()));
-        Cvode::new(field, t0, y0, &options)
-    }
-}
+use crate::settings::options::Options;
 
 impl<F: VectorField> Integration<Cvode<F>> {
     /// Starts at y(t0) = y0 by CVODES, where `y0` has as many numbers as `field` has components.

@@ -10,9 +10,9 @@ use crate::cvode::callback::{Callbacks, FATAL, nan_slice};
 use crate::cvode::cvode::Cvode;
 use crate::cvode::handles::{Vector, numbers_of};
 use crate::cvode::integrals::Integrals;
-use crate::cvode::options::Options;
 use crate::cvode::quadrature::{Quadrature, Quadratures};
 use crate::error::{InputError, NonFinite, Reason, SolveError};
+use crate::settings::options::Options;
 
 impl<F: VectorField> Cvode<F> {
     /// Starts at y(t0) = y0 as [`Cvode::new`] does, with integrals along the motion, which are 0 there.

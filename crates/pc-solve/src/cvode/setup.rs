@@ -13,13 +13,14 @@ use crate::cvode::cvode::Cvode;
 use crate::cvode::handles::{Memory, NonlinearIteration, Vector};
 use crate::cvode::linear::choice::choose;
 use crate::cvode::linear::linear::Linear;
-use crate::cvode::options::Options;
+use crate::cvode::linear::solver::LinearSolver;
 use crate::error::SolveError;
-use crate::integration::checks::{check_inequalities, check_start, finite};
+use crate::integration::checks::{check_inequalities, check_start};
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
 use crate::settings::inequality::Inequality;
 use crate::settings::method::Method;
+use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
 impl<F: VectorField> Cvode<F> {
@@ -29,47 +30,22 @@ impl<F: VectorField> Cvode<F> {
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;
     /// [`SolveError::Setup`] if SUNDIALS runs out of memory.
     pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
-        check_start(&field, t0, y0)?;
-        options.validate(y0.len())?;
-        check_inequalities(&field, y0, &options.inequalities)?;
-        let linear_solver = choose(&field, options)?;
-        let foresight = Foresight::new(&field, t0, options);
+        Cvode::start(field, t0, y0, options).map_err(|(error, _)| error)
+    }
 
-        // Dropped in reverse order if one of them fails.
-        let mut context = Context::new()?;
+    /// The same, which gives the field back where it fails.
+    pub(crate) fn start(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, (SolveError, F)> {
+        let (options, linear_solver) = match checked(&field, t0, y0, options) {
+            Ok(checked) => checked,
+            Err(error) => return Err((error, field)),
+        };
+        let foresight = Foresight::new(&field, t0, &options);
         let mut callbacks = UserData::new(field, y0.len());
-        let mut step_state = Vector::new(&mut context, y0)?;
-        step_state.halve_after_violations();
-        let work = Vector::new(&mut context, y0)?;
-        let linear = linear_solver
-            .map(|choice| Linear::new(&mut context, &step_state, choice, callbacks.field()))
-            .transpose()?;
-        let nonlinear_iteration = if linear.is_some() {
-            NonlinearIteration::newton(&mut context, &step_state)?
-        } else {
-            NonlinearIteration::fixed_point(&mut context, &step_state)?
+        let parts = match Parts::new(&mut callbacks, t0, y0, &options, linear_solver) {
+            Ok(parts) => parts,
+            Err(error) => return Err((error, callbacks.into_field())),
         };
-        let method = match options.method {
-            Method::Bdf => sys::CV_BDF,
-            Method::Adams => sys::CV_ADAMS,
-        };
-        let memory = Memory::new(&mut context, method)?;
-        let mem = memory.raw();
-
-        // SAFETY: `mem` is live; CVODES copies the start from the vector.
-        let code = unsafe { sys::CVodeInit(mem, Some(callback::rhs::<F>), t0, step_state.raw()) };
-        context.check("CVodeInit", code)?;
-        // SAFETY: the address is of a `Callbacks<F>`, as `callback::rhs::<F>` expects, and outlives `mem`.
-        let code = unsafe { sys::CVodeSetUserData(mem, callbacks.address()) };
-        context.check("CVodeSetUserData", code)?;
-        // SAFETY: `mem` is initialised; the iteration outlives it.
-        let code = unsafe { sys::CVodeSetNonlinearSolver(mem, nonlinear_iteration.raw()) };
-        context.check("CVodeSetNonlinearSolver", code)?;
-        if let Some(linear) = &linear {
-            linear.attach(&memory, &mut context, &mut callbacks, &options.inequalities)?;
-        }
-        apply(options, &memory, &mut context)?;
-
+        let Parts { memory, nonlinear_iteration, linear, step_state, work, context } = parts;
         let mut cvode = Cvode {
             memory,
             _nonlinear_iteration: nonlinear_iteration,
@@ -92,11 +68,78 @@ impl<F: VectorField> Cvode<F> {
             restarted: false,
             foresight,
         };
-        if let Some(t) = options.stop_time {
-            finite("the stop time", t)?;
-            cvode.set_stop_time(Some(t))?;
+        match options.stop_time.map_or(Ok(()), |t| cvode.set_stop_time(Some(t))) {
+            Ok(()) => Ok(cvode),
+            Err(error) => Err((error, cvode.into_field())),
         }
-        Ok(cvode)
+    }
+}
+
+/// What is to be done, if it can be: the options for a method of CVODES, and the linear solver.
+fn checked(
+    field: &impl VectorField,
+    t0: f64,
+    y0: &[f64],
+    options: &Options,
+) -> Result<(Options, Option<LinearSolver>), SolveError> {
+    let options = options.by_cvode()?;
+    check_start(field, t0, y0)?;
+    options.validate(y0.len())?;
+    check_inequalities(field, y0, &options.inequalities)?;
+    let linear_solver = choose(field, &options)?;
+    Ok((options, linear_solver))
+}
+
+/// The objects of SUNDIALS, to be dropped in this order.
+struct Parts {
+    memory: Memory,
+    nonlinear_iteration: NonlinearIteration,
+    linear: Option<Linear>,
+    step_state: Vector,
+    work: Vector,
+    context: Context,
+}
+
+impl Parts {
+    /// Those that call back to `callbacks`, which must outlive them.
+    fn new<F: VectorField>(
+        callbacks: &mut UserData<F>,
+        t0: f64,
+        y0: &[f64],
+        options: &Options,
+        linear_solver: Option<LinearSolver>,
+    ) -> Result<Parts, SolveError> {
+        // Dropped in reverse order if one of them fails.
+        let mut context = Context::new()?;
+        let mut step_state = Vector::new(&mut context, y0)?;
+        step_state.halve_after_violations();
+        let work = Vector::new(&mut context, y0)?;
+        let linear = linear_solver
+            .map(|choice| Linear::new(&mut context, &step_state, choice, callbacks.field()))
+            .transpose()?;
+        let nonlinear_iteration = if linear.is_some() {
+            NonlinearIteration::newton(&mut context, &step_state)?
+        } else {
+            NonlinearIteration::fixed_point(&mut context, &step_state)?
+        };
+        let method = if options.method == Method::Bdf { sys::CV_BDF } else { sys::CV_ADAMS };
+        let memory = Memory::new(&mut context, method)?;
+        let mem = memory.raw();
+
+        // SAFETY: `mem` is live; CVODES copies the start from the vector.
+        let code = unsafe { sys::CVodeInit(mem, Some(callback::rhs::<F>), t0, step_state.raw()) };
+        context.check("CVodeInit", code)?;
+        // SAFETY: the address is of a `Callbacks<F>`, as `callback::rhs::<F>` expects, and outlives `mem`.
+        let code = unsafe { sys::CVodeSetUserData(mem, callbacks.address()) };
+        context.check("CVodeSetUserData", code)?;
+        // SAFETY: `mem` is initialised; the iteration outlives it.
+        let code = unsafe { sys::CVodeSetNonlinearSolver(mem, nonlinear_iteration.raw()) };
+        context.check("CVodeSetNonlinearSolver", code)?;
+        if let Some(linear) = &linear {
+            linear.attach(&memory, &mut context, callbacks, &options.inequalities)?;
+        }
+        apply(options, &memory, &mut context)?;
+        Ok(Parts { memory, nonlinear_iteration, linear, step_state, work, context })
     }
 }
 

@@ -39,11 +39,11 @@ use std::thread;
 use pc_expr::VectorField;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
-use crate::cvode::options::Options;
 use crate::ensemble::ordered::Queue;
 use crate::ensemble::stop::Stop;
 use crate::integration::integration::Ending;
 use crate::integration::trajectory::Trajectory;
+use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 use crate::solve::solve::Solve;

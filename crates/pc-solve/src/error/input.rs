@@ -60,6 +60,31 @@ pub enum InputError {
         found: u32,
     },
 
+    /// A choice that a method does not have.
+    #[error("{method} has no choice of {what}")]
+    Explicit {
+        /// The method.
+        method: Method,
+        /// What was chosen.
+        what: &'static str,
+    },
+
+    /// What only CVODES can do, such as sensitivities, is asked of another method.
+    #[error(
+        "{method} is no method of CVODES, which alone has sensitivities, adjoint gradients and integrals along a motion: choose Adams, BDF or auto"
+    )]
+    NotCvode {
+        /// The method.
+        method: Method,
+    },
+
+    /// A method of CVODES, in a build without it.
+    #[error("{method} needs CVODES, which this build has been made without")]
+    NoCvode {
+        /// The method.
+        method: Method,
+    },
+
     /// The least step is larger than the largest.
     #[error("the minimum step {min} is larger than the maximum step {max}")]
     StepBounds {

@@ -4,12 +4,12 @@
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
 /// Whether two times are the same but for rounding.
-pub(crate) fn are_close(a: f64, b: f64) -> bool {
+fn are_close(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDINGS * a.abs().max(b.abs())
 }
 
 /// The first of the breaks, which rise, after t and before the end in its direction.
-pub(crate) fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
+fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
     let next = if end >= t {
         breaks.get(breaks.partition_point(|&time| time <= t)).copied().filter(|&time| time < end)
     } else {
@@ -17,4 +17,16 @@ pub(crate) fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
         before.map(|i| breaks[i]).filter(|&time| time > end)
     };
     next.filter(|&time| end.is_infinite() || !are_close(time, end))
+}
+
+/// From where on the breaks lie ahead of t, and the first of them before the end.
+///
+/// A break no farther than rounding, as after an event, is too close for a step: it has been reached.
+pub(crate) fn next_break(breaks: &[f64], mut t: f64, end: f64) -> (f64, Option<f64>) {
+    let mut next = following(breaks, t, end);
+    while let Some(time) = next.filter(|&time| are_close(time, t)) {
+        t = time;
+        next = following(breaks, t, end);
+    }
+    (t, next)
 }

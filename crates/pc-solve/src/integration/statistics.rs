@@ -36,6 +36,12 @@ pub struct Statistics {
     /// Steps shortened to end where the explicit dependence on time shows something that the motion so far gives no
     /// hint of: the beginning of a pulse, a jump.
     pub limited_steps: u64,
+    /// Steps by the formulas for stiff systems of a method that changes by itself.
+    pub implicit_steps: u64,
+    /// How often a method that changes by itself did so.
+    pub changes: u64,
+    /// When an explicit method saw first that stability and not accuracy limits its steps, if it did.
+    pub stiff_from: Option<f64>,
     /// Order of the last step, 0 before the first.
     pub last_order: u32,
     /// Order of the next step, 0 before the first.
@@ -70,6 +76,9 @@ impl Statistics {
                 .saturating_add(later.preconditioner_evaluations),
             preconditioner_solves: self.preconditioner_solves.saturating_add(later.preconditioner_solves),
             limited_steps: self.limited_steps.saturating_add(later.limited_steps),
+            implicit_steps: self.implicit_steps.saturating_add(later.implicit_steps),
+            changes: self.changes.saturating_add(later.changes),
+            stiff_from: self.stiff_from.or(later.stiff_from),
             first_step: if self.steps > 0 { self.first_step } else { later.first_step },
             ..*later
         }

@@ -3,11 +3,11 @@
 use pc_expr::VectorField;
 
 use crate::cvode::forward::sensitivities::Sensitivities;
-use crate::cvode::options::Options;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::integration::checks::positive;
 use crate::integration::integration::Integration;
 use crate::lyapunov::orthonormal::{length, orthonormalise};
+use crate::settings::options::Options;
 
 /// Options of the computation of Lyapunov exponents.
 #[derive(Debug, Clone, Copy, PartialEq)]

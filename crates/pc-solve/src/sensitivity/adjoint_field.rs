@@ -6,12 +6,12 @@ use std::rc::Rc;
 use pc_expr::{Failure, Pattern, VectorField};
 
 use crate::cvode::forward::linearisation::Linearisation;
-use crate::cvode::options::Options;
 use crate::cvode::quadrature::Quadratures;
 use crate::error::{NonFinite, SolveError};
 use crate::sensitivity::functional::Functional;
 use crate::sensitivity::motion_record::MotionRecord;
 use crate::sensitivity::transpose::Transpose;
+use crate::settings::options::Options;
 
 /// What the adjoint equations of all functionals of a motion have in common.
 pub(crate) struct Path<F> {

@@ -2,10 +2,10 @@
 
 use crate::cvode::linear::krylov::Krylov;
 use crate::cvode::linear::solver::LinearSolver;
-use crate::cvode::options::Options;
 use crate::error::InputError;
 use crate::integration::checks::positive;
 use crate::settings::method::NonlinearSolver;
+use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
 /// Largest dimension of the Krylov subspaces of the way back, unless a solver is chosen.
@@ -61,8 +61,8 @@ impl AdjointOptions {
 
     /// For the adjoint equations of a field with entries of its Jacobian, or `products_only`.
     pub(crate) fn back(&self, products_only: bool) -> Options {
-        let Options { method, nonlinear_solver, max_steps, .. } = self.motion;
-        let deadline = self.motion.deadline.clone();
+        let Options { method, max_steps, .. } = self.motion;
+        let (deadline, nonlinear_solver) = (self.motion.deadline.clone(), self.motion.iteration());
         let options = Options { deadline, ..Options::new(method) }
             .nonlinear_solver(nonlinear_solver)
             .max_steps(max_steps)

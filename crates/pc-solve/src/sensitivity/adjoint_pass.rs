@@ -7,7 +7,6 @@ use std::rc::Rc;
 use pc_expr::{Event, Events, Failure, VectorField};
 
 use crate::cvode::cvode::Cvode;
-use crate::cvode::options::Options;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::observer::Observed;
@@ -16,6 +15,7 @@ use crate::integration::stepper::Stepper;
 use crate::sensitivity::adjoint_field::{AdjointField, Path, not_finite};
 use crate::sensitivity::adjoint_options::AdjointOptions;
 use crate::sensitivity::functional::{Functional, Gradient};
+use crate::settings::options::Options;
 
 /// A state that a piece of the motion begins at, and the event and the state before it where it is one after a reset.
 struct Mark {

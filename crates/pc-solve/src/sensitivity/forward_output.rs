@@ -6,7 +6,6 @@ use pc_expr::{Events, VectorField};
 
 use crate::cvode::cvode::Cvode;
 use crate::cvode::forward::sensitivities::{Sensitivities, SensitivityStatistics};
-use crate::cvode::options::Options;
 use crate::error::{InputError, SolveError};
 use crate::events::events::Occurrence;
 use crate::integration::checks::{check_length, finite};
@@ -14,6 +13,7 @@ use crate::integration::dense_output::Segment;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::observer::Observed;
 use crate::integration::stepper::Stepper;
+use crate::settings::options::Options;
 
 impl<F: VectorField> Integration<Cvode<F>> {
     /// Starts at y(t0) = y0 as [`new`](Integration::new) does, with derivatives of the motion.

@@ -2,9 +2,9 @@
 
 use pc_expr::VectorField;
 
-use crate::cvode::options::Options;
 use crate::error::SolveError;
 use crate::integration::integration::Integration;
+use crate::settings::options::Options;
 
 /// The polynomials of the method over the steps of a piece of a motion.
 #[derive(Debug, Default)]

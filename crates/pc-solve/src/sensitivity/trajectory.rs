@@ -5,12 +5,12 @@ use std::ops::ControlFlow;
 use pc_expr::{Events, VectorField};
 
 use crate::cvode::forward::sensitivities::Sensitivities;
-use crate::cvode::options::Options;
 use crate::error::SolveError;
 use crate::events::events::Occurrence;
 use crate::integration::dense_output::DenseOutput;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::trajectory::Trajectory;
+use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 
 /// The states of a motion at its output times, and S(t) = ∂y(t)/∂(p, y₀) there.

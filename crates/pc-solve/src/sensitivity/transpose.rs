@@ -3,8 +3,8 @@
 use pc_expr::{Colouring, Failure, Pattern, VectorField};
 
 use crate::cvode::forward::linearisation::Linearisation;
-use crate::cvode::options::Options;
 use crate::error::NonFinite;
+use crate::settings::options::Options;
 
 /// (∂f/∂y)ᵀ of a field: its own products, else its sparse Jacobian, or that put together from products by the colours of its
 /// pattern, else its dense one.

@@ -16,7 +16,6 @@ pub struct SolveFailure<R = Trajectory> {
     pub error: SolveError,
 }
 
-#[cfg(feature = "cvode")]
 impl<R> SolveFailure<R> {
     pub(crate) fn map<T>(self, part: impl FnOnce(R) -> T) -> SolveFailure<T> {
         SolveFailure { reached: part(self.reached), error: self.error }

@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 use pc_expr::VectorField;
 
 use crate::cvode::integrals::Integrals;
-use crate::cvode::options::Options;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::trajectory::Trajectory;
+use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 
 /// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::solve()) does, with integrals from t0 to each output time.

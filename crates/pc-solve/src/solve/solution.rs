@@ -15,7 +15,6 @@ pub struct Solution {
     pub ending: Option<Ending>,
 }
 
-#[cfg(feature = "cvode")]
 impl Solution {
     pub(crate) fn new(dim: usize) -> Solution {
         Solution { trajectory: Trajectory::new(dim), occurrences: Vec::new(), ending: None }

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 
 use pc_expr::{Events, VectorField};
 
-use crate::cvode::options::Options;
 use crate::error::SolveError;
 use crate::events::events::{NoEvents, Occurrence};
 use crate::integration::dense_output::DenseOutput;
@@ -12,6 +11,7 @@ use crate::integration::integration::{Ending, Integration};
 use crate::integration::method::IntegrationMethod;
 use crate::integration::observer::Observed;
 use crate::integration::trajectory::Trajectory;
+use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 

@@ -12,9 +12,9 @@ use crate::cvode::forward::linearisation::Linearisation;
 use crate::cvode::forward::sensitivities::{Correction, Sensitivities, SensitivityStatistics};
 use crate::cvode::forward::variation::Variation;
 use crate::cvode::handles::{NonlinearIteration, Vector};
-use crate::cvode::options::Options;
 use crate::error::{Reason, SolveError};
 use crate::settings::method::NonlinearSolver;
+use crate::settings::options::Options;
 
 impl<F: VectorField> Cvode<F> {
     /// Starts at y(t0) = y0 as [`new`](Cvode::new) does, with derivatives of the motion.
@@ -48,7 +48,7 @@ impl<F: VectorField> Cvode<F> {
         let (t, y) = (self.time, self.step_state.as_slice().to_vec());
         let scales = sensitivities.sizes(self.callbacks.field_mut(), &mut linearisation, t, &y);
         self.callbacks.set_variation(Variation::new(linearisation, sensitivities.parameters()));
-        self.begin_sensitivities(sensitivities, options.nonlinear_solver, start, scales)?;
+        self.begin_sensitivities(sensitivities, options.iteration(), start, scales)?;
         Ok(self)
     }
 

@@ -2,8 +2,8 @@
 
 use pc_expr::{Failure, VectorField};
 
-use crate::cvode::options::Options;
 use crate::error::NonFinite;
+use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
 /// Where products (∂f/∂y) v come from.

@@ -3,9 +3,9 @@
 use pc_expr::{Pattern, VectorField};
 
 use crate::cvode::linear::solver::LinearSolver;
-use crate::cvode::options::Options;
 use crate::error::InputError;
 use crate::settings::method::NonlinearSolver;
+use crate::settings::options::Options;
 
 /// From this many components on sparse factors are worth their overhead.
 const SPARSE_FROM: usize = 60;
@@ -20,7 +20,7 @@ pub(crate) fn choose(
     field: &impl VectorField,
     options: &Options,
 ) -> Result<Option<LinearSolver>, InputError> {
-    match (options.nonlinear_solver, &options.linear_solver) {
+    match (options.iteration(), &options.linear_solver) {
         (NonlinearSolver::FixedPoint, None) => Ok(None),
         (NonlinearSolver::FixedPoint, Some(_)) => Err(InputError::LinearSolverUnused),
         (NonlinearSolver::Newton, None) => automatic(field).map(Some),

@@ -1,7 +1,8 @@
-//! Options of integration by CVODES.
+//! Options of an integration.
 
 use pc_expr::Deadline;
 
+#[cfg(feature = "cvode")]
 use crate::cvode::linear::solver::LinearSolver;
 use crate::error::InputError;
 use crate::events::events::Accumulation;
@@ -18,7 +19,9 @@ use crate::settings::tolerance::Tolerance;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     pub(crate) method: Method,
-    pub(crate) nonlinear_solver: NonlinearSolver,
+    /// None for that of the method.
+    pub(crate) nonlinear_solver: Option<NonlinearSolver>,
+    #[cfg(feature = "cvode")]
     pub(crate) linear_solver: Option<LinearSolver>,
     pub(crate) inequalities: Vec<Inequality>,
     pub(crate) relative_tolerance: f64,
@@ -47,10 +50,8 @@ impl Options {
     pub fn new(method: Method) -> Self {
         Options {
             method,
-            nonlinear_solver: match method {
-                Method::Bdf => NonlinearSolver::Newton,
-                Method::Adams => NonlinearSolver::FixedPoint,
-            },
+            nonlinear_solver: None,
+            #[cfg(feature = "cvode")]
             linear_solver: None,
             inequalities: Vec::new(),
             relative_tolerance: 1e-9,
@@ -69,9 +70,10 @@ impl Options {
 
     /// How the implicit equation of a step is solved.
     pub fn nonlinear_solver(self, nonlinear_solver: NonlinearSolver) -> Self {
-        Options { nonlinear_solver, ..self }
+        Options { nonlinear_solver: Some(nonlinear_solver), ..self }
     }
 
+    #[cfg(feature = "cvode")]
     /// How the linear systems of Newton's iteration are solved; chosen by the field's dimension and zero pattern
     /// [unless given](LinearSolver).
     pub fn linear_solver(self, linear_solver: LinearSolver) -> Self {
@@ -142,6 +144,48 @@ impl Options {
         Options { deadline: Some(deadline), ..self }
     }
 
+    /// The same by a method of CVODES: Adams where the choice is open.
+    ///
+    /// # Errors
+    /// [`InputError::NotCvode`] if another method was chosen.
+    #[cfg(feature = "cvode")]
+    pub(crate) fn by_cvode(&self) -> Result<Options, InputError> {
+        match self.method {
+            Method::Bdf | Method::Adams => Ok(self.clone()),
+            Method::Auto => {
+                let nonlinear_solver = Some(self.iteration());
+                Ok(Options { method: Method::Adams, nonlinear_solver, ..self.clone() })
+            }
+            Method::Dop853 => Err(InputError::NotCvode { method: self.method }),
+        }
+    }
+
+    /// How the implicit equation of a step is solved, chosen or by the method.
+    #[cfg(feature = "cvode")]
+    pub(crate) fn iteration(&self) -> NonlinearSolver {
+        self.nonlinear_solver.unwrap_or(match self.method {
+            Method::Auto if self.linear_solver.is_some() => NonlinearSolver::Newton,
+            Method::Adams | Method::Auto | Method::Dop853 => NonlinearSolver::FixedPoint,
+            Method::Bdf => NonlinearSolver::Newton,
+        })
+    }
+
+    /// That what is chosen exists for the method.
+    fn check_explicit(&self) -> Result<(), InputError> {
+        #[cfg(feature = "cvode")]
+        let linear = self.linear_solver.is_some();
+        #[cfg(not(feature = "cvode"))]
+        let linear = false;
+        let refused = match self.method {
+            Method::Bdf | Method::Adams => None,
+            Method::Dop853 | Method::Auto if self.max_order.is_some() => Some("a highest order"),
+            Method::Dop853 if self.nonlinear_solver.is_some() => Some("an iteration"),
+            Method::Dop853 if linear => Some("a linear solver"),
+            Method::Dop853 | Method::Auto => None,
+        };
+        refused.map_or(Ok(()), |what| Err(InputError::Explicit { method: self.method, what }))
+    }
+
     /// What does not depend on the method.
     pub(crate) fn limits(&self) -> Limits {
         Limits {
@@ -185,6 +229,7 @@ impl Options {
         {
             return Err(InputError::StepBounds { min, max });
         }
+        self.check_explicit()?;
         if let Some(found) = self.max_order {
             let limit = self.method.highest_order();
             if !(1..=limit).contains(&found) {

@@ -1,0 +1,83 @@
+//! How large the eigenvalues of ∂f/∂y are, along a motion.
+//!
+//! ```text
+//! ρ = ‖f(t, y + ε v) − f(t, y)‖ / ε, then v ← that direction; norms weighed by the tolerances, ‖v‖ = 1
+//! ```
+//! is a step of the power iteration, which goes on from state to state: ∂f/∂y changes little from one step to the next.
+
+/// The power iteration.
+#[derive(Debug, Clone)]
+pub(super) struct Growth {
+    direction: Vec<f64>,
+    state: Vec<f64>,
+    rates: [Vec<f64>; 2],
+    /// The largest of the last estimates.
+    recent: [f64; RECENT],
+    count: usize,
+}
+
+/// So many estimates count, of which the largest is taken: those of a rotation rise and fall.
+const RECENT: usize = 6;
+/// The size of ε relative to that of the state: the square root of the rounding of f.
+const RELATIVE: f64 = 1.5e-8;
+
+impl Growth {
+    pub(super) fn new(dim: usize) -> Growth {
+        Growth {
+            direction: vec![0.0; dim],
+            state: vec![0.0; dim],
+            rates: [vec![0.0; dim], vec![0.0; dim]],
+            recent: [0.0; RECENT],
+            count: 0,
+        }
+    }
+
+    /// For another motion.
+    pub(super) fn forget(&mut self) {
+        self.count = 0;
+        self.direction.fill(0.0);
+    }
+
+    /// Takes one step at y, where `look` evaluates f, and gives ρ; none as long as little is known, or where f has no value.
+    pub(super) fn estimate(
+        &mut self,
+        y: &[f64],
+        tolerances: &[f64],
+        mut look: impl FnMut(&[f64], &mut [f64]) -> bool,
+    ) -> Option<f64> {
+        let Growth { direction, state, rates: [here, there], recent, count } = self;
+        let norm = |v: &[f64]| {
+            let weighed = v.iter().zip(tolerances).map(|(v, tolerance)| v / tolerance);
+            weighed.map(|v| v * v).sum::<f64>().sqrt()
+        };
+        if !look(y, here) {
+            return None;
+        }
+        let mut length = norm(direction);
+        if length == 0.0 {
+            // Any direction will do that is not an eigenvector by accident: each component by its tolerance, ever less.
+            for (i, v) in direction.iter_mut().enumerate() {
+                *v = tolerances[i] / (1.0 + i as f64);
+            }
+            length = norm(direction);
+        }
+        let epsilon = RELATIVE * norm(y).max(1.0) / length;
+        for ((state, y), v) in state.iter_mut().zip(y).zip(&*direction) {
+            *state = y + epsilon * v;
+        }
+        if !look(state, there) {
+            return None;
+        }
+        for ((v, there), here) in direction.iter_mut().zip(&*there).zip(&*here) {
+            *v = there - here;
+        }
+        let rho = norm(direction) / (epsilon * length);
+        if !rho.is_finite() {
+            self.forget();
+            return None;
+        }
+        recent[*count % RECENT] = rho;
+        *count += 1;
+        (*count >= RECENT).then(|| recent.iter().copied().fold(0.0, f64::max))
+    }
+}

@@ -1,0 +1,198 @@
+//! The stepper that goes over from one method to another.
+
+use std::fmt;
+
+use pc_expr::VectorField;
+
+use super::growth::Growth;
+use crate::cvode::cvode::Cvode;
+use crate::cvode::linear::choice::choose;
+use crate::dop853::setup::Dop853;
+use crate::error::SolveError;
+use crate::integration::checks::{check_inequalities, check_start};
+use crate::integration::statistics::Statistics;
+use crate::integration::stepper::{LastStep, Stepper};
+use crate::settings::method::Method;
+use crate::settings::options::Options;
+
+/// BDF formulas take about two evaluations of f a step and solve linear systems; the explicit method takes twelve, and stability
+/// allows it steps of 6.1/ρ. As long as h ρ of a BDF step is below this, the explicit method is no dearer, even if
+/// stability is what limits it.
+const STIFF: f64 = 1.0;
+/// BDF steps are examined so often …
+const EVERY: u64 = 4;
+/// … and so many in sequence have to show that the motion is not stiff; twice as many after each return.
+const CLEAR: u32 = 8;
+/// Returns after which their number grows no further.
+const DOUBLINGS: u32 = 8;
+
+/// A method that is [`Dop853`] where the motion is not stiff and [`Cvode`] by BDF formulas where it is.
+///
+/// It begins explicitly. Where [stiffness](Dop853::stiff_from) is seen, CVODE goes on from the end of that step at order 1;
+/// where for many steps the product of their length with an estimate of the largest eigenvalue of ∂f/∂y is below 1, it
+/// goes back: an explicit step is stable up to 6.1. After each return it takes twice as many such steps, so that it does not
+/// go to and fro. What decides is the motion alone: the same input gives the same steps. At a checkpoint it begins
+/// explicitly, whatever was before.
+pub struct Auto<F: VectorField> {
+    /// None only while one is replaced by the other.
+    engine: Option<Engine<F>>,
+    /// For the BDF formulas.
+    options: Options,
+    growth: Growth,
+    /// BDF steps since the last change, and those examined in sequence that showed that the motion is not stiff.
+    steps: u64,
+    clear: u32,
+    returns: u32,
+    /// The work of the methods before, and what the examination has taken since.
+    earlier: Statistics,
+    evaluations: u64,
+}
+
+/// The method at work.
+pub(super) enum Engine<F: VectorField> {
+    Explicit(Box<Dop853<F>>),
+    Implicit(Box<Cvode<F>>),
+}
+
+impl<F: VectorField> fmt::Debug for Auto<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Auto")
+            .field("time", &self.time())
+            .field("state", &self.end_state())
+            .field("method", &self.method())
+            .field("statistics", &self.statistics())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<F: VectorField> Auto<F> {
+    /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components; the method of the options does not
+    /// matter, and how implicit equations are solved is that of the BDF formulas.
+    ///
+    /// # Errors
+    /// As for [`Cvode::new`] and [`Dop853::new`].
+    pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
+        check_start(&field, t0, y0)?;
+        Options { method: Method::Auto, ..options.clone() }.validate(y0.len())?;
+        check_inequalities(&field, y0, &options.inequalities)?;
+        let mut options = Options { method: Method::Bdf, ..options.clone() };
+        choose(&field, &options)?;
+        let explicit = Dop853::of(field, t0, y0, &options);
+        options.initial_step = None; // of the whole motion
+        Ok(Auto {
+            engine: Some(Engine::Explicit(Box::new(explicit))),
+            options,
+            growth: Growth::new(y0.len()),
+            steps: 0,
+            clear: 0,
+            returns: 0,
+            earlier: Statistics::default(),
+            evaluations: 0,
+        })
+    }
+
+    /// The method at work: [`Method::Dop853`] or [`Method::Bdf`].
+    pub fn method(&self) -> Method {
+        match self.engine() {
+            Engine::Explicit(_) => Method::Dop853,
+            Engine::Implicit(_) => Method::Bdf,
+        }
+    }
+
+    pub(super) fn engine(&self) -> &Engine<F> {
+        self.engine.as_ref().expect("taken only by `change`")
+    }
+
+    pub(super) fn engine_mut(&mut self) -> &mut Engine<F> {
+        self.engine.as_mut().expect("taken only by `change`")
+    }
+
+    pub(super) fn into_engine(self) -> Engine<F> {
+        self.engine.expect("taken only by `change`")
+    }
+
+    /// The work of all methods.
+    pub(super) fn work(&self) -> Statistics {
+        let since = match self.engine() {
+            Engine::Explicit(explicit) => explicit.statistics(),
+            Engine::Implicit(implicit) => {
+                let work = implicit.statistics();
+                let rhs_evaluations = work.rhs_evaluations + self.evaluations;
+                Statistics { rhs_evaluations, implicit_steps: work.steps, ..work }
+            }
+        };
+        let mut all = self.earlier.followed_by(&since);
+        if since.steps == 0 && self.earlier.steps > 0 {
+            // Nothing has been done since the change.
+            let Statistics { last_order, last_step, current_order, current_step, .. } = self.earlier;
+            all = Statistics { last_order, last_step, current_order, current_step, ..all };
+        }
+        all
+    }
+
+    /// Goes over to the other method if the last steps say so.
+    pub(super) fn consider(&mut self) -> Result<(), SolveError> {
+        let changes = match self.engine() {
+            Engine::Explicit(explicit) => explicit.stiff_from().is_some(),
+            Engine::Implicit(_) => self.is_clear(),
+        };
+        if changes { self.change() } else { Ok(()) }
+    }
+
+    /// Whether BDF steps have not been stiff for long.
+    fn is_clear(&mut self) -> bool {
+        let Some(Engine::Implicit(implicit)) = &mut self.engine else { return false };
+        let LastStep { start, end, degree: Some(_) } = implicit.last_step() else { return false };
+        self.steps += 1;
+        if !self.steps.is_multiple_of(EVERY) {
+            return false;
+        }
+        let y = implicit.end_state().to_vec();
+        let Auto { growth, evaluations, .. } = self;
+        let tolerances: Vec<f64> = y.iter().enumerate().map(|(i, y)| implicit.tolerance(i, *y)).collect();
+        let rho = growth.estimate(&y, &tolerances, |state, rates| {
+            *evaluations += 1;
+            implicit.field_mut().rhs(end, state, rates).is_ok() && rates.iter().all(|rate| rate.is_finite())
+        });
+        let Some(rho) = rho else { return false };
+        self.clear = if (end - start).abs() * rho < STIFF { self.clear + 1 } else { 0 };
+        self.clear >= CLEAR << self.returns.min(DOUBLINGS)
+    }
+
+    /// Goes on by the other method from the end of the last step.
+    fn change(&mut self) -> Result<(), SolveError> {
+        let work = self.work();
+        let engine = self.engine_mut();
+        let (t, y) = match engine {
+            Engine::Explicit(explicit) => (explicit.last_step().end, explicit.end_state().to_vec()),
+            Engine::Implicit(implicit) => (implicit.last_step().end, implicit.end_state().to_vec()),
+        };
+        let (limits, stop_time) = match engine {
+            Engine::Explicit(explicit) => (explicit.limits().clone(), explicit.stop_time()),
+            Engine::Implicit(implicit) => (implicit.limits().clone(), implicit.stop_time()),
+        };
+        self.options.stop_time = stop_time;
+        let mut failed = None;
+        self.engine = self.engine.take().map(|engine| match engine {
+            Engine::Explicit(explicit) => match Cvode::start(explicit.into_field(), t, &y, &self.options) {
+                Ok(implicit) => Engine::Implicit(Box::new(implicit)),
+                Err((error, field)) => {
+                    failed = Some(error);
+                    Engine::Explicit(Box::new(Dop853::of(field, t, &y, &self.options)))
+                }
+            },
+            Engine::Implicit(implicit) => {
+                self.returns += 1;
+                Engine::Explicit(Box::new(Dop853::of(implicit.into_field(), t, &y, &self.options)))
+            }
+        });
+        match self.engine_mut() {
+            Engine::Explicit(explicit) => *explicit.limits_mut() = limits,
+            Engine::Implicit(implicit) => *implicit.limits_mut() = limits,
+        }
+        self.earlier = Statistics { changes: work.changes + 1, ..work };
+        (self.steps, self.clear, self.evaluations) = (0, 0, 0);
+        self.growth.forget();
+        failed.map_or(Ok(()), Err)
+    }
+}

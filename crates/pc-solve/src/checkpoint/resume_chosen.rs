@@ -1,0 +1,36 @@
+//! Resumption of an integration by the method that options choose.
+
+use pc_expr::VectorField;
+
+use crate::checkpoint::checkpoint::Checkpoint;
+use crate::chosen::Chosen;
+use crate::cvode::cvode::Cvode;
+use crate::cvode::forward::sensitivities::Sensitivities;
+use crate::error::SolveError;
+use crate::integration::integration::Integration;
+use crate::settings::options::Options;
+
+impl<F: VectorField> Integration<Chosen<F>> {
+    /// Begins at a checkpoint, which may be a start, by the method of the options, without its events:
+    /// [`with_events_of`](Integration::with_events_of) adds them.
+    ///
+    /// With sensitivities it is a method of CVODES, Adams' where the choice is [open](crate::Method::Auto); their columns
+    /// are those of the checkpoint, at a start those of `sensitivities`.
+    ///
+    /// # Errors
+    /// As for [`Chosen::new`], and [`resume_with_sensitivities`](Integration::resume_with_sensitivities).
+    pub fn begin(
+        field: F,
+        checkpoint: &Checkpoint,
+        options: &Options,
+        sensitivities: &Sensitivities,
+    ) -> Result<Self, SolveError> {
+        let (t, y) = (checkpoint.time, &checkpoint.state[..]);
+        let stepper = match (sensitivities.is_empty(), checkpoint.sensitivities.is_empty()) {
+            (true, true) => Chosen::new(field, t, y, options)?,
+            (false, true) => Cvode::with_sensitivities(field, t, y, options, sensitivities)?.into(),
+            (_, false) => Cvode::begin_at(field, checkpoint, options, sensitivities)?.into(),
+        };
+        Ok(Integration::resumed(stepper, checkpoint))
+    }
+}

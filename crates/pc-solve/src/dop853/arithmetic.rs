@@ -1,0 +1,108 @@
+//! Sums of stages over the components of a state.
+//!
+//! Rows are as long as a state, or by one longer so that their length is even; what is beyond the state stays 0. For
+//! few components the number is a constant of the code: the loops unroll, and no index is checked. The order of the
+//! operations, and so each bit of the results, is the same for all of them.
+
+use super::coefficients::{B, B3, E5};
+
+/// The length of a row for a state of this length.
+pub(super) fn padded(dim: usize) -> usize {
+    dim.next_multiple_of(2)
+}
+
+/// Calls a function with the length of rows as a constant where it is small.
+macro_rules! by_length {
+    ($n:expr, $function:ident::<$terms:ident>, $($argument:expr),*) => {
+        match $n {
+            2 => $function::<2, $terms>($($argument),*),
+            4 => $function::<4, $terms>($($argument),*),
+            6 => $function::<6, $terms>($($argument),*),
+            8 => $function::<8, $terms>($($argument),*),
+            10 => $function::<10, $terms>($($argument),*),
+            12 => $function::<12, $terms>($($argument),*),
+            _ => $function::<0, $terms>($($argument),*),
+        }
+    };
+}
+
+/// sum = y + h Σ aⱼ kⱼ
+pub(super) fn add<const TERMS: usize>(
+    sum: &mut [f64],
+    y: &[f64],
+    h: f64,
+    a: &[f64; TERMS],
+    k: [&[f64]; TERMS],
+) {
+    by_length!(sum.len(), add_of::<TERMS>, sum, y, h, a, k);
+}
+
+/// The same for rows of LENGTH, or of any length where that is 0.
+#[inline(never)]
+fn add_of<const LENGTH: usize, const TERMS: usize>(
+    sum: &mut [f64],
+    y: &[f64],
+    h: f64,
+    a: &[f64; TERMS],
+    k: [&[f64]; TERMS],
+) {
+    let n = if LENGTH == 0 { sum.len() } else { LENGTH };
+    let (sum, y, k) = (&mut sum[..n], &y[..n], k.map(|k| &k[..n]));
+    let scaled = a.map(|a| h * a);
+    for i in 0..n {
+        let mut value = scaled[0] * k[0][i];
+        for j in 1..TERMS {
+            value += scaled[j] * k[j][i];
+        }
+        sum[i] = y[i] + value;
+    }
+}
+
+/// What the error of a step is weighed by.
+#[derive(Clone, Copy)]
+pub(super) struct Weights<'a> {
+    pub(super) relative: f64,
+    /// A row of them.
+    pub(super) absolute: &'a [f64],
+}
+
+/// Writes y₁ = y + h Σ bᵢ kᵢ from stages 1 and 6 to 12, and returns the sums over the components of the squares of the
+/// two error estimates over h, weighed by the tolerances: of order 5 and of order 3. Where y₁ is not finite, they are not.
+pub(super) fn finish(y1: &mut [f64], y: &[f64], h: f64, k: [&[f64]; 8], weights: Weights<'_>) -> (f64, f64) {
+    const NONE: usize = 0;
+    by_length!(y1.len(), finish_of::<NONE>, y1, y, h, k, weights)
+}
+
+#[inline(never)]
+fn finish_of<const LENGTH: usize, const NONE: usize>(
+    y1: &mut [f64],
+    y: &[f64],
+    h: f64,
+    k: [&[f64]; 8],
+    Weights { relative, absolute }: Weights<'_>,
+) -> (f64, f64) {
+    let n = if LENGTH == 0 { y1.len() } else { LENGTH };
+    let (y1, y, absolute, k) = (&mut y1[..n], &y[..n], &absolute[..n], k.map(|k| &k[..n]));
+    // Two at a time, as rows have an even length.
+    let (mut fifth, mut third) = ([0.0; 2], [0.0; 2]);
+    for i in 0..n {
+        let (mut slope, mut error) = (B[0] * k[0][i], E5[0] * k[0][i]);
+        for j in 1..8 {
+            slope += B[j] * k[j][i];
+            error += E5[j] * k[j][i];
+        }
+        let end = y[i] + h * slope;
+        y1[i] = end;
+        let weight = 1.0 / (absolute[i] + relative * y[i].abs().max(end.abs()));
+        let other = slope - B3[0] * k[0][i] - B3[1] * k[4][i] - B3[2] * k[7][i];
+        // The weight of what is infinite is 0.
+        fifth[i % 2] += (error * weight) * (error * weight) + 0.0 * end;
+        third[i % 2] += (other * weight) * (other * weight);
+    }
+    (fifth[0] + fifth[1], third[0] + third[1])
+}
+
+/// Σ (aᵢ − bᵢ)²
+pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+}

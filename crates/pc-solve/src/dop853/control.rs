@@ -1,0 +1,89 @@
+//! How long the steps are.
+
+use crate::settings::options::Options;
+use crate::settings::tolerance::Tolerance;
+
+/// The part of the length that the error lets expect.
+const SAFETY: f64 = 0.9;
+/// A step is at most so many times as long as the one before …
+const GROWTH: f64 = 6.0;
+/// … and at least this part of it.
+const SHRINKING: f64 = 1.0 / 3.0;
+/// The power of the error of the step before, by which lengths change more evenly [Gustafsson 1991].
+const INTEGRAL: f64 = 0.0;
+/// The error that counts as that of the step before, if it was less.
+const LEAST_ERROR: f64 = 1e-4;
+
+/// Tolerances and lengths of steps, in both directions of time positive.
+#[derive(Debug, Clone)]
+pub(super) struct Control {
+    pub(super) relative: f64,
+    /// A row of them.
+    pub(super) absolute: Vec<f64>,
+    pub(super) longest: f64,
+    pub(super) shortest: f64,
+    /// How long the next step is tried, if that is known.
+    pub(super) next: Option<f64>,
+    /// The error of the last step.
+    before: f64,
+}
+
+impl Control {
+    /// For states of `dim` components, in rows.
+    pub(super) fn new(options: &Options, dim: usize, row: usize) -> Control {
+        let mut absolute = match &options.absolute_tolerance {
+            Tolerance::Scalar(tolerance) => vec![*tolerance; dim],
+            Tolerance::Vector(tolerances) => tolerances.clone(),
+        };
+        absolute.resize(row, 1.0);
+        Control {
+            relative: options.relative_tolerance,
+            absolute,
+            longest: options.max_step.unwrap_or(f64::INFINITY),
+            shortest: options.min_step.unwrap_or(0.0),
+            next: options.initial_step,
+            before: LEAST_ERROR,
+        }
+    }
+
+    /// The error of a step of length h from the sums of its two estimates over n components: at most 1 where it may stand.
+    ///
+    /// ```text
+    /// |h| e₅² / √(n (e₅² + 0.01 e₃²))
+    /// ```
+    /// which falls with h⁸ although the estimates are of lower order [Hairer, Nørsett, Wanner 1993, II.10].
+    pub(super) fn error(h: f64, (fifth, third): (f64, f64), n: usize) -> f64 {
+        let both = fifth + 0.01 * third;
+        let both = if both <= 0.0 { 1.0 } else { both };
+        h.abs() * fifth / (n as f64 * both).sqrt()
+    }
+
+    /// The factor of the length after a step with this error that stands.
+    pub(super) fn accepted(&mut self, error: f64) -> f64 {
+        let factor = error.powf(-(1.0 / 8.0 - 0.2 * INTEGRAL)) * self.before.powf(INTEGRAL);
+        self.before = error.max(LEAST_ERROR);
+        (SAFETY * factor).clamp(SHRINKING, GROWTH)
+    }
+
+    /// The factor of the length after a step with this error that does not stand.
+    pub(super) fn rejected(error: f64) -> f64 {
+        // What is not a number says nothing of how much too long the step was.
+        if error.is_finite() { (SAFETY * error.powf(-1.0 / 8.0)).max(SHRINKING) } else { SHRINKING }
+    }
+
+    /// For a new start, at which the next step is as long as the last one was to be.
+    pub(super) fn restart(&mut self) {
+        self.before = LEAST_ERROR;
+    }
+
+    /// rtol |yᵢ| + atolᵢ
+    pub(super) fn tolerance(&self, i: usize, y: f64) -> f64 {
+        self.relative * y.abs() + self.absolute[i]
+    }
+
+    /// √Σ (vᵢ/(rtol |yᵢ| + atolᵢ))²
+    pub(super) fn norm(&self, v: &[f64], y: &[f64]) -> f64 {
+        let weighed = v.iter().zip(y).enumerate().map(|(i, (v, y))| v / self.tolerance(i, *y));
+        weighed.map(|v| v * v).sum::<f64>().sqrt()
+    }
+}

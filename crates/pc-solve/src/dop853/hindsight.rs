@@ -1,0 +1,117 @@
+//! What a step has not seen of the explicit dependence on time.
+//!
+//! A step evaluates f at twelve times, and a pulse may lie between two of them. When a step would stand, its polynomial p is
+//! therefore put into the equations at the [places](crate::foresight) in it: where the defect p′ − f(t, p) is larger than
+//! that of the polynomial elsewhere can be, the step is tried again and ends there.
+
+use pc_expr::{Failure, VectorField};
+
+use super::setup::Dop853;
+use super::stages::evaluate;
+use crate::error::{Reason, SolveError};
+use crate::foresight::SURPRISE;
+use crate::foresight::places::{Ahead, Here};
+use crate::foresight::scatter::scatters;
+use crate::integration::stepper::Stepper;
+
+/// The polynomial is of lower order than the step: its defect may come to so many times what the step errs by.
+const DEFECT: f64 = 100.0;
+
+impl<F: VectorField> Dop853<F> {
+    /// Finds the places in the step ahead; the one that it may not go beyond, if there are too many.
+    pub(super) fn look_ahead(
+        &mut self,
+        reach: f64,
+        limit: Option<f64>,
+        towards: f64,
+    ) -> Result<Option<f64>, SolveError> {
+        if self.places.are_absent() {
+            return Ok(None);
+        }
+        let (t, direction) = (self.end.t, 1.0_f64.copysign(towards - self.end.t));
+        let reach = limit.filter(|limit| (reach - limit) * direction > 0.0).unwrap_or(reach);
+        let ahead =
+            Ahead { t, reach, end: self.stop_time.unwrap_or(towards), given: self.begins && self.given };
+        let Dop853 { field, control, end, places, argument, statistics, .. } = self;
+        let dim = field.dim();
+        let mut noise = false;
+        let mut here = Tangent {
+            state: &end.y[..dim],
+            rates: &end.rates[..dim],
+            resolve: |near: f64, length: f64| {
+                let is_noise = scatters(dim, length, |part, rates, tolerances| {
+                    let since = (near - t) * part;
+                    for i in 0..dim {
+                        argument[i] = end.y[i] + since * end.rates[i];
+                        tolerances[i] = control.tolerance(i, argument[i]);
+                    }
+                    evaluate((&mut *field, &mut statistics.rhs_evaluations), t + since, argument, rates)
+                        .is_ok()
+                });
+                noise |= is_noise;
+            },
+        };
+        places.look(ahead, &mut here)?;
+        if noise {
+            return Err(self.failed(Reason::Unresolved { t }, None));
+        }
+        Ok(self.places.crowded)
+    }
+
+    /// A place in the step that is tried at which the field does what its polynomial does not show.
+    ///
+    /// # Errors
+    /// A failure of the field at the stages of dense output.
+    pub(super) fn surprise(&mut self) -> Result<Option<f64>, (f64, Failure)> {
+        self.has_polynomial = false;
+        let (t, t1) = (self.end.t, self.trial.t);
+        if self.places.found.is_empty() && self.places.crowded.is_none() {
+            return Ok(None);
+        }
+        if !self.places.found.iter().any(|place| (t1 - place) * (t1 - t) > 0.0) {
+            self.places.as_expected();
+            return Ok(None);
+        }
+        let Dop853 { field, end, trial, tried, early, argument, polynomial, places, control, .. } = self;
+        let count = &mut self.statistics.rhs_evaluations;
+        polynomial.make((field, count), (end, trial), tried, early, argument)?;
+        let dim = field.dim();
+        let [slope, rates, ..] = early;
+        for i in 0..places.found.len() {
+            let place = places.found[i];
+            if (t1 - place) * (t1 - t) <= 0.0 {
+                break;
+            }
+            polynomial.evaluate(place, 0, &mut argument[..dim]);
+            polynomial.evaluate(place, 1, &mut slope[..dim]);
+            evaluate((field, count), place, argument, rates)?;
+            let defect = |i: usize| (slope[i] - rates[i]).abs() / control.tolerance(i, argument[i]);
+            let defect = (0..dim).map(defect).fold(0.0, f64::max);
+            if (t1 - t).abs() * defect > DEFECT * SURPRISE {
+                places.surprised();
+                return Ok(Some(place));
+            }
+        }
+        self.has_polynomial = true;
+        places.as_expected();
+        Ok(None)
+    }
+}
+
+/// The start of a step.
+struct Tangent<'a, R> {
+    state: &'a [f64],
+    rates: &'a [f64],
+    resolve: R,
+}
+
+impl<R: FnMut(f64, f64)> Here for Tangent<'_, R> {
+    fn tangent(&mut self) -> Result<(&[f64], &[f64]), SolveError> {
+        Ok((self.state, self.rates))
+    }
+
+    fn resolve(&mut self, near: f64, length: f64) -> Result<(), SolveError> {
+        (self.resolve)(near, length);
+        Ok(())
+    }
+}

@@ -1,0 +1,88 @@
+//! The stages of a step.
+
+use pc_expr::{Failure, VectorField};
+
+use super::arithmetic::{Weights, add, finish};
+use super::coefficients::{A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12, C};
+use crate::error::NonFinite;
+
+/// A state of the motion with its rates. Rows may be longer than the state.
+#[derive(Debug, Clone)]
+pub(super) struct Node {
+    pub(super) t: f64,
+    pub(super) y: Vec<f64>,
+    pub(super) rates: Vec<f64>,
+}
+
+/// The stages 6 to 12 of a step: those that the end and the inside of it are made of.
+pub(super) type Stages = [Vec<f64>; 7];
+/// The stages 2 to 5, which nothing but the later ones depends on; room for those of dense output.
+pub(super) type Early = [Vec<f64>; 4];
+
+/// Writes f(t, y), which has to be finite, for rows that may be longer, and counts.
+pub(super) fn evaluate<F: VectorField>(
+    (field, count): (&mut F, &mut u64),
+    t: f64,
+    y: &[f64],
+    rates: &mut [f64],
+) -> Result<(), (f64, Failure)> {
+    *count += 1;
+    let dim = field.dim();
+    let (y, rates) = (&y[..dim], &mut rates[..dim]);
+    if field.checks_rates() {
+        return field.rhs(t, y, rates).map_err(|failure| (t, failure));
+    }
+    rates.fill(f64::NAN); // so that one that is not written is found
+    field.rhs(t, y, rates).map_err(|failure| (t, failure))?;
+    match rates.iter().position(|rate| !rate.is_finite()) {
+        None => Ok(()),
+        Some(i) => {
+            let component = field.component_name(i);
+            Err((t, Failure::recoverable(NonFinite::Rate { component, value: rates[i], t })))
+        }
+    }
+}
+
+/// Computes the stages of a step from a node to t₁, and the state there. `argument` is then that of the last stage.
+///
+/// Returns the sums of the error estimates.
+///
+/// # Errors
+/// A failure of the field, and when.
+pub(super) fn advance<F: VectorField>(
+    (field, count): (&mut F, &mut u64),
+    from: &Node,
+    to: &mut Node,
+    (early, stages): (&mut Early, &mut Stages),
+    argument: &mut [f64],
+    weights: Weights<'_>,
+) -> Result<(f64, f64), (f64, Failure)> {
+    let (t, t1) = (from.t, to.t);
+    let h = t1 - t;
+    let (y, k1) = (&from.y[..], &from.rates[..]);
+    let [k2, k3, k4, k5] = early.each_mut().map(Vec::as_mut_slice);
+    let [k6, k7, k8, k9, k10, k11, k12] = stages.each_mut().map(Vec::as_mut_slice);
+    add(argument, y, h, &A2, [k1]);
+    evaluate((field, count), t + C[1] * h, argument, k2)?;
+    add(argument, y, h, &A3, [k1, k2]);
+    evaluate((field, count), t + C[2] * h, argument, k3)?;
+    add(argument, y, h, &A4, [k1, k3]);
+    evaluate((field, count), t + C[3] * h, argument, k4)?;
+    add(argument, y, h, &A5, [k1, k3, k4]);
+    evaluate((field, count), t + C[4] * h, argument, k5)?;
+    add(argument, y, h, &A6, [k1, k4, k5]);
+    evaluate((field, count), t + C[5] * h, argument, k6)?;
+    add(argument, y, h, &A7, [k1, k4, k5, k6]);
+    evaluate((field, count), t + C[6] * h, argument, k7)?;
+    add(argument, y, h, &A8, [k1, k4, k5, k6, k7]);
+    evaluate((field, count), t + C[7] * h, argument, k8)?;
+    add(argument, y, h, &A9, [k1, k4, k5, k6, k7, k8]);
+    evaluate((field, count), t + C[8] * h, argument, k9)?;
+    add(argument, y, h, &A10, [k1, k4, k5, k6, k7, k8, k9]);
+    evaluate((field, count), t + C[9] * h, argument, k10)?;
+    add(argument, y, h, &A11, [k1, k4, k5, k6, k7, k8, k9, k10]);
+    evaluate((field, count), t + C[10] * h, argument, k11)?;
+    add(argument, y, h, &A12, [k1, k4, k5, k6, k7, k8, k9, k10, k11]);
+    evaluate((field, count), t1, argument, k12)?;
+    Ok(finish(&mut to.y, y, h, [k1, k6, k7, k8, k9, k10, k11, k12], weights))
+}

@@ -1,0 +1,214 @@
+//! One step.
+
+use pc_expr::{Failure, VectorField};
+
+use super::arithmetic::{Weights, add, distance};
+use super::control::Control;
+use super::setup::Dop853;
+use super::stages::{advance, evaluate};
+use crate::error::{Reason, SolveError};
+use crate::integration::breaks::next_break;
+use crate::integration::stepper::Stepper;
+
+/// A step that would leave less than this part of itself to a stop time or a break ends there.
+const LEFT: f64 = 0.01;
+/// A step from a start whose state or rates vanish, at the first try.
+const FIRST: f64 = 1e-6;
+
+/// Why a step does not stand.
+enum Refusal {
+    /// The error is so large, or no number.
+    Error(f64),
+    /// A component leaves what it has to satisfy.
+    Inequality,
+    /// A failure of the field.
+    Failure(Reason, Failure),
+    /// The field does something at this time that the step has not seen.
+    Surprise(f64),
+}
+
+impl<F: VectorField> Dop853<F> {
+    /// Makes a step in the direction of `towards`, of a length that the tolerances allow.
+    pub(super) fn make_step(&mut self, towards: f64) -> Result<(), SolveError> {
+        let t = self.end.t;
+        let direction = 1.0_f64.copysign(towards - t);
+        let limit = self.limit(direction)?;
+        if !self.has_rates {
+            let counted = (&mut self.field, &mut self.statistics.rhs_evaluations);
+            let evaluated = evaluate(counted, t, &self.end.y, &mut self.end.rates);
+            evaluated.map_err(|(t, failure)| self.failed(Reason::Rates { t }, Some(failure)))?;
+            self.has_rates = true;
+        }
+        let planned = match self.control.next {
+            Some(length) => length,
+            None => self.first_length(direction, limit.unwrap_or(towards)),
+        };
+        let mut length = planned.min(self.control.longest).max(self.control.shortest);
+        let mut end = self.look_ahead(t + direction * length, limit, towards)?.or(limit);
+        let mut refused = false;
+        loop {
+            let to = t + direction * length;
+            let near = |end: &f64| (to - end) * direction > -LEFT * length;
+            let (to, ends) = end.filter(near).map_or((to, false), |end| (end, true));
+            if to == t || !(length > 4.0 * f64::EPSILON * t.abs() || ends) {
+                return Err(self.failed(Reason::Stalled, None));
+            }
+            let refusal = match self.attempt(to) {
+                Ok(error) => {
+                    let mut factor = self.control.accepted(error);
+                    if refused {
+                        factor = factor.min(1.0);
+                    }
+                    let next = (to - t).abs() * factor;
+                    // A step that had to end there says little of how long one may be.
+                    let next = if ends && !refused { next.max(planned) } else { next };
+                    self.accept(direction, next.min(self.control.longest).max(self.control.shortest));
+                    return Ok(());
+                }
+                Err(refusal) => refusal,
+            };
+            length = (to - t).abs();
+            match &refusal {
+                Refusal::Error(error) => {
+                    self.statistics.error_test_failures += 1;
+                    length *= Control::rejected(*error);
+                }
+                Refusal::Failure(_, failure) if !failure.is_recoverable() => {}
+                Refusal::Failure(..) | Refusal::Inequality => {
+                    self.statistics.step_failures += 1;
+                    length /= 2.0;
+                }
+                Refusal::Surprise(place) => {
+                    end = Some(*place);
+                    continue;
+                }
+            }
+            refused = true;
+            let rounds = t + direction * length == t || length <= 4.0 * f64::EPSILON * t.abs();
+            if let Refusal::Failure(reason, failure) = refusal {
+                if !failure.is_recoverable() || rounds || length < self.control.shortest {
+                    return Err(self.failed(reason, Some(failure)));
+                }
+            } else if rounds || length < self.control.shortest {
+                return Err(self.too_short());
+            }
+        }
+    }
+
+    /// The stop time or the next break of the field, at which the step ends at the latest.
+    fn limit(&mut self, direction: f64) -> Result<Option<f64>, SolveError> {
+        if self.field.breaks().is_empty() {
+            return Ok(self.stop_time);
+        }
+        let end = self.stop_time.unwrap_or(f64::INFINITY.copysign(direction));
+        let (t, next) = next_break(self.field.breaks(), self.end.t, end);
+        if self.field.enter(t, end) {
+            self.has_rates = false;
+        }
+        Ok(next.or(self.stop_time))
+    }
+
+    /// Tries a step to t₁; its error, which is at most 1.
+    fn attempt(&mut self, t1: f64) -> Result<f64, Refusal> {
+        let Dop853 { field, control, end, trial, tried, early, argument, statistics, .. } = self;
+        let count = &mut statistics.rhs_evaluations;
+        trial.t = t1;
+        let weights = Weights { relative: control.relative, absolute: &control.absolute };
+        let rates = |(t, failure)| Refusal::Failure(Reason::Rates { t }, failure);
+        let sums = advance((field, count), end, trial, (early, tried), argument, weights).map_err(rates)?;
+        let error = Control::error(t1 - end.t, sums, field.dim());
+        if error.is_nan() || error > 1.0 {
+            return Err(Refusal::Error(error));
+        }
+        let dim = field.dim();
+        if field.has_projection() {
+            let projected = field.project(t1, &mut trial.y[..dim]);
+            projected.map_err(|failure| Refusal::Failure(Reason::Projection { t: t1 }, failure))?;
+        }
+        if !self.limits.inequalities.is_empty() && !self.satisfy_inequalities() {
+            return Err(Refusal::Inequality);
+        }
+        let counted = (&mut self.field, &mut self.statistics.rhs_evaluations);
+        evaluate(counted, t1, &self.trial.y, &mut self.trial.rates).map_err(rates)?;
+        match self.surprise().map_err(rates)? {
+            Some(place) => Err(Refusal::Surprise(place)),
+            None => Ok(error),
+        }
+    }
+
+    /// Moves components that violate their inequality by no more than the tolerance to its boundary; false if others do.
+    fn satisfy_inequalities(&mut self) -> bool {
+        for (i, inequality) in self.limits.inequalities.iter().enumerate() {
+            let value = self.trial.y[i];
+            if inequality.holds(value) {
+                continue;
+            }
+            if !inequality.holds(0.0) || value.abs() > self.control.tolerance(i, value) {
+                return false;
+            }
+            self.trial.y[i] = 0.0;
+        }
+        true
+    }
+
+    /// The step that was tried is the last one now.
+    fn accept(&mut self, direction: f64, next: f64) {
+        let dim = self.dim();
+        let h = self.trial.t - self.end.t;
+        if self.stiffness.examines() {
+            // The argument of the last stage has been kept, unless dense output has been looked at.
+            let states = distance(&self.trial.y[..dim], &self.argument[..dim]);
+            let rates = distance(&self.trial.rates[..dim], &self.tried[6][..dim]);
+            if states > 0.0 && !self.has_polynomial {
+                self.stiffness.note(h.abs() * (rates / states).sqrt(), self.trial.t);
+            }
+        }
+        std::mem::swap(&mut self.start, &mut self.end);
+        std::mem::swap(&mut self.end, &mut self.trial);
+        std::mem::swap(&mut self.made, &mut self.tried);
+        (self.begins, self.given, self.time) = (false, false, self.end.t);
+        self.control.next = Some(next);
+        let work = &mut self.statistics;
+        work.steps += 1;
+        (work.last_order, work.current_order) = (8, 8);
+        if work.first_step == 0.0 {
+            work.first_step = h;
+        }
+        (work.last_step, work.current_step, work.current_time) = (h, next * direction, self.end.t);
+    }
+
+    /// The length of the first step by the sizes of y, ẏ and a difference quotient for ÿ [Hairer, Nørsett, Wanner 1993, II.4].
+    fn first_length(&mut self, direction: f64, end: f64) -> f64 {
+        let Dop853 { field, control, end: node, trial, argument, statistics, .. } = self;
+        let dim = field.dim();
+        let farthest = (end - node.t).abs().min(control.longest);
+        let state = control.norm(&node.y[..dim], &node.y);
+        let rates = control.norm(&node.rates[..dim], &node.y);
+        let guess = if state <= 1e-5 || rates <= 1e-5 { FIRST } else { 0.01 * state / rates };
+        let h = guess.min(farthest);
+        let counted = (&mut *field, &mut statistics.rhs_evaluations);
+        add(argument, &node.y, h * direction, &[1.0], [&node.rates[..]]);
+        if evaluate(counted, node.t + h * direction, argument, &mut trial.rates).is_err() {
+            return h; // where it fails, the steps will be tried
+        }
+        for (change, rate) in trial.rates.iter_mut().zip(&node.rates) {
+            *change -= rate;
+        }
+        let second = control.norm(&trial.rates[..dim], &node.y) / h;
+        let largest = second.max(rates);
+        let by_rates = if largest <= 1e-15 { FIRST.max(h * 1e-3) } else { (0.01 / largest).powf(1.0 / 8.0) };
+        (100.0 * h).min(by_rates).min(farthest)
+    }
+
+    /// The error of steps that had to be made ever shorter.
+    fn too_short(&mut self) -> SolveError {
+        let dim = self.dim();
+        match self.trial.y[..dim].iter().position(|value| !value.is_finite()) {
+            None => self.failed(Reason::Stalled, None),
+            Some(i) => {
+                let (component, value, t) = (self.field.component_name(i), self.trial.y[i], self.trial.t);
+                self.failed(Reason::Overflow { component, value, t }, None)
+            }
+        }
+    }
+}
