@@ -2,9 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use pc_mech::{Graph, SeriesField};
+use pc_mech::{Graph, VectorField};
 use pc_model::{Builtin, Model};
-use pc_solve::{Integration, IntegrationMethod, TaylorOptions};
+use pc_solve::{Integration, Method, Options, Taylor};
 use pc_tests::reference::references;
 
 /// What is asked at rtol = 1e-15: the references have 16 digits, and motions magnify the rounding of the start, 1e-16, by at most a few
@@ -35,8 +35,8 @@ fn taylor_reaches_the_references_and_comes_back() {
             continue;
         }
         let mut watch = motion.clone();
-        let options = TaylorOptions::new().relative_tolerance(1e-15).absolute_tolerance(1e-16);
-        let stepper = options.begin(&mut motion, assembly.t_start, &start, None).unwrap();
+        let options = Options::new(Method::Taylor).relative_tolerance(1e-15).absolute_tolerance(1e-16);
+        let stepper = Taylor::new(&mut motion, assembly.t_start, &start, &options).unwrap();
         let mut integration = Integration::of(stepper);
         let end = integration.state_at(reference.t_end).unwrap().to_vec();
         let mut compared = 0;

@@ -70,7 +70,7 @@ pub use kernel::kernel::{Entry, Interpreter, Kernel};
 pub use ode::colouring::Colouring;
 pub use ode::events::{Direction, Event, Events};
 pub use ode::pattern::Pattern;
-pub use ode::series_field::{ProgramField, SeriesField};
+pub use ode::program_field::ProgramField;
 pub use ode::vector_field::{Failure, VectorField};
 pub use print::names::{Given, Name, Names, Side, Written};
 pub use print::style::Style;

@@ -4,8 +4,8 @@
 //! (enclosures of functions and of their derivatives), `part` (the part of a program that is watched), `scan` (where
 //! it turns, bends and jumps), then `profile`, the interface of a field.
 
-pub(crate) pub(crate) mod interval;
-pub(crate) pub(crate) mod jet;
+pub(crate) mod interval;
+pub(crate) mod jet;
 pub(crate) mod part;
 pub(crate) mod profile;
 pub(crate) mod scan;

@@ -245,8 +245,8 @@ pub use pc_algebra::{
     RotationMatrices, StructureCoefficients, UnitQuaternions, acts_as_zero, determinant,
 };
 pub use pc_expr::{
-    Backend, Colouring, Expr, ExprError, Failure, Folding, Graph, Language, Number, Pattern, SeriesField,
-    Style, TaylorSeries, VectorField,
+    Backend, Colouring, Expr, ExprError, Failure, Folding, Graph, Language, Number, Pattern, Style,
+    TaylorSeries, VectorField,
 };
 pub use system::bodies::particle::Particle;
 pub use system::bodies::rigid_body::{Inertia, RigidBody};

@@ -90,8 +90,7 @@ pub use integration::trajectory::Trajectory;
 #[cfg(feature = "cvode")]
 pub use lyapunov::lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
 pub use pc_expr::{
-    Deadline, Direction, Event, Events, Failure, Pattern, SeriesField, Spent, TimeDependence, TimeProfile,
-    VectorField,
+    Deadline, Direction, Event, Events, Failure, Pattern, Spent, TimeDependence, TimeProfile, VectorField,
 };
 pub use runge_kutta::{FixedStep, RungeKutta4};
 #[cfg(feature = "cvode")]
@@ -114,5 +113,4 @@ pub use solve::failure::SolveFailure;
 pub use solve::integrals::solve_with_integrals;
 pub use solve::solution::Solution;
 pub use solve::solve::{Solve, solve};
-pub use taylor::options::TaylorOptions;
 pub use taylor::stepper::Taylor;

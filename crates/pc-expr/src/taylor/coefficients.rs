@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::recurrences::Recurrences;
+use super::recurrences::{EXTRA, Recurrences};
 use super::sums::{LANES, Rows, sums};
 use crate::kernel::evaluator::{Backend, compile};
 use crate::kernel::kernel::{Interpreter, Kernel};
@@ -59,9 +59,6 @@ impl Clone for TaylorSeries {
         TaylorSeries::of(Arc::clone(&self.recurrences), self.zeroth.fork(), self.next.fork(), self.sum)
     }
 }
-
-/// Numbers in a row besides those that the recurrences write: k and the coefficient of t.
-const EXTRA: usize = 2;
 
 impl TaylorSeries {
     /// The series of the solutions of a program whose first outputs are ẏ, as many as its state has components; the others
@@ -223,11 +220,12 @@ impl TaylorSeries {
         self.order = order;
         let numbers = &mut self.memory[self.begin..];
         let first = self.recurrences.zeroth.outputs_len();
-        numbers[first..first + EXTRA].copy_from_slice(&[1.0, 1.0]); // k and the coefficient of t, of order 1
+        numbers[first..first + EXTRA].copy_from_slice(&[1.0, 1.0, 0.0]); // k, the coefficient of t and what 1/k lacks, of order 1
         let place = 2 * width + dim + branches + dim;
         for k in 1..order {
             let row = &mut numbers[self.head + (k - 1) * self.stride..];
-            row[place..place + EXTRA].copy_from_slice(&[(k + 1) as f64, 0.0]);
+            let next = (k + 1) as f64;
+            row[place..place + EXTRA].copy_from_slice(&[next, 0.0, (-next).mul_add(1.0 / next, 1.0) / next]);
         }
     }
 }

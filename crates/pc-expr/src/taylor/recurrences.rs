@@ -30,7 +30,7 @@ use crate::program::program::{Instruction, Program, Register};
 pub(super) struct Recurrences {
     /// Of (t, (y, σ), parameters): what is watched, the factors, the functions whose signs are σ, ẏ.
     pub(super) zeroth: Arc<Program>,
-    /// The coefficients of order k of (1/k, (those of order k − 1 of ẏ, k, that of t, the sums), factors): the first and the
+    /// The coefficients of order k of (1/k, (those of order k − 1 of ẏ, k, that of t, what the number 1/k lacks, the sums), factors): the first and the
     /// second factors of all sums, y, the functions whose signs are σ, ẏ.
     pub(super) next: Arc<Program>,
     pub(super) dim: usize,
@@ -41,6 +41,9 @@ pub(super) struct Recurrences {
     /// What has a sign that matters, in words.
     pub(super) branches: Vec<String>,
 }
+
+/// Numbers that a row has between the rates and the sums.
+pub(super) const EXTRA: usize = 3;
 
 /// A value as computed for order 0 and for an order above; none there if it does not change with time.
 #[derive(Clone, Copy)]
@@ -88,7 +91,7 @@ impl Recurrences {
         }
         terms.push(Term { zero: Assembler::time(), next: Some(Assembler::state(dim + 1)) });
         for i in 0..dim {
-            let rate = w.next.multiply(Assembler::state(i), Assembler::time());
+            let rate = w.over_order(Assembler::state(i));
             terms.push(Term { zero: Assembler::state(i), next: Some(rate) });
         }
         let states: Vec<Register> = terms[terms.len() - dim..].iter().filter_map(|term| term.next).collect();
@@ -181,9 +184,10 @@ impl Writer {
         self.next.multiply(order, u)
     }
 
-    /// S/k
-    fn over_order(&mut self, sum: Register) -> Register {
-        self.next.multiply(sum, Assembler::time())
+    /// x/k, by what is nearest to 1/k and what that lacks: the rounding of 1/k alone, the same in every step, would add up.
+    fn over_order(&mut self, x: Register) -> Register {
+        let lacking = self.next.multiply(x, Assembler::state(self.dim + 2));
+        self.next.multiply_add(x, Assembler::time(), lacking)
     }
 
     fn add(&mut self, a: Term, b: Term) -> Term {
@@ -539,7 +543,7 @@ impl Writer {
             .collect();
         Recurrences {
             zeroth: Arc::new(self.zero.finish((dim, branches, program.parameters_len()), of_zeroth)),
-            next: Arc::new(self.next.finish((dim + 2, sums, self.factors.len()), of_next)),
+            next: Arc::new(self.next.finish((dim + EXTRA, sums, self.factors.len()), of_next)),
             dim,
             watched: watched.len(),
             factors: self.factors.len(),

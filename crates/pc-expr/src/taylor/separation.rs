@@ -14,8 +14,6 @@ use crate::time_profile::jet::Jet;
 const RESOLVED: f64 = 1e-14;
 /// Most intervals that are looked at: enough for hundreds of roots, not for a function that is nothing but rounding.
 const MOST: usize = 4096;
-/// Values below this part of the largest of the whole are rounding.
-const ROUNDING: f64 = 1e-16;
 
 /// A polynomial motion y(t₀ + s) = Σ_k c_k sᵏ.
 #[derive(Clone, Copy, Debug)]
@@ -95,12 +93,12 @@ impl RootSeparation {
         for (register, &value) in inputs.iter_mut().zip(parameters) {
             *register = Jet::constant(value);
         }
-        let mut sizes = vec![0.0; program.outputs_len()];
         let mut open = vec![(first, last)];
-        let (mut looked, mut clear_before) = (0, true);
+        // Where the last root may have been.
+        let (mut looked, mut run) = (0, first);
         while let Some((a, b)) = open.pop() {
             looked += 1;
-            let (clear, single) = self.look(motion, (a, b), &mut sizes);
+            let (clear, single) = self.look(motion, (a, b));
             let is_short = (b - a).abs() <= RESOLVED * (last - first).abs();
             if !(clear || single || is_short || looked > MOST) {
                 let middle = 0.5 * (a + b);
@@ -108,32 +106,43 @@ impl RootSeparation {
                 open.push((a, middle));
                 continue;
             }
-            if !(clear && clear_before) && a != first && places.last() != Some(&a) {
-                places.push(a);
+            if !clear {
+                // What is near a root at both ends is told from zero in the middle of what is between.
+                if a != run {
+                    places.push(0.5 * (run + a));
+                }
+                if a != first {
+                    places.push(a);
+                }
+                run = b;
             }
-            clear_before = clear;
+        }
+        if run != last {
+            places.push(0.5 * (run + last));
         }
         places.push(last);
     }
 
     /// Whether no output has a root in an interval; whether none has more than one.
-    fn look(&mut self, motion: PolynomialMotion<'_>, (a, b): (f64, f64), sizes: &mut [f64]) -> (bool, bool) {
+    fn look(&mut self, motion: PolynomialMotion<'_>, (a, b): (f64, f64)) -> (bool, bool) {
         let (middle, radius) = (0.5 * (a + b), 0.5 * (b - a).abs());
         self.set_motion(motion, middle, 0.0);
         self.run();
         let program = &self.program;
-        let at_middle: Vec<Jet> = program.outputs().iter().map(|output| self.registers[output.index()]).collect();
+        let at_middle: Vec<Jet> =
+            program.outputs().iter().map(|output| self.registers[output.index()]).collect();
         self.set_motion(motion, middle, radius);
         self.run();
         let around = Interval { lo: -radius, hi: radius };
         let squares = Interval { lo: 0.0, hi: 0.5 * radius * radius };
         let (mut clear, mut single) = (true, true);
-        for ((output, at), size) in self.program.outputs().iter().zip(at_middle).zip(sizes) {
+        for (output, at) in self.program.outputs().iter().zip(at_middle) {
             let jet = self.registers[output.index()];
-            *size = if jet.value.size().is_finite() { size.max(jet.value.size()) } else { *size };
             let excludes = |interval: Interval| interval.lo > 0.0 || interval.hi < 0.0;
-            let values = [jet.value, at.value + jet.rate * around, at.value + at.rate * around + jet.bend * squares];
-            if values.into_iter().any(excludes) || jet.value.size() <= ROUNDING * *size {
+            let values =
+                [jet.value, at.value + jet.rate * around, at.value + at.rate * around + jet.bend * squares];
+            // What is 0 all along has no root to be found.
+            if values.into_iter().any(excludes) || jet.value == Interval::ZERO {
                 continue;
             }
             clear = false;

@@ -1,6 +1,6 @@
 //! A compiled motion as a vector field.
 
-use pc_expr::{Failure, Pattern, SeriesField, TaylorSeries, TimeDependence, VectorField};
+use pc_expr::{Failure, Pattern, TaylorSeries, TimeDependence, VectorField};
 
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
@@ -151,6 +151,28 @@ impl VectorField for Motion {
         }
     }
 
+    fn series(&mut self) -> Result<&TaylorSeries, Failure> {
+        self.check_series()?;
+        match &mut self.form {
+            Form::Unrolled(unrolled) => Ok(unrolled.series()),
+            Form::Staged(_) | Form::InMomenta(_) => unreachable!("has been refused"),
+        }
+    }
+
+    fn expand(&mut self, t: f64, y: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
+        self.check_series()?;
+        let at = Point { t, y, p: &self.parameters };
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.expand(at, sides, order),
+            Form::Staged(_) | Form::InMomenta(_) => unreachable!("has been refused"),
+        };
+        // The state is not at hand where the series still is.
+        outcome.map_err(|failure| {
+            let error = failure.at(&self.quasi_velocities, t, &self.names, y);
+            Failure::recoverable(error)
+        })
+    }
+
     fn restart(&mut self, t: f64, y: &[f64]) {
         if let Form::InMomenta(motion) = &mut self.form {
             return motion.restart(t, y);
@@ -215,30 +237,6 @@ impl Motion {
             }
         };
         Err(Failure::fatal(MechError::from(EvaluationError::NoSeries { because })))
-    }
-}
-
-impl SeriesField for Motion {
-    fn series(&mut self) -> Result<&TaylorSeries, Failure> {
-        self.check_series()?;
-        match &mut self.form {
-            Form::Unrolled(unrolled) => Ok(unrolled.series()),
-            Form::Staged(_) | Form::InMomenta(_) => unreachable!("has been refused"),
-        }
-    }
-
-    fn expand(&mut self, t: f64, y: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
-        self.check_series()?;
-        let at = Point { t, y, p: &self.parameters };
-        let outcome = match &mut self.form {
-            Form::Unrolled(unrolled) => unrolled.expand(at, sides, order),
-            Form::Staged(_) | Form::InMomenta(_) => unreachable!("has been refused"),
-        };
-        // The state is not at hand where the series still is.
-        outcome.map_err(|failure| {
-            let error = failure.at(&self.quasi_velocities, t, &self.names, y);
-            Failure::recoverable(error)
-        })
     }
 }
 

@@ -280,17 +280,6 @@ pub enum InputError {
         highest: u32,
     },
 
-    /// An order that Taylor's method does not have.
-    #[error("the order of Taylor's method is {order}, but must lie between {lowest} and {highest}")]
-    Order {
-        /// The order asked for.
-        order: u32,
-        /// The lowest.
-        lowest: u32,
-        /// The highest.
-        highest: u32,
-    },
-
     /// Derivatives by parameters are requested from a vector field that has none.
     #[error("the vector field has no derivative by its parameters")]
     NoParameterJacobian,

@@ -70,6 +70,11 @@ pub trait Stepper {
     /// [`SolveError::Integration`]
     fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError>;
 
+    /// The time in the last step about which its polynomial is given: the derivatives there are its coefficients, others are sums of them.
+    fn centre(&self) -> f64 {
+        self.last_step().end
+    }
+
     /// Restarts at y(t) = y, which has been checked, with these [columns](Stepper::columns); statistics continue.
     ///
     /// With events the direction of integration stays; without, the next step may go either way.

@@ -5,7 +5,7 @@ const RESOLVED: f64 = 1e-14;
 /// A function that begins below this part of its terms begins at zero.
 const AT_ZERO: f64 = 1e-13;
 
-/// The first s in (0, length] at which a polynomial with these coefficients, which begins on this side of zero or, but for rounding, at
+/// The first s in [0, length] at which a polynomial with these coefficients, which begins on this side of zero or, but for rounding, at
 /// zero, goes to the other; none if it does not.
 ///
 /// On an interval around m with coefficients d_k there, |p(s) − d_0| ≤ Σ |d_k| rᵏ: where that is less than |d_0| there is no root, and
@@ -24,6 +24,9 @@ pub(super) fn first_exit(coefficients: &[f64], side: f64, length: f64) -> Option
     }
     // What begins at zero has left it: the other roots are those of p(s)/s.
     let terms = if scaled[0] <= AT_ZERO * largest { &scaled[1..] } else { &scaled[..] };
+    if terms.iter().find(|c| **c != 0.0).is_some_and(|c| *c < 0.0) {
+        return Some(0.0);
+    }
     let mut open = vec![(0.0, 1.0)];
     while let Some((a, b)) = open.pop() {
         let (middle, radius) = (0.5 * (a + b), 0.5 * (b - a));
@@ -100,7 +103,7 @@ mod tests {
             (vec![0.25, 0.25, 0.7], Some(0.7)), // which the first two only touch
             (vec![0.5, 0.5], None),
             (vec![-0.5, 1.5], None),
-            (vec![0.0, 0.6], Some(0.6)), // begins at zero
+            (vec![0.0, 0.6], Some(0.6)), // begins at zero, on the side that it goes to
             (vec![1.0], Some(1.0)),
         ] {
             let p = with_roots(&roots);
@@ -122,5 +125,8 @@ mod tests {
             let back = first_exit(&mirrored, side, -1.0 - 1e-9);
             assert_eq!(back.is_some(), first.is_some(), "{roots:?}");
         }
+        // What begins at zero and goes to the other side exits at once.
+        assert_eq!(first_exit(&[1e-17, -1.0, 0.5], 1.0, 1.0), Some(0.0));
+        assert_eq!(first_exit(&[-1e-17, 1.0, 0.5], 1.0, 1.0), None);
     }
 }

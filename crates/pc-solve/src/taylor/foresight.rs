@@ -1,90 +1,89 @@
 //! What a series does not know: the explicit dependence on time further ahead.
 //!
-//! The series of exp(−((t − 5)/0.2)²) at t = 0 has coefficients that are no different from 0. Where the dependence of the field on time
-//! [shows](TimeDependence) turns or jumps in the next step, the rates there are therefore compared with those of the polynomial.
+//! The series of exp(−((t − 5)/0.2)²) at t = 0 has coefficients that are no different from 0. At the [places](crate::foresight) in the
+//! next step where the dependence on time may turn or jump, the rates of the field are therefore compared with those of the polynomial.
 
-use pc_expr::{Surprises, TimeDependence};
+use pc_expr::VectorField;
 
-/// Places at which a field is looked at whose dependence is known by its values alone, over the whole integration.
-const SAMPLES: f64 = 64.0;
-/// Most places of fast oscillations looked at in one step.
-const MOST: usize = 16;
-/// Twice as many may lie in a step for each one before it whose places were as foreseen, so many times.
-const DOUBLINGS: u32 = 20;
+use crate::error::{Reason, SolveError};
+use crate::foresight::places::{Ahead, Here};
+use crate::foresight::scatter::scatters;
+use crate::integration::stepper::Stepper;
+use crate::taylor::stepper::Taylor;
 
-/// What is to be looked out for.
-#[derive(Debug, Clone)]
-pub(super) struct Foresight {
-    pub(super) dependence: TimeDependence,
-    /// When the integration began.
-    pub(super) begin: f64,
-    /// Steps in sequence that were full of places, all as foreseen.
-    unsurprising: u32,
-}
-
-/// Places to be looked at in order, and a time beyond which nothing is known.
-pub(super) struct Places {
-    pub(super) places: Vec<f64>,
-    pub(super) until: Option<f64>,
-    /// Whether what is there cannot be resolved.
-    pub(super) noise: bool,
-    /// Whether there were many.
-    pub(super) crowd: bool,
-}
-
-impl Foresight {
-    pub(super) fn new(dependence: TimeDependence, begin: f64) -> Foresight {
-        Foresight { dependence, begin, unsurprising: 0 }
-    }
-
-    pub(super) fn is_needed(&self) -> bool {
-        !matches!(self.dependence, TimeDependence::Absent)
-    }
-
-    /// The places between `t` and `reach` of an integration to `end`, for a motion that leaves t from this state at these rates.
-    pub(super) fn places(&mut self, (t, reach, end): (f64, f64, f64), at: (&[f64], &[f64])) -> Places {
-        let mut few = Vec::new();
-        let mut seen = Surprises::default();
-        let samples = |few: &mut Vec<f64>| {
-            let spacing = (end - self.begin) / SAMPLES;
-            if spacing.is_finite() && spacing != 0.0 && (t - self.begin) / spacing >= 0.0 {
-                let (from, to) = ((t - self.begin) / spacing, (reach - self.begin) / spacing);
-                // In the middle between whole multiples, which steps and switches tend to fall on.
-                let mut k = (from - 0.5).ceil().max(0.0) + 0.5;
-                while k < to.min(2.0 * SAMPLES) {
-                    few.push(self.begin + k * spacing);
-                    k += 1.0;
-                }
-            }
+impl<F: VectorField> Taylor<F> {
+    /// A shorter length at which the step is to end because f does something on the way that the series does not know.
+    pub(super) fn foreseen(&mut self, h: f64, end: f64) -> Result<Option<f64>, SolveError> {
+        let t = self.start;
+        let ahead = Ahead { t, reach: t + h, end, given: false };
+        let Taylor { places, series, field, tolerances, statistics, .. } = self;
+        let mut noise = false;
+        let mut here = Start {
+            state: series.of_order(0),
+            rates: series.of_order(1),
+            resolve: |near: f64, length: f64| {
+                let dim = series.dim;
+                let mut state = vec![0.0; dim];
+                noise |= scatters(dim, length, |part, rates, allowed| {
+                    series.derivative((near - t) * part, 0, &mut state);
+                    for (i, allowed) in allowed.iter_mut().enumerate() {
+                        *allowed = tolerances.of(i, state[i]);
+                    }
+                    statistics.rhs_evaluations += 1;
+                    field.rhs(t + (near - t) * part, &state, rates).is_ok()
+                });
+            },
         };
-        match &mut self.dependence {
-            TimeDependence::Absent => {}
-            TimeDependence::Unknown => samples(&mut few),
-            TimeDependence::Known(profile) => {
-                if profile.is_partial() {
-                    samples(&mut few);
-                }
-                seen = profile.surprises((t, reach), at, end, self.unsurprising > DOUBLINGS);
-                few.append(&mut seen.few);
+        let any = places.look(ahead, &mut here)?;
+        if noise {
+            return Err(self.failed(Reason::Unresolved { t }, None));
+        }
+        if !any {
+            return Ok(None);
+        }
+        let crowded = self.places.crowded.map(|crowded| crowded - t);
+        for i in 0..self.places.found.len() {
+            let since = self.places.found[i] - t;
+            if crowded.is_some_and(|crowded| (since - crowded) * h > 0.0) {
+                break;
+            }
+            if self.surprises_at(self.places.found[i], h) {
+                self.places.surprised();
+                return Ok(Some(since));
             }
         }
-        let Surprises { mut many, until, noise, .. } = seen;
-        let least = 1e-13 * t.abs().max(reach.abs());
-        for places in [&mut few, &mut many] {
-            places.retain(|place| (place - t).abs() > least && (reach - place) * (reach - t) > 0.0);
-        }
-        let crowd = many.len() > MOST;
-        let allowed = MOST << self.unsurprising.min(DOUBLINGS);
-        let until = many.get(allowed).copied().or(until).filter(|until| (until - t).abs() > least);
-        many.truncate(allowed);
-        let stride = many.len().div_ceil(MOST).max(1);
-        few.extend(many.iter().skip(stride - 1).step_by(stride));
-        few.sort_unstable_by(|a, b| ((a - b) * (reach - t)).total_cmp(&0.0));
-        Places { places: few, until, noise, crowd }
+        self.places.as_expected();
+        Ok(crowded.filter(|crowded| crowded.abs() < h.abs()))
     }
 
-    /// Takes note of whether the places of a step were as foreseen.
-    pub(super) fn note(&mut self, surprise: bool, crowd: bool) {
-        self.unsurprising = if crowd && !surprise { self.unsurprising + 1 } else { 0 };
+    /// Whether f at a place in the step is other than the polynomial says.
+    fn surprises_at(&mut self, place: f64, h: f64) -> bool {
+        let s = (place - self.start) - self.start_low;
+        self.series.change(s, &mut self.state, &mut self.slope);
+        for (state, y) in self.state.iter_mut().zip(self.series.of_order(0)) {
+            *state += y;
+        }
+        self.statistics.rhs_evaluations += 1;
+        // Where f is not defined the step is to end before; it is tried again then.
+        self.field.rhs(place, &self.state, &mut self.rates).is_err()
+            || self.tolerances.feels(&self.rates, &self.slope, &self.state, h, self.series.order())
+    }
+}
+
+/// The start of a step.
+struct Start<'a, R> {
+    state: &'a [f64],
+    rates: &'a [f64],
+    resolve: R,
+}
+
+impl<R: FnMut(f64, f64)> Here for Start<'_, R> {
+    fn tangent(&mut self) -> Result<(&[f64], &[f64]), SolveError> {
+        Ok((self.state, self.rates))
+    }
+
+    fn resolve(&mut self, near: f64, length: f64) -> Result<(), SolveError> {
+        (self.resolve)(near, length);
+        Ok(())
     }
 }

@@ -1,15 +1,13 @@
 //! Order and step from tolerance and coefficients [Jorba, Zou 2005, section 3].
 
-use crate::error::InputError;
-use crate::integration::checks::{check_length, positive};
+use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
-use crate::taylor::options::TaylorOptions;
 use crate::taylor::polynomial::Polynomial;
 
 /// Orders that are chosen by themselves.
 const ORDERS: std::ops::RangeInclusive<usize> = 6..=40;
-/// Orders that can be asked for.
-pub(super) const ALLOWED: std::ops::RangeInclusive<u32> = 2..=60;
+/// Nothing is gained by a tolerance below this.
+const TIGHTEST: f64 = 1e-20;
 /// Changes of the state over a step below this part of it are rounding.
 const ROUNDING: f64 = 1e-15;
 /// So are differences of rates below this part of them: of what cancels in f, some hundred roundings are left.
@@ -26,20 +24,19 @@ pub(super) struct Tolerances {
 }
 
 impl Tolerances {
-    pub(super) fn new(options: &TaylorOptions, dim: usize) -> Result<Tolerances, InputError> {
-        positive("the relative tolerance", options.relative_tolerance)?;
-        match &options.absolute_tolerance {
-            Tolerance::Scalar(tolerance) => positive("the absolute tolerance", *tolerance)?,
-            Tolerance::Vector(tolerances) => {
-                check_length("the absolute tolerances", tolerances.len(), dim)?;
-                tolerances.iter().try_for_each(|&tolerance| positive("an absolute tolerance", tolerance))?;
-            }
-        }
-        let relative = options.relative_tolerance.max(f64::EPSILON / 4.0);
-        Ok(Tolerances { relative, absolute: options.absolute_tolerance.clone() })
+    /// Those of options, which have been checked.
+    pub(super) fn new(options: &Options) -> Tolerances {
+        // Far below the rounding of the state, which is carried on from step to step, for the sum of the errors of 10⁵ steps.
+        let relative = options.relative_tolerance.max(TIGHTEST);
+        Tolerances { relative, absolute: options.absolute_tolerance.clone() }
     }
 
-    pub(super) fn absolute(&self, i: usize) -> f64 {
+    /// rtol |yᵢ| + atolᵢ
+    pub(super) fn of(&self, i: usize, y: f64) -> f64 {
+        self.relative * y.abs() + self.absolute(i)
+    }
+
+    fn absolute(&self, i: usize) -> f64 {
         match &self.absolute {
             Tolerance::Scalar(tolerance) => *tolerance,
             Tolerance::Vector(tolerances) => tolerances[i],
@@ -71,12 +68,14 @@ impl Tolerances {
     }
 
     /// The order p that takes least work on the way: cost(p)/h(p) with h = ρ tol^{1/(p+1)}, ρ the same for all p.
-    pub(super) fn order(&self, [a, b, c]: [f64; 3]) -> usize {
+    /// None is above `highest`.
+    pub(super) fn order(&self, [a, b, c]: [f64; 3], highest: Option<u32>) -> usize {
+        let highest = highest.map_or(*ORDERS.end(), |highest| (highest as usize).max(2));
         let work = |p: usize| {
             let order = p as f64;
             (a + b * order + c * order * order) / self.relative.powf(1.0 / (order + 1.0))
         };
-        ORDERS.min_by(|&p, &q| work(p).total_cmp(&work(q))).unwrap_or(*ORDERS.start())
+        (*ORDERS.start()..=highest).min_by(|&p, &q| work(p).total_cmp(&work(q))).unwrap_or(highest)
     }
 
     /// How far the series holds to the tolerance, by its last two terms; infinite if both are 0.

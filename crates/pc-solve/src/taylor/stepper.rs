@@ -2,19 +2,20 @@
 
 use std::sync::Arc;
 
-use pc_expr::{Failure, PolynomialMotion, Program, RootSeparation, SeriesField};
+use pc_expr::{Failure, PolynomialMotion, Program, RootSeparation, VectorField};
 
-use crate::error::{InputError, IntegrationError, NonFinite, Reason, SolveError};
-use crate::integration::breaks::{are_close, following};
-use crate::integration::checks::{check_inequalities, check_start, finite, positive};
+use crate::error::{IntegrationError, NonFinite, Reason, SolveError};
+use crate::foresight::places::Places;
+use crate::integration::breaks::next_break;
+use crate::integration::checks::{check_inequalities, check_start, finite};
 use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
+use crate::settings::method::Method;
+use crate::settings::options::Options;
 use crate::taylor::corners::first_exit;
-use crate::taylor::foresight::Foresight;
-use crate::taylor::options::TaylorOptions;
 use crate::taylor::polynomial::Polynomial;
-use crate::taylor::step_length::{ALLOWED, Tolerances};
+use crate::taylor::step_length::Tolerances;
 
 /// A step that would end so near to a stop time or a break, in parts of its length, ends there.
 const NEAR: f64 = 1e-9;
@@ -29,17 +30,19 @@ const TOGETHER: f64 = 1e-12;
 /// the rounding of each addition carried on [Kahan 1965]. A step whose polynomial has not the rates of the field at its end is tried
 /// again at half its length; none passes a corner or a jump of the field. States are [projected](pc_expr::VectorField::project) at the
 /// end of each step, and inside steps where they are read.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Taylor<F> {
-    field: F,
-    tolerances: Tolerances,
+    pub(super) field: F,
+    pub(super) tolerances: Tolerances,
     limits: Limits,
+    first_step: Option<f64>,
+    min_step: f64,
     max_step: f64,
     stop_time: Option<f64>,
     /// The last step: where it began, and what of that time a number does not hold.
-    start: f64,
-    start_low: f64,
-    series: Polynomial,
+    pub(super) start: f64,
+    pub(super) start_low: f64,
+    pub(super) series: Polynomial,
     /// Where it ended, likewise, and the series there.
     end: f64,
     end_low: f64,
@@ -58,13 +61,13 @@ pub struct Taylor<F> {
     /// The direction in which the series ahead holds; 0 where there is none.
     direction: f64,
     time: f64,
-    foresight: Foresight,
+    pub(super) places: Places,
     /// Of the events that were asked about last.
     separation: Option<RootSeparation>,
-    state: Vec<f64>,
-    slope: Vec<f64>,
-    rates: Vec<f64>,
-    statistics: Statistics,
+    pub(super) state: Vec<f64>,
+    pub(super) slope: Vec<f64>,
+    pub(super) rates: Vec<f64>,
+    pub(super) statistics: Statistics,
 }
 
 /// Why a step has to be shorter.
@@ -74,28 +77,19 @@ enum Refusal {
     Fatal(SolveError),
 }
 
-impl<F: SeriesField> Taylor<F> {
-    /// At y(t0) = y0, which has as many numbers as `field` has components.
+impl<F: VectorField> Taylor<F> {
+    /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components, with tolerances, lengths of steps, the highest order
+    /// and limits of the options, whose method does not matter.
     ///
     /// # Errors
-    /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges; [`Reason::Rates`] if the field has no
-    /// series.
-    pub fn new(field: F, t0: f64, y0: &[f64], options: &TaylorOptions) -> Result<Self, SolveError> {
-        let mut field = field;
+    /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;
+    /// [`InputError::Explicit`](crate::InputError::Explicit) if they choose how implicit equations are solved; [`Reason::Rates`] if the field
+    /// has no [series](VectorField::series).
+    pub fn new(mut field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
         check_start(&field, t0, y0)?;
-        let tolerances = Tolerances::new(options, y0.len())?;
-        positive("the number of steps", options.limits.max_steps as f64)?;
-        positive("the number of samples in a step", f64::from(options.limits.samples_per_step))?;
-        if let Some(length) = options.max_step {
-            positive("the greatest step", length)?;
-        }
-        if let Some(t) = options.stop_time {
-            finite("the stop time", t)?;
-        }
-        if let Some(order) = options.order.filter(|order| !ALLOWED.contains(order)) {
-            return Err(InputError::Order { order, lowest: *ALLOWED.start(), highest: *ALLOWED.end() }.into());
-        }
-        check_inequalities(&field, y0, &options.limits.inequalities)?;
+        Options { method: Method::Taylor, ..options.clone() }.validate(y0.len())?;
+        check_inequalities(&field, y0, &options.inequalities)?;
+        let tolerances = Tolerances::new(options);
         let (cost, branches) = match field.series() {
             Ok(series) => (series.cost(), series.branches().to_vec()),
             Err(failure) => {
@@ -104,15 +98,17 @@ impl<F: SeriesField> Taylor<F> {
                 return Err(SolveError::Integration(Box::new(error)));
             }
         };
-        let order = options.order.map_or_else(|| tolerances.order(cost), |order| order as usize);
+        let order = tolerances.order(cost, options.max_order);
         let mut ahead = Polynomial::new(y0.len(), order);
         ahead.of_order_mut(0).copy_from_slice(y0);
-        let foresight = Foresight::new(field.time_dependence(), t0);
+        let places = Places::new(&field, t0, options.min_step);
         let zeros = || vec![0.0; y0.len()];
         Ok(Taylor {
             field,
             tolerances,
-            limits: options.limits.clone(),
+            limits: options.limits(),
+            first_step: options.initial_step,
+            min_step: options.min_step.unwrap_or(0.0),
             max_step: options.max_step.unwrap_or(f64::INFINITY),
             stop_time: options.stop_time,
             start: t0,
@@ -129,7 +125,7 @@ impl<F: SeriesField> Taylor<F> {
             begins: true,
             direction: 0.0,
             time: t0,
-            foresight,
+            places,
             separation: None,
             state: zeros(),
             slope: zeros(),
@@ -137,10 +133,6 @@ impl<F: SeriesField> Taylor<F> {
             ahead,
             statistics: Statistics { current_time: t0, current_order: order as u32, ..Statistics::default() },
         })
-    }
-
-    pub(super) fn stop_at(&mut self, t: f64) {
-        self.stop_time = Some(t);
     }
 
     /// The order of the method.
@@ -219,14 +211,8 @@ impl<F: SeriesField> Taylor<F> {
         let mut next = self.stop_time;
         let mut jumped = false;
         if !self.field.breaks().is_empty() {
-            let mut t = from;
-            next = following(self.field.breaks(), t, end);
-            // A break no farther than rounding, as after an event, has been reached.
-            while let Some(time) = next.filter(|&time| are_close(time, t)) {
-                t = time;
-                next = following(self.field.breaks(), t, end);
-            }
-            next = next.or(self.stop_time);
+            let (t, following) = next_break(self.field.breaks(), from, end);
+            next = following.or(self.stop_time);
             jumped = self.field.enter(t, end);
         }
         let leaves = |i: usize| self.sides[i] == 0.0 && self.leading_side(i) != 0.0;
@@ -271,50 +257,6 @@ impl<F: SeriesField> Taylor<F> {
             }
         }
         length
-    }
-
-    /// A shorter length at which the step is to end because f does something on the way that the series does not know.
-    fn foreseen(&mut self, h: f64, end: f64) -> Result<Option<f64>, SolveError> {
-        let (t, p) = (self.start, self.series.order());
-        let at = (self.series.of_order(0), self.series.of_order(1.min(p)));
-        let found = self.foresight.places((t, t + h, end), at);
-        let mut shorter = None;
-        let mut places = found.places;
-        if found.noise
-            && let Some(until) = found.until
-        {
-            places = (1..=8).map(|i| t + (until - t) * f64::from(i) / 8.0).collect();
-        }
-        for &place in &places {
-            if found.until.is_some_and(|until| (place - until) * h > 0.0) {
-                break;
-            }
-            if self.surprises_at(place, h) {
-                if found.noise {
-                    return Err(self.failed(Reason::Unresolved { t: place }, None));
-                }
-                shorter = Some(place - t);
-                break;
-            }
-        }
-        self.foresight.note(shorter.is_some(), found.crowd || found.until.is_some());
-        let until = found.until.filter(|_| !found.noise).map(|until| until - t);
-        let shorter = shorter.or(until).filter(|shorter| shorter.abs() < h.abs());
-        self.statistics.limited_steps += u64::from(shorter.is_some());
-        Ok(shorter)
-    }
-
-    /// Whether f at a place in the step is other than the polynomial says.
-    fn surprises_at(&mut self, place: f64, h: f64) -> bool {
-        let s = (place - self.start) - self.start_low;
-        self.series.change(s, &mut self.state, &mut self.slope);
-        for (state, y) in self.state.iter_mut().zip(self.series.of_order(0)) {
-            *state += y;
-        }
-        self.statistics.rhs_evaluations += 1;
-        // Where f is not defined the step is to end before; it is tried again then.
-        self.field.rhs(place, &self.state, &mut self.rates).is_err()
-            || self.tolerances.feels(&self.rates, &self.slope, &self.state, h, self.series.order())
     }
 
     /// Tries a step of length h to the time `t`, across these branches; the series at its end is then that ahead.
@@ -362,13 +304,9 @@ impl<F: SeriesField> Taylor<F> {
                 return Err(refusal);
             }
             // Beyond the corner the motion has to go on as it came.
-            for &i in crossed {
-                let rate = self.branch_series.of_order(1.min(order - 1))[i] * h.signum();
-                if rate * self.sides[i] < 0.0 {
-                    let branch = self.branches[i].clone();
-                    self.sides = sides;
-                    return Err(Refusal::Fatal(self.failed(Reason::Sliding { branch, t }, None)));
-                }
+            if let Some(&i) = crossed.iter().find(|&&i| self.returns(i, h.signum())) {
+                self.sides = sides;
+                return Err(Refusal::Fatal(self.sliding(i, t)));
             }
         }
         std::mem::swap(&mut self.low, &mut self.next_low);
@@ -376,7 +314,7 @@ impl<F: SeriesField> Taylor<F> {
     }
 }
 
-impl<F: SeriesField> Stepper for Taylor<F> {
+impl<F: VectorField> Stepper for Taylor<F> {
     type Field = F;
 
     fn field(&self) -> &F {
@@ -473,6 +411,10 @@ impl<F: SeriesField> Stepper for Taylor<F> {
         Ok(&self.state)
     }
 
+    fn centre(&self) -> f64 {
+        self.start
+    }
+
     fn restart(
         &mut self,
         t: f64,
@@ -534,7 +476,7 @@ impl<F: SeriesField> Stepper for Taylor<F> {
     }
 
     fn tolerance(&self, i: usize, y: f64) -> f64 {
-        self.tolerances.relative * y.abs() + self.tolerances.absolute(i)
+        self.tolerances.of(i, y)
     }
 
     fn least_size(&self) -> f64 {
@@ -542,7 +484,49 @@ impl<F: SeriesField> Stepper for Taylor<F> {
     }
 }
 
-impl<F: SeriesField> Taylor<F> {
+impl<F: VectorField> Taylor<F> {
+    /// How long a step along the series may be.
+    fn longest(&mut self, towards: f64) -> Result<f64, SolveError> {
+        let mut length = self.tolerances.length(&self.series).min(self.max_step);
+        if !self.branches.is_empty() {
+            length = length.min(self.branch_length());
+        }
+        if let Some(first) = self.first_step.filter(|_| self.begins) {
+            length = length.min(first);
+        }
+        if length.is_nan() {
+            return Err(self.failed(Reason::Stalled, None));
+        }
+        // A series that ends goes as far as is asked for.
+        Ok(if length.is_infinite() { (towards - self.start).abs() } else { length })
+    }
+
+    /// Goes to the other side of these branch functions at the start of the step.
+    fn turn(&mut self, which: &[usize], direction: f64) -> Result<(), SolveError> {
+        for &i in which {
+            self.sides[i] = -self.sides[i];
+        }
+        self.ahead.of_order_mut(0).copy_from_slice(self.series.of_order(0));
+        match self.expand(self.start) {
+            Ok(()) => std::mem::swap(&mut self.series, &mut self.ahead),
+            Err(Refusal::Shorter(reason, failure)) => return Err(self.failed(reason, failure)),
+            Err(Refusal::Fatal(error)) => return Err(error),
+        }
+        match which.iter().find(|&&i| self.returns(i, direction)) {
+            Some(&i) => Err(self.sliding(i, self.start)),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether a branch function at zero goes back from the side that it has come to.
+    fn returns(&self, i: usize, direction: f64) -> bool {
+        self.branch_series.order() >= 1 && self.branch_series.of_order(1)[i] * direction * self.sides[i] < 0.0
+    }
+
+    fn sliding(&mut self, i: usize, t: f64) -> SolveError {
+        self.failed(Reason::Sliding { branch: self.branches[i].clone(), t }, None)
+    }
+
     /// Makes a step along the series; the time at its end, and what of that a number does not hold.
     fn find_step(
         &mut self,
@@ -551,28 +535,29 @@ impl<F: SeriesField> Taylor<F> {
         direction: f64,
     ) -> Result<(f64, f64), SolveError> {
         let (from, low) = (self.start, self.start_low);
-        let mut length = self.tolerances.length(&self.series).min(self.max_step);
-        if !self.branches.is_empty() {
-            length = length.min(self.branch_length());
-        }
-        if length.is_nan() {
-            return Err(self.failed(Reason::Stalled, None));
-        }
-        // A series that ends goes as far as is asked for.
-        if length.is_infinite() {
-            length = (towards - from).abs();
-        }
-        let mut h = length * direction;
         let remaining = limit.map(|limit| (limit - from) - low);
-        let mut lands = false;
-        if let Some(remaining) = remaining.filter(|&remaining| (remaining - h) * direction <= NEAR * length) {
-            (h, lands) = (remaining, true);
-        }
-        let mut crossed = Vec::new();
-        if let Some((corner, which)) = self.corner(h) {
-            (h, lands, crossed) = (corner, false, which);
-        }
-        if self.foresight.is_needed()
+        let mut turns = 0;
+        let (mut h, mut lands, mut crossed) = loop {
+            let length = self.longest(towards)?;
+            let mut h = length * direction;
+            let mut lands = false;
+            if let Some(remaining) =
+                remaining.filter(|&remaining| (remaining - h) * direction <= NEAR * length)
+            {
+                (h, lands) = (remaining, true);
+            }
+            match self.corner(h) {
+                None => break (h, lands, Vec::new()),
+                Some((corner, which)) if from + corner != from => break (corner, false, which),
+                // The step before has ended at the corner.
+                Some((_, which)) if turns <= self.branches.len() => {
+                    turns += 1;
+                    self.turn(&which, direction)?;
+                }
+                Some((_, which)) => return Err(self.sliding(which[0], from)),
+            }
+        };
+        if !self.places.are_absent()
             && let Some(shorter) = self.foreseen(h, self.stop_time.unwrap_or(towards))?
         {
             (h, lands) = (shorter, false);
@@ -606,7 +591,7 @@ impl<F: SeriesField> Taylor<F> {
             h *= 0.5;
             lands = false;
             crossed.clear();
-            if from + h == from {
+            if from + h == from || h.abs() < self.min_step {
                 return Err(match failure {
                     Some(failure) => self.failed(reason, Some(failure)),
                     None => self.failed(Reason::Stalled, None),

@@ -1,4 +1,4 @@
-//! Vector fields whose solutions have known Taylor series.
+//! Programs as vector fields.
 
 use std::sync::Arc;
 
@@ -7,31 +7,6 @@ use crate::ode::vector_field::{Failure, VectorField};
 use crate::program::program::Program;
 use crate::taylor::coefficients::TaylorSeries;
 use crate::time_profile::profile::TimeDependence;
-
-/// A vector field whose solutions have Taylor series of any order, because f is a program.
-pub trait SeriesField: VectorField {
-    /// The series, ready to be expanded, with what has to keep its sign along it and what it costs.
-    ///
-    /// # Errors
-    /// [`Failure`] that says why there are none.
-    fn series(&mut self) -> Result<&TaylorSeries, Failure>;
-
-    /// Expands the solution through y at time t to an order, at least 1, on the branch of these
-    /// [sides](TaylorSeries::expand). Coefficients may be infinite or none numbers.
-    ///
-    /// # Errors
-    /// [`Failure`] where f is not defined, as for [`rhs`](VectorField::rhs).
-    fn expand(&mut self, t: f64, y: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure>;
-}
-
-impl<F: SeriesField + ?Sized> SeriesField for &mut F {
-    fn series(&mut self) -> Result<&TaylorSeries, Failure> {
-        (**self).series()
-    }
-    fn expand(&mut self, t: f64, y: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
-        (**self).expand(t, y, sides, order)
-    }
-}
 
 /// A program as a vector field: its outputs are f of (t, y) and parameters.
 ///
@@ -102,9 +77,7 @@ impl VectorField for ProgramField {
     fn component_name(&self, i: usize) -> String {
         self.program().input_names()[1 + i].clone()
     }
-}
 
-impl SeriesField for ProgramField {
     fn series(&mut self) -> Result<&TaylorSeries, Failure> {
         let (program, backend) = (self.rates.program(), self.backend);
         Ok(self.series.get_or_insert_with(|| TaylorSeries::new(program, backend)))
