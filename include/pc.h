@@ -211,6 +211,13 @@ typedef enum {
    */
   PC_DOP853 = 2,
   /**
+   * Taylor's method of adaptive order and step, for systems that are not stiff: the fastest at
+   * tolerances of 1e-8 and below, and the one that follows a motion to rounding. It needs
+   * equations that are solved in expressions, without tables and without forces from
+   * functions of the program.
+   */
+  PC_TAYLOR = 3,
+  /**
    * PC_DOP853 where the motion is not stiff, PC_BDF where stiffness is seen. With
    * sensitivities it is PC_ADAMS.
    */

@@ -26,8 +26,8 @@
 //!
 //! `parse` text → syntax tree · `graph` expressions · `identity` equality, decided by fingerprints · `calculus`
 //! derivatives and short forms · `print` text and LaTeX · `program` chosen outputs as a tape · `kernel` running a tape
-//! · `codegen` tapes as source text · `ode` the interface to integrators · `time_profile` the explicit dependence of a
-//! field on time.
+//! · `codegen` tapes as source text · `ode` the interface to integrators · `taylor` the Taylor
+//! coefficients of solutions · `time_profile` the explicit dependence of a field on time.
 
 mod calculus;
 mod codegen;
@@ -42,6 +42,7 @@ mod program;
 #[cfg(test)]
 #[path = "../../../tests/src/classical/random.rs"]
 mod random;
+mod taylor;
 mod time_profile;
 
 pub use calculus::polynomial::Polynomial;
@@ -69,10 +70,13 @@ pub use kernel::kernel::{Entry, Interpreter, Kernel};
 pub use ode::colouring::Colouring;
 pub use ode::events::{Direction, Event, Events};
 pub use ode::pattern::Pattern;
+pub use ode::program_field::ProgramField;
 pub use ode::vector_field::{Failure, VectorField};
 pub use print::names::{Given, Name, Names, Side, Written};
 pub use print::style::Style;
 pub use program::digest::Digest;
 pub use program::fuse::Cost;
 pub use program::program::{Inputs, Instruction, Program, Register};
+pub use taylor::coefficients::TaylorSeries;
+pub use taylor::separation::{PolynomialMotion, RootSeparation};
 pub use time_profile::profile::{Surprises, TimeDependence, TimeProfile};

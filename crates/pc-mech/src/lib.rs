@@ -246,7 +246,7 @@ pub use pc_algebra::{
 };
 pub use pc_expr::{
     Backend, Colouring, Expr, ExprError, Failure, Folding, Graph, Language, Number, Pattern, Style,
-    VectorField,
+    TaylorSeries, VectorField,
 };
 pub use system::bodies::particle::Particle;
 pub use system::bodies::rigid_body::{Inertia, RigidBody};

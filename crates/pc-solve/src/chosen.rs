@@ -1,6 +1,8 @@
 //! The method that options choose.
 
-use pc_expr::VectorField;
+use std::sync::Arc;
+
+use pc_expr::{Program, VectorField};
 
 #[cfg(feature = "cvode")]
 use crate::auto::switch::Auto;
@@ -16,6 +18,7 @@ use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::method::Method;
 use crate::settings::options::Options;
+use crate::taylor::stepper::Taylor;
 
 /// The method of [`Options`] at work.
 #[derive(Debug)]
@@ -26,6 +29,8 @@ pub enum Chosen<F: VectorField> {
     Cvode(Box<Cvode<F>>),
     /// [`Method::Dop853`].
     Dop853(Box<Dop853<F>>),
+    /// [`Method::Taylor`].
+    Taylor(Box<Taylor<F>>),
     /// [`Method::Auto`].
     #[cfg(feature = "cvode")]
     Auto(Box<Auto<F>>),
@@ -35,10 +40,11 @@ impl<F: VectorField> Chosen<F> {
     /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components.
     ///
     /// # Errors
-    /// As for `Cvode::new`, [`Dop853::new`] and `Auto::new`; [`InputError::NoCvode`](crate::InputError::NoCvode).
+    /// As for `Cvode::new`, [`Dop853::new`], [`Taylor::new`] and `Auto::new`; [`InputError::NoCvode`](crate::InputError::NoCvode).
     pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
         match options.method {
             Method::Dop853 => Ok(Chosen::Dop853(Box::new(Dop853::new(field, t0, y0, options)?))),
+            Method::Taylor => Ok(Chosen::Taylor(Box::new(Taylor::new(field, t0, y0, options)?))),
             #[cfg(feature = "cvode")]
             Method::Bdf | Method::Adams => Ok(Chosen::Cvode(Box::new(Cvode::new(field, t0, y0, options)?))),
             #[cfg(feature = "cvode")]
@@ -73,6 +79,7 @@ macro_rules! each {
             #[cfg(feature = "cvode")]
             Chosen::Cvode($method) => $call,
             Chosen::Dop853($method) => $call,
+            Chosen::Taylor($method) => $call,
             #[cfg(feature = "cvode")]
             Chosen::Auto($method) => $call,
         }
@@ -126,6 +133,10 @@ impl<F: VectorField> Stepper for Chosen<F> {
         each!(self, method => method.interpolate(t, order))
     }
 
+    fn centre(&self) -> f64 {
+        each!(self, method => method.centre())
+    }
+
     fn restart(
         &mut self,
         t: f64,
@@ -146,6 +157,16 @@ impl<F: VectorField> Stepper for Chosen<F> {
 
     fn statistics(&self) -> Statistics {
         each!(self, method => method.statistics())
+    }
+
+    fn separate_roots(
+        &mut self,
+        program: &Arc<Program>,
+        parameters: &[f64],
+        span: (f64, f64),
+        times: &mut Vec<f64>,
+    ) -> bool {
+        each!(self, method => method.separate_roots(program, parameters, span, times))
     }
 
     fn tolerance(&self, i: usize, y: f64) -> f64 {

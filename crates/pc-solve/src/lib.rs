@@ -50,6 +50,7 @@ mod runge_kutta;
 mod sensitivity;
 mod settings;
 mod solve;
+mod taylor;
 
 #[cfg(feature = "cvode")]
 pub use auto::switch::Auto;
@@ -113,3 +114,4 @@ pub use solve::failure::SolveFailure;
 pub use solve::integrals::solve_with_integrals;
 pub use solve::solution::Solution;
 pub use solve::solve::{Solve, solve};
+pub use taylor::stepper::Taylor;

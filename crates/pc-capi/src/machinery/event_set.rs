@@ -2,9 +2,10 @@
 
 use std::ffi::{c_int, c_void};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use ::pc_model::FlowEvents;
-use pc_expr::{Event, Events, Failure};
+use pc_expr::{Event, Events, Failure, Program};
 
 use crate::ffi::user_data::User;
 
@@ -90,6 +91,11 @@ impl Events for Followed {
             own.read("function", code)?;
         }
         Ok(())
+    }
+
+    /// Of the functions of the model, which come first.
+    fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
+        self.model.program()
     }
 
     fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {

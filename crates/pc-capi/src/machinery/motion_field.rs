@@ -195,6 +195,20 @@ impl VectorField for MotionField {
         delegate!(self, field => field.time_dependence())
     }
 
+    fn series(&mut self) -> Result<&pc_expr::TaylorSeries, Failure> {
+        delegate!(self, field => field.series())
+    }
+
+    fn expand(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        sides: &[f64],
+        order: usize,
+    ) -> Result<&pc_expr::TaylorSeries, Failure> {
+        delegate!(self, field => field.expand(t, y, sides, order))
+    }
+
     fn restart(&mut self, t: f64, y: &[f64]) {
         delegate!(self, field => field.restart(t, y));
     }

@@ -178,7 +178,7 @@ pub struct RunArguments {
     /// Events.
     #[command(flatten)]
     pub events: EventArguments,
-    /// Method: adams or dop853 (not stiff), bdf (stiff) or auto (dop853, and bdf where stiffness is seen); else that of the file,
+    /// Method: adams, dop853 or taylor (not stiff), bdf (stiff) or auto (dop853, and bdf where stiffness is seen); else that of the file,
     /// else adams
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
@@ -317,12 +317,14 @@ pub enum Method {
     Bdf,
     /// Runge–Kutta of order 8 by Dormand and Prince.
     Dop853,
-    /// The last, or backward differentiation where the motion is stiff.
+    /// Taylor series.
+    Taylor,
+    /// Runge–Kutta of order 8, or backward differentiation where the motion is stiff.
     Auto,
 }
 
 pub(crate) fn method(text: &str) -> Result<Method, String> {
-    choice(text, &["taylor"])
+    choice(text, &[])
 }
 
 fn definition(text: &str) -> Result<Setting, String> {
@@ -374,11 +376,8 @@ mod tests {
     #[test]
     fn unsupported_choices_are_named() {
         assert_eq!(method("bdf"), Ok(Method::Bdf));
-        assert_eq!(
-            method("taylor").unwrap_err(),
-            "`taylor` is not supported yet; use adams, bdf, dop853 or auto"
-        );
-        assert_eq!(method("rk4").unwrap_err(), "use adams, bdf, dop853 or auto");
+        assert_eq!(method("taylor"), Ok(Method::Taylor));
+        assert_eq!(method("rk4").unwrap_err(), "use adams, bdf, dop853, taylor or auto");
     }
 
     #[test]

@@ -62,7 +62,7 @@ pub struct SweepArguments {
     /// Events.
     #[command(flatten)]
     pub events: EventArguments,
-    /// Method: adams or dop853 (not stiff), bdf (stiff) or auto (dop853, and bdf where stiffness is seen); else that of the file,
+    /// Method: adams, dop853 or taylor (not stiff), bdf (stiff) or auto (dop853, and bdf where stiffness is seen); else that of the file,
     /// else adams
     #[arg(long, value_name = "METHOD", value_parser = options::method)]
     pub method: Option<Method>,

@@ -16,18 +16,19 @@ fn of_arguments(method: options::Method) -> Method {
         options::Method::Adams => Method::Adams,
         options::Method::Bdf => Method::Bdf,
         options::Method::Dop853 => Method::Dop853,
+        options::Method::Taylor => Method::Taylor,
         options::Method::Auto => Method::Auto,
     }
 }
 
-/// The method of this name in a file; none where the model is refused for it.
-fn of_file(method: document::Method) -> Option<Method> {
+/// The method of this name in a file.
+fn of_file(method: document::Method) -> Method {
     match method {
-        document::Method::Adams => Some(Method::Adams),
-        document::Method::Bdf => Some(Method::Bdf),
-        document::Method::Dop853 => Some(Method::Dop853),
-        document::Method::Auto => Some(Method::Auto),
-        document::Method::Taylor => None,
+        document::Method::Adams => Method::Adams,
+        document::Method::Bdf => Method::Bdf,
+        document::Method::Dop853 => Method::Dop853,
+        document::Method::Auto => Method::Auto,
+        document::Method::Taylor => Method::Taylor,
     }
 }
 
@@ -81,10 +82,9 @@ impl Plan {
             return Err(CliError::EndIsStart { t: t_end });
         }
         let written = simulation.method.as_ref().map(|method| method.value);
-        let method =
-            arguments.method.map(of_arguments).or(written.and_then(of_file)).unwrap_or(Method::Adams);
+        let method = arguments.method.map(of_arguments).or(written.map(of_file)).unwrap_or(Method::Adams);
         let sensitivities = sensitivities::parameters(model, &arguments.sensitivities)?;
-        if method == Method::Dop853 && !sensitivities.is_empty() {
+        if matches!(method, Method::Dop853 | Method::Taylor) && !sensitivities.is_empty() {
             return Err(CliError::NoSensitivities { method });
         }
         Ok(Plan {

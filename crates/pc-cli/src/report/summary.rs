@@ -74,7 +74,7 @@ fn chosen(run: &Run) -> Vec<String> {
         (Method::Dop853, Some(t)) => {
             vec![format!("stability limits the steps from t = {} on: bdf or auto takes fewer", short(t, 6))]
         }
-        (Method::Dop853 | Method::Adams | Method::Bdf, _) => Vec::new(),
+        (Method::Dop853 | Method::Adams | Method::Bdf | Method::Taylor, _) => Vec::new(),
     }
 }
 

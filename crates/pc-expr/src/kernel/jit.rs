@@ -20,6 +20,7 @@ mod plan;
 mod prologue;
 mod shim;
 mod sincos;
+pub(crate) mod sums;
 
 pub use error::JitError;
 pub use jit::Jit;

@@ -1,6 +1,9 @@
 //! Events of a motion: zeros of functions g(t, y), and resets of the state there.
 
+use std::sync::Arc;
+
 use crate::ode::vector_field::Failure;
+use crate::program::program::Program;
 
 /// The direction in which a function passes through zero along the integration: against time where this goes backwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -103,6 +106,12 @@ pub trait Events {
     /// [`Failure`] where one is not defined; it ends the integration.
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
 
+    /// The program whose outputs are the first functions, of (t, y) and parameters, with the values of these, if there is one. Methods
+    /// that know the motion as a function of time find all roots of those.
+    fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
+        None
+    }
+
     /// Whether [`by_parameter`](Events::by_parameter) is implemented.
     fn has_parameter_derivatives(&self) -> bool {
         false
@@ -180,6 +189,9 @@ impl<E: Events + ?Sized> Events for &mut E {
     }
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         (**self).evaluate(t, y, values)
+    }
+    fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
+        (**self).program()
     }
     fn has_parameter_derivatives(&self) -> bool {
         (**self).has_parameter_derivatives()

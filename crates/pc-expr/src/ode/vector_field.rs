@@ -4,6 +4,7 @@ use std::error::Error;
 use std::fmt;
 
 use crate::ode::pattern::Pattern;
+use crate::taylor::coefficients::TaylorSeries;
 use crate::time_profile::profile::TimeDependence;
 
 /// A first-order system ẏ = f(t, y) of [`dim`](VectorField::dim) equations.
@@ -134,6 +135,29 @@ pub trait VectorField {
         TimeDependence::Unknown
     }
 
+    /// The Taylor series of the motion, ready to be expanded, with what has to keep its sign along it and what it costs.
+    ///
+    /// # Errors
+    /// [`Failure`] that says why there is none: f has to be a program.
+    fn series(&mut self) -> Result<&TaylorSeries, Failure> {
+        Err(Failure::fatal(NoSeries))
+    }
+
+    /// Expands the motion through y at time t to an order, at least 1, on the branch of these [sides](TaylorSeries::expand).
+    /// Coefficients need not be finite.
+    ///
+    /// # Errors
+    /// [`Failure`] where f is not defined, as for [`rhs`](VectorField::rhs), and where there is no [series](VectorField::series).
+    fn expand(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _sides: &[f64],
+        _order: usize,
+    ) -> Result<&TaylorSeries, Failure> {
+        Err(Failure::fatal(NoSeries))
+    }
+
     /// Announces that the motion continues from `y` at time t, a state that it did not reach by itself, such as one
     /// after an impact: conserved quantities may have new values.
     fn restart(&mut self, _t: f64, _y: &[f64]) {}
@@ -219,6 +243,12 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
     fn time_dependence(&self) -> TimeDependence {
         (**self).time_dependence()
     }
+    fn series(&mut self) -> Result<&TaylorSeries, Failure> {
+        (**self).series()
+    }
+    fn expand(&mut self, t: f64, y: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
+        (**self).expand(t, y, sides, order)
+    }
     fn restart(&mut self, t: f64, y: &[f64]) {
         (**self).restart(t, y);
     }
@@ -298,3 +328,7 @@ struct NoTransposedProduct;
 #[derive(Debug, thiserror::Error)]
 #[error("this vector field has no derivative by its parameters")]
 struct NoParameterJacobian;
+
+#[derive(Debug, thiserror::Error)]
+#[error("Taylor's method needs a vector field that is a program, not a function that is called")]
+struct NoSeries;

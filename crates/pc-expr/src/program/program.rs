@@ -93,8 +93,8 @@ pub struct Inputs<'g> {
 pub struct Program {
     pub(crate) constants: Vec<f64>,
     pub(crate) names: Vec<String>,
-    pub(super) state: usize,
-    pub(super) parameters: usize,
+    pub(crate) state: usize,
+    pub(crate) parameters: usize,
     pub(crate) code: Vec<Instruction>,
     pub(crate) outputs: Vec<Register>,
 }

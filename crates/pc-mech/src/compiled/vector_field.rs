@@ -1,12 +1,12 @@
 //! A compiled motion as a vector field.
 
-use pc_expr::{Failure, Pattern, TimeDependence, VectorField};
+use pc_expr::{Failure, Pattern, TaylorSeries, TimeDependence, VectorField};
 
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::motion::{Form, Motion};
 use crate::compiled::point::Point;
-use crate::error::{FrameError, MechError};
+use crate::error::{EvaluationError, FrameError, MechError};
 
 impl Motion {
     /// To the constraints by the shortest way in the kinetic metric, then along them to the integrals.
@@ -151,6 +151,28 @@ impl VectorField for Motion {
         }
     }
 
+    fn series(&mut self) -> Result<&TaylorSeries, Failure> {
+        self.check_series()?;
+        match &mut self.form {
+            Form::Unrolled(unrolled) => Ok(unrolled.series()),
+            Form::Staged(_) | Form::InMomenta(_) => unreachable!("has been refused"),
+        }
+    }
+
+    fn expand(&mut self, t: f64, y: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
+        self.check_series()?;
+        let at = Point { t, y, p: &self.parameters };
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.expand(at, sides, order),
+            Form::Staged(_) | Form::InMomenta(_) => unreachable!("has been refused"),
+        };
+        // The state is not at hand where the series still is.
+        outcome.map_err(|failure| {
+            let error = failure.at(&self.quasi_velocities, t, &self.names, y);
+            Failure::recoverable(error)
+        })
+    }
+
     fn restart(&mut self, t: f64, y: &[f64]) {
         if let Form::InMomenta(motion) = &mut self.form {
             return motion.restart(t, y);
@@ -203,6 +225,21 @@ impl VectorField for Motion {
 
     fn component_name(&self, i: usize) -> String {
         self.names.get(i).cloned().unwrap_or_else(|| format!("y[{i}]"))
+    }
+}
+
+impl Motion {
+    /// Why there are no series, if there are none.
+    fn check_series(&self) -> Result<(), Failure> {
+        let because = match &self.form {
+            Form::Unrolled(_) if self.signals.is_empty() => return Ok(()),
+            Form::Unrolled(_) => "these read tables of inputs",
+            Form::Staged(_) => "accelerations are solved for in numbers here",
+            Form::InMomenta(_) => {
+                "momenta under constraints are changed into quasi-velocities in numbers here"
+            }
+        };
+        Err(Failure::fatal(MechError::from(EvaluationError::NoSeries { because })))
     }
 }
 

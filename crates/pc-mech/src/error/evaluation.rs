@@ -46,6 +46,12 @@ pub enum EvaluationError {
         /// The derivative.
         what: &'static str,
     },
+    /// A motion whose equations are not one program, so that no Taylor series is known.
+    #[error("Taylor's method needs equations that are solved in expressions: {because}")]
+    NoSeries {
+        /// What they are instead.
+        because: &'static str,
+    },
     /// A vector field that could not be evaluated for a reason of its own.
     #[error("{cause}")]
     NotEvaluated {

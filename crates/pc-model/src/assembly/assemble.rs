@@ -7,10 +7,8 @@ use crate::assembly::assembler::Assembler;
 use crate::assembly::assembly::Assembly;
 use crate::assembly::bodies::SystemBody;
 use crate::diagnostics::error::ModelError;
-use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
-use crate::diagnostics::source::Place;
-use crate::document::{Method, NamedExpression};
+use crate::document::NamedExpression;
 use crate::model::model::Model;
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
@@ -21,23 +19,10 @@ impl Model {
     /// # Errors
     /// [`ModelError`] at the place in the file that is to blame.
     pub fn assemble<'g>(&self, graph: &'g Graph) -> Result<Assembly<'g>, ModelError> {
-        self.refuse_unsupported()?;
         self.parameter_values().check(self.document())?;
         let assembler =
             || Assembler { model: self, graph, scope: Scope::new(graph, self.document()) }.assemble();
         self.document().stage(graph, "the mechanical system", assembler)
-    }
-
-    fn refuse_unsupported(&self) -> Result<(), ModelError> {
-        let document = self.document();
-        let refuse = |place: &Place, what| Err(self.document().error(place, ErrorKind::Unsupported { what }));
-        let simulation = &document.simulation;
-        if let Some(method) = &simulation.method
-            && method.value == Method::Taylor
-        {
-            return refuse(&method.place, "the method taylor is");
-        }
-        Ok(())
     }
 }
 

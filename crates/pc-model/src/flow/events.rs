@@ -1,5 +1,7 @@
 //! The events of a model on the states that are integrated, whatever their form.
 
+use std::sync::Arc;
+
 use pc_expr::{Backend, Evaluator, Event, Events, Failure, Program};
 use pc_mech::{MechError, Motion, Signals, VectorField};
 
@@ -176,6 +178,12 @@ impl Events for FlowEvents {
         self.signals.show(t, self.reading.parameters_mut()).map_err(Failure::fatal)?;
         self.functions.eval(t, &self.room, self.reading.parameters(), values);
         Ok(())
+    }
+
+    /// That of the functions where states are read as they are and nothing comes of tables.
+    fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
+        let plain = self.reading.is_plain() && self.signals.is_empty() && !self.events.is_empty();
+        plain.then(|| (self.functions.program(), self.reading.parameters()))
     }
 
     /// The new values all come of the state before; velocities are then moved to where constraints allow them. Coordinates

@@ -88,6 +88,12 @@ impl Reading {
         self.change.is_some()
     }
 
+    /// Whether a state is (x, η, z) with all η as it is.
+    pub(super) fn is_plain(&self) -> bool {
+        let all = self.quasi_velocities.program().outputs_len();
+        self.transform.is_none() && self.change.is_none() && self.free.iter().copied().eq(0..all)
+    }
+
     /// The rates of all quasi-velocities of the model where a state moves at these rates; none where the state has quasi-velocities
     /// of the model.
     pub(super) fn rates(&mut self, t: f64, state: &[f64], rates: &[f64]) -> Option<Vec<f64>> {

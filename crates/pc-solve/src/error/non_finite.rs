@@ -15,6 +15,19 @@ pub enum NonFinite {
         t: f64,
     },
 
+    /// A Taylor coefficient of a solution.
+    #[error("the Taylor coefficient of order {order} of {component} is {value} at t = {t}")]
+    Coefficient {
+        /// Name of the component.
+        component: String,
+        /// Its order.
+        order: usize,
+        /// NaN or an infinity.
+        value: f64,
+        /// Where the series was expanded.
+        t: f64,
+    },
+
     /// An entry of ∂f/∂y.
     #[error("the derivative of the rate of {row} by {column} is {value} at t = {t}")]
     Jacobian {

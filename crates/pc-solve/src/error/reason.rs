@@ -84,6 +84,14 @@ pub enum Reason {
         t: f64,
     },
 
+    /// What the field has a corner or a jump at is reached and neither crossed nor left: the motion would go on along it.
+    Sliding {
+        /// What is 0 there.
+        branch: String,
+        /// When it was reached.
+        t: f64,
+    },
+
     /// The function of an event, or of one together with it, could not be evaluated.
     Event {
         /// Its name.
@@ -150,6 +158,7 @@ impl Reason {
             | Reason::Stalled
             | Reason::Unresolved { .. }
             | Reason::Rates { .. }
+            | Reason::Sliding { .. }
             | Reason::Event { .. }
             | Reason::Reset { .. }
             | Reason::Accumulation { .. }
@@ -207,6 +216,11 @@ impl Reason {
             Reason::Rates { t } => {
                 write!(f, "the rates at t = {t} cannot be computed, after reaching t = {time}")
             }
+            Reason::Sliding { branch, t } => write!(
+                f,
+                "the motion reaches a corner or a jump of the field, {branch}, at t = {t} and does not cross it: a series \
+                 holds on one side only"
+            ),
             Reason::Event { event, t } => {
                 write!(f, "the event {event} cannot be evaluated at t = {t}, after reaching t = {time}")
             }

@@ -126,18 +126,18 @@ impl Sides {
         }
     }
 
-    /// Looks from `from` to the time `to` for the first passage, with values by `evaluate`.
+    /// Looks from `from` for the first passage, with values by `evaluate`.
     ///
-    /// The functions are seen at the ends of `pieces` equal parts of that time, at first also near `from` while one of them
+    /// The functions are seen at these `times`, the last of which is where to look to, at first also near `from` while one of them
     /// is at zero, and at the vertex of the parabola through three of these values in sequence where it suggests that a
     /// function passes through zero twice.
     pub(crate) fn first<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         from: Sample,
-        to: f64,
-        pieces: u32,
+        times: &[f64],
         look: &mut Look<'_, F>,
     ) -> Result<Passage, E> {
+        let to = times.last().copied().unwrap_or(from.t);
         if self.sides.is_empty() {
             return Ok(Passage::Clear(Sample { t: to, ..from }));
         }
@@ -150,8 +150,7 @@ impl Sides {
         let (mut samples, mut fault) = (std::mem::take(&mut look.room.samples), None);
         samples.clear();
         let length = to - left.t;
-        for k in 1..=pieces {
-            let t = if k == pieces { to } else { left.t + length * (f64::from(k) / f64::from(pieces)) };
+        for &t in times.iter().filter(|&&t| t == to || (t - left.t) * length > 0.0) {
             match look.at(t) {
                 Ok(next) => samples.push(next),
                 Err(error) => {

@@ -4,38 +4,41 @@ use crate::error::InputError;
 
 /// A motion along one internal step, or along a part of it: a polynomial of degree q + 1, q the order of the step.
 ///
-/// With s = (t − end)/(end − start), it is y = Σ_k c_k sᵏ with c_k = y⁽ᵏ⁾(end) (end − start)ᵏ/k! from the method's own
-/// polynomial for k ≤ q. The polynomial begins where the step did, to rounding. Where states are projected after a
-/// step it misses the start by the error of a step, and the term of degree q + 1 corrects this. So the segments of a
-/// motion fit together, and are of the order of the method.
+/// With s = (t − centre)/(end − start), it is y = Σ_k c_k sᵏ with c_k = y⁽ᵏ⁾(centre) (end − start)ᵏ/k! from the method's own
+/// polynomial for k ≤ q. The centre is the end, the start of the step for a Taylor polynomial, which loses digits elsewhere. The
+/// polynomial begins where the step did, and ends where it did, to rounding. Where states are projected after a
+/// step it misses the end that is not at the centre by the error of a step, and the term of degree q + 1 corrects this. So the
+/// segments of a motion fit together, and are of the order of the method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
     start: f64,
     end: f64,
+    centre: f64,
     dim: usize,
     /// c_0, then c_1, …
     coefficients: Vec<f64>,
 }
 
 impl Segment {
-    /// The constant segment; derivatives follow.
-    pub(crate) fn new(start: f64, (end, state): (f64, &[f64])) -> Segment {
-        Segment { start, end, dim: state.len(), coefficients: state.to_vec() }
+    /// The constant segment; derivatives at the centre follow.
+    pub(crate) fn new((start, end): (f64, f64), centre: f64, state: &[f64]) -> Segment {
+        Segment { start, end, centre, dim: state.len(), coefficients: state.to_vec() }
     }
 
-    /// Adds the term of degree k from the derivative of that order at the end.
+    /// Adds the term of degree k from the derivative of that order at the centre.
     pub(crate) fn push(&mut self, k: u32, derivative: &[f64]) {
         let factor = (1..=k).fold(1.0, |factor, j| factor * (self.end - self.start) / f64::from(j));
         self.coefficients.extend(derivative.iter().map(|derivative| derivative * factor));
     }
 
-    /// Adds the term that makes the polynomial begin at `start`.
-    pub(crate) fn close(&mut self, start: &[f64]) {
+    /// Adds the term that makes the polynomial pass through a state at `t`, the start or the end.
+    pub(crate) fn close(&mut self, t: f64, state: &[f64]) {
         let mut reached = vec![0.0; self.dim];
-        self.evaluate(self.start, &mut reached);
-        let odd = (self.coefficients.len() / self.dim) % 2 == 1;
-        let gap = start.iter().zip(&reached).map(|(start, reached)| start - reached);
-        self.coefficients.extend(gap.map(|gap| if odd { -gap } else { gap }));
+        self.evaluate(t, &mut reached);
+        let s = (t - self.centre) / (self.end - self.start);
+        let power = s.powi((self.coefficients.len() / self.dim) as i32);
+        let gap = state.iter().zip(&reached).map(|(state, reached)| state - reached);
+        self.coefficients.extend(gap.map(|gap| gap / power));
     }
 
     /// Start and end.
@@ -50,7 +53,7 @@ impl Segment {
 
     /// Writes y(t) to `state`, of length [`dim`](Segment::dim), not projected; outside the span the polynomial is extrapolated.
     pub fn evaluate(&self, t: f64, state: &mut [f64]) {
-        let s = (t - self.end) / (self.end - self.start);
+        let s = (t - self.centre) / (self.end - self.start);
         state.fill(0.0);
         for terms in self.coefficients.chunks_exact(self.dim).rev() {
             for (state, term) in state.iter_mut().zip(terms) {
@@ -62,7 +65,7 @@ impl Segment {
     /// Writes ẏ(t) to `rate`, of length [`dim`](Segment::dim).
     pub fn derivative(&self, t: f64, rate: &mut [f64]) {
         let length = self.end - self.start;
-        let s = (t - self.end) / length;
+        let s = (t - self.centre) / length;
         rate.fill(0.0);
         for (k, terms) in self.coefficients.chunks_exact(self.dim).enumerate().skip(1).rev() {
             for (rate, term) in rate.iter_mut().zip(terms) {

@@ -70,6 +70,8 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) output: Vec<f64>,
     /// Room for the end of a step.
     pub(crate) ahead: Vec<f64>,
+    /// Room for the times at which functions of events are looked at.
+    pub(crate) times: Vec<f64>,
     /// Whether there has been no step since a new start on the way.
     pub(crate) restarted: bool,
     /// Whether the motion has been started anew from a state that it did not come to by itself.
@@ -122,6 +124,7 @@ impl<S: Stepper> Integration<S> {
             due: Vec::new(),
             noise: Vec::new(),
             beyond: Vec::new(),
+            times: Vec::new(),
             restarted: false,
             jumped: false,
         }
@@ -166,6 +169,7 @@ impl<S: Stepper> Integration<S> {
             due: Vec::new(),
             noise: Vec::new(),
             beyond: Vec::new(),
+            times: Vec::new(),
             restarted: self.restarted,
             jumped: self.jumped,
         };
@@ -352,7 +356,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         if time == self.front.t {
             self.output.copy_from_slice(&self.front_state);
         }
-        let pieces = self.engine.limits().samples_per_step;
+        let mut times = std::mem::take(&mut self.times);
+        self.look_at(to, &mut times);
         let (engine, events) = (&mut self.engine, &mut self.events);
         let mut blamed = 0;
         let evaluate = |t: f64, values: &mut [f64]| {
@@ -367,7 +372,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         let mut look = Look { evaluate, functions: self.front.values.len(), room: &mut self.room };
         let from = look.copy(&self.front);
         self.sides_after.clone_from(&self.sides);
-        let passage = match self.sides_after.first(from, to, pieces, &mut look) {
+        let found = self.sides_after.first(from, &times, &mut look);
+        self.times = times;
+        let passage = match found {
             Ok(passage) => passage,
             Err(SearchFailure::Method(error)) => return Err(self.stay(error)),
             Err(SearchFailure::Event(t, failure)) => return Err(self.event_error(blamed, t, failure)),
@@ -388,6 +395,26 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.room.take_back(std::mem::replace(&mut self.front, front));
         (self.noise, self.due, self.beyond) = (noise, due, beyond);
         Ok(())
+    }
+
+    /// Writes the times up to `to`, the last of them, at which the functions of events are looked at: such that each has at most one root
+    /// between two of them where the method and the events know that, and the ends of equal parts else.
+    fn look_at(&mut self, to: f64, times: &mut Vec<f64>) {
+        times.clear();
+        let from = self.front.t;
+        let mut all = false;
+        if let Some((program, parameters)) = self.events.program() {
+            let separated = self.engine.separate_roots(program, parameters, (from, to), times);
+            all = separated && program.outputs_len() == self.events.events().len();
+        }
+        if all {
+            return;
+        }
+        let (pieces, length) = (self.engine.limits().samples_per_step, to - from);
+        times.extend((1..pieces).map(|k| from + length * (f64::from(k) / f64::from(pieces))));
+        times.push(to);
+        times.sort_unstable_by(|a, b| ((a - b) * length).total_cmp(&0.0));
+        times.dedup();
     }
 
     /// Whether the end is so near to a restart that no step can go there. Then it is where the integration is.

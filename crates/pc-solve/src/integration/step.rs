@@ -110,11 +110,20 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         (start, from): (f64, &[f64]),
         (end, to): (f64, &[f64]),
     ) -> Result<Segment, SolveError> {
-        let mut segment = Segment::new(start, (end, to));
-        for k in 1..=self.engine.last_step().degree.unwrap_or(0) {
-            segment.push(k, self.engine.interpolate(end, k)?);
+        // About the end, where a part of a step ends before the step does, too.
+        let centre =
+            if self.engine.centre() == self.engine.last_step().end { end } else { self.engine.centre() };
+        let degree = self.engine.last_step().degree.unwrap_or(0);
+        let (mut segment, closes) = if centre == end {
+            (Segment::new((start, end), centre, to), (start, from))
+        } else {
+            let state = if centre == start { from } else { self.engine.interpolate(centre, 0)? };
+            (Segment::new((start, end), centre, state), (end, to))
+        };
+        for k in 1..=degree {
+            segment.push(k, self.engine.interpolate(centre, k)?);
         }
-        segment.close(from);
+        segment.close(closes.0, closes.1);
         Ok(segment)
     }
 }

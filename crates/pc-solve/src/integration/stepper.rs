@@ -1,6 +1,8 @@
 //! Methods that make steps.
 
-use pc_expr::{Failure, VectorField};
+use std::sync::Arc;
+
+use pc_expr::{Failure, Program, VectorField};
 
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::integration::checks::finite;
@@ -73,6 +75,11 @@ pub trait Stepper {
     /// [`SolveError::Integration`]
     fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError>;
 
+    /// The time in the last step about which its polynomial is given: the derivatives there are its coefficients, others are sums of them.
+    fn centre(&self) -> f64 {
+        self.last_step().end
+    }
+
     /// Restarts at y(t) = y, which has been checked, with these [columns](Stepper::columns); statistics continue.
     ///
     /// With events the direction of integration stays; without, the next step may go either way.
@@ -116,6 +123,18 @@ pub trait Stepper {
     /// The parameter by which each column is the derivative, if it is one by a parameter.
     fn column_parameters(&self) -> &[Option<usize>] {
         &[]
+    }
+
+    /// Adds times between `from` and `to`, both in the last step, in the order of the integration and with `to` as the last, between which
+    /// each output of a program along the motion has at most one root. False, with none added, if the method does not know that.
+    fn separate_roots(
+        &mut self,
+        _program: &Arc<Program>,
+        _parameters: &[f64],
+        _span: (f64, f64),
+        _times: &mut Vec<f64>,
+    ) -> bool {
+        false
     }
 
     /// The error of a failure beyond the end of the last step, where the stepper then stands.

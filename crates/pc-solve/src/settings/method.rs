@@ -12,6 +12,9 @@ pub enum Method {
     /// The explicit Runge–Kutta method of order 8 of Dormand and Prince, for systems that are not stiff at tolerances of
     /// 1e-6 and below: the fastest where f is cheap.
     Dop853,
+    /// Taylor's method of adaptive order and step, for systems that are not stiff and whose f is a program: the fastest at tolerances of
+    /// 1e-8 and below, and the one that follows a motion to rounding.
+    Taylor,
     /// [`Dop853`](Method::Dop853) where the motion is not stiff, [`Bdf`](Method::Bdf) where stiffness is seen.
     Auto,
 }
@@ -23,6 +26,7 @@ impl Method {
             Method::Bdf => 5,
             Method::Adams => 12,
             Method::Dop853 | Method::Auto => 8,
+            Method::Taylor => 40,
         }
     }
 }
@@ -33,6 +37,7 @@ impl fmt::Display for Method {
             Method::Bdf => "BDF",
             Method::Adams => "Adams",
             Method::Dop853 => "DOP853",
+            Method::Taylor => "Taylor",
             Method::Auto => "auto",
         })
     }

@@ -156,7 +156,7 @@ impl Options {
                 let nonlinear_solver = Some(self.iteration());
                 Ok(Options { method: Method::Adams, nonlinear_solver, ..self.clone() })
             }
-            Method::Dop853 => Err(InputError::NotCvode { method: self.method }),
+            Method::Dop853 | Method::Taylor => Err(InputError::NotCvode { method: self.method }),
         }
     }
 
@@ -165,7 +165,7 @@ impl Options {
     pub(crate) fn iteration(&self) -> NonlinearSolver {
         self.nonlinear_solver.unwrap_or(match self.method {
             Method::Auto if self.linear_solver.is_some() => NonlinearSolver::Newton,
-            Method::Adams | Method::Auto | Method::Dop853 => NonlinearSolver::FixedPoint,
+            Method::Adams | Method::Auto | Method::Dop853 | Method::Taylor => NonlinearSolver::FixedPoint,
             Method::Bdf => NonlinearSolver::Newton,
         })
     }
@@ -179,9 +179,9 @@ impl Options {
         let refused = match self.method {
             Method::Bdf | Method::Adams => None,
             Method::Dop853 | Method::Auto if self.max_order.is_some() => Some("a highest order"),
-            Method::Dop853 if self.nonlinear_solver.is_some() => Some("an iteration"),
-            Method::Dop853 if linear => Some("a linear solver"),
-            Method::Dop853 | Method::Auto => None,
+            Method::Dop853 | Method::Taylor if self.nonlinear_solver.is_some() => Some("an iteration"),
+            Method::Dop853 | Method::Taylor if linear => Some("a linear solver"),
+            Method::Dop853 | Method::Taylor | Method::Auto => None,
         };
         refused.map_or(Ok(()), |what| Err(InputError::Explicit { method: self.method, what }))
     }

@@ -3,7 +3,7 @@
 use std::cell::LazyCell;
 use std::sync::Arc;
 
-use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
+use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TaylorSeries, TimeDependence};
 
 use crate::compiled::elimination::columns::{Columns, Storage, derivative};
 use crate::compiled::elimination::pivots::Pivots;
@@ -28,6 +28,9 @@ pub(crate) struct Unrolled {
     parameter_jacobian: Option<Columns>,
     time_derivative: Option<Columns>,
     observables: Evaluator,
+    backend: Backend,
+    /// Of the outputs of `rates`, once they have been asked for.
+    series: Option<TaylorSeries>,
 }
 
 /// ∂ẏ/∂y
@@ -79,6 +82,8 @@ impl Unrolled {
             parameter_jacobian: columns(options.parameter_jacobian, &system.parameter_symbols())?,
             time_derivative: columns(options.time_derivative, &[system.time])?,
             observables: Evaluator::new(observed, Backend::Interpreter),
+            backend: options.backend,
+            series: None,
         })
     }
 
@@ -129,6 +134,26 @@ impl Unrolled {
             }
         }
         Ok(())
+    }
+
+    /// The Taylor series of the motion.
+    pub(crate) fn series(&mut self) -> &TaylorSeries {
+        let (program, backend) = (self.rates.program(), self.backend);
+        self.series.get_or_insert_with(|| TaylorSeries::new(program, backend))
+    }
+
+    /// Expands the motion through y at t.
+    pub(crate) fn expand(
+        &mut self,
+        Point { t, y, p }: Point<'_>,
+        sides: &[f64],
+        order: usize,
+    ) -> Result<&TaylorSeries, EvaluationFailure> {
+        let (program, backend) = (self.rates.program(), self.backend);
+        let series = self.series.get_or_insert_with(|| TaylorSeries::new(program, backend));
+        series.expand(t, y, sides, p, order);
+        self.pivots.check(y, p, series.watched())?;
+        Ok(series)
     }
 
     pub(crate) fn machine_code(&mut self, dim: usize) -> Option<MachineCode> {

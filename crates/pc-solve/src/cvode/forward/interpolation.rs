@@ -37,7 +37,7 @@ impl<F: VectorField> Cvode<F> {
         let at = |k: u32| -> Result<Vec<f64>, SolveError> {
             self.sensitivities_by_time(end, k)?.ok_or_else(|| InputError::NoSensitivities.into())
         };
-        let mut segment = Segment::new(start, (end, &at(0)?));
+        let mut segment = Segment::new((start, end), end, &at(0)?);
         for k in 1..=self.step_made().degree.unwrap_or(0) {
             segment.push(k, &at(k)?);
         }

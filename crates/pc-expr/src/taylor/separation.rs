@@ -1,0 +1,199 @@
+//! Times between which a function along a motion has at most one root.
+//!
+//! Over an interval of time the functions and their first two derivatives are enclosed by interval arithmetic [Moore 1966], the motion
+//! being a polynomial. A function whose values there exclude zero has no root, one whose rates exclude zero at most one; other intervals
+//! are halved.
+
+use std::sync::Arc;
+
+use crate::program::program::Program;
+use crate::time_profile::interval::Interval;
+use crate::time_profile::jet::Jet;
+
+/// Parts of the whole that are told apart.
+const RESOLVED: f64 = 1e-14;
+/// Most intervals that are looked at: enough for hundreds of roots, not for a function that is nothing but rounding.
+const MOST: usize = 4096;
+
+/// A polynomial motion y(t₀ + s) = Σ_k c_k sᵏ.
+#[derive(Clone, Copy, Debug)]
+pub struct PolynomialMotion<'a> {
+    /// t₀.
+    pub start: f64,
+    /// c_0, then c_1, …, each as long as the state.
+    pub coefficients: &'a [f64],
+}
+
+/// Separates the roots of the outputs of a program along motions.
+///
+/// ```
+/// use std::sync::Arc;
+/// use pc_expr::{Graph, Inputs, PolynomialMotion, Program, RootSeparation};
+///
+/// // y = s: the roots of (y − 0.5)(y − 0.5001) are separated.
+/// let graph = Graph::new();
+/// let y = graph.symbol("y");
+/// let inputs = Inputs { time: None, state: vec![y], parameters: vec![] };
+/// let program = Program::new(&graph, &inputs, &[(y - 0.5) * (y - 0.5001)])?;
+/// let mut separation = RootSeparation::new(Arc::new(program));
+/// let motion = PolynomialMotion { start: 0.0, coefficients: &[0.0, 1.0] };
+/// let mut places = Vec::new();
+/// separation.separate(motion, (0.0, 1.0), &[], &mut places);
+/// assert!(places.iter().any(|s| 0.5 < *s && *s < 0.5001));
+/// # Ok::<(), pc_expr::ExprError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RootSeparation {
+    program: Arc<Program>,
+    /// The components that the outputs contain.
+    used: Vec<bool>,
+    registers: Vec<Jet>,
+    local: Vec<f64>,
+}
+
+impl RootSeparation {
+    /// That of the outputs of a program.
+    pub fn new(program: Arc<Program>) -> RootSeparation {
+        let mut used = vec![false; program.state_len()];
+        let operands = program.code().iter().flat_map(|instruction| instruction.operands());
+        for register in operands.chain(program.outputs().iter().copied()) {
+            let place = register.index().checked_sub(program.first_input() + 1);
+            if let Some(place) = place.filter(|&place| place < used.len()) {
+                used[place] = true;
+            }
+        }
+        let registers = vec![Jet::constant(0.0); program.registers_len()];
+        RootSeparation { program, used, registers, local: Vec::new() }
+    }
+
+    /// The program.
+    pub fn program(&self) -> &Arc<Program> {
+        &self.program
+    }
+
+    /// Adds places s, in order from the first to the last of these, between which each output has at most one root along the motion; the
+    /// last of them is one.
+    ///
+    /// # Panics
+    /// If the motion or the parameters are not those of the program.
+    pub fn separate(
+        &mut self,
+        motion: PolynomialMotion<'_>,
+        (first, last): (f64, f64),
+        parameters: &[f64],
+        places: &mut Vec<f64>,
+    ) {
+        let program = Arc::clone(&self.program);
+        assert_eq!(parameters.len(), program.parameters_len(), "values of the parameters");
+        assert!(motion.coefficients.len().is_multiple_of(program.state_len()), "coefficients of states");
+        for (register, &value) in self.registers.iter_mut().zip(program.constants()) {
+            *register = Jet::constant(value);
+        }
+        let inputs = &mut self.registers[program.first_input() + 1 + program.state_len()..];
+        for (register, &value) in inputs.iter_mut().zip(parameters) {
+            *register = Jet::constant(value);
+        }
+        let mut open = vec![(first, last)];
+        // Where the last root may have been.
+        let (mut looked, mut run) = (0, first);
+        while let Some((a, b)) = open.pop() {
+            looked += 1;
+            let (clear, single) = self.look(motion, (a, b));
+            let is_short = (b - a).abs() <= RESOLVED * (last - first).abs();
+            if !(clear || single || is_short || looked > MOST) {
+                let middle = 0.5 * (a + b);
+                open.push((middle, b));
+                open.push((a, middle));
+                continue;
+            }
+            if !clear {
+                // What is near a root at both ends is told from zero in the middle of what is between.
+                if a != run {
+                    places.push(0.5 * (run + a));
+                }
+                if a != first {
+                    places.push(a);
+                }
+                run = b;
+            }
+        }
+        if run != last {
+            places.push(0.5 * (run + last));
+        }
+        places.push(last);
+    }
+
+    /// Whether no output has a root in an interval; whether none has more than one.
+    fn look(&mut self, motion: PolynomialMotion<'_>, (a, b): (f64, f64)) -> (bool, bool) {
+        let (middle, radius) = (0.5 * (a + b), 0.5 * (b - a).abs());
+        self.set_motion(motion, middle, 0.0);
+        self.run();
+        let program = &self.program;
+        let at_middle: Vec<Jet> =
+            program.outputs().iter().map(|output| self.registers[output.index()]).collect();
+        self.set_motion(motion, middle, radius);
+        self.run();
+        let around = Interval { lo: -radius, hi: radius };
+        let squares = Interval { lo: 0.0, hi: 0.5 * radius * radius };
+        let (mut clear, mut single) = (true, true);
+        for (output, at) in self.program.outputs().iter().zip(at_middle) {
+            let jet = self.registers[output.index()];
+            let excludes = |interval: Interval| interval.lo > 0.0 || interval.hi < 0.0;
+            let values =
+                [jet.value, at.value + jet.rate * around, at.value + at.rate * around + jet.bend * squares];
+            // What is 0 all along has no root to be found.
+            if values.into_iter().any(excludes) || jet.value == Interval::ZERO {
+                continue;
+            }
+            clear = false;
+            single &= [jet.rate, at.rate + jet.bend * around].into_iter().any(excludes);
+        }
+        (clear, single)
+    }
+
+    /// Sets time and state to what they are within a radius of a place.
+    fn set_motion(&mut self, motion: PolynomialMotion<'_>, middle: f64, radius: f64) {
+        let time = self.program.first_input();
+        let around = |value: f64, spread: f64| Interval { lo: value - spread, hi: value + spread };
+        self.registers[time] = Jet::line(around(motion.start + middle, radius), 1.0);
+        let dim = self.used.len();
+        for i in (0..dim).filter(|&i| self.used[i]) {
+            let local = &mut self.local;
+            local.clear();
+            local.extend(motion.coefficients.iter().skip(i).step_by(dim));
+            for first in 0..local.len() {
+                for k in (first..local.len() - 1).rev() {
+                    local[k] += middle * local[k + 1];
+                }
+            }
+            let c = |k: usize| local.get(k).copied().unwrap_or(0.0);
+            let mut spread = [0.0; 3];
+            let mut power = 1.0;
+            for k in 1..local.len() {
+                let order = k as f64;
+                // rᵏ⁻¹ |c_k| with the factors of each derivative.
+                let term = power * local[k].abs();
+                spread[0] += term * radius;
+                if k >= 2 {
+                    spread[1] += order * term;
+                }
+                if k >= 3 {
+                    spread[2] += order * (order - 1.0) * if radius > 0.0 { term / radius } else { 0.0 };
+                }
+                power *= radius;
+            }
+            self.registers[time + 1 + i] = Jet {
+                value: around(c(0), spread[0]),
+                rate: around(c(1), spread[1]),
+                bend: around(2.0 * c(2), spread[2]),
+            };
+        }
+    }
+
+    fn run(&mut self) {
+        let first = self.program.first_result();
+        for (i, instruction) in self.program.code().iter().enumerate() {
+            self.registers[first + i] = Jet::of(instruction, |register| self.registers[register.index()]);
+        }
+    }
+}

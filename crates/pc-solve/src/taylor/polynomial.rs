@@ -1,0 +1,61 @@
+//! The polynomial of a step.
+
+/// y(t₀ + s) = Σ_k c_k sᵏ, c_0 first, each as long as the state.
+#[derive(Debug, Clone)]
+pub(super) struct Polynomial {
+    pub(super) coefficients: Vec<f64>,
+    pub(super) dim: usize,
+}
+
+impl Polynomial {
+    pub(super) fn new(dim: usize, order: usize) -> Polynomial {
+        Polynomial { coefficients: vec![0.0; dim * (order + 1)], dim }
+    }
+
+    pub(super) fn order(&self) -> usize {
+        self.coefficients.len() / self.dim - 1
+    }
+
+    pub(super) fn of_order(&self, k: usize) -> &[f64] {
+        &self.coefficients[k * self.dim..][..self.dim]
+    }
+
+    pub(super) fn of_order_mut(&mut self, k: usize) -> &mut [f64] {
+        &mut self.coefficients[k * self.dim..][..self.dim]
+    }
+
+    /// Whether all coefficients are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        // One pass without branches: what is not finite is none of 0 and stays so.
+        self.coefficients.iter().fold(0.0, |sum, c| sum + c * 0.0) == 0.0
+    }
+
+    /// Writes y(s) − y(0) and ẏ(s).
+    pub(super) fn change(&self, s: f64, change: &mut [f64], slope: &mut [f64]) {
+        let p = self.order();
+        change.copy_from_slice(self.of_order(p));
+        slope.fill(0.0);
+        for k in (1..p).rev() {
+            let terms = self.of_order(k);
+            for ((change, slope), term) in change.iter_mut().zip(&mut *slope).zip(terms) {
+                *slope = *slope * s + *change;
+                *change = *change * s + term;
+            }
+        }
+        for (change, slope) in change.iter_mut().zip(slope) {
+            *slope = *slope * s + *change;
+            *change *= s;
+        }
+    }
+
+    /// Writes the derivative of an order at s.
+    pub(super) fn derivative(&self, s: f64, order: usize, state: &mut [f64]) {
+        state.fill(0.0);
+        for k in (order..=self.order()).rev() {
+            let factor = (k + 1 - order..=k).fold(1.0, |factor, j| factor * j as f64);
+            for (state, term) in state.iter_mut().zip(self.of_order(k)) {
+                *state = *state * s + factor * term;
+            }
+        }
+    }
+}
