@@ -109,7 +109,8 @@ impl<'g> Equations<'g> {
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor
-    /// declared parameter.
+    /// declared parameter; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) where a joint of a tree moves
+    /// nothing that has inertia.
     pub fn compile(&self) -> Result<Motion, MechError> {
         self.compile_for(CompileOptions::default())
     }
@@ -121,7 +122,16 @@ impl<'g> Equations<'g> {
     /// As [`compile`](Equations::compile).
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
         let options = options.into();
-        self.shortest_first_order(options.elimination).compile(&options, LONGEST_ELIMINATION)
+        let Some(tree) = &self.system.tree else {
+            return self.first_order().compile(&options, LONGEST_ELIMINATION);
+        };
+        let graph = self.system.graph().page(self.system.graph().folding());
+        let equations = self.system.in_graph(tree, &graph).poincare()?;
+        let first_order = equations.shortest_first_order(options.elimination);
+        if let Some(tree) = &first_order.tree {
+            tree.check_regular(&first_order.names)?;
+        }
+        first_order.compile(&options, LONGEST_ELIMINATION)
     }
 }
 
@@ -240,7 +250,11 @@ impl Motion {
         assert!(signals.places().all(|place| place < self.parameters().len()), "places of parameters");
         match &mut self.form {
             Form::InMomenta(motion) => motion.inner_mut().signals = signals,
-            Form::Unrolled(_) | Form::Staged(_) => self.signals = signals,
+            Form::Unrolled(unrolled) => {
+                unrolled.vary(&signals.places().collect::<Vec<_>>(), self.options.backend);
+                self.signals = signals;
+            }
+            Form::Staged(_) => self.signals = signals,
         }
         self
     }
@@ -444,6 +458,15 @@ impl Motion {
         match &mut self.form {
             Form::Unrolled(unrolled) if self.signals.is_empty() => unrolled.machine_code(self.names.len()),
             Form::Unrolled(_) | Form::Staged(_) | Form::InMomenta(_) => None,
+        }
+    }
+
+    /// The numbers that [`machine_code`](Motion::machine_code) takes for parameters, for their current values: these, and what is
+    /// computed of them alone. None where M is factorised in numbers.
+    pub fn code_parameters(&mut self) -> Option<&[f64]> {
+        match &mut self.form {
+            Form::Unrolled(unrolled) => Some(unrolled.code_parameters(&self.parameters)),
+            Form::Staged(_) | Form::InMomenta(_) => None,
         }
     }
 

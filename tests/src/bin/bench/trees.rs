@@ -72,7 +72,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
             system: format!("chain of {links} links"),
             cause: "there is no machine code".to_owned(),
         })?;
-        let mut compiled = Routine::of_motion(&machine_code);
+        let mut compiled = Routine::of_motion(&machine_code, motion.code_parameters().unwrap_or_default());
         let mut variants = vec![
             Variant::new("by hand", Box::new(move |y: &[f64], dy: &mut [f64]| routine.call(y, dy))),
             Variant::new("derived", Box::new(move |y: &[f64], dy: &mut [f64]| compiled.call(y, dy))),
