@@ -6,12 +6,13 @@ use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, VectorField};
 use crate::compiled::chart::Chart;
 use crate::compiled::elimination::cost;
 use crate::compiled::elimination::numeric::Staged;
+use crate::compiled::elimination::schur::Schur;
 use crate::compiled::elimination::symbolic::Unrolled;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::machine_code::MachineCode;
-use crate::compiled::options::CompileOptions;
+use crate::compiled::options::{CompileOptions, TreeElimination};
 use crate::compiled::point::Point;
 use crate::compiled::projection::constraint_manifold::Surface;
 use crate::compiled::projection::holding::PrescribedComponents;
@@ -375,6 +376,20 @@ impl Motion {
             Form::InMomenta(motion) => Some(motion),
             Form::Unrolled(_) | Form::Staged(_) => None,
         }
+    }
+
+    /// The same with accelerations and reactions by this, where it takes fewer operations or is asked for.
+    pub(crate) fn by_joints(mut self, schur: Schur) -> Motion {
+        self.form = match self.form {
+            Form::Staged(staged)
+                if self.options.elimination == TreeElimination::ByJoints
+                    || schur.operations() < staged.operations() =>
+            {
+                Form::Staged(Box::new(staged.by_joints(schur)))
+            }
+            form => form,
+        };
+        self
     }
 
     /// The same under the constraints of these names.
