@@ -7,6 +7,7 @@ mod joints {
     mod by_hand;
     mod library;
     mod loops;
+    mod loops_by_joints;
     mod random;
     mod refused;
     mod run;

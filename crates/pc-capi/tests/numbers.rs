@@ -23,8 +23,8 @@ fn motion(name: &str) -> (Motion, f64, Vec<f64>) {
     (motion, assembly.t_start, start)
 }
 
-/// Free, redundant, with vanishing quasi-velocities, with multipliers, rheonomic, not quadratic.
-const MODELS: [&str; 8] = [
+/// Free, redundant, with vanishing quasi-velocities, with multipliers, rheonomic, not quadratic, bodies on joints, and loops.
+const MODELS: [&str; 11] = [
     "heavy-top-lagrange",
     "euler-top",
     "chaplygin-sleigh",
@@ -33,6 +33,9 @@ const MODELS: [&str; 8] = [
     "relativistic-particle",
     "toda-chain",
     "rod",
+    "puma-560",
+    "satellite",
+    "four-bar-loop",
 ];
 
 #[test]

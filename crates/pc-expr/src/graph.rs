@@ -5,7 +5,8 @@
 //! (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`: what it knows of sums and products, of calls,
 //! of values in prime fields, of signs, and of divisors. `graph` owns a `dag` and stays within a `budget` (`limits`,
 //! and of time a `deadline`), `expr` is the handle that formulas are written with; `subgraph` walks the nodes that
-//! expressions depend on, `queries` are questions about whole expressions, `places` finds symbols in long lists, and `evaluate` computes their values one by
+//! expressions depend on, `queries` are questions about whole expressions, `places` finds symbols in long lists, `transcription`
+//! writes them in another graph, and `evaluate` computes their values one by
 //! one: the reference for all faster ways.
 
 pub(crate) mod budget;
@@ -26,4 +27,5 @@ pub(crate) mod queries;
 pub(crate) mod regularity;
 pub(crate) mod signs;
 pub(crate) mod subgraph;
+pub(crate) mod transcription;
 pub(crate) mod value;

@@ -60,6 +60,7 @@ pub use graph::limits::{Cancel, Limits, Spent};
 pub use graph::node::Folding;
 pub use graph::number::Number;
 pub use graph::places::SymbolPlaces;
+pub use graph::transcription::Transcription;
 pub use identity::blocks::independent_blocks;
 pub use identity::echelon::ResidueEchelon;
 pub use identity::prime_field::Residue;

@@ -2,11 +2,13 @@
 //!
 //! A `constraint` is one condition; `multipliers` keeps all coordinates and adds the reactions, M η̇ = r + Cᵀ λ;
 //! `independent_velocities` solves for some velocities instead (14)–(16), which `choice` selects; `explicit_reactions`
-//! puts λ in as functions of the state, and `body_reactions` expresses them as forces and torques on bodies.
+//! puts λ in as functions of the state, and `body_reactions` expresses them as forces and torques on bodies. `loops` closes those of
+//! a tree joint after joint.
 
 pub(crate) mod body_reactions;
 pub(crate) mod choice;
 pub(crate) mod constraint;
 pub(crate) mod explicit_reactions;
 pub(crate) mod independent_velocities;
+pub(crate) mod loops;
 pub(crate) mod multipliers;

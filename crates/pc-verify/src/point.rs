@@ -30,6 +30,8 @@ pub(crate) struct Point<'a, T: Number> {
     /// What they are on bodies, where that is known.
     resultants: Option<Resultants>,
     definitions: Vec<OnceCell<T>>,
+    /// How many of the first ones were tried in order.
+    tried: Cell<usize>,
     /// The definitions that are being evaluated.
     open: Vec<Cell<bool>>,
     velocities: OnceCell<Vec<T>>,
@@ -70,6 +72,7 @@ impl<'a, T: Number> Point<'a, T> {
             reactions: None,
             resultants: None,
             definitions: vec![OnceCell::new(); text.definitions.len()],
+            tried: Cell::new(0),
             open: vec![Cell::new(false); text.definitions.len()],
             velocities: OnceCell::new(),
             moving: OnceCell::new(),
@@ -245,7 +248,8 @@ impl<'a, T: Number> Point<'a, T> {
         }
         if j >= DEEP {
             // One made of the other, each would cost a call. What fails is asked for again where it is needed.
-            for before in 0..j {
+            for before in self.tried.get()..j {
+                self.tried.set(self.tried.get().max(before + 1));
                 if self.definitions[before].get().is_none() {
                     let _ = self.evaluate_definition(before);
                 }

@@ -269,6 +269,19 @@ impl<'g> Frame<'g> {
         Frame { b, b0: self.b0.iter().map(|&x| f(x)).collect(), a, ..self.clone() }
     }
 
+    /// The frame with all its expressions, time and coordinates too, replaced by those of a graph.
+    #[must_use]
+    pub fn written_in<'n>(&self, graph: &'n Graph, mut f: impl FnMut(Expr<'g>) -> Expr<'n>) -> Frame<'n> {
+        Frame {
+            graph,
+            time: f(self.time),
+            coordinates: self.coordinates.iter().map(|&x| f(x)).collect(),
+            b: self.b.map(&mut f),
+            b0: self.b0.iter().map(|&x| f(x)).collect(),
+            a: self.a.as_ref().map(|a| a.map(&mut f)),
+        }
+    }
+
     /// Rank of b at almost all points, as the graph knows it; less where numbers show that its operators are dependent.
     pub fn rank(&self) -> usize {
         let known = self.graph.generic_rank_of_entries(self.b.columns(), &self.b.nonzero_rows());

@@ -85,7 +85,7 @@ impl<'g> StructureCoefficients<'g> {
 
     /// The coefficients passed through `f`, which keeps 0.
     #[must_use]
-    pub fn map(&self, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> StructureCoefficients<'g> {
+    pub fn map<'n>(&self, mut f: impl FnMut(Expr<'g>) -> Expr<'n>) -> StructureCoefficients<'n> {
         let mapped = self.nonzero.iter().map(|&(r, s, m, c)| (r, s, m, f(c)));
         StructureCoefficients::from_nonzero(self.operators, mapped)
     }

@@ -16,7 +16,7 @@ pub(crate) struct Direct {
     code: MachineCode,
     /// What is published is complete if this is even, and another one if it is another number.
     version: AtomicU64,
-    /// What is published, f64 all of it.
+    /// What is published, f64 all of it; after the parameters what is computed of them.
     fixed_pivots: Box<[AtomicU64]>,
     parameters: Box<[AtomicU64]>,
     room: usize,
@@ -35,7 +35,7 @@ impl Direct {
         let direct = Direct {
             version: AtomicU64::new(0),
             fixed_pivots: numbers(code.fixed_len()),
-            parameters: numbers(field.parameters().len()),
+            parameters: numbers(code.parameters_len()),
             room: beside + code.scratch_len(),
             code,
         };
@@ -47,6 +47,7 @@ impl Direct {
     pub(crate) fn publish(&self, field: &mut MotionField) {
         // They are computed now, while nobody has to wait for them, and only read below.
         let _ = field.fixed_pivots();
+        let _ = field.code_parameters();
         let version = self.version.load(Ordering::Relaxed);
         self.version.store(version + 1, Ordering::Relaxed);
         // None of the numbers is seen before that.
@@ -57,7 +58,7 @@ impl Direct {
             }
         };
         store(&self.fixed_pivots, field.fixed_pivots().unwrap_or_default());
-        store(&self.parameters, field.parameters());
+        store(&self.parameters, field.code_parameters().unwrap_or_default());
         self.version.store(version + 2, Ordering::Release);
     }
 

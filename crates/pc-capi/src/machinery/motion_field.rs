@@ -48,6 +48,14 @@ impl MotionField {
         }
     }
 
+    /// What the machine code takes for parameters as they are.
+    pub(crate) fn code_parameters(&mut self) -> Option<&[f64]> {
+        match self {
+            MotionField::Free(motion) => motion.code_parameters(),
+            MotionField::Forced(_) => None,
+        }
+    }
+
     /// What it asks for of the parameters as they are.
     pub(crate) fn fixed_pivots(&mut self) -> Option<&[f64]> {
         match self {

@@ -77,6 +77,28 @@ impl Graph {
         nodes.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
     }
 
+    /// Whether each of the expressions contains no symbols but these: in one pass, however many there are.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, m, l] = graph.symbols(["x", "m", "l"]);
+    /// assert_eq!(graph.are_made_of(&[m * l, x - m, 2.into()], &[m, l]), [true, false, true]);
+    /// ```
+    pub fn are_made_of<'g>(&'g self, expressions: &[Expr<'g>], symbols: &[Expr<'g>]) -> Vec<bool> {
+        let roots: Vec<Atom> = expressions.iter().map(|x| x.atom_in(self)).collect();
+        let symbols: FxHashSet<NodeId> = symbols.iter().map(|s| s.symbol_in(self)).collect();
+        self.with(|dag| {
+            let cone = Cone::below(dag, roots.iter().copied());
+            let is_other =
+                |&node: &NodeId| matches!(dag.node(node), Node::Symbol(_)) && !symbols.contains(&node);
+            let others: Vec<NodeId> = cone.order.iter().copied().filter(is_other).collect();
+            let moving = cone.depending_on(dag, &others);
+            let is_moving = |root: &Atom| matches!(root, Atom::Node(node) if moving.contains(node));
+            roots.iter().map(|root| !is_moving(root)).collect()
+        })
+    }
+
     /// Whether a function that satisfies `which` is applied to an expression that contains one of the `symbols`.
     ///
     /// ```

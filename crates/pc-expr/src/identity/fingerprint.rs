@@ -14,7 +14,7 @@ use crate::identity::prime_field::{Residue, mix};
 type First = Residue<1>;
 type Second = Residue<45>;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub(crate) struct Fingerprint(First, Second);
 
 impl Fingerprint {

@@ -16,7 +16,7 @@ const SMALL: u64 = 1 << 20;
 /// let third: Residue = Residue::of_number(Number::ratio(1, 3)).expect("rational");
 /// assert_eq!(third * Residue::integer(6), Residue::integer(2));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct Residue<const C: u64 = 1>(u64); // in 0..p
 
 impl<const C: u64> Residue<C> {

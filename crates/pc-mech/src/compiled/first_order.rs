@@ -31,6 +31,8 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) states: usize,
     /// The parameters with their values.
     pub(crate) parameters: Vec<(Expr<'g>, f64)>,
+    /// Those of them that may change at each evaluation: functions of time, and forces computed outside.
+    pub(crate) varying: Vec<Expr<'g>>,
     /// The symbols of w, k of them.
     pub(crate) unknowns: Vec<Expr<'g>>,
     /// What to call the unknowns in messages: the quasi-velocities.
@@ -103,8 +105,10 @@ impl<'g> FirstOrder<'g> {
         }
         let mut unknowns = factors.solve(self.graph, &self.right);
         let decoupled = |s: usize| self.mass.nonzero(s).all(|(r, _)| r == s);
+        let single: Vec<usize> = (0..unknowns.len()).filter(|&s| decoupled(s)).collect();
+        let fixed = self.are_fixed(&single.iter().map(|&s| self.mass[(s, s)]).collect::<Vec<_>>());
         let single: Vec<usize> =
-            (0..unknowns.len()).filter(|&s| decoupled(s) && !self.is_fixed(self.mass[(s, s)])).collect();
+            single.into_iter().zip(fixed).filter_map(|(s, is_fixed)| (!is_fixed).then_some(s)).collect();
         let long: Vec<Expr<'g>> = single.iter().map(|&s| unknowns[s]).collect();
         for (s, short) in single.into_iter().zip(self.graph.shorten(&long, &self.collected_by)) {
             unknowns[s] = short;
@@ -112,10 +116,9 @@ impl<'g> FirstOrder<'g> {
         unknowns
     }
 
-    /// Whether an expression contains parameters only.
-    pub(crate) fn is_fixed(&self, expression: Expr<'g>) -> bool {
-        let parameters = self.parameter_symbols();
-        self.graph.symbols_of(&[expression]).iter().all(|symbol| parameters.contains(symbol))
+    /// Whether each of the expressions contains parameters only.
+    pub(crate) fn are_fixed(&self, expressions: &[Expr<'g>]) -> Vec<bool> {
+        self.graph.are_made_of(expressions, &self.parameter_symbols())
     }
 
     /// The places on and below the diagonal of M that are not zero everywhere, and what stands there.
@@ -215,6 +218,7 @@ impl<'g> Equations<'g> {
             coordinates: x.len(),
             states: system.states.len(),
             parameters: system.run_time_inputs(),
+            varying: system.varying_inputs(),
             names: system.quasi_velocities.iter().map(Expr::to_string).collect(),
             multipliers: 0,
             rank: 0,

@@ -9,7 +9,8 @@ use crate::compiled::elimination::pivots::PivotPartition;
 /// The machine code of f, for callers that manage memory themselves, and the meaning of its outputs.
 ///
 /// [`entry`](MachineCode::entry) writes ẏ, then the pivots of M and the numbers they are compared with, as far as
-/// these change with the state; [`is_regular`](MachineCode::is_regular) says whether ẏ can be trusted. Valid as long
+/// these change with the state; for parameters it takes [`code_parameters`](crate::Motion::code_parameters), their values and what
+/// is computed of them once. [`is_regular`](MachineCode::is_regular) says whether ẏ can be trusted. Valid as long
 /// as the motion it came from, or a clone made since.
 #[derive(Clone, Debug)]
 pub struct MachineCode {
@@ -17,16 +18,17 @@ pub struct MachineCode {
     scratch: usize,
     rates: usize,
     outputs: usize,
+    parameters: usize,
     pivots: Arc<PivotPartition>,
 }
 
 impl MachineCode {
     pub(crate) fn new(
         (entry, scratch): (Entry, usize),
-        rates: usize,
+        (rates, parameters): (usize, usize),
         pivots: Arc<PivotPartition>,
     ) -> MachineCode {
-        MachineCode { entry, scratch, rates, outputs: rates + pivots.moving_len(), pivots }
+        MachineCode { entry, scratch, rates, outputs: rates + pivots.moving_len(), parameters, pivots }
     }
 
     /// The code.
@@ -50,6 +52,11 @@ impl MachineCode {
     #[inline]
     pub fn outputs_len(&self) -> usize {
         self.outputs
+    }
+
+    /// The number of [`code_parameters`](crate::Motion::code_parameters).
+    pub fn parameters_len(&self) -> usize {
+        self.parameters
     }
 
     /// The number of [`fixed_pivots`](crate::Motion::fixed_pivots).

@@ -6,12 +6,13 @@ use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, VectorField};
 use crate::compiled::chart::Chart;
 use crate::compiled::elimination::cost;
 use crate::compiled::elimination::numeric::Staged;
+use crate::compiled::elimination::schur::Schur;
 use crate::compiled::elimination::symbolic::Unrolled;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::machine_code::MachineCode;
-use crate::compiled::options::CompileOptions;
+use crate::compiled::options::{CompileOptions, TreeElimination};
 use crate::compiled::point::Point;
 use crate::compiled::projection::constraint_manifold::Surface;
 use crate::compiled::projection::holding::PrescribedComponents;
@@ -109,7 +110,8 @@ impl<'g> Equations<'g> {
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor
-    /// declared parameter.
+    /// declared parameter; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) where a joint of a tree moves
+    /// nothing that has inertia.
     pub fn compile(&self) -> Result<Motion, MechError> {
         self.compile_for(CompileOptions::default())
     }
@@ -121,7 +123,16 @@ impl<'g> Equations<'g> {
     /// As [`compile`](Equations::compile).
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
         let options = options.into();
-        self.shortest_first_order(options.elimination).compile(&options, LONGEST_ELIMINATION)
+        let Some(tree) = &self.system.tree else {
+            return self.first_order().compile(&options, LONGEST_ELIMINATION);
+        };
+        let graph = self.system.graph().page(self.system.graph().folding());
+        let equations = self.system.in_graph(tree, &graph).poincare()?;
+        let first_order = equations.shortest_first_order(options.elimination);
+        if let Some(tree) = &first_order.tree {
+            tree.check_regular(&first_order.names)?;
+        }
+        first_order.compile(&options, LONGEST_ELIMINATION)
     }
 }
 
@@ -240,7 +251,11 @@ impl Motion {
         assert!(signals.places().all(|place| place < self.parameters().len()), "places of parameters");
         match &mut self.form {
             Form::InMomenta(motion) => motion.inner_mut().signals = signals,
-            Form::Unrolled(_) | Form::Staged(_) => self.signals = signals,
+            Form::Unrolled(unrolled) => {
+                unrolled.vary(&signals.places().collect::<Vec<_>>(), self.options.backend);
+                self.signals = signals;
+            }
+            Form::Staged(_) => self.signals = signals,
         }
         self
     }
@@ -363,6 +378,20 @@ impl Motion {
         }
     }
 
+    /// The same with accelerations and reactions by this, where it takes fewer operations or is asked for.
+    pub(crate) fn by_joints(mut self, schur: Schur) -> Motion {
+        self.form = match self.form {
+            Form::Staged(staged)
+                if self.options.elimination == TreeElimination::ByJoints
+                    || schur.operations() < staged.operations() =>
+            {
+                Form::Staged(Box::new(staged.by_joints(schur)))
+            }
+            form => form,
+        };
+        self
+    }
+
     /// The same under the constraints of these names.
     pub(crate) fn on_surface(self, constraints: Vec<String>, surface: Surface) -> Motion {
         Motion { constraints, surface: Some(Box::new(surface)), ..self }
@@ -444,6 +473,15 @@ impl Motion {
         match &mut self.form {
             Form::Unrolled(unrolled) if self.signals.is_empty() => unrolled.machine_code(self.names.len()),
             Form::Unrolled(_) | Form::Staged(_) | Form::InMomenta(_) => None,
+        }
+    }
+
+    /// The numbers that [`machine_code`](Motion::machine_code) takes for parameters, for their current values: these, and what is
+    /// computed of them alone. None where M is factorised in numbers.
+    pub fn code_parameters(&mut self) -> Option<&[f64]> {
+        match &mut self.form {
+            Form::Unrolled(unrolled) => Some(unrolled.code_parameters(&self.parameters)),
+            Form::Staged(_) | Form::InMomenta(_) => None,
         }
     }
 

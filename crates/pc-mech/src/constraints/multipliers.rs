@@ -217,8 +217,12 @@ impl<'g> Multipliers<'g> {
     /// parameter.
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
         let whole = self.with_spare();
-        let first_order = whole.first_order();
-        let motion = first_order.compile(&options.into(), LONGEST_ELIMINATION)?;
+        let (first_order, options) = (whole.first_order(), options.into());
+        let motion = first_order.compile(&options, LONGEST_ELIMINATION)?;
+        let motion = match whole.by_joints(&options, self.rank)? {
+            Some(schur) => motion.by_joints(schur),
+            None => motion,
+        };
         let names = whole.constraints.iter().map(|constraint| constraint.name.clone()).collect();
         Ok(motion.on_surface(names, whole.surface(&first_order)?))
     }

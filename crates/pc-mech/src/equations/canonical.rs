@@ -351,6 +351,7 @@ impl<'g> Canonical<'g> {
             coordinates: x.len(),
             states: system.states.len(),
             parameters: system.run_time_inputs(),
+            varying: system.varying_inputs(),
             unknowns: eta.clone(),
             names: eta.iter().map(Expr::to_string).collect(),
             multipliers: 0,

@@ -151,6 +151,11 @@ impl<'g> System<'g> {
         self.parameters.iter().copied().chain(external).collect()
     }
 
+    /// Those of them that may change at each evaluation: signals and external forces.
+    pub(crate) fn varying_inputs(&self) -> Vec<Expr<'g>> {
+        self.signals.iter().copied().chain(self.external.iter().map(|&(_, symbol)| symbol)).collect()
+    }
+
     /// The symbols of the system: time, state, parameters, external forces, and any other in its frame, brackets,
     /// Lagrangian or forces.
     pub fn symbols(&self) -> Vec<Expr<'g>> {
@@ -238,7 +243,7 @@ impl<'g> System<'g> {
             // Before L: what is made first is summed first.
             states: self.states.iter().map(|&(z, rate)| (z, bind(rate))).collect(),
             parameters: self.parameters.iter().filter(|(p, _)| self.signals.contains(p)).copied().collect(),
-            tree: self.tree.as_ref().map(|tree| Box::new(tree.map(bind))),
+            tree: self.tree.as_ref().map(|tree| Box::new(tree.map(graph, bind))),
             ..self.clone().map_expressions(|list| numbers.apply(list))
         }
     }

@@ -153,6 +153,8 @@ pub(crate) struct Freedom<'g> {
     factors: Spatial<'g>,
     /// s·Φ s with the size of what it is left of, if it may vanish.
     pub(crate) watched: Option<(Expr<'g>, Expr<'g>)>,
+    /// Whether nothing resists it at any state: s·Φ s is zero.
+    pub(crate) is_massless: bool,
 }
 
 /// s, one of the six components; of a screw one of the first three, and a multiple of that which belongs to it.
@@ -371,5 +373,6 @@ fn eliminate<'g>(
         true => Expr::ZERO,
         false => graph.keep(entry - column[r] * factors[c]),
     });
-    Freedom { direction, column, inverse, factors, watched: size.map(|size| (pivot, size)) }
+    let watched = size.map(|size| (pivot, size));
+    Freedom { direction, column, inverse, factors, watched, is_massless: pivot.is_zero() }
 }

@@ -72,6 +72,20 @@ impl<'g> TreeBody<'g> {
         TreeBody { torque: torque.map(Into::into), ..self }
     }
 
+    /// The same with each expression replaced.
+    pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> TreeBody<'n> {
+        TreeBody {
+            name: self.name.clone(),
+            parent: self.parent.clone(),
+            joint: self.joint.map(put),
+            mass: put(self.mass),
+            centre: self.centre.map(put),
+            inertia: self.inertia.map(put),
+            force: self.force.map(put),
+            torque: self.torque.map(put),
+        }
+    }
+
     /// The name of the body that it hangs on; none is the world.
     pub fn parent(&self) -> Option<&str> {
         self.parent.as_deref()

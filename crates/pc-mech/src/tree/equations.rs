@@ -1,5 +1,8 @@
 //! The equations of a system that is a tree.
 
+use std::collections::BTreeSet;
+
+use crate::error::LagrangianError;
 use crate::tree::dynamics::TreeDynamics;
 use crate::tree::system::TreeSystem;
 
@@ -11,6 +14,23 @@ pub(crate) struct TreeEquations<'g> {
 }
 
 impl TreeEquations<'_> {
+    /// That each joint is resisted by some inertia.
+    ///
+    /// # Errors
+    /// [`LagrangianError::Degenerate`] with the quasi-velocities of those that are not.
+    pub(crate) fn check_regular(&self, names: &[String]) -> Result<(), LagrangianError> {
+        let links = self.system.places.iter().zip(&self.dynamics.articulated.links);
+        let freedoms = links.flat_map(|(places, link)| places.iter().zip(&link.freedoms));
+        let massless = freedoms.filter(|(_, freedom)| freedom.is_massless).map(|(&place, _)| place);
+        let massless: BTreeSet<usize> = massless.collect();
+        if massless.is_empty() {
+            return Ok(());
+        }
+        let quasi_velocities = massless.iter().map(|&place| names[place].clone()).collect();
+        let size = names.len();
+        Err(LagrangianError::Degenerate { rank: size - massless.len(), size, quasi_velocities })
+    }
+
     /// Whether it has more quasi-velocities than a mass matrix that is looked at whole.
     pub(crate) fn is_large(&self) -> bool {
         self.system.is_large()

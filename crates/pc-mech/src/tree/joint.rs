@@ -125,6 +125,16 @@ impl<'g> Joint<'g> {
         Joint { names: Some(list), ..self }
     }
 
+    /// The same with each expression replaced.
+    pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Joint<'n> {
+        Joint {
+            kind: self.kind.map(put),
+            place: self.place.map(put),
+            rotation: self.rotation.map(|row| row.map(put)),
+            names: self.names.clone(),
+        }
+    }
+
     /// Coordinates and quasi-velocities of a body of that name.
     pub(crate) fn names_for(&self, body: &str) -> (Vec<String>, Vec<String>) {
         self.names.clone().unwrap_or_else(|| self.kind.names(body))
@@ -133,7 +143,21 @@ impl<'g> Joint<'g> {
 
 const QUATERNION: [&str; 4] = ["q0", "q1", "q2", "q3"];
 
-impl Kind<'_> {
+impl<'g> Kind<'g> {
+    fn map<'n>(&self, put: impl Fn(Expr<'g>) -> Expr<'n>) -> Kind<'n> {
+        match *self {
+            Kind::Fixed => Kind::Fixed,
+            Kind::Revolute(axis) => Kind::Revolute(axis),
+            Kind::Prismatic(axis) => Kind::Prismatic(axis),
+            Kind::Screw(axis, pitch) => Kind::Screw(axis, put(pitch)),
+            Kind::Cylindrical(axis) => Kind::Cylindrical(axis),
+            Kind::Universal(first, second) => Kind::Universal(first, second),
+            Kind::Planar(normal) => Kind::Planar(normal),
+            Kind::Spherical => Kind::Spherical,
+            Kind::Free => Kind::Free,
+        }
+    }
+
     fn names(&self, body: &str) -> (Vec<String>, Vec<String>) {
         let with = |suffixes: &[&str]| -> Vec<String> {
             suffixes.iter().map(|suffix| format!("{body}_{suffix}")).collect()

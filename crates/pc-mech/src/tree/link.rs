@@ -44,6 +44,18 @@ pub(crate) enum Hinge<'g> {
     },
 }
 
+impl<'g> Link<'g> {
+    /// The same with each expression replaced.
+    pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Link<'n> {
+        Link {
+            parent: self.parent,
+            place: self.place.map(put),
+            rotation: self.rotation.map(|row| row.map(put)),
+            hinge: self.hinge.map(put),
+        }
+    }
+}
+
 impl<'g> Hinge<'g> {
     pub(crate) fn coordinates(&self) -> Vec<Expr<'g>> {
         match self {
@@ -54,11 +66,24 @@ impl<'g> Hinge<'g> {
         }
     }
 
-    /// The same with symbols of its constants replaced.
-    pub(crate) fn map(&self, put: &impl Fn(Expr<'g>) -> Expr<'g>) -> Hinge<'g> {
-        match self.clone() {
-            Hinge::Turn { axis, pitch, angle, rate } => Hinge::Turn { axis, pitch: put(pitch), angle, rate },
-            other @ (Hinge::Slide { .. } | Hinge::Ball { .. } | Hinge::Free { .. }) => other,
+    /// The same with each expression replaced.
+    pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Hinge<'n> {
+        match self {
+            Hinge::Turn { axis, pitch, angle, rate } => {
+                Hinge::Turn { axis: *axis, pitch: put(*pitch), angle: put(*angle), rate: put(*rate) }
+            }
+            Hinge::Slide { axis, way, rate } => {
+                Hinge::Slide { axis: *axis, way: put(*way), rate: put(*rate) }
+            }
+            Hinge::Ball { quaternion, omega } => {
+                Hinge::Ball { quaternion: quaternion.map(put), omega: omega.map(put) }
+            }
+            Hinge::Free { way, quaternion, v, omega } => Hinge::Free {
+                way: way.map(put),
+                quaternion: quaternion.map(put),
+                v: v.map(put),
+                omega: omega.map(put),
+            },
         }
     }
 

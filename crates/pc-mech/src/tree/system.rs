@@ -1,7 +1,7 @@
 //! A system that is a tree.
 
 use pc_algebra::Frame;
-use pc_expr::Expr;
+use pc_expr::{Expr, Graph};
 
 use crate::error::{MechError, TreeError};
 use crate::tree::dynamics::TreeDynamics;
@@ -58,10 +58,21 @@ impl<'g> TreeSystem<'g> {
 
     /// T − U, T being a quadratic form in η.
     pub(crate) fn energy(&self) -> Expr<'g> {
+        let (kinetic, potential) = self.parts();
+        kinetic - potential
+    }
+
+    /// L = T + U
+    pub(crate) fn lagrangian(&self) -> Expr<'g> {
+        let (kinetic, potential) = self.parts();
+        kinetic + potential
+    }
+
+    /// T and U.
+    fn parts(&self) -> (Expr<'g>, Expr<'g>) {
         let share = self.tree.motions().share(&self.gravity, &[]);
         let graph = self.tree.graph;
-        let kinetic = graph.sum(share.kinetic);
-        kinetic - graph.sum(share.weight) - self.others
+        (graph.sum(share.kinetic), graph.sum(share.weight) + self.others)
     }
 
     /// Its equations, with the forces Q.
@@ -88,10 +99,10 @@ impl<'g> TreeSystem<'g> {
         self.places.iter().map(|places| places.iter().map(|&place| ordered[place]).collect()).collect()
     }
 
-    /// The same with symbols of its constants replaced by numbers.
-    pub(crate) fn map(&self, put: impl Fn(Expr<'g>) -> Expr<'g>) -> TreeSystem<'g> {
+    /// The same with each expression replaced by one of a graph.
+    pub(crate) fn map<'n>(&self, graph: &'n Graph, put: impl Fn(Expr<'g>) -> Expr<'n>) -> TreeSystem<'n> {
         TreeSystem {
-            tree: self.tree.map(&put),
+            tree: self.tree.map(graph, &put),
             gravity: self.gravity.map(&put),
             others: put(self.others),
             places: self.places.clone(),

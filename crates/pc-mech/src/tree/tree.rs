@@ -228,33 +228,19 @@ impl<'g> Tree<'g> {
         self.links.len() > MANY_LINKS
     }
 
-    /// The same with symbols of its constants replaced.
-    pub(crate) fn map(&self, put: &impl Fn(Expr<'g>) -> Expr<'g>) -> Tree<'g> {
-        let all = |tensor: Tensor<'g>| tensor.map(|row| row.map(put));
-        let body = |body: &TreeBody<'g>| TreeBody {
-            mass: put(body.mass),
-            centre: body.centre.map(put),
-            inertia: body.inertia.map(put),
-            force: body.force.map(put),
-            torque: body.torque.map(put),
-            ..body.clone()
-        };
+    /// The same with each expression replaced by one of a graph.
+    pub(crate) fn map<'n>(&self, graph: &'n Graph, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Tree<'n> {
         let stand = |stand: &Stand<'g>| Stand {
-            place: stand.place.map(put),
-            rotation: all(stand.rotation),
             link: stand.link,
-        };
-        let link = |link: &Link<'g>| Link {
-            place: link.place.map(put),
-            rotation: all(link.rotation),
-            hinge: link.hinge.map(put),
-            parent: link.parent,
+            place: stand.place.map(put),
+            rotation: stand.rotation.map(|row| row.map(put)),
         };
         Tree {
-            bodies: self.bodies.iter().map(body).collect(),
+            graph,
+            bodies: self.bodies.iter().map(|body| body.map(put)).collect(),
             stands: self.stands.iter().map(stand).collect(),
-            links: self.links.iter().map(link).collect(),
-            ..self.clone()
+            links: self.links.iter().map(|link| link.map(put)).collect(),
+            own: self.own.clone(),
         }
     }
 
@@ -275,16 +261,23 @@ impl<'g> Tree<'g> {
 
     /// Whether masses and inertias are numbers, none of them negative.
     pub(crate) fn is_definite(&self) -> bool {
-        self.bodies.iter().all(|body| {
-            let number = |x: Expr<'g>| x.constant().map_or(f64::NAN, Number::to_f64);
-            let i = body.inertia.matrix().map(number);
-            let minor = |p: usize, q: usize| i[(p, p)] * i[(q, q)] - i[(p, q)] * i[(p, q)];
-            let cofactor = |q: usize, r: usize| i[(1, q)] * i[(2, r)] - i[(1, r)] * i[(2, q)];
-            let determinant =
-                i[(0, 0)] * cofactor(1, 2) - i[(0, 1)] * cofactor(0, 2) + i[(0, 2)] * cofactor(0, 1);
-            let minors =
-                [i[(0, 0)], i[(1, 1)], i[(2, 2)], minor(0, 1), minor(1, 2), minor(0, 2), determinant];
-            number(body.mass) >= 0.0 && minors.iter().all(|&minor| minor >= 0.0)
+        self.is_nowhere_negative(&[])
+    }
+
+    /// Whether, at these values of the parameters, no body has a negative mass, or a negative moment of inertia about any axis
+    /// through its mass centre: then no motion has a negative kinetic energy.
+    pub fn is_nowhere_negative(&self, parameters: &[(Expr<'g>, f64)]) -> bool {
+        let numbers =
+            |body: &TreeBody<'g>| [vec![body.mass], entries_of(&body.inertia.matrix()).concat()].concat();
+        let all: Vec<Expr<'g>> = self.bodies.iter().flat_map(numbers).collect();
+        let Ok(values) = self.graph.evaluate(&all, parameters) else { return false };
+        values.chunks_exact(10).all(|body| {
+            let i = |p: usize, q: usize| body[1 + 3 * p + q];
+            let minor = |p: usize, q: usize| i(p, p) * i(q, q) - i(p, q) * i(p, q);
+            let cofactor = |q: usize, r: usize| i(1, q) * i(2, r) - i(1, r) * i(2, q);
+            let determinant = i(0, 0) * cofactor(1, 2) - i(0, 1) * cofactor(0, 2) + i(0, 2) * cofactor(0, 1);
+            let minors = [i(0, 0), i(1, 1), i(2, 2), minor(0, 1), minor(1, 2), minor(0, 2), determinant];
+            body[0] >= 0.0 && minors.iter().all(|&minor| minor >= 0.0)
         })
     }
 

@@ -13,6 +13,10 @@ impl<'g> Assembly<'g> {
     /// moment of inertia has the wrong sign.
     pub fn has_negative_energy(&self) -> bool {
         let (system, graph) = (&self.system, self.system.graph());
+        // M is a sum over bodies; of a long chain it is longer than all that is integrated.
+        if system.tree().is_some_and(|tree| tree.is_nowhere_negative(system.parameters())) {
+            return false;
+        }
         let eta = system.quasi_velocities();
         let k = eta.len();
         let hessian = graph.jacobian(&system.momenta(), eta);

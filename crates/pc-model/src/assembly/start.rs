@@ -126,6 +126,9 @@ impl<'g> Assembler<'g, '_> {
             return Ok(start);
         }
         let conditions = self.conditions(frame, eta, constraints, at);
+        if is_complete && given.velocities.is_empty() && conditions.is_empty() {
+            return Ok(start);
+        }
         if is_complete && given.velocities.is_empty() {
             let mut written = Equations::default();
             (0..eta.len()).for_each(|s| _ = written.add(&unit(s), start[n + s]));

@@ -8,6 +8,7 @@ mod derive;
 mod error;
 mod hand;
 mod measure;
+mod mechanisms;
 mod report;
 mod rhs;
 mod solve;

@@ -8,6 +8,7 @@ use pc_tests::classical::SplitMix64;
 use crate::error::Error;
 use crate::hand::{self, Routine};
 use crate::measure::{Variant, interleave};
+use crate::mechanisms;
 use crate::report::Report;
 
 /// Derived and by hand may differ by this, relative to the largest component: rounding grows along a chain with the condition of
@@ -72,7 +73,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
             system: format!("chain of {links} links"),
             cause: "there is no machine code".to_owned(),
         })?;
-        let mut compiled = Routine::of_motion(&machine_code);
+        let mut compiled = Routine::of_motion(&machine_code, motion.code_parameters().unwrap_or_default());
         let mut variants = vec![
             Variant::new("by hand", Box::new(move |y: &[f64], dy: &mut [f64]| routine.call(y, dy))),
             Variant::new("derived", Box::new(move |y: &[f64], dy: &mut [f64]| compiled.call(y, dy))),
@@ -95,6 +96,9 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
         ]);
         motion.rhs(0.0, &state, &mut vec![0.0; state.len()])?;
     }
+    mechanisms::from_text(report, LENGTHS[LENGTHS.len() - 1])?;
+    mechanisms::pendulum(report)?;
+    mechanisms::loops(report)?;
     let of =
         |links: usize| measured.iter().find(|(count, _)| *count == links).map_or(f64::NAN, |(_, each)| *each);
     let exponent = 1.0 + (of(200) / of(20)).ln() / 10f64.ln();

@@ -4,6 +4,7 @@ use pc_algebra::Matrix;
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
 
 use crate::compiled::elimination::columns::{SparseColumn, Storage, derivative, nonzeros, sparse};
+use crate::compiled::elimination::schur::Schur;
 use crate::compiled::elimination::solver::Solver;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
@@ -19,6 +20,8 @@ pub(crate) struct Staged {
     multipliers: usize,
     unknowns: Unknowns,
     solver: Solver,
+    /// What gives w alone, of a tree with loops; it says where it does not.
+    schur: Option<Box<Schur>>,
     /// y, then w.
     known: Vec<f64>,
     /// Of (t, (y, w)).
@@ -71,6 +74,7 @@ impl Staged {
             dim: system.state.len(),
             multipliers: system.multipliers,
             unknowns,
+            schur: None,
             solver: Solver::of_rank(k, system.multipliers, system.rank),
             known: vec![0.0; known.state.len()],
             rates: compiled(&known, &system.rates, options.backend)?,
@@ -85,6 +89,17 @@ impl Staged {
 
     pub(crate) fn cost(&self) -> &Cost {
         &self.cost
+    }
+
+    /// The same with w by this, where only that is asked for.
+    pub(crate) fn by_joints(self, schur: Schur) -> Staged {
+        Staged { schur: Some(Box::new(schur)), ..self }
+    }
+
+    /// Operations of w by factors of its matrix.
+    pub(crate) fn operations(&self) -> usize {
+        let size = self.known.len() - self.dim;
+        self.equations().cost().total() + self.solver.operations(size, self.multipliers)
     }
 
     /// The program of the equations of w.
@@ -133,7 +148,11 @@ impl Staged {
         p: &[f64],
         ydot: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
-        self.solve(t, y, p)?;
+        self.known[..self.dim].copy_from_slice(y);
+        let unknowns = &mut self.known[self.dim..];
+        if !self.schur.as_mut().is_some_and(|schur| schur.solve(Point { t, y, p }, unknowns)) {
+            self.solve(t, y, p)?;
+        }
         self.rates.eval(t, &self.known, p, ydot);
         check_finite(ydot, &self.rates, Point { t, y: &self.known, p })
     }

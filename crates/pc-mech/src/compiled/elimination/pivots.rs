@@ -135,8 +135,8 @@ impl Pivots {
         let watched = factors.watched(system.graph, &system.mass);
         let pivots = watched.iter().map(|watched| watched.pivot);
         let all: Vec<Expr<'g>> = pivots.chain(watched.iter().map(|watched| watched.size)).collect();
-        let (fixed, moving): (Vec<usize>, Vec<usize>) =
-            (0..all.len()).partition(|&i| system.is_fixed(all[i]));
+        let is_fixed = system.are_fixed(&all);
+        let (fixed, moving): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&i| is_fixed[i]);
         let pick = |indices: &[usize]| indices.iter().map(|&i| all[i]).collect::<Vec<_>>();
         let program = Program::new(system.graph, &system.inputs(&[]), &pick(&fixed))?;
         let values = pick(&moving);

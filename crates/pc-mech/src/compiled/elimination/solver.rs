@@ -42,6 +42,21 @@ impl Solver {
         }
     }
 
+    /// Operations to factorise the matrix of `size` unknowns with so many `multipliers`, and to solve with it once, about.
+    pub(crate) fn operations(&self, size: usize, multipliers: usize) -> usize {
+        let k = size - multipliers;
+        match self {
+            Solver::Ldl(_) => k * k * k / 6 + 2 * k * k,
+            Solver::Saddle(saddle) => {
+                let (m, rank) = (multipliers, saddle.dependent().len());
+                let free = k - rank;
+                let pivoting = 2 * rank * m * k;
+                let reducing = free * rank * rank + 2 * k * free * rank + free * free * rank;
+                pivoting + reducing + free * free * free / 6 + 4 * k * k
+            }
+        }
+    }
+
     /// Whether multipliers of constraints to spare stand for others.
     pub(crate) fn takes_spare(&self) -> bool {
         match self {

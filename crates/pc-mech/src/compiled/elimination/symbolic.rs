@@ -7,6 +7,7 @@ use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, Taylo
 
 use crate::compiled::elimination::columns::{Columns, Storage, derivative};
 use crate::compiled::elimination::pivots::Pivots;
+use crate::compiled::elimination::prologue::Prologue;
 use crate::compiled::failure::{EvaluationFailure, blame, check_finite};
 use crate::compiled::first_order::{FirstOrder, Linearised};
 use crate::compiled::machine_code::MachineCode;
@@ -18,6 +19,8 @@ use crate::compiled::point::Point;
 pub(crate) struct Unrolled {
     /// Outputs: ẏ, then the pivots and the diagonal entries of M that change with the state.
     rates: Evaluator,
+    /// The same, faster, where parameters determine much of it.
+    prologue: Option<Box<Prologue>>,
     outputs: Vec<f64>,
     pivots: Pivots,
     jacobian: Option<Jacobian>,
@@ -67,8 +70,11 @@ impl Unrolled {
         let wants_products = options.jvp || options.jacobian && by_products;
         let observed: Vec<Expr<'_>> = system.observables.iter().map(|&(_, value)| value).collect();
         let observed = Program::new(graph, &inputs, &graph.substitute(&observed, &values))?;
+        let varies = |&place: &usize| system.varying.contains(&system.parameters[place].0);
+        let varying: Vec<usize> = (0..system.parameters.len()).filter(varies).collect();
         Ok(Unrolled {
             outputs: vec![0.0; program.outputs_len()],
+            prologue: Prologue::of(&program, &varying, options.backend).map(Box::new),
             rates: Evaluator::new(program, options.backend),
             pivots,
             jacobian: match options.jacobian {
@@ -90,6 +96,25 @@ impl Unrolled {
     /// Says that the parameters may have changed.
     pub(crate) fn forget(&mut self) {
         self.pivots.forget();
+        if let Some(prologue) = &mut self.prologue {
+            prologue.forget();
+        }
+    }
+
+    /// Says that the parameters in these places too may change at any time.
+    pub(crate) fn vary(&mut self, places: &[usize], backend: Backend) {
+        if let Some(prologue) = self.prologue.take() {
+            let varying = [prologue.varying(), places].concat();
+            self.prologue = Prologue::of(self.rates.program(), &varying, backend).map(Box::new);
+        }
+    }
+
+    /// The numbers that the machine code takes for parameters.
+    pub(crate) fn code_parameters<'a>(&'a mut self, p: &'a [f64]) -> &'a [f64] {
+        match &mut self.prologue {
+            Some(prologue) => prologue.numbers(p),
+            None => p,
+        }
     }
 
     /// The operations of ẏ; those of the pivots are not counted.
@@ -118,11 +143,17 @@ impl Unrolled {
         ydot: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
         if self.outputs.len() == ydot.len() {
-            self.rates.eval(t, y, p, ydot);
+            match &mut self.prologue {
+                Some(prologue) => prologue.eval(t, y, p, ydot),
+                None => self.rates.eval(t, y, p, ydot),
+            }
             self.pivots.check(y, p, &[])?;
             return check_finite(ydot, &self.rates, Point { t, y, p });
         }
-        self.rates.eval(t, y, p, &mut self.outputs);
+        match &mut self.prologue {
+            Some(prologue) => prologue.eval(t, y, p, &mut self.outputs),
+            None => self.rates.eval(t, y, p, &mut self.outputs),
+        }
         let (rates, moving) = self.outputs.split_at(y.len());
         self.pivots.check(y, p, moving)?;
         // One pass with an early end, which keeps it number by number: a copy in wider pieces would wait for the numbers just
@@ -157,7 +188,12 @@ impl Unrolled {
     }
 
     pub(crate) fn machine_code(&mut self, dim: usize) -> Option<MachineCode> {
-        Some(MachineCode::new(self.rates.machine_code()?, dim, Arc::clone(self.pivots.partition())))
+        let parameters = self.rates.program().parameters_len();
+        let (code, parameters) = match &mut self.prologue {
+            Some(prologue) => (prologue.machine_code()?, prologue.parameters_len()),
+            None => (self.rates.machine_code()?, parameters),
+        };
+        Some(MachineCode::new(code, (dim, parameters), Arc::clone(self.pivots.partition())))
     }
 
     pub(crate) fn fixed_pivots(&mut self, dim: usize, p: &[f64]) -> &[f64] {

@@ -37,7 +37,7 @@ pub(crate) struct Bodies<'g> {
 
 impl<'g> Bodies<'g> {
     /// The same with `put` applied to every expression, as to the Lagrangian.
-    pub(crate) fn map(&self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'g>>) -> Bodies<'g> {
+    pub(crate) fn map<'n>(&self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'n>>) -> Bodies<'n> {
         let moved = |body: &BodyVelocity<'g>| BodyVelocity {
             name: body.name.clone(),
             velocity: put(&body.velocity),

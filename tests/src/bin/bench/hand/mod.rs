@@ -59,17 +59,18 @@ impl Routine {
         Routine { entry: jit.entry(), dimension, parameters, scratch, _code: Some(jit) }
     }
 
-    /// The code of a motion without parameters, none of whose pivots changes; valid as long as the motion.
+    /// The code of a motion with what it takes for parameters, none of whose pivots changes; valid as long as the motion.
     ///
     /// # Panics
-    /// If one changes.
-    pub(crate) fn of_motion(code: &MachineCode) -> Routine {
+    /// If one changes, or there are not as many parameters as it takes.
+    pub(crate) fn of_motion(code: &MachineCode, parameters: &[f64]) -> Routine {
         assert_eq!(code.outputs_len(), code.rates_len(), "outputs are rates");
+        assert_eq!(code.parameters_len(), parameters.len(), "parameters of the code");
         let scratch = vec![0.0; code.scratch_len()];
         Routine {
             entry: code.entry(),
             dimension: code.rates_len(),
-            parameters: Vec::new(),
+            parameters: parameters.to_vec(),
             scratch,
             _code: None,
         }

@@ -1,0 +1,45 @@
+//! Loops of a tree, closed after its joints are eliminated.
+
+use pc_expr::{Inputs, Transcription};
+
+use crate::compiled::elimination::schur::Schur;
+use crate::compiled::options::{CompileOptions, TreeElimination};
+use crate::constraints::multipliers::Multipliers;
+use crate::error::MechError;
+use crate::tree::equations::TreeEquations;
+use crate::tree::system::TreeSystem;
+
+impl Multipliers<'_> {
+    /// What gives accelerations and the reactions of the independent constraints joint after joint; none of what is no tree.
+    ///
+    /// # Errors
+    /// As for [`compile_for`](Multipliers::compile_for).
+    pub(crate) fn by_joints(
+        &self,
+        options: &CompileOptions,
+        rank: usize,
+    ) -> Result<Option<Schur>, MechError> {
+        let system = &self.equations.system;
+        let Some(tree) = system.tree.as_ref().filter(|_| options.elimination != TreeElimination::Whole)
+        else {
+            return Ok(None);
+        };
+        let graph = system.graph().page(system.graph().folding());
+        let own = system.in_graph(tree, &graph);
+        let copy = Transcription::new(system.graph(), &graph);
+        let Some(tree) = &own.tree else { return Ok(None) };
+        let tree = TreeEquations {
+            dynamics: tree.dynamics(&own.frame, &own.forces),
+            system: TreeSystem::clone(tree),
+        };
+        let row = |a: usize| self.coefficients.row(a).iter().map(|&c| copy.write(c)).collect::<Vec<_>>();
+        let rows: Vec<_> = (0..rank).map(row).collect();
+        let right: Vec<_> = self.right[..rank].iter().map(|&rate| copy.write(rate)).collect();
+        let inputs = Inputs {
+            time: Some(own.frame.time()),
+            state: own.state(),
+            parameters: own.run_time_inputs().into_iter().map(|(symbol, _)| symbol).collect(),
+        };
+        Ok(Schur::new(&graph, &inputs, &tree, (&rows, &right), options.backend)?)
+    }
+}

@@ -1,0 +1,39 @@
+//! A system that is a tree, in a graph of its own.
+
+use pc_expr::{Expr, Graph, Transcription};
+
+use crate::system::system::System;
+use crate::tree::system::TreeSystem;
+
+impl<'g> System<'g> {
+    /// The same system in an empty graph, of which `tree` is the tree: what is derived there depends on the system alone, to the
+    /// last bit, and not on what else has been made in the graph of this one.
+    pub(crate) fn in_graph<'n>(&self, tree: &TreeSystem<'g>, graph: &'n Graph) -> System<'n> {
+        let copy = Transcription::new(self.graph(), graph);
+        let put = |x: Expr<'g>| copy.write(x);
+        let all = |list: &[Expr<'g>]| list.iter().map(|&x| put(x)).collect::<Vec<_>>();
+        let named = |list: &[(String, Expr<'g>)]| {
+            list.iter().map(|(name, x)| (name.clone(), put(*x))).collect::<Vec<_>>()
+        };
+        // Symbols first, in the order of the state.
+        all(&self.state());
+        let parameters = self.parameters.iter().map(|&(symbol, value)| (put(symbol), value)).collect();
+        let frame = self.frame.written_in(graph, put);
+        let tree = tree.map(graph, put);
+        System {
+            frame,
+            parameters,
+            structure: self.structure.map(put),
+            quasi_velocities: all(&self.quasi_velocities),
+            signals: all(&self.signals),
+            forces: all(&self.forces),
+            external: named(&self.external),
+            states: self.states.iter().map(|&(z, rate)| (put(z), put(rate))).collect(),
+            lagrangian: tree.lagrangian(),
+            integrals: named(&self.integrals),
+            outputs: named(&self.outputs),
+            bodies: self.bodies.map(all),
+            tree: Some(Box::new(tree)),
+        }
+    }
+}
