@@ -19,7 +19,7 @@ fn tolerance(model: &str, method: Method) -> Option<f64> {
     match (model == STIFF, method) {
         (false, _) => Some(TOLERANCE),
         (true, Method::Bdf | Method::Auto) => Some(1e-6),
-        (true, Method::Adams | Method::Dop853) => None,
+        (true, Method::Adams | Method::Dop853 | Method::Taylor) => None,
     }
 }
 
