@@ -4,27 +4,19 @@ use pc_algebra::Matrix;
 use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, VectorField};
 
 use crate::compiled::chart::Chart;
-use crate::compiled::elimination::cost;
 use crate::compiled::elimination::numeric::Staged;
 use crate::compiled::elimination::schur::Schur;
 use crate::compiled::elimination::symbolic::Unrolled;
 use crate::compiled::failure::EvaluationFailure;
-use crate::compiled::first_order::FirstOrder;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::{CompileOptions, TreeElimination};
 use crate::compiled::point::Point;
 use crate::compiled::projection::constraint_manifold::Surface;
-use crate::compiled::projection::holding::PrescribedComponents;
 use crate::compiled::projection::integrals::KeptIntegrals;
-use crate::equations::poincare::Equations;
 use crate::error::MechError;
 use crate::system::signals::Signals;
 use crate::system::system::System;
-
-/// M⁻¹ is written out if the factorisation of M takes no more operations than that of a full matrix of 16
-/// rows. So all smaller systems are written out, and longer ones whose bodies are coupled with few others.
-pub(crate) const LONGEST_ELIMINATION: usize = 16 * 15 * 20 / 6;
 
 /// The first-order system ẏ = f(t, y) of y = (x, η, z), compiled; owned and independent of the graph.
 #[derive(Clone, Debug)]
@@ -100,73 +92,6 @@ pub(super) struct Slopes {
     pub(super) by_symbol: Vec<f64>,
     pub(super) of_unknowns: Vec<f64>,
     pub(super) columns: Vec<f64>,
-}
-
-impl<'g> Equations<'g> {
-    /// Compiles the equations, their Jacobian and the observables: integrals, energy, outputs.
-    ///
-    /// Accelerations are solved for in the program, unless there are many quasi-velocities of which most are
-    /// coupled with each other: then M is factorised in numbers at each call.
-    ///
-    /// # Errors
-    /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor
-    /// declared parameter; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) where a joint of a tree moves
-    /// nothing that has inertia.
-    pub fn compile(&self) -> Result<Motion, MechError> {
-        self.compile_for(CompileOptions::default())
-    }
-
-    /// Compiles as [`compile`](Equations::compile) does, with other derivatives or for another
-    /// [kernel](pc_expr::Backend).
-    ///
-    /// # Errors
-    /// As [`compile`](Equations::compile).
-    pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
-        let options = options.into();
-        let Some(tree) = &self.system.tree else {
-            return self.first_order().compile(&options, LONGEST_ELIMINATION);
-        };
-        let graph = self.system.graph().page(self.system.graph().folding());
-        let equations = self.system.in_graph(tree, &graph).poincare()?;
-        let first_order = equations.shortest_first_order(options.elimination);
-        if let Some(tree) = &first_order.tree {
-            tree.check_regular(&first_order.names)?;
-        }
-        first_order.compile(&options, LONGEST_ELIMINATION)
-    }
-}
-
-impl FirstOrder<'_> {
-    /// Compiles; M⁻¹ is written out if the factorisation takes no more operations than `longest` and the
-    /// unknowns stand linearly in their equations.
-    ///
-    /// # Errors
-    /// As for [`Equations::compile`].
-    pub(crate) fn compile(&self, options: &CompileOptions, longest: usize) -> Result<Motion, MechError> {
-        let short = || cost::operations(&self.mass) <= longest;
-        let unrolled = || short() || !cost::needs_no_pivoting(self.graph, &self.mass);
-        let form = if self.tree.is_some() || self.implicit.is_none() && self.multipliers == 0 && unrolled() {
-            Form::Unrolled(Box::new(Unrolled::new(self, options)?))
-        } else {
-            Form::Staged(Box::new(Staged::new(self, options)?))
-        };
-        Ok(Motion {
-            names: self.state.iter().map(Expr::to_string).collect(),
-            coordinates: self.coordinates,
-            states: self.states,
-            quasi_velocities: self.names.clone(),
-            parameters: self.parameters.iter().map(|&(_, value)| value).collect(),
-            form,
-            options: *options,
-            observable_names: self.observables.iter().map(|(name, _)| name.clone()).collect(),
-            conserved: self.conserved,
-            constraints: Vec::new(),
-            surface: None,
-            kept: None,
-            signals: Signals::default(),
-            charts: Vec::new(),
-        })
-    }
 }
 
 impl Motion {
@@ -405,37 +330,6 @@ impl Motion {
         std::mem::replace(&mut self.kept, integrals.map(Box::new)).map(|kept| *kept)
     }
 
-    /// Names of the constraints.
-    pub fn constraint_names(&self) -> &[String] {
-        &self.constraints
-    }
-
-    /// The residual of each constraint at (t, y): f(t, x) for conditions on positions, C η + c_0 for the others.
-    ///
-    /// # Panics
-    /// If `y` does not have the length of the state.
-    pub fn constraint_residuals(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
-        let mut residuals = vec![f64::NAN; self.constraints.len()];
-        self.constraint_residuals_to(t, y, &mut residuals);
-        residuals
-    }
-
-    /// Writes the residual of each constraint to `residuals`, as
-    /// [`constraint_residuals`](Motion::constraint_residuals) gives it.
-    ///
-    /// # Panics
-    /// If `y` does not have the length of the state, or `residuals` not that of [`constraint_names`](Motion::constraint_names).
-    pub fn constraint_residuals_to(&mut self, t: f64, y: &[f64], residuals: &mut [f64]) {
-        assert_eq!(y.len(), self.names.len(), "length of the state");
-        assert_eq!(residuals.len(), self.constraints.len(), "number of constraints");
-        if let Form::InMomenta(motion) = &mut self.form {
-            return motion.constraint_residuals(t, y, residuals);
-        }
-        if let Some(surface) = &mut self.surface {
-            surface.residuals(Point { t, y, p: &self.parameters }, residuals);
-        }
-    }
-
     /// A number that distinguishes this motion from those of other equations or names: a digest of the names of
     /// states, parameters and constraints, and of the programs of f. It is the same on every run, whatever the values
     /// of the parameters.
@@ -500,24 +394,6 @@ impl Motion {
         matches!(self.form, Form::Staged(_))
     }
 
-    /// Moves a state to the constraints alone, with the coordinates and the quasi-velocities of these indices left as they
-    /// are: the others follow by the shortest way in the kinetic metric.
-    ///
-    /// # Errors
-    /// A [`Failure`] where no such state exists, or the other components cannot reach it.
-    pub fn project_holding(
-        &mut self,
-        t: f64,
-        y: &mut [f64],
-        coordinates: &[usize],
-        quasi_velocities: &[usize],
-    ) -> Result<(), Failure> {
-        let Some(surface) = &mut self.surface else { return Ok(()) };
-        let held = PrescribedComponents { coordinates, quasi_velocities };
-        let projected = surface.project_holding((t, y, &self.parameters), &held);
-        projected.map_err(|failure| self.failure(failure, t, y))
-    }
-
     /// ẏ with each component of the state, and each number of the equations where these are solved in numbers, times a
     /// `factor`, which is another one each time.
     pub(crate) fn perturbed_rates(
@@ -544,20 +420,6 @@ impl Motion {
         };
         outcome.map_err(|failure| MechError::from(self.failure(failure, t, &state)))?;
         Ok((state, rates))
-    }
-
-    /// Moves the η of a state onto the constraints, and leaves its x as they are.
-    ///
-    /// # Errors
-    /// As the [projection](VectorField::project) of the state.
-    ///
-    /// # Panics
-    /// If `y` does not have the length of the state.
-    pub fn project_velocities(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-        assert_eq!(y.len(), self.names.len(), "length of the state");
-        let parameters = &self.parameters;
-        let outcome = self.surface.as_mut().map_or(Ok(()), |s| s.project_velocities(t, y, parameters));
-        outcome.map_err(|failure| self.failure(failure, t, y))
     }
 
     #[cold]

@@ -3,9 +3,10 @@
 use pc_algebra::{Matrix, Quadratic, quadratic};
 use pc_expr::Expr;
 
+use crate::compiled::compile::LONGEST_ELIMINATION;
 use crate::compiled::first_order::{FirstOrder, Implicit};
 use crate::compiled::legendre_transform::LegendreTransform;
-use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
+use crate::compiled::motion::Motion;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::projection::constraint_manifold::{Conditions, Surface};
 use crate::constraints::constraint::Constraint;

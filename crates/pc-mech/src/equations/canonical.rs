@@ -3,10 +3,11 @@
 use pc_algebra::{Matrix, determinant};
 use pc_expr::{Expr, Graph, Style};
 
+use crate::compiled::compile::LONGEST_ELIMINATION;
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::first_order::{FirstOrder, Implicit};
 use crate::compiled::legendre_transform::LegendreTransform;
-use crate::compiled::motion::{LONGEST_ELIMINATION, Motion};
+use crate::compiled::motion::Motion;
 use crate::compiled::options::CompileOptions;
 use crate::equations::book::{expanded, sums_of_products};
 use crate::equations::legendre::{Inverse, Legendre};

@@ -1,0 +1,84 @@
+//! From equations to a motion.
+
+use pc_expr::Expr;
+
+use crate::compiled::elimination::cost;
+use crate::compiled::elimination::numeric::Staged;
+use crate::compiled::elimination::symbolic::Unrolled;
+use crate::compiled::first_order::FirstOrder;
+use crate::compiled::motion::{Form, Motion};
+use crate::compiled::options::CompileOptions;
+use crate::equations::poincare::Equations;
+use crate::error::MechError;
+use crate::system::signals::Signals;
+
+/// M⁻¹ is written out if the factorisation of M takes no more operations than that of a full matrix of 16
+/// rows. So all smaller systems are written out, and longer ones whose bodies are coupled with few others.
+pub(crate) const LONGEST_ELIMINATION: usize = 16 * 15 * 20 / 6;
+
+impl<'g> Equations<'g> {
+    /// Compiles the equations, their Jacobian and the observables: integrals, energy, outputs.
+    ///
+    /// Accelerations are solved for in the program, unless there are many quasi-velocities of which most are
+    /// coupled with each other: then M is factorised in numbers at each call.
+    ///
+    /// # Errors
+    /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor
+    /// declared parameter; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) where a joint of a tree moves
+    /// nothing that has inertia.
+    pub fn compile(&self) -> Result<Motion, MechError> {
+        self.compile_for(CompileOptions::default())
+    }
+
+    /// Compiles as [`compile`](Equations::compile) does, with other derivatives or for another
+    /// [kernel](pc_expr::Backend).
+    ///
+    /// # Errors
+    /// As [`compile`](Equations::compile).
+    pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
+        let options = options.into();
+        let Some(tree) = &self.system.tree else {
+            return self.first_order().compile(&options, LONGEST_ELIMINATION);
+        };
+        let graph = self.system.graph().page(self.system.graph().folding());
+        let equations = self.system.in_graph(tree, &graph).poincare()?;
+        let first_order = equations.shortest_first_order(options.elimination);
+        if let Some(tree) = &first_order.tree {
+            tree.check_regular(&first_order.names)?;
+        }
+        first_order.compile(&options, LONGEST_ELIMINATION)
+    }
+}
+
+impl FirstOrder<'_> {
+    /// Compiles; M⁻¹ is written out if the factorisation takes no more operations than `longest` and the
+    /// unknowns stand linearly in their equations.
+    ///
+    /// # Errors
+    /// As for [`Equations::compile`].
+    pub(crate) fn compile(&self, options: &CompileOptions, longest: usize) -> Result<Motion, MechError> {
+        let short = || cost::operations(&self.mass) <= longest;
+        let unrolled = || short() || !cost::needs_no_pivoting(self.graph, &self.mass);
+        let form = if self.tree.is_some() || self.implicit.is_none() && self.multipliers == 0 && unrolled() {
+            Form::Unrolled(Box::new(Unrolled::new(self, options)?))
+        } else {
+            Form::Staged(Box::new(Staged::new(self, options)?))
+        };
+        Ok(Motion {
+            names: self.state.iter().map(Expr::to_string).collect(),
+            coordinates: self.coordinates,
+            states: self.states,
+            quasi_velocities: self.names.clone(),
+            parameters: self.parameters.iter().map(|&(_, value)| value).collect(),
+            form,
+            options: *options,
+            observable_names: self.observables.iter().map(|(name, _)| name.clone()).collect(),
+            conserved: self.conserved,
+            constraints: Vec::new(),
+            surface: None,
+            kept: None,
+            signals: Signals::default(),
+            charts: Vec::new(),
+        })
+    }
+}
