@@ -20,5 +20,3 @@ mod stages;
 mod step;
 mod stepper;
 mod stiffness;
-#[cfg(test)]
-mod tests;

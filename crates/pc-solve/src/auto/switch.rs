@@ -124,8 +124,8 @@ impl<F: VectorField> Auto<F> {
         let mut all = self.earlier.followed_by(&since);
         if since.steps == 0 && self.earlier.steps > 0 {
             // Nothing has been done since the change.
-            let Statistics { last_order, last_step, current_order, current_step, .. } = self.earlier;
-            all = Statistics { last_order, last_step, current_order, current_step, ..all };
+            let Statistics { last_order, current_order, last_step, current_step, .. } = self.earlier;
+            all = Statistics { last_order, current_order, last_step, current_step, ..all };
         }
         all
     }

@@ -11,21 +11,6 @@ pub(super) fn padded(dim: usize) -> usize {
     dim.next_multiple_of(2)
 }
 
-/// Calls a function with the length of rows as a constant where it is small.
-macro_rules! by_length {
-    ($n:expr, $function:ident::<$terms:ident>, $($argument:expr),*) => {
-        match $n {
-            2 => $function::<2, $terms>($($argument),*),
-            4 => $function::<4, $terms>($($argument),*),
-            6 => $function::<6, $terms>($($argument),*),
-            8 => $function::<8, $terms>($($argument),*),
-            10 => $function::<10, $terms>($($argument),*),
-            12 => $function::<12, $terms>($($argument),*),
-            _ => $function::<0, $terms>($($argument),*),
-        }
-    };
-}
-
 /// sum = y + h Σ aⱼ kⱼ
 pub(super) fn add<const TERMS: usize>(
     sum: &mut [f64],
@@ -34,12 +19,12 @@ pub(super) fn add<const TERMS: usize>(
     a: &[f64; TERMS],
     k: [&[f64]; TERMS],
 ) {
-    by_length!(sum.len(), add_of::<TERMS>, sum, y, h, a, k);
+    add_of::<0, TERMS>(sum, y, h, a, k);
 }
 
 /// The same for rows of LENGTH, or of any length where that is 0.
-#[inline(never)]
-fn add_of<const LENGTH: usize, const TERMS: usize>(
+#[inline(always)]
+pub(super) fn add_of<const LENGTH: usize, const TERMS: usize>(
     sum: &mut [f64],
     y: &[f64],
     h: f64,
@@ -67,14 +52,10 @@ pub(super) struct Weights<'a> {
 }
 
 /// Writes y₁ = y + h Σ bᵢ kᵢ from stages 1 and 6 to 12, and returns the sums over the components of the squares of the
-/// two error estimates over h, weighed by the tolerances: of order 5 and of order 3. Where y₁ is not finite, they are not.
-pub(super) fn finish(y1: &mut [f64], y: &[f64], h: f64, k: [&[f64]; 8], weights: Weights<'_>) -> (f64, f64) {
-    const NONE: usize = 0;
-    by_length!(y1.len(), finish_of::<NONE>, y1, y, h, k, weights)
-}
-
-#[inline(never)]
-fn finish_of<const LENGTH: usize, const NONE: usize>(
+/// two error estimates over h, weighed by the tolerances: of order 5 and of order 3. Where y₁ is not finite, they are not. Rows are of LENGTH, or of any
+/// length where that is 0.
+#[inline(always)]
+pub(super) fn finish_of<const LENGTH: usize>(
     y1: &mut [f64],
     y: &[f64],
     h: f64,

@@ -24,7 +24,8 @@ use crate::settings::options::Options;
 /// II.5 and II.6]. It is for systems that are not stiff, at tolerances of 1e-6 and below; stiffness is
 /// [detected](Dop853::stiff_from), not dealt with: the steps are then as short as stability demands. States are
 /// [projected](VectorField::project) at the end of each step, and inside steps where they are read. A step at which the field
-/// fails recoverably, or that leaves the inequalities, is tried again, half as long. No step allocates.
+/// fails recoverably, or that leaves the inequalities, is tried again, half as long. No step
+/// allocates, unless f depends on t explicitly and turns within it.
 ///
 /// ```
 /// use pc_solve::{Dop853, Integration, Method, Options, from_fn};

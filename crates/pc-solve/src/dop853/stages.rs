@@ -2,7 +2,7 @@
 
 use pc_expr::{Failure, VectorField};
 
-use super::arithmetic::{Weights, add, finish};
+use super::arithmetic::{Weights, add_of, finish_of};
 use super::coefficients::{A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12, C};
 use crate::error::NonFinite;
 
@@ -50,6 +50,25 @@ pub(super) fn evaluate<F: VectorField>(
 /// # Errors
 /// A failure of the field, and when.
 pub(super) fn advance<F: VectorField>(
+    counted: (&mut F, &mut u64),
+    from: &Node,
+    to: &mut Node,
+    rows: (&mut Early, &mut Stages),
+    argument: &mut [f64],
+    weights: Weights<'_>,
+) -> Result<(f64, f64), (f64, Failure)> {
+    match argument.len() {
+        2 => advance_of::<F, 2>(counted, from, to, rows, argument, weights),
+        4 => advance_of::<F, 4>(counted, from, to, rows, argument, weights),
+        6 => advance_of::<F, 6>(counted, from, to, rows, argument, weights),
+        8 => advance_of::<F, 8>(counted, from, to, rows, argument, weights),
+        12 => advance_of::<F, 12>(counted, from, to, rows, argument, weights),
+        _ => advance_of::<F, 0>(counted, from, to, rows, argument, weights),
+    }
+}
+
+/// The same for rows of LENGTH, or of any length where that is 0.
+fn advance_of<F: VectorField, const LENGTH: usize>(
     (field, count): (&mut F, &mut u64),
     from: &Node,
     to: &mut Node,
@@ -62,27 +81,27 @@ pub(super) fn advance<F: VectorField>(
     let (y, k1) = (&from.y[..], &from.rates[..]);
     let [k2, k3, k4, k5] = early.each_mut().map(Vec::as_mut_slice);
     let [k6, k7, k8, k9, k10, k11, k12] = stages.each_mut().map(Vec::as_mut_slice);
-    add(argument, y, h, &A2, [k1]);
+    add_of::<LENGTH, _>(argument, y, h, &A2, [k1]);
     evaluate((field, count), t + C[1] * h, argument, k2)?;
-    add(argument, y, h, &A3, [k1, k2]);
+    add_of::<LENGTH, _>(argument, y, h, &A3, [k1, k2]);
     evaluate((field, count), t + C[2] * h, argument, k3)?;
-    add(argument, y, h, &A4, [k1, k3]);
+    add_of::<LENGTH, _>(argument, y, h, &A4, [k1, k3]);
     evaluate((field, count), t + C[3] * h, argument, k4)?;
-    add(argument, y, h, &A5, [k1, k3, k4]);
+    add_of::<LENGTH, _>(argument, y, h, &A5, [k1, k3, k4]);
     evaluate((field, count), t + C[4] * h, argument, k5)?;
-    add(argument, y, h, &A6, [k1, k4, k5]);
+    add_of::<LENGTH, _>(argument, y, h, &A6, [k1, k4, k5]);
     evaluate((field, count), t + C[5] * h, argument, k6)?;
-    add(argument, y, h, &A7, [k1, k4, k5, k6]);
+    add_of::<LENGTH, _>(argument, y, h, &A7, [k1, k4, k5, k6]);
     evaluate((field, count), t + C[6] * h, argument, k7)?;
-    add(argument, y, h, &A8, [k1, k4, k5, k6, k7]);
+    add_of::<LENGTH, _>(argument, y, h, &A8, [k1, k4, k5, k6, k7]);
     evaluate((field, count), t + C[7] * h, argument, k8)?;
-    add(argument, y, h, &A9, [k1, k4, k5, k6, k7, k8]);
+    add_of::<LENGTH, _>(argument, y, h, &A9, [k1, k4, k5, k6, k7, k8]);
     evaluate((field, count), t + C[8] * h, argument, k9)?;
-    add(argument, y, h, &A10, [k1, k4, k5, k6, k7, k8, k9]);
+    add_of::<LENGTH, _>(argument, y, h, &A10, [k1, k4, k5, k6, k7, k8, k9]);
     evaluate((field, count), t + C[9] * h, argument, k10)?;
-    add(argument, y, h, &A11, [k1, k4, k5, k6, k7, k8, k9, k10]);
+    add_of::<LENGTH, _>(argument, y, h, &A11, [k1, k4, k5, k6, k7, k8, k9, k10]);
     evaluate((field, count), t + C[10] * h, argument, k11)?;
-    add(argument, y, h, &A12, [k1, k4, k5, k6, k7, k8, k9, k10, k11]);
+    add_of::<LENGTH, _>(argument, y, h, &A12, [k1, k4, k5, k6, k7, k8, k9, k10, k11]);
     evaluate((field, count), t1, argument, k12)?;
-    Ok(finish(&mut to.y, y, h, [k1, k6, k7, k8, k9, k10, k11, k12], weights))
+    Ok(finish_of::<LENGTH>(&mut to.y, y, h, [k1, k6, k7, k8, k9, k10, k11, k12], weights))
 }

@@ -1,6 +1,9 @@
-//! The coefficients against the conditions that they satisfy.
+//! The coefficients of DOP853 against the conditions that they satisfy.
 
-use super::coefficients::*;
+#[path = "../src/dop853/coefficients.rs"]
+mod coefficients;
+
+use coefficients::*;
 
 /// The matrix by rows, with what dense output adds: each with the stages its entries belong to.
 fn rows() -> Vec<(f64, Vec<(usize, f64)>)> {
