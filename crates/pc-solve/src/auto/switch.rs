@@ -125,7 +125,7 @@ impl<F: VectorField> Auto<F> {
         if since.steps == 0 && self.earlier.steps > 0 {
             // Nothing has been done since the change.
             let Statistics { last_order, last_step, current_order, current_step, .. } = self.earlier;
-            all = Statistics { last_order, last_step, current_order, current_step, ..all };
+            all = Statistics { last_order, current_order, last_step, current_step, ..all };
         }
         all
     }
