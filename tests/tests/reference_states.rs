@@ -1,4 +1,4 @@
-//! End states and drifts of every built-in model, integrated with CVODE, against references of 16 digits.
+//! End states and drifts of every built-in model, by each method, against references of 16 digits.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -18,8 +18,8 @@ const STIFF: &str = "stiff-sleigh";
 fn tolerance(model: &str, method: Method) -> Option<f64> {
     match (model == STIFF, method) {
         (false, _) => Some(TOLERANCE),
-        (true, Method::Bdf) => Some(1e-6),
-        (true, Method::Adams) => None,
+        (true, Method::Bdf | Method::Auto) => Some(1e-6),
+        (true, Method::Adams | Method::Dop853 | Method::Taylor) => None,
     }
 }
 
@@ -90,6 +90,41 @@ fn bdf_reaches_the_references() {
     run(Method::Bdf);
 }
 
+#[test]
+fn dop853_reaches_the_references() {
+    run(Method::Dop853);
+}
+
+#[test]
+fn the_choice_of_methods_reaches_the_references() {
+    run(Method::Auto);
+}
+
+/// From the end back to the start, of the motions that do not grow on the way back by more than a thousandfold.
+#[test]
+fn dop853_comes_back_to_the_starts() {
+    let mut far = Vec::new();
+    for reference in references() {
+        let name = reference.model;
+        let Some(tolerance) = tolerance(name, Method::Dop853) else { continue };
+        let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
+        let graph = Graph::new();
+        let assembly = model.assemble(&graph).unwrap();
+        let (mut motion, start) = model.compile(&assembly).unwrap();
+        let options = Options::new(Method::Dop853).relative_tolerance(1e-12).absolute_tolerance(1e-14);
+        let t = assembly.t_start;
+        let there = solve(&mut motion, t, &start, &[reference.t_end], &options).unwrap();
+        let (end, state) = there.last().unwrap();
+        let back = solve(&mut motion, end, state, &[t], &options).map(|back| back.state(0).to_vec());
+        let error = |back: &[f64]| back.iter().zip(&start).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        match back {
+            Ok(back) if error(&back) <= 1e3 * tolerance => {}
+            _ => far.push(name),
+        }
+    }
+    assert_eq!(far, [""; 0]);
+}
+
 /// Where the velocities that its constraints determine best at the start, Ẏ and θ̇ of Ẋ and φ̇, are no longer determined
 /// on the way: at cos φ = 0.
 const OUT_OF_ITS_CHART: &str = "vertical-disk";
@@ -111,7 +146,7 @@ fn the_canonical_equations_reach_the_references() {
         let mut transform = canonical.legendre_transform().unwrap();
         let state = [system.frame().coordinates(), system.quasi_velocities()];
         let start = transform.to_momenta(assembly.t_start, &assembly.start_of(&state.concat())).unwrap();
-        for method in [Method::Adams, Method::Bdf] {
+        for method in [Method::Adams, Method::Bdf, Method::Dop853] {
             let Some(tolerance) = tolerance(name, method) else { continue };
             let mut motion = model.compile_canonical(&canonical, assembly.t_start, &start).unwrap();
             let options = Options::new(method).relative_tolerance(1e-12).absolute_tolerance(1e-14);
@@ -173,7 +208,7 @@ fn lagranges_equations_reach_the_references() {
             }
             coordinates => coordinates.to_vec(),
         };
-        for method in [Method::Adams, Method::Bdf] {
+        for method in [Method::Adams, Method::Bdf, Method::Dop853] {
             let Some(tolerance) = tolerance(name, method) else { continue };
             let options = Options::new(method).relative_tolerance(1e-12).absolute_tolerance(1e-14);
             let trajectory =

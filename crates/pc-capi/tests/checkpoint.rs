@@ -105,7 +105,8 @@ fn label(bytes: &[u8]) -> Result<String, Refusal> {
 
 #[test]
 fn a_resumed_motion_is_the_same_to_the_last_bit() {
-    let stiff = pc_solver_options { method: pc_method::PC_BDF as i32, ..Default::default() };
+    let by = |method: pc_method| pc_solver_options { method: method as i32, ..Default::default() };
+    let (stiff, explicit, auto) = (by(pc_method::PC_BDF), by(pc_method::PC_DOP853), by(pc_method::PC_AUTO));
     for name in [
         "heavy-top-lagrange",
         "rod",
@@ -114,7 +115,7 @@ fn a_resumed_motion_is_the_same_to_the_last_bit() {
         "rocking-block",
         "stick-slip-block",
     ] {
-        for options in [pc_solver_options::default(), stiff] {
+        for options in [pc_solver_options::default(), stiff, explicit, auto] {
             let system = System::of(name);
             let start = system.start().0;
             let solver = Solver::of(&system, &options);

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
-use pc_solve::{Code, SolveError, Spent};
+use pc_solve::{Code, Method, SolveError, Spent};
 use pc_verify::VerifyError;
 
 use crate::exit_code;
@@ -48,6 +48,12 @@ pub enum CliError {
     /// `--sensitivities` by something that is not a parameter.
     #[error("--sensitivities: {0}")]
     Sensitivities(UnknownParameter),
+    /// `--sensitivities` by a method that has none.
+    #[error("--sensitivities: {method} has none; use --method adams or --method bdf")]
+    NoSensitivities {
+        /// The method.
+        method: Method,
+    },
     /// `--keep` of something that has no start value.
     #[error("--keep: {0}")]
     UnknownStart(#[from] UnknownStart),
@@ -215,6 +221,7 @@ impl CliError {
             | CliError::UnknownParameter(_)
             | CliError::UnknownIntegral(_)
             | CliError::Sensitivities(_)
+            | CliError::NoSensitivities { .. }
             | CliError::UnknownStart(_)
             | CliError::SetTwice { .. }
             | CliError::Definitions { .. }

@@ -1,4 +1,4 @@
-//! Integration of ẏ = f(t, y) with SUNDIALS CVODES, for any [`VectorField`].
+//! Integration of ẏ = f(t, y) with SUNDIALS CVODES or DOP853, for any [`VectorField`].
 //!
 //! A vector field is compiled equations of motion or a closure:
 //! ```
@@ -22,10 +22,11 @@
 //! integration itself, step by step.
 //!
 //! The methods are those of the variable-order, variable-step linear multistep code CVODE [Cohen, Hindmarsh 1996],
-//! in SUNDIALS 7 [Hindmarsh et al. 2005; Gardner et al. 2022].
+//! in SUNDIALS 7 [Hindmarsh et al. 2005; Gardner et al. 2022], the explicit Runge–Kutta method [`Dop853`], and the change
+//! between both where [stiffness is seen](Method::Auto).
 //!
 //! Without the default feature `cvode` the crate builds without SUNDIALS and a C compiler. It then has [`Integration`]
-//! by any [`Stepper`], such as [`RungeKutta4`], with events, dense output and checkpoints.
+//! by any [`Stepper`], such as [`Dop853`] and [`RungeKutta4`], with events, dense output and checkpoints.
 
 #![cfg_attr(feature = "cvode", expect(unsafe_code, reason = "calls of the C library SUNDIALS"))]
 

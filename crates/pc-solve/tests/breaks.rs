@@ -59,7 +59,7 @@ const TIMES: [f64; 6] = [0.5, 1.0, 1.1, 2.0, 3.0, 4.0];
 /// The errors of some hundred steps of 1e-10 each, of one sign at worst.
 #[test]
 fn each_leg_is_integrated_by_itself() {
-    for method in [Method::Bdf, Method::Adams] {
+    for method in [Method::Bdf, Method::Adams, Method::Dop853, Method::Auto] {
         let options = Options::new(method).relative_tolerance(1e-10).absolute_tolerance(1e-14);
         let found = solve(Legs::new(), 0.0, &[1.0], &TIMES, &options).unwrap();
         for (t, y) in found.iter() {
@@ -68,7 +68,7 @@ fn each_leg_is_integrated_by_itself() {
         }
         let statistics = found.statistics();
         assert_eq!(statistics.current_time, 4.0);
-        assert!(statistics.steps > 50, "those of all legs are counted: {statistics:?}");
+        assert!(statistics.steps > 20, "those of all legs are counted: {statistics:?}");
     }
 }
 

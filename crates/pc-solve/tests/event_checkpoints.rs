@@ -408,7 +408,7 @@ fn checkpoints_of_other_motions_are_refused() {
         assert_eq!(error, CheckpointError::Version { found });
         assert_eq!(
             error.to_string(),
-            format!("it is a checkpoint of version {version} of the format, not 4")
+            format!("it is a checkpoint of version {version} of the format, not 5")
         );
     }
 }

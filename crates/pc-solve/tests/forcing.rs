@@ -60,7 +60,7 @@ fn near(found: f64, expected: f64, width: f64) -> bool {
 
 #[test]
 fn a_pulse_on_a_body_at_rest_is_not_stepped_over() {
-    for method in [Method::Adams, Method::Bdf] {
+    for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
         for width in [0.2, 1e-2, 1e-3, 1e-4] {
             for at in [0.05, 1.234_567, 5.0, 8.9] {
                 let motion = motion(gauss(at, width), 10.0, method);
@@ -72,7 +72,10 @@ fn a_pulse_on_a_body_at_rest_is_not_stepped_over() {
                     !whole || near(found, expected, width),
                     "{method} {width} {at}: {found}, not {expected}"
                 );
-                assert!(!whole || motion.statistics().limited_steps > 0, "{method} {width} {at}");
+                // The explicit method comes upon some by its stages, or by short first steps.
+                let limits =
+                    !matches!(method, Method::Adams | Method::Bdf) || motion.statistics().limited_steps > 0;
+                assert!(!whole || limits, "{method} {width} {at}");
             }
         }
     }
@@ -100,11 +103,13 @@ fn pulses_of_many_forms_are_not_stepped_over() {
         ("between", w, Box::new(move |t, _| ((t - at) * (at + w - t)).step(1.0, 0.0))),
     ];
     for (name, speed, force) in forces {
-        let motion = motion(Spring::new(force), 10.0, Method::Adams);
-        // To the first order in w/period: the place of the pulse is known to w.
-        let expected = speed * (10.0 - at).sin();
-        let found = motion.state(0)[0];
-        assert!((found - expected).abs() < 3.0 * w * speed, "{name}: {found}, not {expected}");
+        for method in [Method::Adams, Method::Dop853] {
+            let motion = motion(Spring::new(&force), 10.0, method);
+            // To the first order in w/period: the place of the pulse is known to w.
+            let expected = speed * (10.0 - at).sin();
+            let found = motion.state(0)[0];
+            assert!((found - expected).abs() < 3.0 * w * speed, "{name} {method}: {found}, not {expected}");
+        }
     }
 }
 
@@ -179,13 +184,17 @@ fn a_smooth_force_costs_little() {
         0.3 * (2.0 * t).cos() + (0.1 * t).tanh()
     }
     let end = 100.0;
-    let shown = motion(Spring::new(|t, _| force(t)), end, Method::Adams);
-    let mut plain = Spring::new(|t, _| force(t));
-    plain.shows = false;
-    let plain = from_fn(2, move |t, y: &[f64], ydot: &mut [f64]| plain.rhs(t, y, ydot)).autonomous();
-    let plain = motion(plain, end, Method::Adams);
-    let (shown, plain) = (shown.statistics(), plain.statistics());
-    assert!(10 * shown.rhs_evaluations <= 11 * plain.rhs_evaluations, "{shown:?}\n{plain:?}");
+    // The long steps of the explicit method contain turns of the force: these take the stages of dense output too.
+    for (method, tenths) in [(Method::Adams, 11), (Method::Dop853, 14)] {
+        let shown = motion(Spring::new(|t, _| force(t)), end, method);
+        let mut plain = Spring::new(|t, _| force(t));
+        plain.shows = false;
+        let plain = from_fn(2, move |t, y: &[f64], ydot: &mut [f64]| plain.rhs(t, y, ydot)).autonomous();
+        let plain = motion(plain, end, method);
+        let (shown, plain) = (shown.statistics(), plain.statistics());
+        let fits = 10 * shown.rhs_evaluations <= tenths * plain.rhs_evaluations;
+        assert!(fits, "{method}: {shown:?}\n{plain:?}");
+    }
 }
 
 /// Where only values are known, a pulse of a fiftieth of the time is found.
@@ -193,29 +202,32 @@ fn a_smooth_force_costs_little() {
 fn a_function_of_a_program_is_sampled() {
     for k in 0..40 {
         let (at, width) = (0.5 + 0.23 * f64::from(k), 0.1);
-        let field = from_fn(2, move |t: f64, y: &[f64], ydot: &mut [f64]| {
-            ydot.copy_from_slice(&[y[1], (-((t - at) / width).powi(2)).exp() - y[0]]);
-            Ok(())
-        });
-        let found = motion(field, 10.0, Method::Adams).state(0)[0];
-        let expected = after_gauss(10.0, at, width);
-        assert!(near(found, expected, width), "{at}: {found}, not {expected}");
+        for method in [Method::Adams, Method::Dop853] {
+            let field = from_fn(2, move |t: f64, y: &[f64], ydot: &mut [f64]| {
+                ydot.copy_from_slice(&[y[1], (-((t - at) / width).powi(2)).exp() - y[0]]);
+                Ok(())
+            });
+            let found = motion(field, 10.0, method).state(0)[0];
+            let expected = after_gauss(10.0, at, width);
+            assert!(near(found, expected, width), "{method} {at}: {found}, not {expected}");
+        }
     }
 }
 
 /// Pulses of a tenth to a hundred-thousandth of the span, at 200 places each that the golden section spreads.
 #[test]
 fn pulses_are_found_wherever_they_are() {
-    for part in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
+    let parts = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
+    for (part, method) in parts.into_iter().flat_map(|part| [(part, Method::Adams), (part, Method::Dop853)]) {
         let width = 10.0 * part;
         // Four widths from the ends a pulse is whole but for 2e-8 of it.
         let span = 10.0 - 8.0 * width;
         let found = (1..=200).filter(|&k| {
             let at = 4.0 * width + span * (0.618_033_988_749_894_8 * f64::from(k)).fract();
-            let motion = motion(gauss(at, width), 10.0, Method::Adams);
+            let motion = motion(gauss(at, width), 10.0, method);
             near(motion.state(0)[0], after_gauss(10.0, at, width), width)
         });
-        assert_eq!(found.count(), 200, "of width {width}");
+        assert_eq!(found.count(), 200, "of width {width} by {method}");
     }
 }
 
@@ -223,7 +235,7 @@ fn pulses_are_found_wherever_they_are() {
 #[test]
 fn a_force_that_no_step_can_follow_is_refused() {
     for (at, from) in [(1e21, 0.0), (1e17, 3.0)] {
-        for method in [Method::Adams, Method::Bdf] {
+        for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
             let force = |size: f64| Spring::new(move |t, _| size * (at * t).sin());
             let run = |size| solve(force(size), from, &[1.0, 0.0], &[from + 10.0], &Options::new(method));
             let failure = run(1.0).unwrap_err();

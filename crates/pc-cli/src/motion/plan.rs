@@ -72,7 +72,7 @@ impl Plan {
     /// The plan for a model, from the command line and the file.
     ///
     /// # Errors
-    /// [`CliError::NoEnd`], [`CliError::EndIsStart`], [`CliError::Sensitivities`].
+    /// [`CliError::NoEnd`], [`CliError::EndIsStart`], [`CliError::Sensitivities`], [`CliError::NoSensitivities`].
     pub fn new(model: &Model, arguments: &RunArguments) -> Result<Plan, CliError> {
         let simulation = &model.document().simulation;
         let t_start = simulation.t_start.as_ref().map_or(0.0, |t| t.value);
@@ -83,6 +83,10 @@ impl Plan {
         }
         let written = simulation.method.as_ref().map(|method| method.value);
         let method = arguments.method.map(of_arguments).or(written.map(of_file)).unwrap_or(Method::Adams);
+        let sensitivities = sensitivities::parameters(model, &arguments.sensitivities)?;
+        if matches!(method, Method::Dop853 | Method::Taylor) && !sensitivities.is_empty() {
+            return Err(CliError::NoSensitivities { method });
+        }
         Ok(Plan {
             t_start,
             t_end,
@@ -96,7 +100,7 @@ impl Plan {
                 .or(simulation.samples_per_step.as_ref().map(|n| n.value)),
             accumulation: arguments.events.accumulation.or(simulation.accumulation.as_ref().map(|p| p.value)),
             method,
-            sensitivities: sensitivities::parameters(model, &arguments.sensitivities)?,
+            sensitivities,
             deadline: model.budget().deadline().clone(),
         })
     }

@@ -8,6 +8,9 @@
 /// The power iteration.
 #[derive(Debug, Clone)]
 pub(super) struct Growth {
+    /// Where it stands, and the tolerances there.
+    y: Vec<f64>,
+    tolerances: Vec<f64>,
     direction: Vec<f64>,
     state: Vec<f64>,
     rates: [Vec<f64>; 2],
@@ -24,6 +27,8 @@ const RELATIVE: f64 = 1.5e-8;
 impl Growth {
     pub(super) fn new(dim: usize) -> Growth {
         Growth {
+            y: vec![0.0; dim],
+            tolerances: vec![0.0; dim],
             direction: vec![0.0; dim],
             state: vec![0.0; dim],
             rates: [vec![0.0; dim], vec![0.0; dim]],
@@ -38,16 +43,19 @@ impl Growth {
         self.direction.fill(0.0);
     }
 
-    /// Takes one step at y, where `look` evaluates f, and gives ρ; none as long as little is known, or where f has no value.
-    pub(super) fn estimate(
-        &mut self,
-        y: &[f64],
-        tolerances: &[f64],
-        mut look: impl FnMut(&[f64], &mut [f64]) -> bool,
-    ) -> Option<f64> {
-        let Growth { direction, state, rates: [here, there], recent, count } = self;
+    /// Goes to y with these tolerances.
+    pub(super) fn stand(&mut self, y: &[f64], tolerance: impl Fn(usize, f64) -> f64) {
+        self.y.copy_from_slice(y);
+        for (i, of) in self.tolerances.iter_mut().enumerate() {
+            *of = tolerance(i, y[i]);
+        }
+    }
+
+    /// Takes one step there, where `look` evaluates f, and gives ρ; none as long as little is known, or where f has no value.
+    pub(super) fn estimate(&mut self, mut look: impl FnMut(&[f64], &mut [f64]) -> bool) -> Option<f64> {
+        let Growth { y, tolerances, direction, state, rates: [here, there], recent, count } = self;
         let norm = |v: &[f64]| {
-            let weighed = v.iter().zip(tolerances).map(|(v, tolerance)| v / tolerance);
+            let weighed = v.iter().zip(&*tolerances).map(|(v, tolerance)| v / tolerance);
             weighed.map(|v| v * v).sum::<f64>().sqrt()
         };
         if !look(y, here) {
@@ -62,7 +70,7 @@ impl Growth {
             length = norm(direction);
         }
         let epsilon = RELATIVE * norm(y).max(1.0) / length;
-        for ((state, y), v) in state.iter_mut().zip(y).zip(&*direction) {
+        for ((state, y), v) in state.iter_mut().zip(&*y).zip(&*direction) {
             *state = y + epsilon * v;
         }
         if !look(state, there) {

@@ -147,10 +147,9 @@ impl<F: VectorField> Auto<F> {
         if !self.steps.is_multiple_of(EVERY) {
             return false;
         }
-        let y = implicit.end_state().to_vec();
         let Auto { growth, evaluations, .. } = self;
-        let tolerances: Vec<f64> = y.iter().enumerate().map(|(i, y)| implicit.tolerance(i, *y)).collect();
-        let rho = growth.estimate(&y, &tolerances, |state, rates| {
+        growth.stand(implicit.end_state(), |i, y| implicit.tolerance(i, y));
+        let rho = growth.estimate(|state, rates| {
             *evaluations += 1;
             implicit.field_mut().rhs(end, state, rates).is_ok() && rates.iter().all(|rate| rate.is_finite())
         });

@@ -55,7 +55,7 @@ impl<F: VectorField> Dop853<F> {
             }
             let refusal = match self.attempt(to) {
                 Ok(error) => {
-                    let mut factor = self.control.accepted(error);
+                    let mut factor = Control::accepted(error);
                     if refused {
                         factor = factor.min(1.0);
                     }
@@ -196,7 +196,7 @@ impl<F: VectorField> Dop853<F> {
         }
         let second = control.norm(&trial.rates[..dim], &node.y) / h;
         let largest = second.max(rates);
-        let by_rates = if largest <= 1e-15 { FIRST.max(h * 1e-3) } else { (0.01 / largest).powf(1.0 / 8.0) };
+        let by_rates = if largest <= 1e-15 { FIRST.max(h * 1e-3) } else { (0.01 / largest).powf(0.125) };
         (100.0 * h).min(by_rates).min(farthest)
     }
 

@@ -89,7 +89,6 @@ impl<F: VectorField> Stepper for Dop853<F> {
         self.end.y[..y.len()].copy_from_slice(y);
         (self.time, self.begins) = (t, true);
         (self.has_rates, self.has_polynomial) = (false, false);
-        self.control.restart();
         self.stiffness.restart();
         self.statistics.limited_steps += self.places.limited;
         self.places.restart();

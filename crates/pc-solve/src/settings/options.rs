@@ -38,9 +38,9 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// [`Method::Adams`] with the defaults of [`Options::new`].
+    /// [`Method::Adams`], without the feature `cvode` [`Method::Dop853`], with the defaults of [`Options::new`].
     fn default() -> Self {
-        Options::new(Method::Adams)
+        Options::new(if cfg!(feature = "cvode") { Method::Adams } else { Method::Dop853 })
     }
 }
 

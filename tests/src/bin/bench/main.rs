@@ -11,6 +11,7 @@ mod measure;
 mod report;
 mod rhs;
 mod solve;
+mod speed;
 mod start;
 mod systems;
 mod trees;
@@ -36,6 +37,11 @@ const BENCHMARKS: &[Benchmark] = &[
     },
     Benchmark { name: "derive", about: "from the text of a model to its compiled motion", run: derive::run },
     Benchmark { name: "solve", about: "a whole integration, by us and by plain C", run: solve::run },
+    Benchmark {
+        name: "speed",
+        about: "a whole integration to one global error, by our methods and by hand",
+        run: speed::run,
+    },
     Benchmark {
         name: "trees",
         about: "chains of bodies, joint after joint, derived and by hand",

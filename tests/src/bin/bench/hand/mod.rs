@@ -7,6 +7,7 @@
 #![expect(unsafe_code, reason = "a function compiled for some processors only is entered through `unsafe`")]
 
 mod chain;
+mod dop853;
 mod particle;
 mod pendulum;
 mod rolling;
@@ -16,6 +17,7 @@ use pc_expr::{Entry, Jit};
 use pc_mech::MachineCode;
 
 pub(crate) use chain::chain;
+pub(crate) use dop853::integrate;
 pub(crate) use particle::{charged, relativistic};
 pub(crate) use pendulum::{pendulum, pendulum_by_tensions};
 pub(crate) use rolling::{disk, sleigh};
