@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-14;
 /// errors have one sign.
 fn allowed_drift(method: Method) -> f64 {
     match method {
-        Method::Adams | Method::Dop853 | Method::Auto => 1e-5,
+        Method::Adams | Method::Dop853 | Method::Taylor | Method::Auto => 1e-5,
         Method::Bdf => 2e-4,
     }
 }

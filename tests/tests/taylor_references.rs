@@ -1,7 +1,5 @@
 //! End states of the built-in models by Taylor's method, forwards and back again, against references of 16 digits.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
 use pc_mech::{Graph, VectorField};
 use pc_model::{Builtin, Flow, Model, Variables};
 use pc_solve::{Integration, Method, Options, Solve, Taylor};

@@ -1,7 +1,5 @@
 //! DOP853: order, inside of steps, events, checkpoints, breaks, pulses, failures, limits, stiffness.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use std::cell::Cell;
 use std::num::NonZeroU64;
 use std::ops::ControlFlow::Continue;

@@ -142,7 +142,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
             let round = times[0].0.len();
             let here: Vec<f64> = start.iter().map(|y| y * (1.0 + SPREAD * round as f64)).collect();
             for turn in 0..variants.len() {
-                let i = if round % 2 == 0 { turn } else { variants.len() - 1 - turn };
+                let i = if round.is_multiple_of(2) { turn } else { variants.len() - 1 - turn };
                 let clock = Instant::now();
                 let (steps, y) = variants[i].1(tolerances[i], &here)?;
                 times[i].0.push(clock.elapsed().as_secs_f64() * 1e3);
