@@ -52,7 +52,7 @@ fn all_methods_come_to_the_same_end() {
         table(&output).pop().expect("a row")
     };
     let adams = end("adams");
-    for method in ["bdf", "dop853", "auto"] {
+    for method in ["bdf", "dop853", "taylor", "auto"] {
         for (found, expected) in end(method).iter().zip(&adams) {
             // Some hundred steps of 1e-9, and of BDF a thousand.
             assert!((found - expected).abs() < 1e-5, "{method}: {found}, not {expected}");
@@ -75,8 +75,10 @@ fn sensitivities_are_those_of_cvodes() {
             "--no-verify",
         ])
     };
-    let refused = said(&run("dop853"), 2);
-    assert!(refused.contains("--sensitivities: DOP853 has none"), "{refused}");
+    for (method, name) in [("dop853", "DOP853"), ("taylor", "Taylor")] {
+        let refused = said(&run(method), 2);
+        assert!(refused.contains(&format!("--sensitivities: {name} has none")), "{refused}");
+    }
     let summary = said(&run("auto"), 0);
     let chosen = "Adams, since only the methods of CVODES have sensitivities";
     assert_eq!(line(&summary, "chosen"), Some(chosen), "{summary}");
@@ -86,7 +88,7 @@ fn sensitivities_are_those_of_cvodes() {
 fn sweeps_and_checkpoints_have_all_methods() {
     let directory = tempfile::tempdir().expect("a directory");
     let place = |name: &str| directory.path().join(name).to_str().expect("UTF-8").to_owned();
-    for method in ["dop853", "auto"] {
+    for method in ["dop853", "taylor", "auto"] {
         let swept = place(&format!("{method}.csv"));
         let output = pc(&[
             "sweep",
@@ -116,4 +118,10 @@ fn sweeps_and_checkpoints_have_all_methods() {
         let other = pc(&["run", "rocking-block", "--t-end", "3", "--method", "adams", "--resume", &kept]);
         assert!(said(&other, 2).contains(&format!("--method {method}")));
     }
+}
+
+#[test]
+fn taylor_refuses_equations_that_are_solved_in_numbers() {
+    let refused = said(&pc(&["run", "vertical-disk", "--method", "taylor", "--no-verify"]), 5);
+    assert!(refused.contains("Taylor's method needs equations that are solved in expressions"), "{refused}");
 }

@@ -1,5 +1,7 @@
 //! Taylor coefficients of solutions against series in twice the precision, composed from the definitions of the functions.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 mod common;
 
 use std::ops::{Add, Mul, Neg};
@@ -268,7 +270,7 @@ fn each_recurrence_is_exact() {
     let start = [0.4, 0.7, 0.1];
     let (u, w) = (|| Tree::Symbol(1), || Tree::Symbol(2));
     for function in Function::ALL {
-        let args = vec![u(), w(), Tree::Product(Box::new(u()), Box::new(w()))];
+        let args = [u(), w(), Tree::Product(Box::new(u()), Box::new(w()))];
         let args = args[..function.arity()].to_vec();
         check(&with_carrier(Tree::Call(function, args)), 0.3, &start, ROUNDING);
     }
@@ -295,7 +297,7 @@ fn sides_at_a_corner_are_those_that_the_motion_goes_to() {
     let start = [0.0, 0.0, 0.1];
     let (u, w) = (|| Tree::Symbol(1), || Tree::Symbol(2));
     for function in [Function::Abs, Function::Sign, Function::Min, Function::Max, Function::Step] {
-        let args = vec![u(), w(), Tree::Product(Box::new(u()), Box::new(w()))];
+        let args = [u(), w(), Tree::Product(Box::new(u()), Box::new(w()))];
         check(&with_carrier(Tree::Call(function, args[..function.arity()].to_vec())), -0.3, &start, ROUNDING);
     }
 }

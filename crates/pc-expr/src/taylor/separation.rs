@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use crate::program::program::Program;
+use crate::program::program::{Instruction, Program};
 use crate::time_profile::interval::Interval;
 use crate::time_profile::jet::Jet;
 
@@ -55,7 +55,7 @@ impl RootSeparation {
     /// That of the outputs of a program.
     pub fn new(program: Arc<Program>) -> RootSeparation {
         let mut used = vec![false; program.state_len()];
-        let operands = program.code().iter().flat_map(|instruction| instruction.operands());
+        let operands = program.code().iter().flat_map(Instruction::operands);
         for register in operands.chain(program.outputs().iter().copied()) {
             let place = register.index().checked_sub(program.first_input() + 1);
             if let Some(place) = place.filter(|&place| place < used.len()) {

@@ -113,7 +113,7 @@ mod tests {
                 match first {
                     // A root is as exact as the coefficients are, of which each has rounding.
                     Some(root) if root < length => {
-                        assert!((found.unwrap() - root).abs() < 1e-9, "{roots:?}: {found:?}")
+                        assert!((found.unwrap() - root).abs() < 1e-9, "{roots:?}: {found:?}");
                     }
                     Some(_) | None if first.is_none() => assert_eq!(found, None, "{roots:?}"),
                     _ => {}

@@ -2,25 +2,18 @@
 
 use std::sync::Arc;
 
-use pc_expr::{Failure, PolynomialMotion, Program, RootSeparation, VectorField};
+use pc_expr::{PolynomialMotion, Program, RootSeparation, VectorField};
 
-use crate::error::{IntegrationError, NonFinite, Reason, SolveError};
+use crate::error::{IntegrationError, Reason, SolveError};
 use crate::foresight::places::Places;
-use crate::integration::breaks::next_break;
 use crate::integration::checks::{check_inequalities, check_start, finite};
 use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::method::Method;
 use crate::settings::options::Options;
-use crate::taylor::corners::first_exit;
 use crate::taylor::polynomial::Polynomial;
 use crate::taylor::step_length::Tolerances;
-
-/// A step that would end so near to a stop time or a break, in parts of its length, ends there.
-const NEAR: f64 = 1e-9;
-/// Functions that change their signs so near to each other, in parts of a step, do so together.
-const TOGETHER: f64 = 1e-12;
 
 /// Taylor's method of adaptive order and step as a [`Stepper`] [Jorba, Zou 2005]:
 ///
@@ -34,47 +27,40 @@ const TOGETHER: f64 = 1e-12;
 pub struct Taylor<F> {
     pub(super) field: F,
     pub(super) tolerances: Tolerances,
-    limits: Limits,
-    first_step: Option<f64>,
-    min_step: f64,
-    max_step: f64,
-    stop_time: Option<f64>,
+    pub(super) limits: Limits,
+    pub(super) first_step: Option<f64>,
+    pub(super) min_step: f64,
+    pub(super) max_step: f64,
+    pub(super) stop_time: Option<f64>,
     /// The last step: where it began, and what of that time a number does not hold.
     pub(super) start: f64,
     pub(super) start_low: f64,
     pub(super) series: Polynomial,
     /// Where it ended, likewise, and the series there.
-    end: f64,
-    end_low: f64,
-    ahead: Polynomial,
+    pub(super) end: f64,
+    pub(super) end_low: f64,
+    pub(super) ahead: Polynomial,
     /// That of the step before while one is made.
-    before: Polynomial,
+    pub(super) before: Polynomial,
     /// What of the state at the end its numbers do not hold.
-    low: Vec<f64>,
-    next_low: Vec<f64>,
+    pub(super) low: Vec<f64>,
+    pub(super) next_low: Vec<f64>,
     /// The signs of the branch functions at the end, and where they are computed.
-    sides: Vec<f64>,
-    branches: Vec<String>,
-    branch_series: Polynomial,
+    pub(super) sides: Vec<f64>,
+    pub(super) branches: Vec<String>,
+    pub(super) branch_series: Polynomial,
     /// Whether there is no step since the start.
-    begins: bool,
+    pub(super) begins: bool,
     /// The direction in which the series ahead holds; 0 where there is none.
-    direction: f64,
-    time: f64,
+    pub(super) direction: f64,
+    pub(super) time: f64,
     pub(super) places: Places,
     /// Of the events that were asked about last.
-    separation: Option<RootSeparation>,
+    pub(super) separation: Option<RootSeparation>,
     pub(super) state: Vec<f64>,
     pub(super) slope: Vec<f64>,
     pub(super) rates: Vec<f64>,
     pub(super) statistics: Statistics,
-}
-
-/// Why a step has to be shorter.
-enum Refusal {
-    /// A smaller step may do.
-    Shorter(Reason, Option<Failure>),
-    Fatal(SolveError),
 }
 
 impl<F: VectorField> Taylor<F> {
@@ -138,179 +124,6 @@ impl<F: VectorField> Taylor<F> {
     /// The order of the method.
     pub fn order(&self) -> u32 {
         self.ahead.order() as u32
-    }
-
-    /// Expands at `t` the state that `ahead` begins with, on these sides.
-    fn expand(&mut self, t: f64) -> Result<(), Refusal> {
-        self.statistics.rhs_evaluations += 1;
-        let order = self.ahead.order();
-        let refused = |failure: Failure| Refusal::Shorter(Reason::Rates { t }, Some(failure));
-        let series = self.field.expand(t, self.ahead.of_order(0), &self.sides, order).map_err(refused)?;
-        series.copy_coefficients(order, &mut self.ahead.coefficients[self.ahead.dim..]);
-        if !self.branches.is_empty() {
-            for k in 0..order {
-                self.branch_series.of_order_mut(k).copy_from_slice(series.branch_coefficients(k));
-            }
-        }
-        if self.ahead.is_finite() { Ok(()) } else { Err(refused(self.blame(t))) }
-    }
-
-    /// The failure of a series that is not finite.
-    #[cold]
-    fn blame(&mut self, t: f64) -> Failure {
-        if let Err(failure) = self.field.rhs(t, self.ahead.of_order(0), &mut self.rates) {
-            return failure;
-        }
-        let dim = self.ahead.dim;
-        let found = self.ahead.coefficients.iter().position(|c| !c.is_finite()).unwrap_or(0);
-        let (order, component) = (found / dim, self.field.component_name(found % dim));
-        Failure::recoverable(NonFinite::Coefficient {
-            component,
-            order,
-            value: self.ahead.coefficients[found],
-            t,
-        })
-    }
-
-    /// Expands at the end of the last step, on the sides that the motion goes to from there.
-    fn expand_at_end(&mut self, direction: f64) -> Result<(), SolveError> {
-        self.direction = direction;
-        self.sides.fill(0.0);
-        // Each side that becomes known may show another one.
-        for _ in 0..=2 * self.branches.len() {
-            match self.expand(self.end) {
-                Ok(()) => {}
-                Err(Refusal::Shorter(reason, failure)) => {
-                    self.direction = 0.0;
-                    return Err(self.failed(reason, failure));
-                }
-                Err(Refusal::Fatal(error)) => return Err(error),
-            }
-            let sides: Vec<f64> = (0..self.sides.len()).map(|i| self.leading_side(i)).collect();
-            if sides == self.sides {
-                return Ok(());
-            }
-            self.sides = sides;
-        }
-        self.direction = 0.0;
-        Err(self.failed(Reason::Sliding { branch: self.branches.join(", "), t: self.end }, None))
-    }
-
-    /// The side that a branch function is on, or goes to.
-    fn leading_side(&self, i: usize) -> f64 {
-        let along = |k: usize| self.branch_series.of_order(k)[i] * self.direction.powi(k as i32 % 2);
-        let leading = (0..=self.branch_series.order()).map(along).find(|c| *c != 0.0);
-        leading.map_or(0.0, f64::signum)
-    }
-
-    /// Where the next step towards a time has to end at the latest; none if nowhere.
-    fn limit(&mut self, towards: f64) -> Result<Option<f64>, SolveError> {
-        let from = self.end;
-        let direction = 1.0_f64.copysign(towards - from);
-        let end = self.stop_time.unwrap_or(f64::INFINITY.copysign(direction));
-        let mut next = self.stop_time;
-        let mut jumped = false;
-        if !self.field.breaks().is_empty() {
-            let (t, following) = next_break(self.field.breaks(), from, end);
-            next = following.or(self.stop_time);
-            jumped = self.field.enter(t, end);
-        }
-        let leaves = |i: usize| self.sides[i] == 0.0 && self.leading_side(i) != 0.0;
-        if jumped || self.direction != direction || (0..self.sides.len()).any(leaves) {
-            self.expand_at_end(direction)?;
-        }
-        Ok(next)
-    }
-
-    /// Where the branch functions first change their signs within h, and which do.
-    fn corner(&self, h: f64) -> Option<(f64, Vec<usize>)> {
-        let mut first = None::<f64>;
-        let mut exits = Vec::new();
-        for i in 0..self.branches.len() {
-            let coefficients: Vec<f64> =
-                (0..=self.branch_series.order()).map(|k| self.branch_series.of_order(k)[i]).collect();
-            if self.sides[i] == 0.0 || coefficients.iter().any(|c| !c.is_finite()) {
-                continue;
-            }
-            if let Some(exit) = first_exit(&coefficients, self.sides[i], h) {
-                exits.push((i, exit));
-                first = Some(first.map_or(exit, |first| if exit.abs() < first.abs() { exit } else { first }));
-            }
-        }
-        let first = first?;
-        let together = |&(_, exit): &(usize, f64)| (exit - first).abs() <= TOGETHER * h.abs();
-        let last = exits.iter().filter(|exit| together(exit)).map(|&(_, exit)| exit);
-        let end = last.fold(first, |end, exit| if exit.abs() > end.abs() { exit } else { end });
-        Some((end, exits.iter().filter(|exit| together(exit)).map(|&(i, _)| i).collect()))
-    }
-
-    /// How far the series of the branch functions hold.
-    fn branch_length(&self) -> f64 {
-        let order = self.branch_series.order();
-        let mut length = f64::INFINITY;
-        for i in 0..self.branches.len() {
-            let c = |k: usize| self.branch_series.of_order(k)[i].abs();
-            let size = (0..order.min(2)).map(c).fold(self.tolerances.largest_absolute(), f64::max);
-            for k in [order.max(2) - 1, order] {
-                let radius = (c(k) / size).powf(-1.0 / k as f64);
-                length = length.min(radius * self.tolerances.relative.powf(1.0 / (order as f64 + 1.0)));
-            }
-        }
-        length
-    }
-
-    /// Tries a step of length h to the time `t`, across these branches; the series at its end is then that ahead.
-    fn attempt(&mut self, t: f64, h: f64, crossed: &[usize]) -> Result<(), Refusal> {
-        let order = self.series.order();
-        self.series.change(h, &mut self.state, &mut self.slope);
-        let projects = self.field.has_projection();
-        for (i, change) in self.state.iter().enumerate() {
-            // Møller's and Knuth's sum: what of the change is lost in y is kept.
-            let y = self.series.coefficients[i];
-            let change = change + self.low[i];
-            let sum = y + change;
-            let part = sum - y;
-            self.ahead.coefficients[i] = sum;
-            self.next_low[i] = (y - (sum - part)) + (change - part);
-        }
-        if projects {
-            self.next_low.fill(0.0);
-        }
-        if let Some(i) = self.ahead.of_order(0).iter().position(|value| !value.is_finite()) {
-            let (component, value) = (self.field.component_name(i), self.ahead.coefficients[i]);
-            return Err(Refusal::Shorter(Reason::Overflow { component, value, t }, None));
-        }
-        if projects {
-            let projected = self.field.project(t, self.ahead.of_order_mut(0));
-            projected.map_err(|failure| Refusal::Shorter(Reason::Projection { t }, Some(failure)))?;
-        }
-        let inequalities = self.limits.inequalities.iter().zip(self.ahead.of_order(0));
-        if inequalities.into_iter().any(|(inequality, &y)| !inequality.holds(y)) {
-            return Err(Refusal::Shorter(Reason::Stalled, None));
-        }
-        let sides = self.sides.clone();
-        self.expand(t)?;
-        let y = self.ahead.of_order(0);
-        if self.tolerances.feels(self.ahead.of_order(1), &self.slope, y, h, order) {
-            self.statistics.error_test_failures += 1;
-            return Err(Refusal::Shorter(Reason::Stalled, None));
-        }
-        if !crossed.is_empty() {
-            for &i in crossed {
-                self.sides[i] = -self.sides[i];
-            }
-            if let Err(refusal) = self.expand(t) {
-                self.sides = sides;
-                return Err(refusal);
-            }
-            // Beyond the corner the motion has to go on as it came.
-            if let Some(&i) = crossed.iter().find(|&&i| self.returns(i, h.signum())) {
-                self.sides = sides;
-                return Err(Refusal::Fatal(self.sliding(i, t)));
-            }
-        }
-        std::mem::swap(&mut self.low, &mut self.next_low);
-        Ok(())
     }
 }
 
@@ -481,122 +294,5 @@ impl<F: VectorField> Stepper for Taylor<F> {
 
     fn least_size(&self) -> f64 {
         self.tolerances.largest_absolute() / self.tolerances.relative
-    }
-}
-
-impl<F: VectorField> Taylor<F> {
-    /// How long a step along the series may be.
-    fn longest(&mut self, towards: f64) -> Result<f64, SolveError> {
-        let mut length = self.tolerances.length(&self.series).min(self.max_step);
-        if !self.branches.is_empty() {
-            length = length.min(self.branch_length());
-        }
-        if let Some(first) = self.first_step.filter(|_| self.begins) {
-            length = length.min(first);
-        }
-        if length.is_nan() {
-            return Err(self.failed(Reason::Stalled, None));
-        }
-        // A series that ends goes as far as is asked for.
-        Ok(if length.is_infinite() { (towards - self.start).abs() } else { length })
-    }
-
-    /// Goes to the other side of these branch functions at the start of the step.
-    fn turn(&mut self, which: &[usize], direction: f64) -> Result<(), SolveError> {
-        for &i in which {
-            self.sides[i] = -self.sides[i];
-        }
-        self.ahead.of_order_mut(0).copy_from_slice(self.series.of_order(0));
-        match self.expand(self.start) {
-            Ok(()) => std::mem::swap(&mut self.series, &mut self.ahead),
-            Err(Refusal::Shorter(reason, failure)) => return Err(self.failed(reason, failure)),
-            Err(Refusal::Fatal(error)) => return Err(error),
-        }
-        match which.iter().find(|&&i| self.returns(i, direction)) {
-            Some(&i) => Err(self.sliding(i, self.start)),
-            None => Ok(()),
-        }
-    }
-
-    /// Whether a branch function at zero goes back from the side that it has come to.
-    fn returns(&self, i: usize, direction: f64) -> bool {
-        self.branch_series.order() >= 1 && self.branch_series.of_order(1)[i] * direction * self.sides[i] < 0.0
-    }
-
-    fn sliding(&mut self, i: usize, t: f64) -> SolveError {
-        self.failed(Reason::Sliding { branch: self.branches[i].clone(), t }, None)
-    }
-
-    /// Makes a step along the series; the time at its end, and what of that a number does not hold.
-    fn find_step(
-        &mut self,
-        towards: f64,
-        limit: Option<f64>,
-        direction: f64,
-    ) -> Result<(f64, f64), SolveError> {
-        let (from, low) = (self.start, self.start_low);
-        let remaining = limit.map(|limit| (limit - from) - low);
-        let mut turns = 0;
-        let (mut h, mut lands, mut crossed) = loop {
-            let length = self.longest(towards)?;
-            let mut h = length * direction;
-            let mut lands = false;
-            if let Some(remaining) =
-                remaining.filter(|&remaining| (remaining - h) * direction <= NEAR * length)
-            {
-                (h, lands) = (remaining, true);
-            }
-            match self.corner(h) {
-                None => break (h, lands, Vec::new()),
-                Some((corner, which)) if from + corner != from => break (corner, false, which),
-                // The step before has ended at the corner.
-                Some((_, which)) if turns <= self.branches.len() => {
-                    turns += 1;
-                    self.turn(&which, direction)?;
-                }
-                Some((_, which)) => return Err(self.sliding(which[0], from)),
-            }
-        };
-        if !self.places.are_absent()
-            && let Some(shorter) = self.foreseen(h, self.stop_time.unwrap_or(towards))?
-        {
-            (h, lands) = (shorter, false);
-            crossed.clear();
-        }
-        loop {
-            // The end of the step, with the rounding of its time.
-            let (t, rest) = match limit {
-                Some(limit) if lands => (limit, 0.0),
-                _ => {
-                    let change = h + low;
-                    let t = from + change;
-                    let part = t - from;
-                    (t, (from - (t - part)) + (change - part))
-                }
-            };
-            if t == from {
-                return Err(self.failed(Reason::Stalled, None));
-            }
-            let (reason, failure) = match self.attempt(t, h, &crossed) {
-                Ok(()) => return Ok((t, rest)),
-                Err(Refusal::Fatal(error)) => return Err(error),
-                Err(Refusal::Shorter(reason, failure)) => (reason, failure),
-            };
-            if failure.as_ref().is_some_and(|failure| !failure.is_recoverable()) {
-                return Err(self.failed(reason, failure));
-            }
-            if failure.is_some() {
-                self.statistics.step_failures += 1;
-            }
-            h *= 0.5;
-            lands = false;
-            crossed.clear();
-            if from + h == from || h.abs() < self.min_step {
-                return Err(match failure {
-                    Some(failure) => self.failed(reason, Some(failure)),
-                    None => self.failed(Reason::Stalled, None),
-                });
-            }
-        }
     }
 }

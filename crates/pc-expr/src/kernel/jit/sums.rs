@@ -97,9 +97,9 @@ mod tests {
 
     #[test]
     fn the_width_of_vectors_does_not_change_a_bit() {
-        let (stride, sums) = (56, 24);
+        let (stride, sums) = (56_usize, 24);
         let numbers: Vec<f64> =
-            (0..20 * stride).map(|i| (1.0 + i as f64).sin() * 3.0_f64.powi((i % 7) as i32)).collect();
+            (0..20 * stride).map(|i| (1.0 + i as f64).sin() * 3.0_f64.powi(i as i32 % 7)).collect();
         for k in 2..=20 {
             let rows = Rows { numbers: &numbers, stride, sums };
             let mut expected = vec![0.0; sums];

@@ -1,0 +1,214 @@
+//! A step of Taylor's method.
+
+use pc_expr::{Failure, VectorField};
+
+use crate::error::{NonFinite, Reason, SolveError};
+use crate::integration::breaks::next_break;
+use crate::integration::stepper::Stepper;
+use crate::taylor::stepper::Taylor;
+
+/// A step that would end so near to a stop time or a break, in parts of its length, ends there.
+const NEAR: f64 = 1e-9;
+
+/// Why a step has to be shorter.
+pub(super) enum Refusal {
+    /// A smaller step may do.
+    Shorter(Reason, Option<Failure>),
+    Fatal(SolveError),
+}
+
+impl<F: VectorField> Taylor<F> {
+    /// Where the next step towards a time has to end at the latest; none if nowhere.
+    pub(super) fn limit(&mut self, towards: f64) -> Result<Option<f64>, SolveError> {
+        let from = self.end;
+        let direction = 1.0_f64.copysign(towards - from);
+        let end = self.stop_time.unwrap_or(f64::INFINITY.copysign(direction));
+        let mut next = self.stop_time;
+        let mut jumped = false;
+        if !self.field.breaks().is_empty() {
+            let (t, following) = next_break(self.field.breaks(), from, end);
+            next = following.or(self.stop_time);
+            jumped = self.field.enter(t, end);
+        }
+        let leaves = |i: usize| self.sides[i] == 0.0 && self.leading_side(i) != 0.0;
+        if jumped || self.direction != direction || (0..self.sides.len()).any(leaves) {
+            self.expand_at_end(direction)?;
+        }
+        Ok(next)
+    }
+
+    /// How long a step along the series may be.
+    pub(super) fn longest(&mut self, towards: f64) -> Result<f64, SolveError> {
+        let mut length = self.tolerances.length(&self.series).min(self.max_step);
+        if !self.branches.is_empty() {
+            length = length.min(self.branch_length());
+        }
+        if let Some(first) = self.first_step.filter(|_| self.begins) {
+            length = length.min(first);
+        }
+        if length.is_nan() {
+            return Err(self.failed(Reason::Stalled, None));
+        }
+        // A series that ends goes as far as is asked for.
+        Ok(if length.is_infinite() { (towards - self.start).abs() } else { length })
+    }
+
+    /// Makes a step along the series; the time at its end, and what of that a number does not hold.
+    pub(super) fn find_step(
+        &mut self,
+        towards: f64,
+        limit: Option<f64>,
+        direction: f64,
+    ) -> Result<(f64, f64), SolveError> {
+        let (from, low) = (self.start, self.start_low);
+        let remaining = limit.map(|limit| (limit - from) - low);
+        let mut turns = 0;
+        let (mut h, mut lands, mut crossed) = loop {
+            let length = self.longest(towards)?;
+            let mut h = length * direction;
+            let mut lands = false;
+            if let Some(remaining) =
+                remaining.filter(|&remaining| (remaining - h) * direction <= NEAR * length)
+            {
+                (h, lands) = (remaining, true);
+            }
+            match self.corner(h) {
+                None => break (h, lands, Vec::new()),
+                Some((corner, which)) if from + corner != from => break (corner, false, which),
+                // The step before has ended at the corner.
+                Some((_, which)) if turns <= self.branches.len() => {
+                    turns += 1;
+                    self.turn(&which, direction)?;
+                }
+                Some((_, which)) => return Err(self.sliding(which[0], from)),
+            }
+        };
+        if !self.places.are_absent()
+            && let Some(shorter) = self.foreseen(h, self.stop_time.unwrap_or(towards))?
+        {
+            (h, lands) = (shorter, false);
+            crossed.clear();
+        }
+        loop {
+            // The end of the step, with the rounding of its time.
+            let (t, rest) = match limit {
+                Some(limit) if lands => (limit, 0.0),
+                _ => {
+                    let change = h + low;
+                    let t = from + change;
+                    let part = t - from;
+                    (t, (from - (t - part)) + (change - part))
+                }
+            };
+            if t == from {
+                return Err(self.failed(Reason::Stalled, None));
+            }
+            let (reason, failure) = match self.attempt(t, h, &crossed) {
+                Ok(()) => return Ok((t, rest)),
+                Err(Refusal::Fatal(error)) => return Err(error),
+                Err(Refusal::Shorter(reason, failure)) => (reason, failure),
+            };
+            if failure.as_ref().is_some_and(|failure| !failure.is_recoverable()) {
+                return Err(self.failed(reason, failure));
+            }
+            if failure.is_some() {
+                self.statistics.step_failures += 1;
+            }
+            h *= 0.5;
+            lands = false;
+            crossed.clear();
+            if from + h == from || h.abs() < self.min_step {
+                return Err(match failure {
+                    Some(failure) => self.failed(reason, Some(failure)),
+                    None => self.failed(Reason::Stalled, None),
+                });
+            }
+        }
+    }
+
+    /// Tries a step of length h to the time `t`, across these branches; the series at its end is then that ahead.
+    pub(super) fn attempt(&mut self, t: f64, h: f64, crossed: &[usize]) -> Result<(), Refusal> {
+        let order = self.series.order();
+        self.series.change(h, &mut self.state, &mut self.slope);
+        let projects = self.field.has_projection();
+        for (i, change) in self.state.iter().enumerate() {
+            // Møller's and Knuth's sum: what of the change is lost in y is kept.
+            let y = self.series.coefficients[i];
+            let change = change + self.low[i];
+            let sum = y + change;
+            let part = sum - y;
+            self.ahead.coefficients[i] = sum;
+            self.next_low[i] = (y - (sum - part)) + (change - part);
+        }
+        if projects {
+            self.next_low.fill(0.0);
+        }
+        if let Some(i) = self.ahead.of_order(0).iter().position(|value| !value.is_finite()) {
+            let (component, value) = (self.field.component_name(i), self.ahead.coefficients[i]);
+            return Err(Refusal::Shorter(Reason::Overflow { component, value, t }, None));
+        }
+        if projects {
+            let projected = self.field.project(t, self.ahead.of_order_mut(0));
+            projected.map_err(|failure| Refusal::Shorter(Reason::Projection { t }, Some(failure)))?;
+        }
+        let inequalities = self.limits.inequalities.iter().zip(self.ahead.of_order(0));
+        if inequalities.into_iter().any(|(inequality, &y)| !inequality.holds(y)) {
+            return Err(Refusal::Shorter(Reason::Stalled, None));
+        }
+        let sides = self.sides.clone();
+        self.expand(t)?;
+        let y = self.ahead.of_order(0);
+        if self.tolerances.feels(self.ahead.of_order(1), &self.slope, y, h, order) {
+            self.statistics.error_test_failures += 1;
+            return Err(Refusal::Shorter(Reason::Stalled, None));
+        }
+        if !crossed.is_empty() {
+            for &i in crossed {
+                self.sides[i] = -self.sides[i];
+            }
+            if let Err(refusal) = self.expand(t) {
+                self.sides = sides;
+                return Err(refusal);
+            }
+            // Beyond the corner the motion has to go on as it came.
+            if let Some(&i) = crossed.iter().find(|&&i| self.returns(i, h.signum())) {
+                self.sides = sides;
+                return Err(Refusal::Fatal(self.sliding(i, t)));
+            }
+        }
+        std::mem::swap(&mut self.low, &mut self.next_low);
+        Ok(())
+    }
+
+    /// Expands at `t` the state that `ahead` begins with, on these sides.
+    pub(super) fn expand(&mut self, t: f64) -> Result<(), Refusal> {
+        self.statistics.rhs_evaluations += 1;
+        let order = self.ahead.order();
+        let refused = |failure: Failure| Refusal::Shorter(Reason::Rates { t }, Some(failure));
+        let series = self.field.expand(t, self.ahead.of_order(0), &self.sides, order).map_err(refused)?;
+        series.copy_coefficients(order, &mut self.ahead.coefficients[self.ahead.dim..]);
+        if !self.branches.is_empty() {
+            for k in 0..order {
+                self.branch_series.of_order_mut(k).copy_from_slice(series.branch_coefficients(k));
+            }
+        }
+        if self.ahead.is_finite() { Ok(()) } else { Err(refused(self.blame(t))) }
+    }
+
+    /// The failure of a series that is not finite.
+    #[cold]
+    pub(super) fn blame(&mut self, t: f64) -> Failure {
+        if let Err(failure) = self.field.rhs(t, self.ahead.of_order(0), &mut self.rates) {
+            return failure;
+        }
+        let dim = self.ahead.dim;
+        let found = self.ahead.coefficients.iter().position(|c| !c.is_finite()).unwrap_or(0);
+        let (order, component) = (found / dim, self.field.component_name(found % dim));
+        Failure::recoverable(NonFinite::Coefficient {
+            component,
+            order,
+            value: self.ahead.coefficients[found],
+            t,
+        })
+    }
+}
