@@ -6,8 +6,7 @@
 //! of values in prime fields, of signs, and of divisors. `graph` owns a `dag` and stays within a `budget` (`limits`,
 //! and of time a `deadline`), `expr` is the handle that formulas are written with; `subgraph` walks the nodes that
 //! expressions depend on, `queries` are questions about whole expressions, `places` finds symbols in long lists, `transcription`
-//! writes them in another graph, and `evaluate` computes their values one by
-//! one: the reference for all faster ways.
+//! writes expressions in another graph, and `evaluate` computes their values one by one: the reference for all faster ways.
 
 pub(crate) mod budget;
 pub(crate) mod calls;

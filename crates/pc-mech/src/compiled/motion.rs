@@ -4,7 +4,7 @@ use pc_algebra::Matrix;
 use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, VectorField};
 
 use crate::compiled::chart::Chart;
-use crate::compiled::elimination::numeric::Staged;
+use crate::compiled::elimination::numeric::{OF_A_LOOP, Staged};
 use crate::compiled::elimination::schur::Schur;
 use crate::compiled::elimination::symbolic::Unrolled;
 use crate::compiled::failure::EvaluationFailure;
@@ -308,7 +308,7 @@ impl Motion {
         self.form = match self.form {
             Form::Staged(staged)
                 if self.options.elimination == TreeElimination::ByJoints
-                    || schur.operations() < staged.operations() =>
+                    || schur.operations(OF_A_LOOP) < staged.operations() =>
             {
                 Form::Staged(Box::new(staged.by_joints(schur)))
             }

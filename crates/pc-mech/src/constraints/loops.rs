@@ -1,16 +1,44 @@
 //! Loops of a tree, closed after its joints are eliminated.
 
-use pc_expr::{Inputs, Transcription};
+use pc_expr::{Graph, Inputs, Transcription};
 
 use crate::compiled::elimination::schur::Schur;
 use crate::compiled::options::{CompileOptions, TreeElimination};
+use crate::constraints::constraint::Constraint;
 use crate::constraints::multipliers::Multipliers;
 use crate::error::MechError;
 use crate::tree::equations::TreeEquations;
 use crate::tree::system::TreeSystem;
 
-impl Multipliers<'_> {
-    /// What gives accelerations and the reactions of the independent constraints joint after joint; none of what is no tree.
+impl<'g> Multipliers<'g> {
+    /// The same equations derived in an empty graph, as those of a [system](crate::System) that is a tree.
+    ///
+    /// # Errors
+    /// As for [`with_multipliers`](crate::System::with_multipliers), by which they were made before.
+    pub(crate) fn in_graph<'n>(
+        &self,
+        tree: &TreeSystem<'g>,
+        graph: &'n Graph,
+    ) -> Result<Multipliers<'n>, MechError> {
+        let system = &self.equations.system;
+        let copy = Transcription::new(system.graph(), graph);
+        let put = |constraint: &Constraint<'g>| Constraint {
+            name: constraint.name.clone(),
+            expression: copy.write(constraint.expression),
+            nonlinear: constraint.nonlinear,
+        };
+        let own = system.in_graph(tree, graph);
+        let held = own.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())?;
+        Ok(Multipliers {
+            followers: self.followers.iter().map(put).collect(),
+            dependent: self.dependent.clone(),
+            observed: self.observed,
+            ..held
+        })
+    }
+
+    /// What gives accelerations and the reactions of the first constraints, `rank` of them, joint after joint; none of what is no
+    /// tree.
     ///
     /// # Errors
     /// As for [`compile_for`](Multipliers::compile_for).
@@ -24,9 +52,10 @@ impl Multipliers<'_> {
         else {
             return Ok(None);
         };
+        // In an empty graph: what the whole matrix is made of has other steps.
         let graph = system.graph().page(system.graph().folding());
-        let own = system.in_graph(tree, &graph);
         let copy = Transcription::new(system.graph(), &graph);
+        let own = system.in_graph(tree, &graph);
         let Some(tree) = &own.tree else { return Ok(None) };
         let tree = TreeEquations {
             dynamics: tree.dynamics(&own.frame, &own.forces),

@@ -48,9 +48,9 @@ use crate::system::system::System;
 #[derive(Clone, Debug)]
 pub struct Multipliers<'g> {
     pub(crate) equations: Equations<'g>,
-    constraints: Vec<Constraint<'g>>,
+    pub(super) constraints: Vec<Constraint<'g>>,
     /// g, which is C η + c_0 where it is affine.
-    velocities: Vec<Expr<'g>>,
+    pub(super) velocities: Vec<Expr<'g>>,
     /// C = ∂g/∂η, m × k.
     pub(crate) coefficients: Matrix<Expr<'g>>,
     /// −(dC/dt) η − dc_0/dt, length m.
@@ -58,13 +58,13 @@ pub struct Multipliers<'g> {
     /// The symbols λ, length m.
     pub(crate) reactions: Vec<Expr<'g>>,
     /// Constraints that follow from these, looked at on the way.
-    followers: Vec<Constraint<'g>>,
+    pub(super) followers: Vec<Constraint<'g>>,
     /// How many of the constraints are independent, the first ones almost everywhere.
-    rank: usize,
+    pub(super) rank: usize,
     /// The indices of the quasi-velocities that are to depend on the others where they can.
     pub(crate) dependent: Option<Vec<usize>>,
     /// Whether the reactions are observed.
-    observed: bool,
+    pub(super) observed: bool,
 }
 
 impl<'g> System<'g> {
@@ -217,10 +217,17 @@ impl<'g> Multipliers<'g> {
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor declared
     /// parameter.
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
+        let (options, graph) = (options.into(), self.graph());
+        let Some(tree) = &self.equations.system.tree else { return self.compile_here(&options) };
+        let own = graph.page(graph.folding());
+        self.in_graph(tree, &own)?.compile_here(&options)
+    }
+
+    fn compile_here(&self, options: &CompileOptions) -> Result<Motion, MechError> {
         let whole = self.with_spare();
-        let (first_order, options) = (whole.first_order(), options.into());
-        let motion = first_order.compile(&options, LONGEST_ELIMINATION)?;
-        let motion = match whole.by_joints(&options, self.rank)? {
+        let first_order = whole.first_order();
+        let motion = first_order.compile(options, LONGEST_ELIMINATION)?;
+        let motion = match whole.by_joints(options, self.rank)? {
             Some(schur) => motion.by_joints(schur),
             None => motion,
         };

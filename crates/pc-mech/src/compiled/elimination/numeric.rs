@@ -35,6 +35,9 @@ pub(crate) struct Staged {
     observables: Evaluator,
 }
 
+/// Operations of straight-line code that take as long as one of a factorisation in loops, about.
+pub(crate) const OF_A_LOOP: usize = 4;
+
 /// What determines w.
 #[derive(Clone, Debug)]
 enum Unknowns {
@@ -96,10 +99,10 @@ impl Staged {
         Staged { schur: Some(Box::new(schur)), ..self }
     }
 
-    /// Operations of w by factors of its matrix.
+    /// Operations of w by factors of its matrix, as many of straight-line code as take as long.
     pub(crate) fn operations(&self) -> usize {
         let size = self.known.len() - self.dim;
-        self.equations().cost().total() + self.solver.operations(size, self.multipliers)
+        self.equations().cost().total() + OF_A_LOOP * self.solver.operations(size, self.multipliers)
     }
 
     /// The program of the equations of w.

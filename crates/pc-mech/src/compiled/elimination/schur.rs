@@ -70,10 +70,11 @@ impl Schur {
         Ok(Some(Schur { equations, values: vec![0.0; outputs.len()], k, m, watched: watched.len(), solved }))
     }
 
-    /// Operations of an evaluation.
-    pub(crate) fn operations(&self) -> usize {
+    /// Operations of an evaluation; one of its factors takes as long as `of_a_loop` of straight-line code.
+    pub(crate) fn operations(&self, of_a_loop: usize) -> usize {
         let m = self.m;
-        self.equations.program().cost().total() + m * m * m / 6 + 2 * m * m + self.solved.len()
+        let factors = m * m * m / 6 + 2 * m * m + self.solved.len();
+        self.equations.program().cost().total() + of_a_loop * factors
     }
 
     /// Writes η̇, then λ, and zeros after them; false where they are to be found in another way.
