@@ -12,6 +12,7 @@ pub(crate) struct Rows<'a> {
     pub(crate) sums: usize,
 }
 
+#[cfg(all(feature = "jit", target_arch = "x86_64"))]
 impl Rows<'_> {
     /// Whether there are rows for the sums of order k, and room for these.
     pub(crate) fn hold(self, k: usize, out: &[f64]) -> bool {
