@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
+use pc_report::ReportError;
 use pc_solve::{Code, SolveError, Spent};
 use pc_verify::VerifyError;
 
@@ -176,6 +177,15 @@ pub enum CliError {
         /// How far the integration was.
         t: f64,
     },
+}
+
+impl From<ReportError> for CliError {
+    fn from(error: ReportError) -> CliError {
+        match error {
+            ReportError::Model(error) => CliError::Model(error),
+            ReportError::Verify(error) => CliError::Verify(error),
+        }
+    }
 }
 
 impl CliError {
