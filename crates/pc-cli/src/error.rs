@@ -74,6 +74,15 @@ pub enum CliError {
         /// The parameters of the model.
         known: Vec<String>,
     },
+    /// Nothing of the model can be drawn.
+    #[error(
+        "nothing of {model} can be drawn: it has neither bodies nor [[draw]], or the motion was computed without coordinates on \
+         which these depend"
+    )]
+    NothingToDraw {
+        /// Its title.
+        model: String,
+    },
     /// Neither the command line nor the model gives an end time.
     #[error(
         "{model}: no end time: give `--t-end T`, or `t_end = T` in the section [simulation] of the model"
@@ -229,6 +238,7 @@ impl CliError {
             | CliError::SetTwice { .. }
             | CliError::Definitions { .. }
             | CliError::BadValue { .. }
+            | CliError::NothingToDraw { .. }
             | CliError::NoEnd { .. }
             | CliError::EndIsStart { .. }
             | CliError::UnknownExtension { .. }

@@ -29,6 +29,7 @@ fn main() -> ExitCode {
         Command::Theory(arguments) => theory::command(arguments),
         Command::Run(arguments) => run::command(arguments),
         Command::Report(arguments) => report::command(arguments),
+        Command::Animate(arguments) => report::animate(arguments),
         Command::Sweep(arguments) => sweep::command::command(arguments),
         Command::Emit(arguments) => emit::command(arguments),
         Command::Import(arguments) => import::command(arguments),

@@ -276,7 +276,7 @@ fn mathml_has_the_structure_of_the_expression() {
         (rate, "<mover accent=\"true\">{x}˙</mover>"),
         (second, "<msub><mover accent=\"true\">{φ}¨</mover>{2}</msub>"),
         (momentum, "<msub>{p}<msub>{ω}{1}</msub></msub>"),
-        (half, "<mfrac>{1}{2}</mfrac>·<msup><mrow><msub>{ω}{1}</msub></mrow>{2}</msup>"),
+        (half, "<mfrac>{1}{2}</mfrac>·<msubsup>{ω}{1}{2}</msubsup>"),
         (long * a, "{a}·~{mass}"),
         (a - b, "{a} −{b}"),
         (-(a + b).square(), "−<msup><mrow>({a} +{b})</mrow>{2}</msup>"),

@@ -89,6 +89,7 @@ fn check(name: &str, page: &str) {
             let count = element.children().filter(Node::is_element).count();
             let wanted = match element.tag_name().name() {
                 "msub" | "msup" | "mfrac" | "mover" => 2,
+                "msubsup" => 3,
                 "mi" | "mn" | "mo" | "mtext" | "mspace" => 0,
                 _ => continue,
             };

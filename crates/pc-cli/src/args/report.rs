@@ -1,4 +1,4 @@
-//! Arguments of `pc report`.
+//! Arguments of `pc report` and `pc animate`.
 
 use std::path::PathBuf;
 
@@ -11,23 +11,17 @@ use crate::args::options::{
     EventArguments, Method, ModelArguments, Outputs, RunArguments, VelocityArguments,
 };
 
-/// Arguments of `pc report`.
+/// The motion on a page.
 #[derive(Clone, Debug, Args)]
-#[command(after_help = "Examples:\n  \
-                        pc report tilted-disk -o disk.html\n  \
-                        pc report my-model.toml --t-end 20 --set m=2.5 -o report.html\n  \
-                        pc models heavy-top-euler | pc report - --no-run > top.html\n\
-                        The page needs nothing beside itself: no network, no script, no other file. The same model gives the \
-                        same bytes. What was reached of a motion that fails stands on the page, and the exit code is that of \
-                        `pc run`.")]
-pub struct ReportArguments {
+pub struct ShownArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// End time; else that of the file. Without either the page has no motion
+    /// End time; else that of the file
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
-    /// Number of points of a curve, evenly spaced, start and end included; else that of the file, else 201
+    /// Number of points of a curve and of frames, evenly spaced, start and end included; else that of the file, or 601 if that
+    /// is more
     #[arg(long, value_name = "N", value_parser = options::samples)]
     pub samples: Option<usize>,
     /// Relative tolerance; else that of the file, else 1e-9
@@ -51,6 +45,21 @@ pub struct ReportArguments {
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,
+}
+
+/// Arguments of `pc report`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:\n  \
+                        pc report tilted-disk -o disk.html\n  \
+                        pc report my-model.toml --t-end 20 --set m=2.5 -o report.html\n  \
+                        pc models heavy-top-euler | pc report - --no-run > top.html\n\
+                        The page needs nothing beside itself: no network and no other file; it is read without scripts, by which \
+                        the motion can be watched. The same model gives the same bytes. Without an end of time there is no \
+                        motion. What was reached of one that fails stands on the page, and the exit code is that of `pc run`.")]
+pub struct ReportArguments {
+    /// The motion.
+    #[command(flatten)]
+    pub shown: ShownArguments,
     /// Leave out the motion
     #[arg(long, conflicts_with_all = ["t_end", "samples", "form", "project"])]
     pub no_run: bool,
@@ -59,7 +68,23 @@ pub struct ReportArguments {
     pub output: Option<PathBuf>,
 }
 
-impl ReportArguments {
+/// Arguments of `pc animate`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:\n  \
+                        pc animate spatial-chain -o chain.html\n  \
+                        pc animate tilted-disk --t-end 20 > disk.html\n\
+                        What is drawn are bodies, joints and points, and the shapes of `[[draw]]` in the text of the model. The \
+                        page needs nothing beside itself; the same model gives the same bytes.")]
+pub struct AnimateArguments {
+    /// The motion.
+    #[command(flatten)]
+    pub shown: ShownArguments,
+    /// Write the page to FILE.html instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+impl ShownArguments {
     /// The corresponding arguments of `pc run`.
     pub fn as_run(&self) -> RunArguments {
         RunArguments {

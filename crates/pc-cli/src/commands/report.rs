@@ -1,12 +1,12 @@
-//! `pc report`: all that is known of a model on one page.
+//! `pc report`: all that is known of a model on one page; `pc animate`: its motion alone.
 
 use std::ops::Range;
 
 use pc_model::Model;
-use pc_report::{Columns, Kind, Record, report};
+use pc_report::{Columns, Kind, Record, Scene, animation, report};
 
 use crate::args::input;
-use crate::args::report::ReportArguments;
+use crate::args::report::{AnimateArguments, ReportArguments, ShownArguments};
 use crate::commands::run::integrate;
 use crate::error::CliError;
 use crate::motion::plan::Plan;
@@ -14,36 +14,56 @@ use crate::motion::run::{Ending, Run};
 use crate::output::destination::Destination;
 use crate::report::summary;
 
+/// Points of a curve that looks smooth.
+const SMOOTH: usize = 601;
+
 /// Writes the page of a model.
 ///
 /// # Errors
 /// [`CliError`]; of a motion that failed, what was reached has been written then.
 pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
     let destination = Destination::page(arguments.output.as_deref())?;
-    let mut model = input::open(&arguments.model)?;
-    let run = if arguments.no_run { None } else { integrated(&mut model, arguments)? };
-    let record = match &run {
-        Some(run) => Some(record(run)),
-        None if arguments.no_run => None,
-        None => Some(Record { remark: Some(NO_END.to_owned()), ..Record::default() }),
+    let mut model = input::open(&arguments.shown.model)?;
+    if arguments.no_run {
+        return destination.write_page(&report(&model, None)?);
+    }
+    let run = match integrated(&mut model, &arguments.shown) {
+        Err(CliError::NoEnd { .. }) => None,
+        run => Some(run?),
     };
-    destination.write_page(&report(&model, record.as_ref())?)?;
+    let none = || Record { remark: Some(NO_END.to_owned()), ..Record::default() };
+    let record = run.as_ref().map_or_else(none, record);
+    destination.write_page(&report(&model, Some(&record))?)?;
     run.map_or(Ok(()), Run::outcome)
 }
 
 const NO_END: &str = "There is no motion: the text says no end of time, and --t-end was not given.";
 
-/// The motion with the reactions of constraints; none without an end of time.
-fn integrated(model: &mut Model, arguments: &ReportArguments) -> Result<Option<Run>, CliError> {
-    let arguments = arguments.as_run();
+/// Writes the page of a motion.
+///
+/// # Errors
+/// [`CliError`], also where there is nothing to be drawn; of a motion that failed, what was reached has been written then.
+pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
+    let destination = Destination::page(arguments.output.as_deref())?;
+    let mut model = input::open(&arguments.shown.model)?;
+    let run = integrated(&mut model, &arguments.shown)?;
+    let graph = model.graph();
+    let scene = Scene::of(&model, &model.assemble(&graph)?, &record(&run))?;
+    let scene = scene.ok_or_else(|| CliError::NothingToDraw { model: model.title().to_owned() })?;
+    destination.write_page(&animation(model.title(), &scene))?;
+    run.outcome()
+}
+
+/// The motion with the reactions of constraints.
+fn integrated(model: &mut Model, shown: &ShownArguments) -> Result<Run, CliError> {
+    let arguments = shown.as_run();
     model.observe_reactions(!model.document().constraints.is_empty());
     for name in &arguments.project {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
-    match Plan::new(model, &arguments) {
-        Err(CliError::NoEnd { .. }) => Ok(None),
-        plan => integrate(model, Plan::form(model, &arguments), || plan).map(Some),
-    }
+    let plan = Plan::new(model, &arguments)?;
+    let samples = shown.samples.unwrap_or(plan.samples.max(SMOOTH));
+    integrate(model, Plan::form(model, &arguments), || Ok(Plan { samples, ..plan }))
 }
 
 /// What a page shows of a run.

@@ -122,8 +122,12 @@ pub(super) fn power(base: &Piece, exponent: &str) -> String {
             return format!("<msup>{name}{exponent}</msup>{rest}");
         }
     }
-    match base.binding {
-        Binding::Atom => format!("<msup>{}{exponent}</msup>", one(&base.text)),
+    // An atom in an index is a symbol: the exponent stands above its index.
+    match (base.binding, base.text.strip_prefix("<msub>")) {
+        (Binding::Atom, Some(rest)) if rest.ends_with("</msub>") => {
+            format!("<msubsup>{}{exponent}</msubsup>", &rest[..rest.len() - "</msub>".len()])
+        }
+        (Binding::Atom, _) => format!("<msup>{}{exponent}</msup>", one(&base.text)),
         _ => format!("<msup>{}{exponent}</msup>", bracketed(&base.text)),
     }
 }
@@ -208,7 +212,7 @@ fn is_call(factor: &str) -> bool {
 
 /// Names of several letters and those with indices do not run into each other.
 fn is_name(factor: &str) -> bool {
-    if factor.starts_with("<msub>") {
+    if factor.starts_with("<msub>") || factor.starts_with("<msubsup>") {
         return true;
     }
     let name = factor.strip_prefix("<mi>").and_then(|rest| rest.strip_suffix("</mi>"));

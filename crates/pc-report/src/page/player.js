@@ -16,9 +16,15 @@
 
   // The middle and the size of all that moves; up is against gravity, else z, else y in a plane.
   var low = [1 / 0, 1 / 0, 1 / 0], high = [-1 / 0, -1 / 0, -1 / 0];
+  var least = low.slice(), most = high.slice(), across = [0, 0, 0];
   function stretch(p, r) {
     for (var k = 0; k < 3; k++) {
-      if (isFinite(p[k])) { low[k] = Math.min(low[k], p[k] - r); high[k] = Math.max(high[k], p[k] + r); }
+      if (isFinite(p[k])) {
+        low[k] = Math.min(low[k], p[k] - r);
+        high[k] = Math.max(high[k], p[k] + r);
+        least[k] = Math.min(least[k], p[k]);
+        most[k] = Math.max(most[k], p[k]);
+      }
     }
   }
   function vector(f, i) { var n = f * width + i; return [frames[n], frames[n + 1], frames[n + 2]]; }
@@ -30,6 +36,9 @@
         r = Math.hypot(e[0], e[1], e[2]) / 2;
       }
       stretch(vector(f, s.at), Math.abs(r) || 0);
+      // Discs that stand in the plane of the motion, and what turns, take space.
+      if (s.kind === "disc") { vector(f, s.at + 3).forEach(function (n, k) { across[k] = Math.max(across[k], Math.abs(n)); }); }
+      if (s.kind === "axes" || s.kind === "box") { across = [1, 1, 1]; }
       if (s.kind === "line" || s.kind === "spring") {
         for (var i = 3; i < s.count; i += 3) { stretch(vector(f, s.at + i), 0); }
       }
@@ -38,8 +47,9 @@
   var middle = [0, 1, 2].map(function (k) { return isFinite(low[k]) ? (low[k] + high[k]) / 2 : 0; });
   var extent = [0, 1, 2].map(function (k) { return isFinite(low[k]) ? high[k] - low[k] : 0; });
   var size = Math.max(extent[0], extent[1], extent[2]) || 1;
-  var flat = extent.indexOf(Math.min(extent[0], extent[1], extent[2]));
-  var planar = extent[flat] < 1e-6 * size;
+  var spread = [0, 1, 2].map(function (k) { return isFinite(least[k]) ? most[k] - least[k] : 0; });
+  var flat = spread.lastIndexOf(Math.min(spread[0], spread[1], spread[2]));
+  var planar = spread[flat] < 1e-6 * size && across[(flat + 1) % 3] < 1e-6 && across[(flat + 2) % 3] < 1e-6;
   var g = data.gravity, up = planar && flat === 2 ? 1 : 2, steepest = 0;
   for (var k = 0; k < 3; k++) { if (Math.abs(g[k]) > steepest) { steepest = Math.abs(g[k]); up = k; } }
   if (planar && up === flat) { up = flat === 2 ? 1 : 2; }
