@@ -273,10 +273,10 @@ fn mathml_has_the_structure_of_the_expression() {
     for (expr, row) in [
         (omega, "<msub>{ω}{1}</msub>"),
         (theta, "{θ}"),
-        (rate, "<mover accent=\"true\">{x}˙</mover>"),
-        (second, "<msub><mover accent=\"true\">{φ}¨</mover>{2}</msub>"),
+        (rate, "<mover>{x}˙</mover>"),
+        (second, "<msub><mover>{φ}¨</mover>{2}</msub>"),
         (momentum, "<msub>{p}<msub>{ω}{1}</msub></msub>"),
-        (half, "<mfrac>{1}{2}</mfrac>·<msubsup>{ω}{1}{2}</msubsup>"),
+        (half, "<mfrac>{1}{2}</mfrac>·~<msubsup>{ω}{1}{2}</msubsup>"),
         (long * a, "{a}·~{mass}"),
         (a - b, "{a} −{b}"),
         (-(a + b).square(), "−<msup><mrow>({a} +{b})</mrow>{2}</msup>"),

@@ -256,12 +256,9 @@ pub fn displayed_theory<'g>(
 ) -> Result<Vec<DisplayedTheory>, ModelError> {
     let found = described(model, assembly, options)?;
     assembly.within_limits()?;
-    let row = |(left, right): &(Side<'g>, Side<'g>)| {
-        let one = |side: &Side<'g>| vec![(side.mathml.clone(), side.book.chars().count())];
-        mathml::equation(one(left), one(right), usize::MAX)
-    };
     let set = |formulas: &[(Side<'g>, Side<'g>)]| {
-        let rows: Vec<String> = formulas.iter().flat_map(row).collect();
+        let row = |(left, right): &(Side<'g>, Side<'g>)| mathml::row(&left.mathml, &right.mathml);
+        let rows: Vec<String> = formulas.iter().map(row).collect();
         (!rows.is_empty()).then(|| mathml::table(&rows))
     };
     let section = |section: &Section<'g>| DisplayedTheory {

@@ -85,22 +85,27 @@ pub(crate) fn table(rows: &[String]) -> String {
     format!("<math display=\"block\"><mtable displaystyle=\"true\">{}</mtable></math>", rows.concat())
 }
 
+/// The two sides in one row, whatever their lengths.
+pub(crate) fn row(left: &str, right: &str) -> String {
+    format!("<mtr><mtd>{left}</mtd><mtd>{EQUALS}</mtd><mtd>{right}</mtd></mtr>")
+}
+
 /// The two sides in as many rows as they need: the right side begins behind a short left side, else in a row of its own.
 pub(crate) fn equation(left: Terms, right: Terms, width: usize) -> Vec<String> {
     let columns: usize = left.iter().map(|(_, width)| width + 1).sum();
-    let row = |left: &str, sign: &str, right: &str| {
-        format!("<mtr><mtd>{left}</mtd><mtd>{sign}</mtd><mtd>{right}</mtd></mtr>")
-    };
-    let mut rows = Vec::new();
-    let (head, begin) = if columns <= LONG_LEFT {
-        (left.into_iter().map(|(term, _)| term).collect::<String>(), columns + 3)
-    } else {
-        let left = flowed(left, 0, width);
-        rows.extend(left.iter().map(|line| format!("<mtr><mtd columnspan=\"3\">{line}</mtd></mtr>")));
-        (String::new(), HANGING)
-    };
-    for (i, line) in flowed(right, begin, width).iter().enumerate() {
-        rows.push(if i == 0 { row(&head, EQUALS, line) } else { row("", "", line) });
+    if columns <= LONG_LEFT {
+        let left: String = left.into_iter().map(|(term, _)| term).collect();
+        let line = |(i, line): (usize, String)| match i {
+            0 => row(&left, &line),
+            _ => format!("<mtr><mtd></mtd><mtd></mtd><mtd>{line}</mtd></mtr>"),
+        };
+        return flowed(right, columns + 3, width).into_iter().enumerate().map(line).collect();
+    }
+    let whole = |line: &str| format!("<mtr><mtd columnspan=\"3\">{line}</mtd></mtr>");
+    let mut rows: Vec<String> = flowed(left, 0, width).iter().map(|line| whole(line)).collect();
+    for (i, line) in flowed(right, HANGING, width).iter().enumerate() {
+        let sign = if i == 0 { EQUALS } else { "" };
+        rows.push(whole(&format!("<mspace width=\"2em\"/>{sign}{line}")));
     }
     rows
 }

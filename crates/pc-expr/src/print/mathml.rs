@@ -31,8 +31,8 @@ pub(super) fn symbol(name: &str) -> String {
     let stem = letters(stem);
     let stem = match dots {
         0 => stem,
-        1 => format!("<mover accent=\"true\">{stem}<mo>˙</mo></mover>"),
-        _ => format!("<mover accent=\"true\">{stem}<mo>¨</mo></mover>"),
+        1 => format!("<mover>{stem}<mo>˙</mo></mover>"),
+        _ => format!("<mover>{stem}<mo>¨</mo></mover>"),
     };
     match index {
         Index::None => stem,

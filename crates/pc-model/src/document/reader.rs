@@ -238,8 +238,8 @@ impl<'a> Item<'a> {
         Err(Item { key_span: 0..0, ..self.clone() }.wrong_type("a section", example))
     }
 
-    /// The value as the entries under headers `[[name]]`.
-    pub(super) fn entries(&self, name: &str, example: &str) -> Result<Vec<Item<'a>>, ModelError> {
+    /// The value as the entries under headers such as `[[name]]`.
+    pub(super) fn entries(&self, header: &'static str) -> Result<Vec<Item<'a>>, ModelError> {
         match self.value {
             DeValue::Array(array) if array.iter().all(|element| element.get_ref().is_table()) => {
                 let entry = |item: Item<'a>| Item {

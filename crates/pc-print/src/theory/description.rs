@@ -132,7 +132,8 @@ impl<'g> Side<'g> {
             Style::Latex => format!("({},\\, {})", f.display(style), g.display(style)),
             Style::Book | Style::Text => format!("({}, {})", f.display(style), g.display(style)),
             Style::MathMl => {
-                mathml::bracketed(&format!("{}<mo>,</mo>{}", f.display(style), g.display(style)))
+                let [open, close] = ["(", ")"].map(|sign| format!("<mo stretchy=\"false\">{sign}</mo>"));
+                format!("{open}{}<mo>,</mo>{}{close}", f.display(style), g.display(style))
             }
         })
     }

@@ -7,7 +7,7 @@ use crate::page::formulas;
 use crate::page::html::{lines, paragraph, text};
 
 /// Equations that take more bytes are left to `pc derive`, so that a page stays below a megabyte.
-const LONGEST: usize = 180_000;
+const LONGEST: usize = 120_000;
 
 /// Poincaré's equations, then the other forms.
 pub(super) fn equations(title: &str, assembly: &Assembly<'_>, layout: &Layout) -> Result<String, ModelError> {
@@ -76,7 +76,7 @@ fn form(equations: &DisplayedEquations, form: Form) -> String {
             shown += &format!("<pre tabindex=\"0\">{}</pre>\n", lines(&whole.mathml));
             shown += &formulas::source(&whole.latex);
         }
-        None => shown += &formulas::parts(&equations.parts, 4, &equations.name),
+        None => shown += &formulas::parts(&equations.parts, 4),
     }
     if !equations.operations.is_empty() {
         shown += "<h4>Operations of one right-hand side</h4>\n";

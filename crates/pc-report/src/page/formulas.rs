@@ -4,12 +4,9 @@ use pc_print::{Display, DisplayedPart};
 
 use crate::page::html::{lines, text};
 
-/// A `math` element in a box that scrolls by itself, reached by the keyboard.
-pub(super) fn formula(mathml: &str, label: &str) -> String {
-    format!(
-        "<div class=\"formula\" tabindex=\"0\" role=\"region\" aria-label=\"{}\">{mathml}</div>\n",
-        text(label)
-    )
+/// A `math` element in a box that scrolls by itself; browsers let the keyboard reach those that do.
+pub(super) fn formula(mathml: &str) -> String {
+    format!("<div class=\"formula\">{mathml}</div>\n")
 }
 
 /// The source for a paper.
@@ -20,17 +17,16 @@ pub(super) fn source(latex: &str) -> String {
     )
 }
 
-/// Parts under headings of a level, called `of`.
-pub(super) fn parts(list: &[DisplayedPart], level: u8, of: &str) -> String {
-    list.iter().map(|part| self::part(part, level, of)).collect()
+/// Parts under headings of a level.
+pub(super) fn parts(list: &[DisplayedPart], level: u8) -> String {
+    list.iter().map(|part| self::part(part, level)).collect()
 }
 
-fn part(part: &DisplayedPart, level: u8, of: &str) -> String {
+fn part(part: &DisplayedPart, level: u8) -> String {
     let DisplayedPart { title, display, notes } = part;
     let mut shown = format!("<h{level}>{title}</h{level}>\n");
-    let label = if of.is_empty() { (*title).to_owned() } else { format!("{title}: {of}") };
     if let Some(Display { mathml, latex }) = display {
-        shown += &formula(mathml, &label);
+        shown += &formula(mathml);
         shown += &source(latex);
     }
     shown + &notes.iter().map(|note| format!("<p class=\"soft\">{}</p>\n", text(note))).collect::<String>()

@@ -66,7 +66,10 @@
     var u = cy * x - sy * y, v = sy * x + cy * y;
     var depth = cp * v - sp * z, h = sp * v + cp * z;
     var far = 4 * size, s = planar ? 1 : far / (far + depth);
-    var scale = 0.8 * Math.min(canvas.width, canvas.height * 1.4) / (planar ? size : 1.25 * size) * zoom * s;
+    var room = planar
+      ? Math.min(canvas.width / (extent[right] || size), canvas.height / (extent[up] || size))
+      : Math.min(canvas.width, 1.1 * canvas.height) / size;
+    var scale = 0.85 * room * zoom * s;
     return { x: canvas.width / 2 + u * scale, y: canvas.height / 2 - h * scale, depth: depth, scale: scale };
   }
   function colour(name) { return getComputedStyle(root).getPropertyValue(name).trim() || "#888"; }

@@ -1,6 +1,6 @@
 //! The page of a model.
 
-use pc_model::{Assembly, Model};
+use pc_model::Model;
 use pc_print::{Layout, TheoryOptions, displayed_system, displayed_theory, short};
 use pc_verify::{Options, VerifyError, verify};
 
@@ -8,8 +8,7 @@ use crate::check::check::Check;
 use crate::error::ReportError;
 use crate::page::html::{Part, described, lines, page, paragraph, text};
 use crate::page::player::player;
-use crate::page::theory::theory as parts_of_theory;
-use crate::page::{equations, formulas, motion};
+use crate::page::{equations, formulas, motion, theory};
 use crate::record::Record;
 use crate::scene::Scene;
 
@@ -33,20 +32,21 @@ pub fn report(model: &Model, motion: Option<&Record>) -> Result<String, ReportEr
     };
     let check = Check::new(model, &assembly, &equations)?.compared(second);
     assembly.within_limits()?;
+    let found = displayed_theory(model, &assembly, &TheoryOptions::default())?;
     let layout = Layout { width: WIDTH, ..Layout::default() };
     let mut parts = vec![
         Part::new("verdicts", "Verdicts", described(&check.entries())),
         Part::new(
             "system",
             "Frame and Lagrangian",
-            formulas::parts(&displayed_system(&assembly, &layout)?, 3, ""),
+            formulas::parts(&displayed_system(&assembly, &layout)?, 3),
         ),
         Part::new(
             "equations",
             "Equations of motion",
             equations::equations(model.title(), &assembly, &layout)?,
         ),
-        Part::new("theory", "Theory of the motions", theory(model, &assembly)?),
+        Part::new("theory", "Theory of the motions", theory::theory(&found)),
     ];
     if let Some(record) = motion {
         let scene = Scene::of(model, &assembly, record)?;
@@ -77,13 +77,6 @@ fn head(model: &Model, parts: &[Part]) -> String {
     let entry = |part: &Part| format!("<li><a href=\"#{}\">{}</a></li>\n", part.id, part.title);
     let entries: String = parts.iter().map(entry).collect();
     head + &format!("</header>\n<nav aria-label=\"Contents\">\n<ol>\n{entries}</ol>\n</nav>\n")
-}
-
-fn theory(model: &Model, assembly: &Assembly<'_>) -> Result<String, ReportError> {
-    if assembly.system.large_tree().is_some() {
-        return Ok(paragraph("Not analysed: the equations of so many bodies are not written out."));
-    }
-    Ok(parts_of_theory(&displayed_theory(model, assembly, &TheoryOptions::default())?))
 }
 
 /// The text as it was read, with the values that parameters have now.

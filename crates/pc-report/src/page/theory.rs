@@ -9,6 +9,9 @@ use crate::picture::plane;
 /// Formulas of more bytes are left to `pc theory`.
 const LONGEST: usize = 60_000;
 
+/// So are parts of more, so that a page stays below a megabyte.
+const LONGEST_PART: usize = 90_000;
+
 /// Each part under a heading.
 pub(super) fn theory(parts: &[DisplayedTheory]) -> String {
     parts.iter().map(part).collect()
@@ -16,19 +19,27 @@ pub(super) fn theory(parts: &[DisplayedTheory]) -> String {
 
 fn part(part: &DisplayedTheory) -> String {
     let mut shown = format!("<h3>{}</h3>\n", text(part.title));
-    if let Some(names) = &part.names {
-        shown += &formula(names, &format!("{}: names", part.title));
+    match &part.names {
+        Some(names) if names.len() > LONGEST => {
+            shown +=
+                "<p>The meanings of the names z are too long to be shown here; pc theory prints them.</p>\n";
+        }
+        Some(names) => shown += &formula(names),
+        None => {}
     }
     for (number, entry) in (1..).zip(&part.entries) {
-        shown += &self::entry(entry, part.title, &format!("{}-{number}", part.key));
+        shown += &self::entry(entry, &format!("{}-{number}", part.key));
     }
     if let Some(latex) = part.latex.as_ref().filter(|latex| latex.len() <= LONGEST) {
         shown += &source(latex);
     }
-    shown
+    if shown.len() <= LONGEST_PART {
+        return shown;
+    }
+    format!("<h3>{}</h3>\n<p>It is too long to be shown here; pc theory prints it.</p>\n", text(part.title))
 }
 
-fn entry(entry: &DisplayedEntry, title: &str, id: &str) -> String {
+fn entry(entry: &DisplayedEntry, id: &str) -> String {
     let mut head = String::new();
     if let Some(name) = &entry.name {
         head += &format!("<span class=\"name\">{}</span> ", text(name));
@@ -41,7 +52,10 @@ fn entry(entry: &DisplayedEntry, title: &str, id: &str) -> String {
         };
         head += &format!("<span class=\"{class}\">{}</span>", text(verdict));
     }
-    let mut shown = String::from("<div class=\"entry\">\n");
+    // Formulas of which nothing else is said stand under each other.
+    let is_plain = head.is_empty() && entry.values.is_empty() && entry.words.is_empty();
+    let class = if is_plain { "entry plain" } else { "entry" };
+    let mut shown = format!("<div class=\"{class}\">\n");
     if !head.is_empty() {
         shown += &format!("<p>{head}</p>\n");
     }
@@ -49,7 +63,7 @@ fn entry(entry: &DisplayedEntry, title: &str, id: &str) -> String {
         Some(mathml) if mathml.len() > LONGEST => {
             shown += "<p>The formula is too long to be shown here; pc theory prints it.</p>\n";
         }
-        Some(mathml) => shown += &formula(mathml, entry.name.as_deref().unwrap_or(title)),
+        Some(mathml) => shown += &formula(mathml),
         None => {}
     }
     if !entry.values.is_empty() {
