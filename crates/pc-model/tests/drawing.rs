@@ -54,7 +54,7 @@ fn a_drawing_that_cannot_be_drawn_is_refused_with_its_text() {
         Ok(shapes) => panic!("{draw}: {shapes:?}"),
     };
     for (draw, said) in [
-        ("[draw]\nkind = \"point\"\nat = [0, 0]\n", "entries under headers"),
+        ("[draw]\nkind = \"point\"\nat = [0, 0]\n", "expected [[draw]]"),
         ("[[draw]]\nat = [0, 0]\n", "kind"),
         ("[[draw]]\nkind = \"dot\"\nat = [0, 0]\n", "dot"),
         ("[[draw]]\nkind = \"point\"\n", "at"),

@@ -97,7 +97,7 @@ const THROUGH: &str = "through = [[0, 0, 0], [\"x\", \"y\", 0]]";
 
 /// The entries of `[[draw]]`.
 pub(super) fn draw(item: &Item<'_>) -> Result<Vec<Draw>, ModelError> {
-    item.entries("[[draw]]", "[[draw]]")?.iter().map(entry).collect()
+    item.entries("[[draw]]")?.iter().map(entry).collect()
 }
 
 fn entry(item: &Item<'_>) -> Result<Draw, ModelError> {

@@ -243,12 +243,12 @@ impl<'a> Item<'a> {
         match self.value {
             DeValue::Array(array) if array.iter().all(|element| element.get_ref().is_table()) => {
                 let entry = |item: Item<'a>| Item {
-                    place: Place { entry: name.to_owned(), ..item.place.clone() },
+                    place: Place { entry: header.to_owned(), ..item.place.clone() },
                     ..item
                 };
                 Ok(self.elements(array).map(entry).collect())
             }
-            _ => Err(Item { key_span: 0..0, ..self.clone() }.wrong_type("entries under headers", example)),
+            _ => Err(Item { key_span: 0..0, ..self.clone() }.wrong_type(header, header)),
         }
     }
 
