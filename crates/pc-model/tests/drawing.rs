@@ -1,7 +1,5 @@
 //! `[[draw]]`, and what is drawn by itself.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
 use pc_mech::Graph;
 use pc_model::{Builtin, Document, Model, ModelError, Shape, Source};
 

@@ -84,8 +84,8 @@ pub(crate) fn whole(line: String) -> String {
 }
 
 /// The operator of a quasi-velocity, or X_0.
-fn operator_of(quasi_velocity: Option<String>) -> String {
-    format!("X_{{{}}}", quasi_velocity.as_deref().unwrap_or("0"))
+fn operator_of(quasi_velocity: Option<&str>) -> String {
+    format!("X_{{{}}}", quasi_velocity.unwrap_or("0"))
 }
 
 /// Terms as they are set, each with its columns in plain characters.
@@ -121,7 +121,7 @@ impl<'p> Latex<'_, 'p> {
                 Some(self.equation(vec![(left, 8)], self.combination(components)))
             }
             Row::Operator { quasi_velocity, components } => {
-                let left = operator_of(quasi_velocity.as_deref().map(|name| self.set.name(name)));
+                let left = operator_of(quasi_velocity.as_deref().map(|name| self.set.name(name)).as_deref());
                 let components = components
                     .iter()
                     .map(|&(x, c)| (c, format!("\\frac{{\\partial}}{{\\partial {}}}", self.set.text(x))));
@@ -134,7 +134,7 @@ impl<'p> Latex<'_, 'p> {
 
     /// X_0, or the operator of a quasi-velocity.
     fn operator(&self, s: usize) -> String {
-        operator_of(s.checked_sub(1).map(|s| self.set.name(&self.operators[s])))
+        operator_of(s.checked_sub(1).map(|s| self.set.name(&self.operators[s])).as_deref())
     }
 
     fn combination(&self, sum: impl Iterator<Item = (Expr<'p>, String)>) -> Terms {

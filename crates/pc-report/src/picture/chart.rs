@@ -10,10 +10,10 @@ use crate::picture::axes::{Axis, widened};
 
 const WIDTH: f64 = 480.0;
 const HEIGHT: f64 = 250.0;
-const LEFT: f64 = 52.0;
-const RIGHT: f64 = 8.0;
+const LEFT: f64 = 58.0;
+const RIGHT: f64 = 12.0;
 const TOP: f64 = 8.0;
-const BOTTOM: f64 = 34.0;
+const BOTTOM: f64 = 38.0;
 /// Points of a curve: the least and the greatest of each pixel or so.
 const MOST_POINTS: usize = 600;
 /// Events that are marked.
@@ -126,7 +126,7 @@ impl<'a> Chart<'a> {
                 &mut svg,
                 format_args!(
                     "<text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{label}</text>",
-                    floor + 15.0
+                    floor + 17.0
                 ),
             );
         }
