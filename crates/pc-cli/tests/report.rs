@@ -74,6 +74,14 @@ fn what_cannot_be_shown_is_said() {
     assert!(String::from_utf8_lossy(&wrong.stderr).contains(".html"));
 }
 
+/// The model with most bodies and curves.
+#[test]
+fn the_page_of_a_platform_on_six_legs_is_below_a_megabyte() {
+    let page = text(pc(&["report", "stewart-platform", "--t-end", "0.05"]));
+    assert!(page.len() < 1_000_000, "{} bytes", page.len());
+    parsed(&page);
+}
+
 /// Numbers in base 64, as the script of the page reads them.
 fn numbers(text: &str) -> Vec<f32> {
     let digit = |c: u8| match c {

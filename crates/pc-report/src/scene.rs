@@ -7,6 +7,9 @@ use serde_json::{Value, json};
 
 use crate::record::Record;
 
+/// Numbers of all frames together: a third of a megabyte.
+const MOST_NUMBERS: usize = 60_000;
+
 /// A shape; its numbers stand in the frames, those of each shape behind those of the one before it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneShape {
@@ -76,6 +79,14 @@ impl From<Shape<'_>> for SceneShape {
     }
 }
 
+/// The rows that are shown: all, or the first of every few and the last one.
+fn shown(rows: usize, width: usize) -> Vec<usize> {
+    let stride = (rows * width).div_ceil(MOST_NUMBERS).max(1);
+    let last = rows.saturating_sub(1);
+    let between = (0..last).step_by(stride);
+    between.chain((rows > 0).then_some(last)).collect()
+}
+
 /// Shapes along a motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
@@ -120,7 +131,9 @@ impl Scene {
         let mut evaluator = Evaluator::new(program, Backend::Interpreter);
         let numbers: Vec<f64> = system.parameters().iter().map(|&(_, value)| value).collect();
         let (mut values, mut frames) = (vec![0.0; functions.len()], Vec::new());
-        for (i, &t) in record.times.iter().enumerate() {
+        let shown = shown(record.times.len(), functions.len());
+        for &i in &shown {
+            let t = record.times[i];
             let state: Vec<f64> =
                 columns.iter().map(|column| column.map_or(f64::NAN, |values| values[i])).collect();
             evaluator.eval(t, &state, &numbers, &mut values);
@@ -131,7 +144,7 @@ impl Scene {
         let gravity = graph.evaluate(&system.gravity(), &at).unwrap_or_else(|_| vec![0.0; 3]);
         Ok(Some(Scene {
             shapes: drawing.into_iter().map(SceneShape::from).collect(),
-            times: record.times.clone(),
+            times: shown.iter().map(|&i| record.times[i]).collect(),
             frames,
             gravity: [gravity[0], gravity[1], gravity[2]],
         }))
@@ -181,6 +194,14 @@ fn base64(numbers: &[f32]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn many_shapes_have_fewer_frames() {
+        assert_eq!(shown(3, 10), [0, 1, 2]);
+        let few = shown(601, 148);
+        assert!(few.len() * 148 <= MOST_NUMBERS + 148 && few.first() == Some(&0) && few.last() == Some(&600));
+        assert!(shown(0, 3).is_empty());
+    }
 
     #[test]
     fn numbers_are_written_in_base_64() {

@@ -15,7 +15,7 @@ const RIGHT: f64 = 12.0;
 const TOP: f64 = 8.0;
 const BOTTOM: f64 = 38.0;
 /// Points of a curve: the least and the greatest of each pixel or so.
-const MOST_POINTS: usize = 600;
+const MOST_POINTS: usize = 400;
 /// Events that are marked.
 const MOST_EVENTS: usize = 60;
 /// Colours, told apart by colour-blind readers [Okabe, Ito 2008].
