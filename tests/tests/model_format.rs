@@ -121,6 +121,10 @@ fn the_page_names_every_section_key_function_and_algebra() {
     let help = refusal("[nonsense]\n").unwrap().kind().help();
     let (_, sections) = help.split_once("the sections are ").unwrap();
     for section in sections.split(", ") {
+        if section == "draw" {
+            look_for("### `[[draw]]`\n".to_owned());
+            continue;
+        }
         let suffix = if matches!(section, "bodies" | "events" | "points" | "loops") { ".NAME" } else { "" };
         look_for(format!("### `[{section}{suffix}]`\n"));
     }
@@ -137,6 +141,11 @@ fn the_page_names_every_section_key_function_and_algebra() {
         ["fixed", "revolute", "prismatic", "screw", "cylindrical", "universal", "planar", "spherical", "free"]
     {
         look_for(format!("`\"{kind}\"`"));
+    }
+    for kind in ["point", "line", "disc", "sphere", "box", "spring", "trace", "text"] {
+        look_for(format!("`\"{kind}\"`"));
+        let text = format!("[[draw]]\nkind = \"{kind}\"\nwrong = 1\n");
+        allowed(&text).iter().for_each(|key| look_for(format!("`{key}`")));
     }
     for place in ["inputs", "quasi_velocities", "states", "constraints"] {
         for key in allowed(&format!("[{place}]\na = {{ wrong = 1 }}\n")) {

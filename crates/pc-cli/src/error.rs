@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
+use pc_report::ReportError;
 use pc_solve::{Code, Method, SolveError, Spent};
 use pc_verify::VerifyError;
 
@@ -78,6 +79,15 @@ pub enum CliError {
         value: String,
         /// The parameters of the model.
         known: Vec<String>,
+    },
+    /// Nothing of the model can be drawn.
+    #[error(
+        "nothing of {model} can be drawn: it has neither bodies nor [[draw]], or the motion was computed without coordinates on \
+         which these depend"
+    )]
+    NothingToDraw {
+        /// Its title.
+        model: String,
     },
     /// Neither the command line nor the model gives an end time.
     #[error(
@@ -184,6 +194,15 @@ pub enum CliError {
     },
 }
 
+impl From<ReportError> for CliError {
+    fn from(error: ReportError) -> CliError {
+        match error {
+            ReportError::Model(error) => CliError::Model(error),
+            ReportError::Verify(error) => CliError::Verify(error),
+        }
+    }
+}
+
 impl CliError {
     /// That there is nothing else of what could not be written.
     pub(crate) fn cannot_write(path: &Path, source: io::Error) -> CliError {
@@ -226,6 +245,7 @@ impl CliError {
             | CliError::SetTwice { .. }
             | CliError::Definitions { .. }
             | CliError::BadValue { .. }
+            | CliError::NothingToDraw { .. }
             | CliError::NoEnd { .. }
             | CliError::EndIsStart { .. }
             | CliError::UnknownExtension { .. }

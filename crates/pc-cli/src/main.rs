@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use pc_cli::CliError;
 use pc_cli::args::command_line::{Arguments, Command};
-use pc_cli::commands::{check, derive, emit, import, models, run, theory};
+use pc_cli::commands::{check, derive, emit, import, models, report, run, theory};
 use pc_cli::output::standard_output;
 use pc_cli::report::text;
 use pc_cli::sweep;
@@ -28,6 +28,8 @@ fn main() -> ExitCode {
         Command::Derive(arguments) => derive::command(arguments),
         Command::Theory(arguments) => theory::command(arguments),
         Command::Run(arguments) => run::command(arguments),
+        Command::Report(arguments) => report::command(arguments),
+        Command::Animate(arguments) => report::animate(arguments),
         Command::Sweep(arguments) => sweep::command::command(arguments),
         Command::Emit(arguments) => emit::command(arguments),
         Command::Import(arguments) => import::command(arguments),

@@ -252,3 +252,70 @@ fn monomials_of_one_coefficient_are_collected() {
     assert_eq!(written(j * e.sin() * u * (x + y - z)), "j u sin(e) (x + y - z)");
     assert_eq!(written(j * e.sin() * u * (x + y) + j * e.cos() * u * z), "j u z cos(e) + j u sin(e) (x + y)");
 }
+
+/// The row of MathML in short: tags without `m`, invisible operators as ⁢ (times) and ⁡ (applied to).
+fn short(row: &str) -> String {
+    let invisible =
+        [("<mo>&#x2062;</mo>", "·"), ("<mo>&#x2061;</mo>", "@"), ("<mspace width=\"0.17em\"/>", "~")];
+    let short = invisible.iter().fold(row.to_owned(), |row, (long, short)| row.replace(long, short));
+    let short = short.replace("<mo>", "").replace("</mo>", "");
+    ["mi", "mn"]
+        .iter()
+        .fold(short, |row, tag| row.replace(&format!("<{tag}>"), "{").replace(&format!("</{tag}>"), "}"))
+}
+
+#[test]
+fn mathml_has_the_structure_of_the_expression() {
+    let graph = Graph::with_folding(Folding::Structural);
+    let [a, b, x, y, omega, theta] = graph.symbols(["a", "b", "x", "y", "ω1", "th"]);
+    let [rate, second, momentum, long] = graph.symbols(["x'", "φ_2''", "p_ω1", "mass"]);
+    let half = 0.5 * omega.square();
+    for (expr, row) in [
+        (omega, "<msub>{ω}{1}</msub>"),
+        (theta, "{θ}"),
+        (rate, "<mover>{x}˙</mover>"),
+        (second, "<msub><mover>{φ}¨</mover>{2}</msub>"),
+        (momentum, "<msub>{p}<msub>{ω}{1}</msub></msub>"),
+        (half, "<mfrac>{1}{2}</mfrac>·~<msubsup>{ω}{1}{2}</msubsup>"),
+        (long * a, "{a}·~{mass}"),
+        (a - b, "{a} −{b}"),
+        (-(a + b).square(), "−<msup><mrow>({a} +{b})</mrow>{2}</msup>"),
+        (a / (b + x), "<mfrac>{a}<mrow>{b} +{x}</mrow></mfrac>"),
+        (theta.sin() * theta.cos(), "{sin}@~{θ}·~{cos}@~{θ}"),
+        (x.sin() * (a - b), "{sin}@<mrow>({x})</mrow>·~<mrow>({a} −{b})</mrow>"),
+        (theta.cos().square(), "<msup>{cos}{2}</msup>@~{θ}"),
+        ((a + b).sqrt(), "<msqrt>{a} +{b}</msqrt>"),
+        (x.abs() * y, "{y}·<mrow>|{x}|</mrow>"),
+        (x.exp(), "<msup><mi mathvariant=\"normal\">e}{x}</msup>"),
+        ((a * x).exp(), "<msup><mi mathvariant=\"normal\">e}<mrow>{a}·{x}</mrow></msup>"),
+        (x.asin(), "{arcsin}@<mrow>({x})</mrow>"),
+        (Expr::from(1e-20) * x, "{1}⋅<msup>{10}{−20}</msup>·{x}"),
+        (Expr::from(-2.0), "−{2}"),
+    ] {
+        assert_eq!(short(&expr.display(Style::MathMl)), row, "{expr}");
+    }
+}
+
+#[test]
+fn no_name_breaks_out_of_mathml() {
+    let graph = Graph::new();
+    let [hostile] = graph.symbols(["λ_</mi><script>&\"\u{0}\n"]);
+    let row = hostile.display(Style::MathMl);
+    assert_eq!(row, "<msub><mi>λ</mi><mi>&lt;/mi&gt;&lt;script&gt;&amp;&quot;\u{fffd} </mi></msub>");
+}
+
+/// Every line of the page can be read: opened elements are closed in it, brackets over lines do not grow.
+#[test]
+fn lines_of_mathml_are_whole() {
+    let graph = Graph::with_folding(Folding::Structural);
+    let [a, b, x] = graph.symbols(["a", "b", "x"]);
+    let line = -x.sin() * (a + b.square() / x);
+    let terms = graph.names(&[Side::Sum(line)], &[], 80).written(Style::MathMl).terms(line);
+    assert_eq!(terms.len(), 2, "{terms:?}");
+    for term in &terms {
+        let tags = |start: &str| term.matches(start).count();
+        assert_eq!(tags("<m") - tags("<mspace"), tags("</m"), "{term}");
+    }
+    assert!(terms[0].starts_with("<mo>−</mo><mi>sin</mi>"), "{}", terms[0]);
+    assert!(terms[1].starts_with("<mo>+</mo>") && terms[1].ends_with("<mo stretchy=\"false\">)</mo>"));
+}

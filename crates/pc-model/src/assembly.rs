@@ -4,8 +4,8 @@
 //! what its parts share, and these in the order in which `assemble` puts them together: `parameters` and `tables`,
 //! `frame`, `definitions`, `start`, `bodies`, the `tree` of those on joints and `external_force`, `brackets`, `constraints` with
 //! `constraint_treatment`, `body_reactions` and the names of a `resultant`, `action`, `event` and `events`, and
-//! quasi-velocities that are `given` in addition to the text; `trial` and `definite` check the start. A `function` is
-//! assembled by itself, on request.
+//! quasi-velocities that are `given` in addition to the text; `trial` and `definite` check the start. A `function` and
+//! a `drawing` are assembled by themselves, on request.
 
 pub(crate) mod action;
 pub(crate) mod assemble;
@@ -18,6 +18,7 @@ pub(crate) mod constraint_treatment;
 pub(crate) mod constraints;
 pub(crate) mod definite;
 pub(crate) mod definitions;
+pub(crate) mod drawing;
 pub(crate) mod event;
 pub(crate) mod events;
 pub(crate) mod external_force;

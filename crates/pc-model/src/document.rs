@@ -3,13 +3,14 @@
 //! TOML becomes a [`Document`]. Read the result first: `expression`, with the places that
 //! `text_map` finds again in the file, and `contents`, section by section. Then how it is read: `reading` reads its
 //! bytes, `syntax` TOML, `reader` gives typed access to it, `hidden` lists characters that no label may have;
-//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `inputs` and `simulation` read the
+//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation` read the
 //! sections, `hanging` declares what joints move, `checks` holds what must be true between them,
 //! and `parse` puts these together.
 
 pub(crate) mod bodies;
 pub(crate) mod checks;
 pub(crate) mod contents;
+pub(crate) mod draw;
 pub(crate) mod expression;
 pub(crate) mod hanging;
 pub(crate) mod hidden;
@@ -31,6 +32,7 @@ pub use contents::{
     Gravity, HamiltonJacobi, Heading, Input, InputValue, Lagrangian, Method, Orientation, QuasiVelocity,
     Simulation, State, TableFile,
 };
+pub use draw::{Draw, DrawnPlace, DrawnShape};
 pub use expression::{Expression, Located, Name, NamedExpression};
 pub use hidden::is_hidden;
 pub use inertia::Inertia;

@@ -38,6 +38,7 @@ pub use assembly::assembly::Assembly;
 pub use assembly::constraint_treatment::{
     ClassifiedConstraint, ConstraintFormulation, ConstraintTreatment, MultiplierFormulation,
 };
+pub use assembly::drawing::{Shape, Spot};
 pub use assembly::event::Event;
 pub use assembly::external_force::NotForced;
 pub use assembly::parameters::Parameters;

@@ -13,30 +13,56 @@ use crate::sheet::{Bracket, Sheet};
 /// A display for each part of the equations, with a comment above it.
 pub(crate) fn page(heading: &str, sheet: &Sheet<'_>, layout: &Layout, page: &Graph) -> String {
     let parts = Parts::new(sheet, layout, page, false);
-    let names = &parts.names;
-    let latex =
-        Latex { sheet, layout, names, set: names.written(Style::Latex), plain: names.written(Style::Book) };
     let mut text = format!("% {heading} (needs amsmath)\n");
-    for (part, numbers) in parts.with_names() {
-        let lines: Vec<String> = latex.meanings(&numbers).into_iter().chain(latex.rows(part)).collect();
-        if lines.is_empty() {
-            continue;
-        }
-        let remark = match part.heading {
-            Heading::Energy | Heading::Hamiltonian => sheet.energy_remark,
-            _ => None,
-        };
+    for (part, display) in displays(&sheet.brackets.operators, layout, &parts) {
+        let Some(display) = display else { continue };
+        let remark = remark(sheet, part.heading);
         let title = part.heading.text();
         let title = remark.map_or_else(|| title.to_owned(), |remark| format!("{title}. {remark}"));
         // Writing to a string cannot fail.
-        let _ = write!(text, "\n% {title}\n\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"));
+        let _ = write!(text, "\n% {title}\n{display}\n");
     }
     text
 }
 
+/// What is said of a part.
+pub(crate) fn remark(sheet: &Sheet<'_>, heading: Heading) -> Option<&'static str> {
+    match heading {
+        Heading::Energy | Heading::Hamiltonian => sheet.energy_remark,
+        _ => None,
+    }
+}
+
+/// The parts, each with its display unless there is nothing in it to be displayed.
+pub(crate) fn displays<'a, 'p>(
+    operators: &'a [String],
+    layout: &'a Layout,
+    parts: &'a Parts<'p>,
+) -> Vec<(&'a Part<'p>, Option<String>)> {
+    let names = &parts.names;
+    let latex = Latex {
+        operators,
+        layout,
+        names,
+        set: names.written(Style::Latex),
+        plain: names.written(Style::Book),
+    };
+    let display = |(part, numbers): (&'a Part<'p>, Vec<usize>)| {
+        let lines: Vec<String> = latex.meanings(&numbers).into_iter().chain(latex.rows(part)).collect();
+        (part, (!lines.is_empty()).then(|| aligned(&lines)))
+    };
+    parts.with_names().map(display).collect()
+}
+
+/// The environment about some lines.
+pub(crate) fn aligned(lines: &[String]) -> String {
+    format!("\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"))
+}
+
 /// What is set of a sheet, by which names.
 struct Latex<'a, 'p> {
-    sheet: &'a Sheet<'p>,
+    /// The names of the quasi-velocities to which operators belong.
+    operators: &'a [String],
     layout: &'a Layout,
     names: &'a Names<'p>,
     set: Written,
@@ -55,6 +81,11 @@ pub(crate) fn whole(line: String) -> String {
         (1, 1) => line.replace("\\Bigl(", "\\left(").replace("\\Bigr)", "\\right)"),
         _ => line,
     }
+}
+
+/// The operator of a quasi-velocity, or X_0.
+fn operator_of(quasi_velocity: Option<&str>) -> String {
+    format!("X_{{{}}}", quasi_velocity.unwrap_or("0"))
 }
 
 /// Terms as they are set, each with its columns in plain characters.
@@ -86,7 +117,15 @@ impl<'p> Latex<'_, 'p> {
             }
             Row::Bracket(Bracket { pair: [r, s], components }) => {
                 let left = format!("[{}, {}]", self.operator(*r), self.operator(*s));
+                let components = components.iter().map(|&(m, c)| (c, self.operator(m)));
                 Some(self.equation(vec![(left, 8)], self.combination(components)))
+            }
+            Row::Operator { quasi_velocity, components } => {
+                let left = operator_of(quasi_velocity.as_deref().map(|name| self.set.name(name)).as_deref());
+                let components = components
+                    .iter()
+                    .map(|&(x, c)| (c, format!("\\frac{{\\partial}}{{\\partial {}}}", self.set.text(x))));
+                Some(self.equation(vec![(left, 3)], self.combination(components)))
             }
             Row::Entry { .. } => None,
         });
@@ -95,22 +134,18 @@ impl<'p> Latex<'_, 'p> {
 
     /// X_0, or the operator of a quasi-velocity.
     fn operator(&self, s: usize) -> String {
-        match s.checked_sub(1) {
-            Some(s) => format!("X_{{{}}}", self.set.name(&self.sheet.brackets.operators[s])),
-            None => "X_{0}".to_owned(),
-        }
+        operator_of(s.checked_sub(1).map(|s| self.set.name(&self.operators[s])).as_deref())
     }
 
-    fn combination(&self, sum: &[(usize, Expr<'p>)]) -> Terms {
+    fn combination(&self, sum: impl Iterator<Item = (Expr<'p>, String)>) -> Terms {
         let mut terms = Terms::new();
-        for &(m, c) in sum {
+        for (c, operator) in sum {
             let (set, plain) = (self.set.text(c), self.plain.text(c));
             let is_sum = [" + ", " - "].iter().any(|sign| plain.contains(sign));
             let (sign, size) = match set.strip_prefix('-') {
                 Some(size) if !is_sum => ("-", size),
                 _ => ("+", set.as_str()),
             };
-            let operator = self.operator(m);
             let term = match size {
                 "1" => operator,
                 _ if is_sum => format!("\\left({size}\\right) {operator}"),

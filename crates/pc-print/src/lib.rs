@@ -7,7 +7,7 @@
 //! An [`Assembly`](pc_model::Assembly) becomes text. Read `form` and `derived` first, the equations with their
 //! constraints and reactions; then `sheet`, the expressions to print, and `operations`, their cost; `part` and
 //! `layout`, headings and lines, with `lines` and `constraints`, words and columns, and `visible`, which makes foreign
-//! text harmless; then `text`, `latex` and `json`, the three ways to print, `bodies`, the page of a large tree of bodies, and `page`, which chooses. `theory` prints
+//! text harmless; then `text`, `latex` and `json`, the three ways to print, `mathml` with `displayed`, formulas for a browser, `bodies`, the page of a large tree of bodies, and `page`, which chooses. `theory` prints
 //! the analysis of motions, with `words` for numbers and lists.
 //!
 //! ```
@@ -26,11 +26,13 @@
 mod bodies;
 mod constraints;
 mod derived;
+mod displayed;
 mod form;
 mod json;
 mod latex;
 mod layout;
 mod lines;
+mod mathml;
 mod operations;
 mod page;
 mod part;
@@ -42,6 +44,10 @@ mod words;
 
 pub use constraints::kind_in_words;
 pub use derived::{Derived, energy_remark};
+pub use displayed::{
+    Display, DisplayedEntry, DisplayedEquations, DisplayedPart, DisplayedTheory, displayed_equations,
+    displayed_system, displayed_theory,
+};
 pub use form::Form;
 pub use layout::Layout;
 pub use lines::{columns, combination};
@@ -54,4 +60,4 @@ pub use theory::options::TheoryOptions;
 pub use theory::page::theory;
 pub use theory::steady::{eigenvalues_in_words, stability_in_words};
 pub use visible::{one_line, visible, visible_json};
-pub use words::{short, small, wrapped};
+pub use words::{assignments, labelled, short, small, wrapped};

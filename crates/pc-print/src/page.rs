@@ -1,7 +1,7 @@
 //! The equations of a model on a page.
 
 use pc_expr::Folding;
-use pc_mech::MechError;
+use pc_mech::{Graph, MechError};
 use pc_model::{Assembly, ModelError};
 
 use crate::derived::Derived;
@@ -47,19 +47,7 @@ pub fn page(
             Page::Json => visible_json(&bodies::programs(title, system, &tree, &operations)) + "\n",
         });
     }
-    let (name, sheet, operations) = match form.variables().filter(|variables| variables.has_momenta()) {
-        Some(variables) => {
-            let equations = assembly.placed(assembly.free_form(variables)?.system.canonical())?;
-            let sheet = Sheet::of_momenta(assembly, &derived, &equations, &paper);
-            let name = if form == Form::Canonical { "canonical equations" } else { name };
-            (name, sheet, Operations::of_canonical(&equations))
-        }
-        None => {
-            let sheet = Sheet::of_velocities(assembly, &derived, &paper);
-            (name, sheet, Operations::of(&derived.equations))
-        }
-    };
-    let operations = assembly.placed(operations.map_err(MechError::from))?;
+    let (name, sheet, operations) = sheet_of(form, name, &derived, assembly, &paper)?;
     let heading = format!("{}: {name}", one_line(title));
     Ok(match page {
         Page::Text => {
@@ -68,6 +56,30 @@ pub fn page(
         Page::Latex => latex::page(&heading, &sheet, layout, &paper),
         Page::Json => visible_json(&json::page(title, &sheet, &operations, layout, &paper)) + "\n",
     })
+}
+
+/// The sheet of equations that are derived in a form, with the name of the form and the cost of a right-hand side.
+pub(crate) fn sheet_of<'g, 'p>(
+    form: Form,
+    name: &'static str,
+    derived: &Derived<'g>,
+    assembly: &Assembly<'g>,
+    paper: &'p Graph,
+) -> Result<(&'static str, Sheet<'p>, Operations), ModelError> {
+    let (name, sheet, operations) = match form.variables().filter(|variables| variables.has_momenta()) {
+        Some(variables) => {
+            let equations = assembly.placed(assembly.free_form(variables)?.system.canonical())?;
+            let sheet = Sheet::of_momenta(assembly, derived, &equations, paper);
+            let name = if form == Form::Canonical { "canonical equations" } else { name };
+            (name, sheet, Operations::of_canonical(&equations))
+        }
+        None => {
+            let sheet = Sheet::of_velocities(assembly, derived, paper);
+            (name, sheet, Operations::of(&derived.equations))
+        }
+    };
+    let operations = assembly.placed(operations.map_err(MechError::from))?;
+    Ok((name, sheet, operations))
 }
 
 /// Names of constraints may be anything where a program has given them.

@@ -18,6 +18,9 @@ pub(crate) struct Part<'p> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Heading {
     Constraints,
+    Operators,
+    Lagrangian,
+    Forces,
     Kinematics,
     Brackets,
     MassMatrix,
@@ -34,6 +37,9 @@ impl Heading {
     pub(crate) fn text(self) -> &'static str {
         match self {
             Heading::Constraints => "Constraints",
+            Heading::Operators => "Operators",
+            Heading::Lagrangian => "Lagrangian",
+            Heading::Forces => "Forces",
             Heading::Kinematics => "Kinematics",
             Heading::Brackets => "Brackets",
             Heading::MassMatrix => "Mass matrix",
@@ -57,6 +63,8 @@ pub(crate) enum Row<'p> {
     Equation { left: Expr<'p>, right: Expr<'p> },
     /// [X_r, X_s] = Σ c X_m
     Bracket(Bracket<'p>),
+    /// X_s = Σ b_is ∂/∂x_i, by the name of η_s; X_0 without one.
+    Operator { quasi_velocity: Option<String>, components: Vec<(Expr<'p>, Expr<'p>)> },
     /// An entry M_rs.
     Entry { place: [usize; 2], value: Expr<'p> },
     /// A function with its letter.
@@ -70,6 +78,7 @@ impl<'p> Row<'p> {
             Row::Constraint { left, .. } => vec![Side::Sum(*left)],
             Row::Equation { left, right } => vec![Side::Sum(*left), Side::Sum(*right)],
             Row::Bracket(bracket) => bracket.components.iter().map(|&(_, c)| Side::Factor(c)).collect(),
+            Row::Operator { components, .. } => components.iter().map(|&(_, c)| Side::Factor(c)).collect(),
             Row::Entry { value, .. } | Row::Function { value, .. } => vec![Side::Sum(*value)],
         }
     }
@@ -113,13 +122,30 @@ impl<'p> Parts<'p> {
             named = names(&parts, &given, layout, page);
         }
         parts.retain(|part| !part.rows.is_empty() || part.heading == Heading::Brackets);
+        Parts::of(parts, named)
+    }
+
+    /// Parts whose names are known.
+    fn of(parts: Vec<Part<'p>>, names: Names<'p>) -> Parts<'p> {
         let starts = parts.iter().scan(0, |next, part| {
             let start = *next;
             *next += part.rows.iter().map(|row| row.sides().len()).sum::<usize>();
             Some(start)
         });
         let starts = starts.collect();
-        Parts { parts, names: named, starts }
+        Parts { parts, names, starts }
+    }
+
+    /// Parts with names for what is long in them, among which are those `given`.
+    pub(crate) fn named(
+        mut parts: Vec<Part<'p>>,
+        given: &[Given<'p>],
+        layout: &Layout,
+        page: &'p Graph,
+    ) -> Parts<'p> {
+        parts.retain(|part| !part.rows.is_empty());
+        let named = names(&parts, given, layout, page);
+        Parts::of(parts, named)
     }
 
     /// The parts, each with the numbers of the names that are first needed there.

@@ -258,7 +258,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
             constraints,
             frame: (self.matrix(frame.b()), self.all(frame.b0())),
             rates: self.rates(parts.velocities),
-            brackets: self.brackets(parts.vanishing),
+            brackets: Brackets::of(system, parts.vanishing, self.page),
             balance,
             states: with_rates(&states, parts.states),
             energy: self.one(parts.energy),
@@ -267,20 +267,24 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
             definitions,
         }
     }
+}
 
-    fn brackets(&self, vanishing: &[Expr<'g>]) -> Brackets<'p> {
-        let (structure, free) = (self.system.structure(), self.system.quasi_velocities());
+impl<'p> Brackets<'p> {
+    /// Those of a system, with components along quasi-velocities that vanish, in the graph of a page.
+    pub(crate) fn of<'g>(system: &System<'g>, vanishing: &[Expr<'g>], page: &'p Graph) -> Brackets<'p> {
+        let (structure, free) = (system.structure(), system.quasi_velocities());
+        let one = |expression: Expr<'g>| system.graph().typeset(&[expression], page)[0];
         let operators: Vec<String> = free.iter().chain(vanishing).map(Expr::to_string).collect();
         let nonzero: Vec<_> =
             structure.nonzero().filter(|&(_, s, m, _)| s <= free.len() && m <= operators.len()).collect();
         let pairs = nonzero.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).map(|pair| {
-            let components = pair.iter().map(|&(_, _, m, c)| (m, self.one(c))).collect();
+            let components = pair.iter().map(|&(_, _, m, c)| (m, one(c))).collect();
             Bracket { pair: [pair[0].0, pair[0].1], components }
         });
         Brackets {
             operators,
             nonzero: pairs.collect(),
-            commute: nonzero.is_empty() && self.system.frame().restricted(free.len()).commutes(),
+            commute: nonzero.is_empty() && system.frame().restricted(free.len()).commutes(),
             algebra: recognised(structure).filter(|_| vanishing.is_empty()),
         }
     }

@@ -108,7 +108,7 @@ impl<'p> Text<'_, 'p> {
                 let remark = self.sheet.energy_remark.map(|remark| format!("({remark})"));
                 self.layout.flowed("", &self.written.terms(*value)).into_iter().chain(remark).collect()
             }
-            Row::Equation { .. } | Row::Bracket(_) | Row::Entry { .. } => Vec::new(),
+            Row::Equation { .. } | Row::Bracket(_) | Row::Operator { .. } | Row::Entry { .. } => Vec::new(),
         }
     }
 
@@ -179,7 +179,7 @@ impl<'p> Text<'_, 'p> {
 }
 
 /// What is said where no bracket within the frame is different from zero.
-fn no_brackets(commute: bool) -> &'static str {
+pub(crate) fn no_brackets(commute: bool) -> &'static str {
     if commute {
         "all operators commute"
     } else {

@@ -34,6 +34,20 @@ pub fn wrapped(items: impl IntoIterator<Item = String>, width: usize) -> Vec<Str
     lines
 }
 
+/// `name = value` for each, comma-separated, in lines of at most `width` characters.
+pub fn assignments<'a>(pairs: impl IntoIterator<Item = (&'a str, f64)>, width: usize) -> Vec<String> {
+    wrapped(pairs.into_iter().map(|(name, value)| format!("{name} = {}", short(value, 10))), width)
+}
+
+/// `label`, padded, then the lines, those after the first indented alike.
+pub fn labelled(label: &str, width: usize, lines: &[String]) -> String {
+    let mut text = String::new();
+    for (i, line) in lines.iter().enumerate() {
+        text += &format!("  {:width$}{line}\n", if i == 0 { label } else { "" });
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

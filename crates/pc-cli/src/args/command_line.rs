@@ -6,6 +6,7 @@ use crate::args::options::{
     CheckArguments, DeriveArguments, EmitArguments, ImportArguments, ModelsArguments, RunArguments,
     TheoryArguments,
 };
+use crate::args::report::{AnimateArguments, ReportArguments};
 use crate::args::sweep::SweepArguments;
 
 /// The command line of `pc`.
@@ -37,6 +38,10 @@ pub enum Command {
     Theory(TheoryArguments),
     /// Integrate the motion; CSV on standard output unless -o is given
     Run(Box<RunArguments>),
+    /// Write a page for a browser: equations in all forms, analysis, verdicts, plots of the motion
+    Report(Box<ReportArguments>),
+    /// Write a page on which the motion can be watched
+    Animate(Box<AnimateArguments>),
     /// Integrate many motions over parameters and starts, on all cores; finished ones survive interruptions
     Sweep(Box<SweepArguments>),
     /// Write the equations as C or Rust source without dependencies

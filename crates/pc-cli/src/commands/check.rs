@@ -1,13 +1,33 @@
 //! `pc check`: the consistency and the properties of a model.
-//!
-//! A model gives a report. `frame` describes its frame, `integrals` the conserved quantities, `steady` the nearest
-//! steady motion; `command` puts these together, as text or for programs.
 
-mod combinations;
-mod command;
-mod frame;
-mod integrals;
-mod measure;
-mod steady;
+use pc_print::{visible, visible_json};
+use pc_report::Check;
+use pc_verify::{Options, VerifyError, verify};
 
-pub use command::command;
+use crate::args::input;
+use crate::args::options::{CheckArguments, Format};
+use crate::error::CliError;
+use crate::output::standard_output::print;
+use crate::report::notes::say_moved;
+
+/// Prints the properties of a model before it is run.
+///
+/// # Errors
+/// [`CliError`]; of an inconsistent model that is the answer.
+pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
+    let model = input::open(&arguments.model)?;
+    let graph = model.graph();
+    let (assembly, equations) = input::derive(&model, &graph)?;
+    say_moved(&assembly);
+    let second = match verify(&model, &Options::default()) {
+        Err(error @ VerifyError::Disagreement(_)) => return Err(CliError::Verify(Box::new(error))),
+        outcome => outcome,
+    };
+    assembly.within_limits()?;
+    let check = Check::new(&model, &assembly, &equations)?.compared(second);
+    assembly.within_limits()?;
+    print(|out| match arguments.format {
+        Format::Text => write!(out, "{}", visible(&check.text())),
+        Format::Json => writeln!(out, "{}", visible_json(&check.json())),
+    })
+}

@@ -6,6 +6,7 @@ use std::time::Instant;
 use pc_mech::Expr;
 use pc_model::{Assembly, Flow, Model, Variables};
 use pc_print::energy_remark;
+use pc_report::dropped;
 use pc_solve::{self as solver, Events, Solution, Trajectory};
 
 use crate::args::checkpoint::CheckpointArguments;
@@ -26,7 +27,7 @@ use crate::motion::table::Table;
 use crate::output::destination::Destination;
 use crate::output::stream::Stream;
 use crate::plot::picture::Picture;
-use crate::report::notes::{choice, dropped, say_choice, say_moved, say_negative_energy, say_undetermined};
+use crate::report::notes::{choice, say_choice, say_moved, say_negative_energy, say_undetermined};
 use crate::report::verification::Verification;
 use crate::report::{summary, text};
 
@@ -229,7 +230,7 @@ fn write(run: &Run, destination: &Destination, picture: Option<&Destination>) ->
 
 impl Run {
     /// An error unless the run was completed.
-    fn outcome(self) -> Result<(), CliError> {
+    pub(super) fn outcome(self) -> Result<(), CliError> {
         let names = self.state;
         match self.ending {
             // How the file was written says why.

@@ -23,6 +23,8 @@ pub enum Encoding {
     Svg,
     /// A bitmap.
     Png,
+    /// A page of a browser.
+    Html,
 }
 
 /// The destination of a result; the place is examined before anything is computed.
@@ -53,6 +55,15 @@ impl Destination {
         path.map(|path| Destination::file("--plot", path, &encodings, ".svg or .png")).transpose()
     }
 
+    /// The place of a page: the file, else standard output.
+    ///
+    /// # Errors
+    /// As for [`table`](Destination::table).
+    pub fn page(path: Option<&Path>) -> Result<Destination, CliError> {
+        let Some(path) = path else { return Ok(Destination { encoding: Encoding::Html, place: None }) };
+        Destination::file("-o", path, &[("html", Encoding::Html), ("htm", Encoding::Html)], ".html")
+    }
+
     fn file(
         option: &'static str,
         path: &Path,
@@ -81,7 +92,7 @@ impl Destination {
         place.write_or_keep(self.encoding == Encoding::Csv, |out| match self.encoding {
             Encoding::Json => json::write(run, out),
             Encoding::Npz => npz::write(run, out),
-            Encoding::Csv | Encoding::Svg | Encoding::Png => csv::write(&run.table, out),
+            Encoding::Csv | Encoding::Svg | Encoding::Png | Encoding::Html => csv::write(&run.table, out),
         })
     }
 
@@ -89,6 +100,17 @@ impl Destination {
     pub(crate) fn stream(&self) -> Option<Stream<'_>> {
         let place = self.place.as_ref().filter(|place| place.device.is_none());
         place.filter(|_| self.encoding == Encoding::Csv).map(Stream::to)
+    }
+
+    /// Writes a page.
+    ///
+    /// # Errors
+    /// As for [`write_table`](Destination::write_table).
+    pub fn write_page(&self, page: &str) -> Result<(), CliError> {
+        match &self.place {
+            None => standard_output::print_or_keep("page.html", |out| out.write_all(page.as_bytes())),
+            Some(place) => place.write_or_keep(false, |out| out.write_all(page.as_bytes())),
+        }
     }
 
     /// Writes a picture.

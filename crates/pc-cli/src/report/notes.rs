@@ -2,18 +2,9 @@
 
 use pc_mech::{Constraint, Expr};
 use pc_model::{Assembly, ConstraintFormulation};
+use pc_report::{NEGATIVE_ENERGY, dropped};
 
 use crate::report::text::{say, short, wrapped};
-
-/// The constraints that were dropped, each with the reason.
-pub fn dropped(assembly: &Assembly<'_>) -> Vec<(String, String)> {
-    let reason = |names: &[String]| match names {
-        [] => "says nothing".to_owned(),
-        names => format!("follows from {}", names.join(", ")),
-    };
-    let redundant = assembly.constraints.redundant().iter();
-    redundant.map(|redundant| (redundant.constraint.clone(), reason(&redundant.follows_from))).collect()
-}
 
 /// Says which constraints were dropped, on standard error.
 pub fn say_dropped(assembly: &Assembly<'_>) {
@@ -86,10 +77,6 @@ pub fn say_negative_energy(assembly: &Assembly<'_>) {
         say(format_args!("note: {NEGATIVE_ENERGY}\n"));
     }
 }
-
-/// Of a kinetic energy that is negative for some velocities.
-pub const NEGATIVE_ENERGY: &str = "the kinetic energy is negative for some velocities at the start: a mass or a moment of \
-                                   inertia has the wrong sign";
 
 /// Says which forces of reactions on bodies are not among the outputs, on standard error.
 pub fn say_undetermined(assembly: &Assembly<'_>) {

@@ -12,9 +12,23 @@ const WIDTH: usize = 86;
 
 /// The summary for people.
 pub fn text(run: &Run) -> String {
-    let (plan, work) = (&run.plan, &run.statistics);
     let mut text = format!("{}\n", one_line(&run.title));
-    let mut line = |label: &str, lines: &[String]| text += &labelled(label, LABEL, lines);
+    for (label, mut lines) in entries(run) {
+        if label == WORK
+            && let Some(line) = lines.first_mut()
+        {
+            *line += &format!(", {:.3} ms", run.wall.as_secs_f64() * 1e3);
+        }
+        text += &labelled(label, LABEL, &lines);
+    }
+    text
+}
+
+/// What is said of a run, each with a label, in lines; the time it took is left out, so that the same run says the same.
+pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
+    let (plan, work) = (&run.plan, &run.statistics);
+    let mut entries: Vec<(&'static str, Vec<String>)> = Vec::new();
+    let mut line = |label: &'static str, lines: &[String]| entries.push((label, lines.to_vec()));
 
     line("method", &[plan.in_words()]);
     let rows = run.table.len();
@@ -31,7 +45,7 @@ pub fn text(run: &Run) -> String {
         ),
     };
     line("time", &[format!("{} to {}, {reached}", short(plan.t_start, 10), short(plan.t_end, 10))]);
-    line("work", &[work_done(run)]);
+    line(WORK, &[work_done(run)]);
     line("chosen", &chosen(run));
     line("events", &events(run));
     line("drift", &drifts(run));
@@ -52,8 +66,11 @@ pub fn text(run: &Run) -> String {
         let label = if arrived { "end" } else { "last row" };
         line(label, &assignments(shown, WIDTH));
     }
-    text
+    entries.retain(|(_, lines)| !lines.is_empty());
+    entries
 }
+
+const WORK: &str = "work";
 
 /// What a method that chooses did, or one that cannot should have.
 fn chosen(run: &Run) -> Vec<String> {
@@ -91,7 +108,6 @@ fn work_done(run: &Run) -> String {
     if work.limited_steps > 0 {
         parts.push(format!("{} shortened for explicit time dependence", count(work.limited_steps, "step")));
     }
-    parts.push(format!("{:.3} ms", run.wall.as_secs_f64() * 1e3));
     parts.join(", ")
 }
 

@@ -1,9 +1,7 @@
 //! The result of the second derivation.
 
 use pc_model::{Assembly, Flow, Model, Variables};
-use pc_print::columns;
 use pc_verify::{Agreement, Second, VerifyError};
-use serde_json::{Value, json};
 
 use crate::args::forms::RunForm;
 use crate::error::CliError;
@@ -76,46 +74,5 @@ impl Verification {
         }
         lines.dedup();
         lines
-    }
-}
-
-/// An agreement in the lines of a report of so many columns.
-pub fn lines(outcome: &Result<Agreement, VerifyError>, width: usize) -> Vec<String> {
-    match outcome {
-        Ok(agreement) => {
-            let more = agreement.not_compared.iter();
-            let more = more.map(|what| clipped(&format!("not compared: {what}"), width));
-            [clipped(&agreement.to_string(), width)].into_iter().chain(more).collect()
-        }
-        Err(VerifyError::Unable(unable)) => vec![clipped(&format!("not made: {unable}"), width)],
-        Err(error) => vec![clipped(&error.to_string(), width)],
-    }
-}
-
-/// The first line of a text, as much as there is room for.
-fn clipped(text: &str, width: usize) -> String {
-    let line = text.lines().next().unwrap_or_default();
-    if columns(line) <= width {
-        return line.to_owned();
-    }
-    let mut short: String = line.chars().take(width.saturating_sub(1)).collect();
-    short.push('…');
-    short
-}
-
-/// The same for programs.
-pub fn object(outcome: &Result<Agreement, VerifyError>) -> Value {
-    match outcome {
-        Ok(agreement) => json!({
-            "states": agreement.states,
-            "projected": agreement.projected,
-            "skipped": agreement.skipped,
-            "reason": agreement.reason,
-            "error": agreement.error,
-            "quantity": agreement.quantity,
-            "forms": agreement.forms,
-            "not_compared": agreement.not_compared,
-        }),
-        Err(error) => json!({ "states": 0, "reason": error.to_string() }),
     }
 }

@@ -3,66 +3,22 @@
 use crate::graph::function::Function;
 use crate::graph::number::Number;
 use crate::print::piece::{Binding, Piece, multiple_of_pi};
-
-/// Greek letters by the names that LaTeX has for them.
-const GREEK: &[(char, &str)] = &[
-    ('α', "alpha"),
-    ('β', "beta"),
-    ('γ', "gamma"),
-    ('δ', "delta"),
-    ('ε', "varepsilon"),
-    ('ζ', "zeta"),
-    ('η', "eta"),
-    ('θ', "theta"),
-    ('ι', "iota"),
-    ('κ', "kappa"),
-    ('λ', "lambda"),
-    ('μ', "mu"),
-    ('ν', "nu"),
-    ('ξ', "xi"),
-    ('π', "pi"),
-    ('ρ', "rho"),
-    ('ς', "varsigma"),
-    ('σ', "sigma"),
-    ('τ', "tau"),
-    ('υ', "upsilon"),
-    ('φ', "varphi"),
-    ('χ', "chi"),
-    ('ψ', "psi"),
-    ('ω', "omega"),
-    ('Γ', "Gamma"),
-    ('Δ', "Delta"),
-    ('Θ', "Theta"),
-    ('Λ', "Lambda"),
-    ('Ξ', "Xi"),
-    ('Π', "Pi"),
-    ('Σ', "Sigma"),
-    ('Υ', "Upsilon"),
-    ('Φ', "Phi"),
-    ('Ψ', "Psi"),
-    ('Ω', "Omega"),
-];
+use crate::print::symbol::{GREEK, Index, Symbol, spelt};
 
 /// `ω1` is \omega_{1}, `x'` is \dot{x}, `x''` is \ddot{x}; a name of several letters is set upright, unless it is
 /// the name of a Greek letter.
 pub(super) fn symbol(name: &str) -> String {
-    let bare = name.trim_end_matches('\'');
-    let accent = match name.len() - bare.len() {
-        0 => None,
-        1 => Some("dot"),
-        _ => Some("ddot"),
-    };
-    let (stem, index) = match bare.split_once('_') {
-        Some((stem, index)) if !stem.is_empty() && !index.is_empty() => (stem, index),
-        _ => bare.split_at(bare.trim_end_matches(|c: char| c.is_ascii_digit()).len()),
-    };
+    let Symbol { stem, dots, index } = Symbol::of(name);
     let stem = letters(stem);
-    let stem = accent.map_or(stem.clone(), |accent| format!("\\{accent}{{{stem}}}"));
-    let plain = index.contains('_') || index.starts_with(|c: char| c.is_ascii_digit());
+    let stem = match dots {
+        0 => stem,
+        1 => format!("\\dot{{{stem}}}"),
+        _ => format!("\\ddot{{{stem}}}"),
+    };
     match index {
-        "" => stem,
-        _ if plain => format!("{stem}_{{{}}}", letters(index)),
-        _ => format!("{stem}_{{{}}}", symbol(index)), // p_ω1 is p_{\omega_{1}}
+        Index::None => stem,
+        Index::Plain(index) => format!("{stem}_{{{}}}", letters(index)),
+        Index::Symbol(index) => format!("{stem}_{{{}}}", symbol(index)), // p_ω1 is p_{\omega_{1}}
     }
 }
 
@@ -72,10 +28,7 @@ fn letters(text: &str) -> String {
         let named = GREEK.iter().find(|(greek, _)| *greek == letter);
         return named.map_or_else(|| character(letter), |(_, name)| format!("\\{name}"));
     }
-    let spoken = if text == "th" { "theta" } else { text };
-    if let Some((_, name)) =
-        GREEK.iter().find(|(_, name)| *name == spoken || name.strip_prefix("var") == Some(spoken))
-    {
+    if let Some((_, name)) = spelt(text) {
         return format!("\\{name}");
     }
     if text.chars().all(|c| c.is_ascii_digit()) {

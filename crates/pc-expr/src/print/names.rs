@@ -152,7 +152,7 @@ impl<'g> Names<'g> {
             }
             let line = |&root: &Atom| {
                 let terms = match root {
-                    Atom::Node(node) => signed(writer.line(node)),
+                    Atom::Node(node) => signed(style, writer.line(node)),
                     Atom::Constant(_) => vec![writer.atom(root).text],
                 };
                 (root, terms)
@@ -166,11 +166,14 @@ impl<'g> Names<'g> {
     /// One of the lines with its names behind it.
     pub(super) fn sentence(&self, line: Expr<'g>, style: Style) -> String {
         let written = self.written(style);
-        let meaning = |name: &Name<'g>| format!("{} = {}", name.name, written.meaning(name.value).join(" "));
+        let [wheres, equals, comma] = style.words();
+        let meaning = |name: &Name<'g>| {
+            format!("{}{equals}{}", written.sentence_name(&name.name), written.meaning(name.value).join(" "))
+        };
         let names: Vec<String> = self.list.iter().map(meaning).collect();
         match names.as_slice() {
             [] => written.line(line),
-            names => format!("{} where {}", written.line(line), names.join(", ")),
+            names => format!("{}{wheres}{}", written.line(line), names.join(comma)),
         }
     }
 }
@@ -207,6 +210,11 @@ impl Written {
             Atom::Node(node) if self.pieces.contains_key(&node) => self.pieces[&node].text.clone(),
             _ => expression.display(self.style),
         }
+    }
+
+    /// A name as it stands in a sentence: in that of LaTeX as it is read back.
+    fn sentence_name(&self, name: &str) -> String {
+        if self.style == Style::MathMl { self.name(name) } else { name.to_owned() }
     }
 
     /// A name in the style of the text.

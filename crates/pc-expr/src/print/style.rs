@@ -3,7 +3,7 @@
 use crate::graph::function::Function;
 use crate::graph::number::Number;
 use crate::print::piece::{Binding, Piece, number};
-use crate::print::{book, latex};
+use crate::print::{book, latex, mathml};
 
 /// The style of the text of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,14 +14,48 @@ pub enum Style {
     Book,
     /// LaTeX for mathematics mode: Greek letters by name, `x'` as ẋ, digits of names as indices.
     Latex,
+    /// MathML, for pages of a browser: elements that stand side by side in a row.
+    MathMl,
 }
 
 impl Style {
+    /// A piece, in brackets if it binds less tightly.
+    pub(super) fn at_least(self, piece: Piece, binding: Binding) -> String {
+        match self {
+            Style::MathMl if piece.binding < binding => mathml::bracketed(&piece.text),
+            _ => piece.at_least(binding),
+        }
+    }
+
+    /// What stands before a term that is subtracted.
+    pub(super) fn minus(self) -> &'static str {
+        if self == Style::MathMl { mathml::MINUS } else { "-" }
+    }
+
+    /// What stands in a sentence before names, between a name and its meaning, and between two of them.
+    pub(super) fn words(self) -> [&'static str; 3] {
+        match self {
+            Style::MathMl => mathml::WORDS,
+            Style::Text | Style::Book | Style::Latex => [" where ", " = ", ", "],
+        }
+    }
+
+    /// What stands between two terms.
+    pub(super) fn sign(self, negative: bool) -> &'static str {
+        match (self, negative) {
+            (Style::MathMl, false) => mathml::PLUS,
+            (Style::MathMl, true) => mathml::MINUS,
+            (_, false) => "+ ",
+            (_, true) => "- ",
+        }
+    }
+
     pub(super) fn number(self, c: Number) -> Piece {
         match self {
             Style::Text => number(c),
             Style::Book => book::number(c),
             Style::Latex => latex::number(c),
+            Style::MathMl => mathml::number(c),
         }
     }
 
@@ -30,6 +64,7 @@ impl Style {
         match self {
             Style::Text | Style::Book => ["(", ")"],
             Style::Latex => ["\\Bigl(", "\\Bigr)"],
+            Style::MathMl => mathml::BRACKETS,
         }
     }
 
@@ -37,6 +72,7 @@ impl Style {
         Piece::atom(match self {
             Style::Text | Style::Book => name.to_owned(),
             Style::Latex => latex::symbol(name),
+            Style::MathMl => mathml::symbol(name),
         })
     }
 
@@ -47,6 +83,7 @@ impl Style {
                 Piece::atom(format!("{}({})", function.name(), args.join(", ")))
             }
             Style::Latex => latex::call(function, args),
+            Style::MathMl => mathml::call(function, args),
         }
     }
 
@@ -55,22 +92,25 @@ impl Style {
             Style::Text => format!("{}^{}", base.at_least(Binding::Atom), exponent.at_least(Binding::Atom)),
             Style::Book => book::power(base, exponent),
             Style::Latex => latex::power(&base, &exponent.text),
+            Style::MathMl => mathml::power(&base, &exponent.text),
         };
         Piece { text, binding: Binding::Power }
     }
 
     pub(super) fn product(self, factors: Vec<Piece>) -> String {
-        let factors: Vec<String> = factors.into_iter().map(|p| p.at_least(Binding::Product)).collect();
+        let factors: Vec<String> = factors.into_iter().map(|p| self.at_least(p, Binding::Product)).collect();
         match self {
             Style::Text => factors.join("*"),
             Style::Book => factors.join(" "),
             Style::Latex => latex::juxtaposed(&factors),
+            Style::MathMl => mathml::juxtaposed(&factors),
         }
     }
 
     pub(super) fn quotient(self, above: Vec<Piece>, mut below: Vec<Piece>) -> String {
         match self {
             Style::Latex => format!("\\frac{{{}}}{{{}}}", latex::alone(above), latex::alone(below)),
+            Style::MathMl => mathml::fraction(above, below),
             _ if below.len() == 1 => {
                 format!("{}/{}", self.product(above), below.remove(0).at_least(Binding::Power))
             }

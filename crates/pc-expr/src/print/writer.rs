@@ -83,7 +83,7 @@ impl<'d> Writer<'d> {
                 }
             }
             Node::Product { .. } => self.monomial(Number::ONE, id, None),
-            Node::Sum { .. } => join(self.terms(id)),
+            Node::Sum { .. } => join(self.style, self.terms(id)),
         }
     }
 
@@ -175,14 +175,16 @@ impl<'d> Writer<'d> {
         let [open, close] = self.style.large_brackets();
         let turned = q.is_negative().then(|| self.turned_sum(sum)).flatten();
         let negative = q.is_negative() && turned.is_none();
-        let inside = signed(turned.unwrap_or_else(|| self.terms(sum)));
+        let inside = bracketed(self.style, turned.unwrap_or_else(|| self.terms(sum)));
         let last = inside.len() - 1;
-        let term = |(i, text): (usize, String)| {
+        let term = |(i, (subtracted, text)): (usize, (bool, String))| {
             let end = if i == last { format!("{close}{behind}") } else { String::new() };
-            // All but the first begin with their sign and a space.
-            match text.split_at_checked(2).filter(|_| i > 0) {
-                Some((sign, text)) => (sign == "- ", Piece::product(format!("{text}{end}"))),
-                None => (negative, Piece::product(format!("{before}{open}{text}{end}"))),
+            match (i, subtracted) {
+                (0, true) => {
+                    (negative, Piece::product(format!("{before}{open}{}{text}{end}", self.style.minus())))
+                }
+                (0, false) => (negative, Piece::product(format!("{before}{open}{text}{end}"))),
+                _ => (subtracted, Piece::product(format!("{text}{end}"))),
             }
         };
         Some(inside.into_iter().enumerate().map(term).collect())
@@ -209,7 +211,7 @@ impl<'d> Writer<'d> {
         let turned = |&(factor, e): &(NodeId, i32)| {
             let Node::Sum { constant, terms } = self.dag.node(factor) else { return None };
             let is_one = e == 1 && to_turn(constant, self.dag.terms(terms));
-            Some((factor, join(is_one.then(|| self.turned_sum(factor)).flatten()?)))
+            Some((factor, join(self.style, is_one.then(|| self.turned_sum(factor)).flatten()?)))
         };
         let given = factors.iter().find_map(turned)?;
         Some(self.monomial(q.abs(), node, Some(&given)))
@@ -263,7 +265,7 @@ impl<'d> Writer<'d> {
             let base = other.map_or_else(|| self.piece(factor), |(_, piece)| piece.clone());
             if e == 1 && matches!(self.dag.node(factor), Node::Sum { .. }) {
                 let alone = factors.len() == 1 && q.is_one();
-                if alone { base } else { Piece::atom(base.at_least(Binding::Power)) }
+                if alone { base } else { Piece::atom(self.style.at_least(base, Binding::Power)) }
             } else if e == 1 {
                 base
             } else {
@@ -327,27 +329,34 @@ fn positive_first(mut signed: Vec<(bool, Piece)>) -> Vec<(bool, Piece)> {
 }
 
 /// Terms side by side.
-fn join(terms: Vec<(bool, Piece)>) -> Piece {
+fn join(style: Style, terms: Vec<(bool, Piece)>) -> Piece {
     match terms.as_slice() {
         [(false, piece)] => piece.clone(),
-        _ => Piece { text: signed(terms).join(" "), binding: Binding::Sum },
+        _ => Piece { text: signed(style, terms).join(" "), binding: Binding::Sum },
     }
 }
 
-/// Terms that stand side by side, all but the first with their sign and a space before them.
-pub(super) fn signed(terms: Vec<(bool, Piece)>) -> Vec<String> {
-    let alone = terms.len() == 1;
-    let term = |(i, (negative, piece)): (usize, (bool, Piece))| {
+/// Terms that stand side by side, all but the first with their sign before them.
+pub(super) fn signed(style: Style, terms: Vec<(bool, Piece)>) -> Vec<String> {
+    let term = |(i, (negative, text)): (usize, (bool, String))| {
         let sign = match (i, negative) {
             (0, false) => "",
-            (0, true) => "-",
-            (_, false) => "+ ",
-            (_, true) => "- ",
+            (0, true) => style.minus(),
+            _ => style.sign(negative),
         };
-        let text = if alone && !negative { piece.text } else { piece.at_least(Binding::Product) };
         format!("{sign}{text}")
     };
-    terms.into_iter().enumerate().map(term).collect()
+    bracketed(style, terms).into_iter().enumerate().map(term).collect()
+}
+
+/// Terms with brackets where they need them, those that are subtracted marked.
+fn bracketed(style: Style, terms: Vec<(bool, Piece)>) -> Vec<(bool, String)> {
+    let alone = terms.len() == 1;
+    let text = |(negative, piece): (bool, Piece)| {
+        let whole = alone && !negative;
+        (negative, if whole { piece.text } else { style.at_least(piece, Binding::Product) })
+    };
+    terms.into_iter().map(text).collect()
 }
 
 /// Symbols in the order of their making, then calls, then sums.

@@ -22,7 +22,9 @@ impl Model {
         self.parameter_values().check(self.document())?;
         let assembler =
             || Assembler { model: self, graph, scope: Scope::new(graph, self.document()) }.assemble();
-        self.document().stage(graph, "the mechanical system", assembler)
+        let assembly = self.document().stage(graph, "the mechanical system", assembler)?;
+        self.drawn(&assembly)?; // what is wrong with a drawing is wrong with the text
+        Ok(assembly)
     }
 }
 

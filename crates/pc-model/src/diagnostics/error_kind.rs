@@ -322,6 +322,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "forces",
     "integrals",
     "outputs",
+    "draw",
     "hamilton_jacobi",
     "events",
     "simulation",

@@ -4,6 +4,7 @@ use pc_expr::Direction;
 use pc_mech::Interpolation;
 
 use crate::diagnostics::source::{Place, Source};
+use crate::document::draw::Draw;
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::inertia::Inertia;
 use crate::document::joints::{Point, TreeBody};
@@ -52,6 +53,8 @@ pub struct Document {
     pub integrals: Vec<NamedExpression>,
     /// `[outputs]`
     pub outputs: Vec<NamedExpression>,
+    /// `[[draw]]`
+    pub draw: Vec<Draw>,
     /// `[hamilton_jacobi]`
     pub hamilton_jacobi: Option<HamiltonJacobi>,
     /// `[events.NAME]`

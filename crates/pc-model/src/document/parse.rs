@@ -17,7 +17,7 @@ use crate::diagnostics::source::Source;
 use crate::document::contents::Document;
 use crate::document::loops::{self, Loop};
 use crate::document::reader::{Item, Table};
-use crate::document::{bodies, checks, hanging, inputs, sections, simulation, syntax, tree};
+use crate::document::{bodies, checks, draw, hanging, inputs, sections, simulation, syntax, tree};
 
 impl Document {
     /// The document of a model file.
@@ -60,6 +60,10 @@ impl Document {
             } else {
                 ErrorKind::OutsideSection { key: name }
             }));
+        }
+        if key == "draw" {
+            self.draw = draw::draw(item)?;
+            return Ok(());
         }
         let table = item.section(key, &format!("[{key}]"))?;
         match key {

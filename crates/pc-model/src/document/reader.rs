@@ -238,6 +238,20 @@ impl<'a> Item<'a> {
         Err(Item { key_span: 0..0, ..self.clone() }.wrong_type("a section", example))
     }
 
+    /// The value as the entries under headers such as `[[name]]`.
+    pub(super) fn entries(&self, header: &'static str) -> Result<Vec<Item<'a>>, ModelError> {
+        match self.value {
+            DeValue::Array(array) if array.iter().all(|element| element.get_ref().is_table()) => {
+                let entry = |item: Item<'a>| Item {
+                    place: Place { entry: header.to_owned(), ..item.place.clone() },
+                    ..item
+                };
+                Ok(self.elements(array).map(entry).collect())
+            }
+            _ => Err(Item { key_span: 0..0, ..self.clone() }.wrong_type(header, header)),
+        }
+    }
+
     pub(super) fn text(&self) -> Result<Located<String>, ModelError> {
         match self.value {
             DeValue::String(text) => Ok(self.located(text.to_string())),

@@ -17,7 +17,7 @@ impl<'g> Scope<'g, '_> {
     }
 
     /// A component of a point, as a function of the coordinates.
-    pub(super) fn point(&mut self, name: &str) -> Result<Expr<'g>, ModelError> {
+    pub(crate) fn point(&mut self, name: &str) -> Result<Expr<'g>, ModelError> {
         let points = match self.points.take() {
             Some(points) => points,
             None => self.all_points()?,

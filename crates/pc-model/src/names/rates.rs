@@ -72,6 +72,7 @@ impl<'g> Scope<'g, '_> {
             | Stage::Dynamics
             | Stage::Event
             | Stage::Function
+            | Stage::Drawing
             | Stage::Observation => false,
         };
         if refused {

@@ -307,7 +307,8 @@ impl<'g, 'd> Scope<'g, 'd> {
                 | Stage::Position
                 | Stage::Inertia
                 | Stage::Action
-                | Stage::Constraint => refuse(self),
+                | Stage::Constraint
+                | Stage::Drawing => refuse(self),
                 Stage::Rate
                 | Stage::Gravity
                 | Stage::Dynamics

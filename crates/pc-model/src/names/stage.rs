@@ -29,6 +29,8 @@ pub(crate) enum Stage {
     Event,
     /// A function that is asked for: everything but accelerations.
     Function,
+    /// A shape that is drawn: everything but accelerations.
+    Drawing,
     /// The action: its constants, coordinates and t.
     Action,
     /// Integrals and outputs: everything.
@@ -50,6 +52,7 @@ impl Stage {
             Stage::Dynamics => "the Lagrangian or a force",
             Stage::Event => "an event",
             Stage::Function => "a function of the state",
+            Stage::Drawing => "[[draw]]",
             Stage::Action => "the action",
             Stage::Observation => "an integral or output",
         }
@@ -64,7 +67,7 @@ impl Stage {
             Stage::Position | Stage::Inertia => "parameters, coordinates and t",
             Stage::Gravity => "numbers, parameters, inputs and t",
             Stage::Action => "parameters, coordinates, its constants and t",
-            Stage::Constraint => "parameters, coordinates, velocities and t",
+            Stage::Constraint | Stage::Drawing => "parameters, coordinates, velocities and t",
             Stage::Rate | Stage::Dynamics | Stage::Event | Stage::Function | Stage::Observation => {
                 "declared names"
             }

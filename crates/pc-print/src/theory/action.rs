@@ -33,7 +33,7 @@ pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {
     let constants: Vec<Expr<'_>> = action.constants.iter().map(|&(constant, _)| constant).collect();
     let mut near = ground.near.clone();
     near.centre.extend(action.constants.iter().copied());
-    let said = Entry::formula(Side::symbol("S", "S"), Side::of(action.value)).named("action");
+    let said = Entry::formula(Side::letter("S"), Side::of(action.value)).named("action");
     let checked = match ProposedAction::check(canonical, action.value, &constants, &near) {
         Ok(checked) => checked,
         Err(error) => {
@@ -49,7 +49,11 @@ pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {
     let mut said = said.with(Verdict::of(checked.identity));
     said.words = residual(&checked);
     if !matches!(checked.identity, Identity::Proved) {
-        let left = Side::symbol("X_0 S + H", "X_0 S + H");
+        let left = Side::symbol(
+            "X_0 S + H",
+            "X_0 S + H",
+            "<msub><mi>X</mi><mn>0</mn></msub><mspace width=\"0.17em\"/><mi>S</mi><mo>+</mo><mi>H</mi>",
+        );
         said.formulas.push((left, Side::of(checked.remainder)));
     }
     entries.push(said.say(complete));
@@ -95,5 +99,5 @@ fn equation<'g>(ground: &Ground<'_, 'g>) -> Vec<Entry<'g>> {
     let left = of_time + graph.substitute(&[canonical.hamiltonian()], &slopes)[0];
     let is_lagrange = frame.velocities(system.quasi_velocities()) == system.quasi_velocities();
     let words = if is_lagrange { "S_x is ∂S/∂x" } else { "S_η is X_η S, S_t is X_0 S" };
-    vec![Entry::formula(Side::of(left), Side::symbol("0", "0")).say(words)]
+    vec![Entry::formula(Side::of(left), Side::symbol("0", "0", "<mn>0</mn>")).say(words)]
 }

@@ -1,8 +1,9 @@
 //! Momenta, their brackets, and Casimirs.
 
 use pc_analysis::{AnalysisError, Ansatz, PoissonBracket, Rates};
-use pc_mech::{Canonical, Expr, Identity, System};
+use pc_mech::{Canonical, Expr, Identity, Style, System};
 
+use crate::mathml;
 use crate::theory::description::{Entry, Section, Side, Verdict};
 use crate::theory::ground::Ground;
 
@@ -27,7 +28,7 @@ pub(crate) fn momenta<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {
     let mut entries: Vec<Entry<'g>> =
         pairs.map(|(y, value)| Entry::formula(Side::of(y), Side::of(value))).collect();
     entries.push(match &ground.canonical {
-        Ok(canonical) => Entry::formula(Side::symbol("H", "H"), Side::of(canonical.hamiltonian())),
+        Ok(canonical) => Entry::formula(Side::letter("H"), Side::of(canonical.hamiltonian())),
         Err(why) => Entry::words(format!("H is not written: {why}")),
     });
     section(entries)
@@ -104,6 +105,11 @@ fn jacobi<'g>(ground: &Ground<'_, 'g>, bracket: &PoissonBracket<'g>) -> Entry<'g
     let margin = ground.near.residual(bracket.graph(), &[vec![defect]]);
     let cycle = Side::written(|style| {
         let [f, g, h] = [f, g, h].map(|z| z.display(style));
+        if style == Style::MathMl {
+            let of = |a: &str, b: &str| mathml::bracketed(&format!("{a}<mo>,</mo>{b}"));
+            let cycle = [(&f, &g, &h), (&g, &h, &f), (&h, &f, &g)].map(|(a, b, c)| of(a, &of(b, c)));
+            return cycle.join("<mo>+</mo>");
+        }
         format!("({f}, ({g}, {h})) + ({g}, ({h}, {f})) + ({h}, ({f}, {g}))")
     });
     Entry::formula(cycle, Side::of(defect)).with_on(JACOBI, Verdict::of(Identity::of(margin)))
@@ -160,7 +166,8 @@ fn casimir_entries<'g>(
         }
     }
     let known = |(number, &casimir): (usize, &Expr<'g>)| {
-        let left = Side::symbol(&format!("C{number}"), &format!("C_{{{number}}}"));
+        let mathml = format!("<msub><mi>C</mi><mn>{number}</mn></msub>");
+        let left = Side::symbol(&format!("C{number}"), &format!("C_{{{number}}}"), &mathml);
         Entry::formula(left, Side::of(casimir)).with(Verdict::Proved)
     };
     let mut entries: Vec<Entry<'g>> = (1..).zip(&found).map(known).collect();
@@ -205,7 +212,7 @@ pub(crate) fn group_reduction<'g>(ground: &Ground<'_, 'g>, degree: u32) -> Secti
     let rate = |(&y, &rate): (&Expr<'g>, &Expr<'g>)| {
         Entry::formula(Side::of(reduced.graph().symbol(&format!("{y}'"))), Side::of(rate))
     };
-    let hamiltonian = Entry::formula(Side::symbol("H", "H"), Side::of(canonical.hamiltonian()));
+    let hamiltonian = Entry::formula(Side::letter("H"), Side::of(canonical.hamiltonian()));
     let mut entries = vec![head];
     entries.extend(nonzero(&bracket));
     entries.push(hamiltonian);

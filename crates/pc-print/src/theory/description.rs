@@ -2,6 +2,7 @@
 
 use pc_mech::{Expr, Identity, Style};
 
+use crate::mathml;
 use crate::words::short;
 
 /// What can be said of a model, part by part.
@@ -34,6 +35,8 @@ pub(crate) struct Entry<'g> {
     pub(crate) verdict: Option<(Option<&'static str>, Verdict)>,
     /// Sentences without formulas.
     pub(crate) words: Vec<String>,
+    /// Real and imaginary parts of the eigenvalues that belong to it.
+    pub(crate) spectrum: Vec<(f64, f64)>,
 }
 
 /// Whether something holds.
@@ -62,6 +65,8 @@ pub(crate) struct Side<'g> {
     pub(crate) latex: String,
     /// In the language of expressions, where it is one.
     pub(crate) text: String,
+    /// A row of MathML.
+    pub(crate) mathml: String,
 }
 
 impl Verdict {
@@ -106,13 +111,19 @@ impl<'g> Side<'g> {
             book: write(Style::Book),
             latex: write(Style::Latex),
             text: write(Style::Text),
+            mathml: write(Style::MathMl),
         }
     }
 
     /// A symbol of mathematics that is the same in plain text everywhere.
-    pub(crate) fn symbol(plain: &str, latex: &str) -> Side<'g> {
+    pub(crate) fn symbol(plain: &str, latex: &str, mathml: &str) -> Side<'g> {
         let (book, latex, text) = (plain.to_owned(), latex.to_owned(), plain.to_owned());
-        Side { expression: None, book, latex, text }
+        Side { expression: None, book, latex, text, mathml: mathml.to_owned() }
+    }
+
+    /// A letter.
+    pub(crate) fn letter(letter: &str) -> Side<'g> {
+        Side::symbol(letter, letter, &format!("<mi>{letter}</mi>"))
     }
 
     /// (f, g)
@@ -120,6 +131,10 @@ impl<'g> Side<'g> {
         Side::written(|style| match style {
             Style::Latex => format!("({},\\, {})", f.display(style), g.display(style)),
             Style::Book | Style::Text => format!("({}, {})", f.display(style), g.display(style)),
+            Style::MathMl => {
+                let [open, close] = ["(", ")"].map(|sign| format!("<mo stretchy=\"false\">{sign}</mo>"));
+                format!("{open}{}<mo>,</mo>{}{close}", f.display(style), g.display(style))
+            }
         })
     }
 
@@ -129,6 +144,7 @@ impl<'g> Side<'g> {
         Side {
             expression: None,
             latex: format!("\\frac{{d}}{{dt}}\\text{{{}}}", in_text(name)),
+            mathml: format!("{}<mtext>{}</mtext>", mathml::RATE, mathml::escaped(name)),
             book: plain.clone(),
             text: plain,
         }

@@ -8,6 +8,7 @@ use pc_model::{Assembly, ConstraintFormulation, Model, ModelError};
 
 use crate::derived::energy_remark;
 use crate::lines::combination;
+use crate::mathml;
 use crate::theory::description::{Entry, Section, Side, Verdict};
 use crate::theory::ground::Ground;
 use crate::theory::options::TheoryOptions;
@@ -97,7 +98,7 @@ pub(crate) fn section<'g>(
             }
             _ => None,
         };
-        let constant = Side::symbol("const", "\\text{const}");
+        let constant = Side::symbol("const", "\\text{const}", "<mtext>const</mtext>");
         let formulas = [(Side::of(integral.value), constant)].into_iter().chain(of_rate).collect();
         let dependent = integral.dependent.then(|| "a function of those above".to_owned());
         let words = words.into_iter().chain(dependent).collect();
@@ -181,7 +182,7 @@ pub(crate) fn displacements<'g>(ground: &Ground<'_, 'g>, integrals: &Integrals<'
         } else {
             "is not found to commute with all operators"
         };
-        let mut entry = Entry::formula(Side::symbol("X", "X"), right).named(integral.name.clone());
+        let mut entry = Entry::formula(Side::letter("X"), right).named(integral.name.clone());
         entry.words = [commutes.to_owned()].into_iter().chain(gauge).collect();
         Some(entry.with(if integral.verdict == ConservationVerdict::Conserved {
             Verdict::Proved
@@ -203,8 +204,15 @@ fn written(system: &System<'_>, field: &NoetherField<'_>, style: Style) -> Strin
             (true, Style::Book | Style::Text) => format!("∂/∂{name}"),
             (false, Style::Latex) => format!("X_{{{name}}}"),
             (false, Style::Book | Style::Text) => format!("X_{name}"),
+            (true, Style::MathMl) => mathml::partial(&name),
+            (false, Style::MathMl) => mathml::operator(&name),
         }
     };
+    if style == Style::MathMl {
+        let terms = (0..).zip(&field.coefficients).filter(|(_, a)| !a.is_zero());
+        let terms = terms.map(|(s, a)| (a.display(Style::Book), a.display(style), operator(s)));
+        return mathml::combination(terms).into_iter().map(|(term, _)| term).collect();
+    }
     let terms = field.coefficients.iter().enumerate();
     combination(terms.map(|(s, a)| (a.display(style), operator(s))))
 }

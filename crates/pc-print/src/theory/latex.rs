@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::latex::aligned;
 use crate::theory::description::{Entry, Section, Theory, in_text};
 use crate::theory::folded::folded_outside;
 use crate::words::short;
@@ -15,7 +16,9 @@ pub(crate) fn written(theory: &Theory<'_>) -> String {
     for section in &theory.sections {
         // Writing to a string cannot fail.
         let _ = write!(page, "\n% {}\n", section.title);
-        display(&mut page, section);
+        if let Some(display) = display(section) {
+            let _ = writeln!(page, "{display}");
+        }
         for entry in &section.entries {
             for words in &entry.words {
                 let of = entry.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
@@ -26,12 +29,11 @@ pub(crate) fn written(theory: &Theory<'_>) -> String {
     page
 }
 
-fn display(page: &mut String, section: &Section<'_>) {
+/// The formulas of a section, if it has any.
+pub(crate) fn display(section: &Section<'_>) -> Option<String> {
     let names = section.names.iter().flat_map(|(name, value)| formula(&name.latex, &value.latex, ""));
     let lines: Vec<String> = names.chain(section.entries.iter().flat_map(lines)).collect();
-    if !lines.is_empty() {
-        let _ = write!(page, "\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"));
-    }
+    (!lines.is_empty()).then(|| aligned(&lines))
 }
 
 fn lines(entry: &Entry<'_>) -> Vec<String> {

@@ -24,11 +24,12 @@ pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Result<Section<'g>, ModelE
         MeasureSearch::TooLong => return section(vec![open("not looked for: the equations are too long")]),
         MeasureSearch::Found(measure) => measure,
     };
-    let density = |plain: &str, latex: &str, density: Option<Expr<'g>>| {
-        let formula = |density| Entry::formula(Side::symbol(plain, latex), Side::of(density));
-        density.map(|density| formula(density).with(Verdict::Proved))
+    let density = |side: Side<'g>, density: Option<Expr<'g>>| {
+        density.map(|density| Entry::formula(side, Side::of(density)).with(Verdict::Proved))
     };
-    let densities = [density("N", "N", measure.density), density("Nη", "N_{\\eta}", measure.in_velocities)];
+    let in_velocities = Side::symbol("Nη", "N_{\\eta}", "<msub><mi>N</mi><mi>η</mi></msub>");
+    let densities =
+        [density(Side::letter("N"), measure.density), density(in_velocities, measure.in_velocities)];
     let mut entries: Vec<Entry<'g>> = densities.into_iter().flatten().collect();
     let whose = if measure.liouville { ", Liouville's" } else { "" };
     entries.push(Entry::words(format!("the motion keeps N dx dy and Nη dx dη{whose}")));
@@ -70,8 +71,11 @@ pub(crate) fn multiplier<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {
     let Ok(Some(reduced)) = ReducingMultiplier::of(&voronets) else {
         return section(vec![open("none found")]);
     };
-    let multiplier = Entry::formula(Side::symbol("N", "N"), Side::of(reduced.multiplier));
-    let lagrangian = Entry::formula(Side::symbol("L*", "L^{*}"), Side::of(reduced.system.lagrangian()));
+    let multiplier = Entry::formula(Side::letter("N"), Side::of(reduced.multiplier));
+    let lagrangian = Entry::formula(
+        Side::symbol("L*", "L^{*}", "<msup><mi>L</mi><mo>*</mo></msup>"),
+        Side::of(reduced.system.lagrangian()),
+    );
     section(vec![
         multiplier.with(Verdict::Proved),
         lagrangian,

@@ -30,7 +30,7 @@ pub(crate) fn write<'g>(theory: &mut Theory<'g>, assembly: &Assembly<'g>) {
     let lines: Vec<Vec<Expr<'_>>> = expressions.collect();
     let sides: Vec<pc_expr::Side<'_>> = lines.iter().flatten().copied().map(pc_expr::Side::Sum).collect();
     let names = page.names(&sides, &given, Layout::default().room());
-    let written = [Style::Book, Style::Latex, Style::Text].map(|style| names.written(style));
+    let written = [Style::Book, Style::Latex, Style::Text, Style::MathMl].map(|style| names.written(style));
     let mut first = 0;
     for (section, lines) in theory.sections.iter_mut().zip(&lines) {
         section.write(&names, &written, lines, first..first + lines.len());
@@ -49,7 +49,7 @@ impl<'g> Section<'g> {
     fn write(
         &mut self,
         names: &Names<'_>,
-        [book, latex, text]: &[Written; 3],
+        [book, latex, text, mathml]: &[Written; 4],
         expressions: &[Expr<'_>],
         lines: Range<usize>,
     ) {
@@ -57,7 +57,7 @@ impl<'g> Section<'g> {
         let meaning = |name: &pc_expr::Name<'_>| {
             let side = |write: &dyn Fn(&Written) -> String| {
                 let (book, latex, text) = (write(book), whole(write(latex)), write(text));
-                Side { expression: None, book, latex, text }
+                Side { expression: None, book, latex, text, mathml: write(mathml) }
             };
             (
                 side(&|written| written.name(&name.name)),
@@ -69,6 +69,7 @@ impl<'g> Section<'g> {
         let sides = formulas.flat_map(|(left, right)| [left, right]);
         for (side, &e) in sides.filter(|side| side.expression.is_some()).zip(expressions) {
             (side.book, side.latex, side.text) = (book.line(e), whole(latex.line(e)), text.line(e));
+            side.mathml = mathml.line(e);
         }
     }
 }

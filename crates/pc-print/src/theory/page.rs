@@ -44,7 +44,7 @@ pub fn theory<'g>(
     })
 }
 
-fn described<'g>(
+pub(crate) fn described<'g>(
     model: &Model,
     assembly: &Assembly<'g>,
     options: &TheoryOptions,

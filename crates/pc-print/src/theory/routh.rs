@@ -24,16 +24,16 @@ pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Result<Section<'g>, ModelE
     entries.extend(
         rates.map(|(x, &rate)| Entry::formula(Side::of(graph.symbol(&format!("{x}'"))), Side::of(rate))),
     );
-    entries.push(Entry::formula(Side::symbol("R", "R"), Side::of(routh.routhian)));
+    entries.push(Entry::formula(Side::letter("R"), Side::of(routh.routhian)));
     let Some(system) = &routh.system else {
         entries.push(Entry::words("all coordinates are cyclic: their rates are functions of time alone"));
         return section(entries);
     };
     let equations = ground.assembly.placed(system.poincare())?;
-    let sides = [Style::Book, Style::Latex, Style::Text].map(|style| equations.balance(style));
+    let sides = [Style::Book, Style::Latex, Style::Text, Style::MathMl].map(|style| equations.balance(style));
     let side = |i: usize, of: fn(&(String, String)) -> &String| {
-        let [book, latex, text] = [0, 1, 2].map(|style: usize| of(&sides[style][i]).clone());
-        Side { expression: None, book, latex, text }
+        let [book, latex, text, mathml] = [0, 1, 2, 3].map(|style: usize| of(&sides[style][i]).clone());
+        Side { expression: None, book, latex, text, mathml }
     };
     let count = sides[0].len();
     entries.extend((0..count).map(|i| Entry::formula(side(i, |pair| &pair.0), side(i, |pair| &pair.1))));

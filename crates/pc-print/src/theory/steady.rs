@@ -86,6 +86,11 @@ fn entry<'g>(number: usize, found: &FoundSteadyMotion) -> Entry<'g> {
     Entry {
         values: state.chain(rates).collect(),
         words: words.into_iter().flatten().collect(),
+        spectrum: motion
+            .eigenvalues
+            .iter()
+            .map(|value| (clean(value.real), clean(value.imaginary)))
+            .collect(),
         ..Entry::default()
     }
     .named(number.to_string())

@@ -1,51 +1,23 @@
-//! `pc check`: the consistency and the properties of a model.
+//! What can be said of a model before it is run.
 
 use pc_analysis::{FrameFacts, Integral, Integrals, SteadySearch};
 use pc_mech::{Equations, Expr, Identity, MechError, Motion, Neighbourhood, System, VectorField};
-use pc_model::{Assembly, ClassifiedConstraint, ConstraintFormulation, Model};
+use pc_model::{Assembly, ClassifiedConstraint, ConstraintFormulation, Model, ModelError};
 use pc_nonholo::{IntegrableCombination, Kind, Redundant};
-use pc_print::{Operations, columns, counted, integrals_of, kind_in_words, one_line, visible, visible_json};
-use pc_verify::{Agreement, Options, VerifyError, verify};
+use pc_print::{
+    Operations, assignments, columns, counted, integrals_of, kind_in_words, labelled, one_line, short, small,
+    wrapped,
+};
+use pc_verify::{Agreement, VerifyError};
 use serde_json::{Value, json};
 
-use super::combinations;
-use super::frame;
-use super::integrals;
-use super::measure::Measure;
-use super::steady;
-use crate::args::input;
-use crate::args::options::{CheckArguments, Format};
-use crate::error::CliError;
-use crate::output::standard_output::print;
-use crate::report::notes::{NEGATIVE_ENERGY, dropped, say_moved};
-use crate::report::text::{assignments, labelled, short, small, wrapped};
-use crate::report::verification;
-
-/// Prints the properties of a model before it is run.
-///
-/// # Errors
-/// [`CliError`]; of an inconsistent model that is the answer.
-pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
-    let model = input::open(&arguments.model)?;
-    let graph = model.graph();
-    let (assembly, equations) = input::derive(&model, &graph)?;
-    say_moved(&assembly);
-    let second = match verify(&model, &Options::default()) {
-        Err(error @ VerifyError::Disagreement(_)) => return Err(CliError::Verify(Box::new(error))),
-        outcome => outcome,
-    };
-    assembly.within_limits()?;
-    let report = Report { second: Some(second), ..Report::new(&model, &assembly, &equations)? };
-    assembly.within_limits()?;
-    print(|out| match arguments.format {
-        Format::Text => write!(out, "{}", visible(&report.text())),
-        Format::Json => writeln!(out, "{}", visible_json(&report.json())),
-    })
-}
+use crate::check::measure::Measure;
+use crate::check::{agreement, combinations, frame, integrals, steady};
+use crate::remarks::{NEGATIVE_ENERGY, dropped};
 
 /// What can be said of a model before it is run.
 #[derive(Clone, Debug)]
-struct Report<'g> {
+pub struct Check<'g> {
     title: String,
     coordinates: Vec<String>,
     quasi_velocities: Vec<String>,
@@ -80,12 +52,16 @@ struct Report<'g> {
     second: Option<Result<Agreement, VerifyError>>,
 }
 
-impl<'g> Report<'g> {
-    fn new(
+impl<'g> Check<'g> {
+    /// Of an assembled model with its equations in independent quasi-velocities.
+    ///
+    /// # Errors
+    /// [`ModelError`] if something of it cannot be derived.
+    pub fn new(
         model: &Model,
         assembly: &Assembly<'g>,
         equations: &Equations<'g>,
-    ) -> Result<Report<'g>, CliError> {
+    ) -> Result<Check<'g>, ModelError> {
         let system = &assembly.system;
         let (frame, structure, graph) = (system.frame(), system.structure(), system.graph());
         let operations = assembly.placed(Operations::of(equations).map_err(MechError::from))?;
@@ -104,7 +80,7 @@ impl<'g> Report<'g> {
         let near = Neighbourhood { centre };
 
         let integrals = integrals_of(assembly, equations, &near, true);
-        Ok(Report {
+        Ok(Check {
             title: model.title().to_owned(),
             coordinates: names(frame.coordinates()),
             quasi_velocities: names(system.quasi_velocities()),
@@ -138,8 +114,21 @@ impl<'g> Report<'g> {
         })
     }
 
-    fn text(&self) -> String {
+    /// With the comparison with a second derivation.
+    pub fn compared(self, second: Result<Agreement, VerifyError>) -> Check<'g> {
+        Check { second: Some(second), ..self }
+    }
+
+    /// For people.
+    pub fn text(&self) -> String {
         const LABEL: usize = 19;
+        let lines = |(label, lines): (&'static str, Vec<String>)| labelled(label, LABEL, &lines);
+        let text = self.entries().into_iter().map(lines).collect::<String>();
+        format!("{}\n{text}", one_line(&self.title))
+    }
+
+    /// What is known, each with a label, in lines.
+    pub fn entries(&self) -> Vec<(&'static str, Vec<String>)> {
         const WIDTH: usize = 78;
         let k = self.quasi_velocities.len();
         let counted_names = |symbol: &str, names: &[String]| {
@@ -158,7 +147,7 @@ impl<'g> Report<'g> {
         let rank =
             [format!("{} of {k}, {brackets}", self.rank)].into_iter().chain(frame::constraints(&self.frame));
         let of_states = if self.states.is_empty() { Vec::new() } else { counted_names("l", &self.states) };
-        let entries: [(&str, Vec<String>); 13] = [
+        let mut entries: Vec<(&str, Vec<String>)> = vec![
             ("coordinates", counted_names("n", &self.coordinates)),
             ("quasi-velocities", counted_names("k", &self.quasi_velocities)),
             ("states", of_states),
@@ -186,12 +175,8 @@ impl<'g> Report<'g> {
                 ],
             ),
         ];
-        let mut text = format!("{}\n", one_line(&self.title));
-        for (label, lines) in &entries {
-            text += &labelled(label, LABEL, lines);
-        }
         if let Some(second) = &self.second {
-            text += &labelled("second derivation", LABEL, &verification::lines(second, WIDTH));
+            entries.push(("second derivation", agreement::lines(second, WIDTH)));
         }
         let width = self.integrals.list().iter().map(|integral| columns(&integral.name)).max().unwrap_or(0);
         let mut kept = Vec::new();
@@ -201,9 +186,11 @@ impl<'g> Report<'g> {
                 lines.map(|(i, line)| format!("{:width$}  {line}", if i == 0 { &integral.name } else { "" })),
             );
         }
-        text += &labelled("integrals", LABEL, &kept);
-        text += &labelled("invariant measure", LABEL, &self.measure.lines());
-        text + &labelled("steady motion", LABEL, &steady::lines(&self.steady, WIDTH))
+        entries.push(("integrals", kept));
+        entries.push(("invariant measure", self.measure.lines()));
+        entries.push(("steady motion", steady::lines(&self.steady, WIDTH)));
+        entries.retain(|(_, lines)| !lines.is_empty());
+        entries
     }
 
     fn mass_matrix_lines(&self) -> Vec<String> {
@@ -222,7 +209,8 @@ impl<'g> Report<'g> {
         }
     }
 
-    fn json(&self) -> Value {
+    /// For programs.
+    pub fn json(&self) -> Value {
         let integrals: Vec<Value> = self.integrals.list().iter().map(integrals::object).collect();
         let (frame_constraints, holonomic) = frame::objects(&self.frame);
         json!({
@@ -246,7 +234,7 @@ impl<'g> Report<'g> {
             "integrals": integrals,
             "invariant_measure": self.measure.object(),
             "steady_motion": steady::object(&self.steady),
-            "second_derivation": self.second.as_ref().map(verification::object),
+            "second_derivation": self.second.as_ref().map(agreement::object),
         })
     }
 }

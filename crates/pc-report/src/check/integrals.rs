@@ -2,10 +2,8 @@
 
 use pc_analysis::{ConservationVerdict, Integral, Origin};
 use pc_mech::Style;
-use pc_print::columns;
+use pc_print::{columns, short};
 use serde_json::{Value, json};
-
-use crate::report::text::short;
 
 /// A formula of more columns is not printed behind what is said of it.
 const WIDEST: usize = 100;

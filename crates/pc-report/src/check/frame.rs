@@ -3,10 +3,8 @@
 use pc_algebra::{AlgebraError, LieAlgebra};
 use pc_analysis::{FrameConstraints, FrameFacts, QuasiVelocityKind};
 use pc_mech::{StructureCoefficients, Style};
-use pc_print::recognised;
+use pc_print::{recognised, wrapped};
 use serde_json::{Value, json};
-
-use crate::report::text::wrapped;
 
 /// What functions constraints of a frame are.
 fn of(of_time: bool) -> &'static str {

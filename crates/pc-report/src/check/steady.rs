@@ -1,10 +1,8 @@
 //! The steady motion near the start, and whether it is stable, in words.
 
 use pc_analysis::{NearbySteadyMotion, SteadySearch};
-use pc_print::{eigenvalues_in_words, stability_in_words};
+use pc_print::{eigenvalues_in_words, short, stability_in_words, wrapped};
 use serde_json::{Map, Value, json};
-
-use crate::report::text::{short, wrapped};
 
 /// Where it is, how far from the start, eigenvalues, verdict: lines of `width` characters.
 fn motion_lines(steady: &NearbySteadyMotion, width: usize) -> Vec<String> {

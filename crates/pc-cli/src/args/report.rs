@@ -1,0 +1,110 @@
+//! Arguments of `pc report` and `pc animate`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::args::checkpoint::CheckpointArguments;
+use crate::args::forms::{RunForm, run_form};
+use crate::args::options;
+use crate::args::options::{
+    EventArguments, Method, ModelArguments, Outputs, RunArguments, VelocityArguments,
+};
+
+/// The motion on a page.
+#[derive(Clone, Debug, Args)]
+pub struct ShownArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// End time; else that of the file
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
+    pub t_end: Option<f64>,
+    /// Number of points of a curve and of frames, evenly spaced, start and end included; else that of the file, or 601 if that
+    /// is more
+    #[arg(long, value_name = "N", value_parser = options::samples)]
+    pub samples: Option<usize>,
+    /// Relative tolerance; else that of the file, else 1e-9
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = options::positive)]
+    pub rtol: Option<f64>,
+    /// Absolute tolerance; else that of the file, else 1e-12
+    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = options::positive)]
+    pub atol: Option<f64>,
+    /// Largest step; else that of the file, else unlimited. Events that come and go within a step are not seen
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = options::positive)]
+    pub max_step: Option<f64>,
+    /// Events.
+    #[command(flatten)]
+    pub events: EventArguments,
+    /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
+    #[arg(long, value_name = "METHOD", value_parser = options::method)]
+    pub method: Option<Method>,
+    /// Form of the equations that are integrated, as for `pc run`
+    #[arg(long, value_name = "FORM", value_parser = run_form)]
+    pub form: Option<RunForm>,
+    /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
+    #[arg(long, value_name = "NAME")]
+    pub project: Vec<String>,
+}
+
+/// Arguments of `pc report`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:\n  \
+                        pc report tilted-disk -o disk.html\n  \
+                        pc report my-model.toml --t-end 20 --set m=2.5 -o report.html\n  \
+                        pc models heavy-top-euler | pc report - --no-run > top.html\n\
+                        The page needs nothing beside itself: no network and no other file; it is read without scripts, by which \
+                        the motion can be watched. The same model gives the same bytes. Without an end of time there is no \
+                        motion. What was reached of one that fails stands on the page, and the exit code is that of `pc run`.")]
+pub struct ReportArguments {
+    /// The motion.
+    #[command(flatten)]
+    pub shown: ShownArguments,
+    /// Leave out the motion
+    #[arg(long, conflicts_with_all = ["t_end", "samples", "form", "project"])]
+    pub no_run: bool,
+    /// Write the page to FILE.html instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// Arguments of `pc animate`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:\n  \
+                        pc animate spatial-chain -o chain.html\n  \
+                        pc animate tilted-disk --t-end 20 > disk.html\n\
+                        What is drawn are bodies, joints and points, and the shapes of `[[draw]]` in the text of the model. The \
+                        page needs nothing beside itself; the same model gives the same bytes.")]
+pub struct AnimateArguments {
+    /// The motion.
+    #[command(flatten)]
+    pub shown: ShownArguments,
+    /// Write the page to FILE.html instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+impl ShownArguments {
+    /// The corresponding arguments of `pc run`.
+    pub fn as_run(&self) -> RunArguments {
+        RunArguments {
+            velocities: VelocityArguments::default(),
+            sensitivities: Vec::new(),
+            model: self.model.clone(),
+            t_end: self.t_end,
+            samples: self.samples,
+            rtol: self.rtol,
+            atol: self.atol,
+            max_step: self.max_step,
+            events: self.events.clone(),
+            method: self.method,
+            form: self.form,
+            project: self.project.clone(),
+            outputs: Some(Outputs::Reactions),
+            no_verify: false,
+            output: None,
+            plot: None,
+            checkpoints: CheckpointArguments::default(),
+        }
+    }
+}

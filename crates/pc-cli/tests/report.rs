@@ -1,0 +1,135 @@
+//! `pc report` and `pc animate`: pages written whole, the same each time; what is drawn is where the run says.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use roxmltree::{Document, ParsingOptions};
+use serde_json::Value;
+
+fn pc(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pc")).args(arguments).output().expect("pc runs")
+}
+
+fn text(output: Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+fn parsed(page: &str) -> Document<'_> {
+    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+    Document::parse_with_options(page, options).expect("a page is XML")
+}
+
+#[test]
+fn a_page_of_the_program_is_the_same_in_a_file_and_on_standard_output() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let file = directory.path().join("disk.html");
+    let path = file.to_str().expect("UTF-8");
+    assert!(text(pc(&["report", "tilted-disk", "-o", path])).is_empty());
+    let page = std::fs::read_to_string(&file).expect("written");
+    assert_eq!(page, text(pc(&["report", "tilted-disk"])), "the same bytes");
+    assert!(page.len() < 1_000_000 && !page.contains("http"));
+    let xml = parsed(&page);
+    let titles: Vec<&str> =
+        xml.descendants().filter(|node| node.has_tag_name("h2")).filter_map(|node| node.text()).collect();
+    assert_eq!(
+        titles,
+        [
+            "Verdicts",
+            "Frame and Lagrangian",
+            "Equations of motion",
+            "Theory of the motions",
+            "Motion",
+            "Text of the model"
+        ]
+    );
+    for wanted in
+        ["Reactions", "Canonical equations", "Chaplygin&#39;s equations", "λ_rolling", "sin(θ) dx dy"]
+    {
+        assert!(page.contains(wanted), "{wanted}");
+    }
+    assert!(!page.contains(" ms"), "no time of day, no timing");
+}
+
+#[test]
+fn what_cannot_be_shown_is_said() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let model = directory.path().join("model.toml");
+    let write = |end: &str| {
+        let text = format!(
+            "coordinates.x = 1.0\nlagrangian.kinetic = \"x'^2/2\"\nlagrangian.potential = \"x^2/2\"\n{end}"
+        );
+        std::fs::write(&model, text).expect("written");
+    };
+    let path = model.to_str().expect("UTF-8");
+    write("");
+    assert!(text(pc(&["report", path])).contains("the text says no end of time"));
+    assert!(!text(pc(&["report", path, "--no-run"])).contains("id=\"motion\""));
+    assert!(text(pc(&["report", path, "--t-end", "3"])).contains("Relative drift of integrals"));
+    let nothing = pc(&["animate", path, "--t-end", "3"]);
+    assert_eq!(nothing.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&nothing.stderr).contains("can be drawn"));
+    let wrong = pc(&["report", path, "-o", Path::new("x.pdf").to_str().expect("UTF-8")]);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&wrong.stderr).contains(".html"));
+}
+
+/// The model with most bodies and curves.
+#[test]
+fn the_page_of_a_platform_on_six_legs_is_below_a_megabyte() {
+    let page = text(pc(&["report", "stewart-platform", "--t-end", "0.05"]));
+    assert!(page.len() < 1_000_000, "{} bytes", page.len());
+    parsed(&page);
+}
+
+/// Numbers in base 64, as the script of the page reads them.
+fn numbers(text: &str) -> Vec<f32> {
+    let digit = |c: u8| match c {
+        b'A'..=b'Z' => u32::from(c - b'A'),
+        b'a'..=b'z' => u32::from(c - b'a') + 26,
+        b'0'..=b'9' => u32::from(c - b'0') + 52,
+        b'+' => 62,
+        b'/' => 63,
+        _ => 0,
+    };
+    let mut bytes = Vec::new();
+    for group in text.as_bytes().chunks(4) {
+        let bits = group.iter().fold(0, |bits, &c| bits << 6 | digit(c));
+        let padding = group.iter().filter(|&&c| c == b'=').count();
+        bytes.extend_from_slice(&bits.to_be_bytes()[1..4 - padding]);
+    }
+    bytes.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect()
+}
+
+/// The end of the first link of the double pendulum in the frames of the player against columns of the run.
+#[test]
+fn frames_are_the_numbers_of_the_run() {
+    let model = "double-pendulum-cartesian";
+    let page = text(pc(&["animate", model, "--samples", "101"]));
+    let xml = parsed(&page);
+    let data = xml.descendants().find(|node| node.attribute("id") == Some("player-data")).expect("data");
+    let data: Value = serde_json::from_str(data.text().expect("text")).expect("JSON");
+    let shapes = data["shapes"].as_array().expect("shapes");
+    assert_eq!(
+        shapes.iter().map(|shape| shape[0].as_str().expect("kind")).collect::<Vec<_>>(),
+        ["line", "point", "point", "trace"]
+    );
+    let width: usize = shapes.iter().map(|shape| shape[1].as_u64().expect("a count") as usize).sum();
+    let frames = numbers(data["frames"].as_str().expect("text"));
+    let times = numbers(data["times"].as_str().expect("text"));
+    assert_eq!((frames.len(), times.len()), (101 * width, 101));
+    let table = text(pc(&["run", model, "--samples", "101"]));
+    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|known| *known == name).expect("a column");
+    for row in [0, 50, 100] {
+        let value = |name: &str| rows[row + 1][column(name)].parse::<f64>().expect("a number") as f32;
+        // Rounded to single precision, and nothing else.
+        assert_eq!(times[row], value("t"));
+        assert_eq!(
+            frames[row * width + 3..row * width + 5],
+            [value("x1"), value("y1")],
+            "line, second corner"
+        );
+        assert_eq!(frames[row * width + 12..row * width + 14], [value("x2"), value("y2")], "second point");
+    }
+}

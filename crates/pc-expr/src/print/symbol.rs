@@ -1,0 +1,82 @@
+//! Names of symbols taken apart: `ω1'` is ω with the index 1 and one dot.
+
+/// Greek letters by the names that LaTeX has for them.
+pub(super) const GREEK: &[(char, &str)] = &[
+    ('α', "alpha"),
+    ('β', "beta"),
+    ('γ', "gamma"),
+    ('δ', "delta"),
+    ('ε', "varepsilon"),
+    ('ζ', "zeta"),
+    ('η', "eta"),
+    ('θ', "theta"),
+    ('ι', "iota"),
+    ('κ', "kappa"),
+    ('λ', "lambda"),
+    ('μ', "mu"),
+    ('ν', "nu"),
+    ('ξ', "xi"),
+    ('π', "pi"),
+    ('ρ', "rho"),
+    ('ς', "varsigma"),
+    ('σ', "sigma"),
+    ('τ', "tau"),
+    ('υ', "upsilon"),
+    ('φ', "varphi"),
+    ('χ', "chi"),
+    ('ψ', "psi"),
+    ('ω', "omega"),
+    ('Γ', "Gamma"),
+    ('Δ', "Delta"),
+    ('Θ', "Theta"),
+    ('Λ', "Lambda"),
+    ('Ξ', "Xi"),
+    ('Π', "Pi"),
+    ('Σ', "Sigma"),
+    ('Υ', "Upsilon"),
+    ('Φ', "Phi"),
+    ('Ψ', "Psi"),
+    ('Ω', "Omega"),
+];
+
+/// A name in its parts.
+pub(super) struct Symbol<'a> {
+    pub(super) stem: &'a str,
+    /// The number of primes behind it.
+    pub(super) dots: usize,
+    pub(super) index: Index<'a>,
+}
+
+/// What stands below a symbol.
+pub(super) enum Index<'a> {
+    None,
+    /// Set as it is.
+    Plain(&'a str),
+    /// A symbol itself: that of p_ω1.
+    Symbol(&'a str),
+}
+
+impl<'a> Symbol<'a> {
+    pub(super) fn of(name: &'a str) -> Symbol<'a> {
+        let bare = name.trim_end_matches('\'');
+        let (stem, index) = match bare.split_once('_') {
+            Some((stem, index)) if !stem.is_empty() && !index.is_empty() => (stem, index),
+            _ => bare.split_at(bare.trim_end_matches(|c: char| c.is_ascii_digit()).len()),
+        };
+        let plain = index.contains('_') || index.starts_with(|c: char| c.is_ascii_digit());
+        let index = match index {
+            "" => Index::None,
+            _ if plain => Index::Plain(index),
+            _ => Index::Symbol(index),
+        };
+        Symbol { stem, dots: name.len() - bare.len(), index }
+    }
+}
+
+/// The Greek letter that a name spells.
+pub(super) fn spelt(name: &str) -> Option<(char, &'static str)> {
+    let spoken = if name == "th" { "theta" } else { name };
+    let is_it =
+        |(_, known): &&(char, &'static str)| *known == spoken || known.strip_prefix("var") == Some(spoken);
+    GREEK.iter().find(is_it).copied()
+}

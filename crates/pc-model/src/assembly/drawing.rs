@@ -1,0 +1,240 @@
+//! What of a model can be drawn: shapes of its text, bodies, joints and points.
+
+use pc_mech::{Expr, Graph, Matrix};
+
+use crate::assembly::assembly::Assembly;
+use crate::diagnostics::error::ModelError;
+use crate::document::{Draw, DrawnShape, Expression, Orientation};
+use crate::model::model::Model;
+use crate::names::scope::Scope;
+use crate::names::stage::Stage;
+
+/// A place as functions of (t, x, η).
+pub type Spot<'g> = [Expr<'g>; 3];
+
+/// A shape that follows the motion, by functions of (t, x, η).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape<'g> {
+    /// A dot, with a label of its own.
+    Point {
+        /// Where it is.
+        at: Spot<'g>,
+        /// What it is called.
+        label: Option<String>,
+    },
+    /// A broken line.
+    Line {
+        /// Its corners.
+        through: Vec<Spot<'g>>,
+    },
+    /// A disc.
+    Disc {
+        /// Its middle.
+        at: Spot<'g>,
+        /// What is perpendicular to it.
+        normal: Spot<'g>,
+        /// Its radius.
+        radius: Expr<'g>,
+    },
+    /// A sphere.
+    Sphere {
+        /// Its middle.
+        at: Spot<'g>,
+        /// Its radius.
+        radius: Expr<'g>,
+    },
+    /// A box.
+    Box {
+        /// Its middle.
+        at: Spot<'g>,
+        /// The lengths of its edges.
+        size: Spot<'g>,
+        /// From its axes to those of space.
+        rotation: Matrix<Expr<'g>>,
+    },
+    /// The axes of a body that turns.
+    Axes {
+        /// Where they meet.
+        at: Spot<'g>,
+        /// From its axes to those of space.
+        rotation: Matrix<Expr<'g>>,
+    },
+    /// A spring.
+    Spring {
+        /// One end.
+        from: Spot<'g>,
+        /// The other.
+        to: Spot<'g>,
+    },
+    /// The path that a point has left behind.
+    Trace {
+        /// The point.
+        at: Spot<'g>,
+    },
+    /// Words.
+    Text {
+        /// Where they begin.
+        at: Spot<'g>,
+        /// The words.
+        text: String,
+    },
+}
+
+impl Model {
+    /// What of the model can be drawn: bodies with the rods from joint to joint, points, then the shapes of `[[draw]]`.
+    ///
+    /// # Errors
+    /// [`ModelError`] at the expression that cannot be resolved.
+    pub fn drawing<'g>(&self, assembly: &Assembly<'g>) -> Result<Vec<Shape<'g>>, ModelError> {
+        let document = self.document();
+        let mut shapes = on_joints(assembly);
+        let mut scope = Scope::new(assembly.system.graph(), document);
+        for body in &document.bodies {
+            let label = Some(body.name.text.clone());
+            let at = spot(&mut scope, &body.position, Stage::Position)?;
+            shapes.push(Shape::Point { at, label });
+            if let Some(Orientation::Rotation(entries)) = &body.orientation {
+                let rotation = rotation(&mut scope, entries, Stage::Position)?;
+                shapes.push(Shape::Axes { at, rotation });
+            }
+        }
+        for point in &document.points {
+            let names = &point.components[..3];
+            let mut at = [Expr::ZERO; 3];
+            for (value, name) in at.iter_mut().zip(names) {
+                *value = scope.point(&name.text)?;
+            }
+            shapes.push(Shape::Point { at, label: None });
+        }
+        shapes.extend(self.drawn(assembly)?);
+        Ok(shapes)
+    }
+
+    /// The shapes of `[[draw]]`.
+    ///
+    /// # Errors
+    /// As for [`drawing`](Model::drawing).
+    pub(crate) fn drawn<'g>(&self, assembly: &Assembly<'g>) -> Result<Vec<Shape<'g>>, ModelError> {
+        let system = &assembly.system;
+        let mut scope = Scope::new(system.graph(), self.document());
+        let velocities = system.frame().velocities(system.quasi_velocities());
+        let velocities: Vec<_> = scope.velocities().into_iter().zip(velocities).collect();
+        let of_state = |shape: Shape<'g>| shape.substituted(system.graph(), &velocities);
+        self.document().draw.iter().map(|draw| Ok(of_state(resolved(&mut scope, draw)?))).collect()
+    }
+}
+
+fn resolved<'g>(scope: &mut Scope<'g, '_>, draw: &Draw) -> Result<Shape<'g>, ModelError> {
+    let mut at = |place: &[Expression]| spot(scope, place, Stage::Drawing);
+    Ok(match &draw.shape {
+        DrawnShape::Point { at: place } => Shape::Point { at: at(place)?, label: None },
+        DrawnShape::Line { through } => {
+            Shape::Line { through: through.iter().map(|place| at(place)).collect::<Result<_, _>>()? }
+        }
+        DrawnShape::Disc { at: place, normal, radius } => {
+            let normal = match normal {
+                Some(normal) => at(normal)?,
+                None => [Expr::ZERO, Expr::ZERO, Expr::ONE],
+            };
+            Shape::Disc { at: at(place)?, normal, radius: scope.resolve(radius, Stage::Drawing)? }
+        }
+        DrawnShape::Sphere { at: place, radius } => {
+            Shape::Sphere { at: at(place)?, radius: scope.resolve(radius, Stage::Drawing)? }
+        }
+        DrawnShape::Box { at: place, size, rotation: turned } => {
+            let (at, size) = (at(place)?, at(size)?);
+            let rotation = match turned {
+                Some(entries) => rotation(scope, entries, Stage::Drawing)?,
+                None => Matrix::from_fn(3, 3, |i, j| if i == j { Expr::ONE } else { Expr::ZERO }),
+            };
+            Shape::Box { at, size, rotation }
+        }
+        DrawnShape::Spring { from, to } => Shape::Spring { from: at(from)?, to: at(to)? },
+        DrawnShape::Trace { at: place } => Shape::Trace { at: at(place)? },
+        DrawnShape::Text { at: place, text } => Shape::Text { at: at(place)?, text: text.value.clone() },
+    })
+}
+
+/// Two expressions are those of a plane.
+fn spot<'g>(scope: &mut Scope<'g, '_>, place: &[Expression], stage: Stage) -> Result<Spot<'g>, ModelError> {
+    let mut at = [Expr::ZERO; 3];
+    for (value, expression) in at.iter_mut().zip(place) {
+        *value = scope.resolve(expression, stage)?;
+    }
+    Ok(at)
+}
+
+fn rotation<'g>(
+    scope: &mut Scope<'g, '_>,
+    entries: &[Expression; 9],
+    stage: Stage,
+) -> Result<Matrix<Expr<'g>>, ModelError> {
+    let mut values = [Expr::ZERO; 9];
+    for (value, expression) in values.iter_mut().zip(entries) {
+        *value = scope.resolve(expression, stage)?;
+    }
+    Ok(Matrix::from_fn(3, 3, |i, j| values[3 * i + j]))
+}
+
+/// A rod from the joint of each body to the joints on it, or to its mass centre where it is the last, and the mass centre.
+fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
+    let Some(tree) = assembly.system.tree() else { return Vec::new() };
+    let (motions, graph) = (tree.motions(), assembly.system.graph());
+    let mut shapes = Vec::new();
+    for body in tree.bodies() {
+        let (Some(place), Some(rotation)) = (motions.place(body.name()), motions.rotation(body.name()))
+        else {
+            continue; // bodies of a tree have places
+        };
+        let (_, centre, _) = body.mass_properties();
+        let centre: Spot<'g> =
+            [0, 1, 2].map(|i| place[i] + graph.dot((0..3).map(|j| rotation[(i, j)]), centre));
+        let children = tree.bodies().iter().filter(|child| child.parent() == Some(body.name()));
+        let ends: Vec<Spot<'g>> = children.filter_map(|child| motions.place(child.name())).collect();
+        let ends = if ends.is_empty() { vec![centre] } else { ends };
+        let rods = ends.into_iter().filter(|end| *end != place);
+        shapes.extend(rods.map(|end| Shape::Line { through: vec![place, end] }));
+        shapes.push(Shape::Point { at: centre, label: Some(body.name().to_owned()) });
+    }
+    shapes
+}
+
+impl<'g> Shape<'g> {
+    /// Its functions, in an order that depends on nothing but its kind.
+    pub fn functions(&self) -> Vec<Expr<'g>> {
+        match self {
+            Shape::Point { at, .. } | Shape::Trace { at } | Shape::Text { at, .. } => at.to_vec(),
+            Shape::Line { through } => through.concat(),
+            Shape::Disc { at, normal, radius } => [at.as_slice(), normal, &[*radius]].concat(),
+            Shape::Sphere { at, radius } => [at.as_slice(), &[*radius]].concat(),
+            Shape::Box { at, size, rotation } => [at.as_slice(), size, &entries(rotation)].concat(),
+            Shape::Axes { at, rotation } => [at.as_slice(), &entries(rotation)].concat(),
+            Shape::Spring { from, to } => [*from, *to].concat(),
+        }
+    }
+
+    /// With values put in for velocities.
+    fn substituted(self, graph: &'g Graph, known: &[(Expr<'g>, Expr<'g>)]) -> Shape<'g> {
+        let values = graph.substitute(&self.functions(), known);
+        let at = |n: usize| [values[n], values[n + 1], values[n + 2]];
+        let turned = |n: usize| Matrix::from_fn(3, 3, |i, j| values[n + 3 * i + j]);
+        match self {
+            Shape::Point { label, .. } => Shape::Point { at: at(0), label },
+            Shape::Trace { .. } => Shape::Trace { at: at(0) },
+            Shape::Text { text, .. } => Shape::Text { at: at(0), text },
+            Shape::Line { through } => {
+                Shape::Line { through: (0..through.len()).map(|corner| at(3 * corner)).collect() }
+            }
+            Shape::Disc { .. } => Shape::Disc { at: at(0), normal: at(3), radius: values[6] },
+            Shape::Sphere { .. } => Shape::Sphere { at: at(0), radius: values[3] },
+            Shape::Box { .. } => Shape::Box { at: at(0), size: at(3), rotation: turned(6) },
+            Shape::Axes { .. } => Shape::Axes { at: at(0), rotation: turned(3) },
+            Shape::Spring { .. } => Shape::Spring { from: at(0), to: at(3) },
+        }
+    }
+}
+
+/// Row by row.
+fn entries<'g>(rotation: &Matrix<Expr<'g>>) -> Vec<Expr<'g>> {
+    (0..9).map(|ij| rotation[(ij / 3, ij % 3)]).collect()
+}

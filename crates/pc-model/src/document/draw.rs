@@ -1,0 +1,162 @@
+//! `[[draw]]`: shapes that follow the motion.
+
+use super::reader::Item;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::ErrorKind;
+use crate::diagnostics::source::Place;
+use crate::document::expression::{Expression, Located};
+
+/// An entry of `[[draw]]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draw {
+    /// The entry.
+    pub place: Place,
+    /// What it draws.
+    pub shape: DrawnShape,
+}
+
+/// A place by two or three expressions.
+pub type DrawnPlace = Vec<Expression>;
+
+/// What is drawn, by expressions.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DrawnShape {
+    /// A dot of the same size from near and far.
+    Point {
+        /// Where it is.
+        at: DrawnPlace,
+    },
+    /// A broken line.
+    Line {
+        /// Its corners, two or more.
+        through: Vec<DrawnPlace>,
+    },
+    /// A disc.
+    Disc {
+        /// Its middle.
+        at: DrawnPlace,
+        /// What is perpendicular to it.
+        normal: Option<DrawnPlace>,
+        /// Its radius.
+        radius: Expression,
+    },
+    /// A sphere.
+    Sphere {
+        /// Its middle.
+        at: DrawnPlace,
+        /// Its radius.
+        radius: Expression,
+    },
+    /// A box.
+    Box {
+        /// Its middle.
+        at: DrawnPlace,
+        /// The lengths of its edges.
+        size: DrawnPlace,
+        /// The rows of R, from its axes to those of space.
+        rotation: Option<Box<[Expression; 9]>>,
+    },
+    /// A spring.
+    Spring {
+        /// One end.
+        from: DrawnPlace,
+        /// The other.
+        to: DrawnPlace,
+    },
+    /// The path that a point has left behind.
+    Trace {
+        /// The point.
+        at: DrawnPlace,
+    },
+    /// Words.
+    Text {
+        /// Where they begin.
+        at: DrawnPlace,
+        /// The words.
+        text: Located<String>,
+    },
+}
+
+const KINDS: &[(&str, Keys)] = &[
+    ("point", Keys(&["kind", "at"])),
+    ("line", Keys(&["kind", "through"])),
+    ("disc", Keys(&["kind", "at", "normal", "radius"])),
+    ("sphere", Keys(&["kind", "at", "radius"])),
+    ("box", Keys(&["kind", "at", "size", "rotation"])),
+    ("spring", Keys(&["kind", "from", "to"])),
+    ("trace", Keys(&["kind", "at"])),
+    ("text", Keys(&["kind", "at", "text"])),
+];
+
+/// What an entry of a kind may say.
+#[derive(Clone, Copy)]
+struct Keys(&'static [&'static str]);
+
+const AT: &str = "at = [\"x\", \"y\", 0]";
+const THROUGH: &str = "through = [[0, 0, 0], [\"x\", \"y\", 0]]";
+
+/// The entries of `[[draw]]`.
+pub(super) fn draw(item: &Item<'_>) -> Result<Vec<Draw>, ModelError> {
+    item.entries("[[draw]]")?.iter().map(entry).collect()
+}
+
+fn entry(item: &Item<'_>) -> Result<Draw, ModelError> {
+    let table = item.table("an entry [[draw]]", "kind = \"point\"")?;
+    let part = |key: &str| table.items().find(|part| part.key() == key);
+    let wanted = |key: &'static str, example: &'static str| {
+        part(key).ok_or_else(|| table.error(ErrorKind::Missing { key, example }))
+    };
+    let kind = wanted("kind", "kind = \"point\"")?;
+    let Keys(allowed) = kind.choice(KINDS)?.value;
+    if let Some(foreign) = table.items().find(|part| !allowed.contains(&part.key())) {
+        return Err(foreign.unknown(allowed));
+    }
+    let at = || place(&wanted("at", AT)?);
+    let shape = match kind.text()?.value.as_str() {
+        "line" => {
+            let through = wanted("through", THROUGH)?;
+            let corners = through.parts(LINES, "2 to 64 places", THROUGH)?;
+            DrawnShape::Line { through: corners.iter().map(place).collect::<Result<_, _>>()? }
+        }
+        "disc" => DrawnShape::Disc {
+            at: at()?,
+            normal: part("normal").as_ref().map(place).transpose()?,
+            radius: wanted("radius", "radius = \"r\"")?.expression()?,
+        },
+        "sphere" => {
+            DrawnShape::Sphere { at: at()?, radius: wanted("radius", "radius = \"r\"")?.expression()? }
+        }
+        "box" => DrawnShape::Box {
+            at: at()?,
+            size: place(&wanted("size", "size = [1.0, 0.5, 0.2]")?)?,
+            rotation: part("rotation")
+                .map(|part| part.array("9 expressions", "rotation = [1, 0, 0, 0, 1, 0, 0, 0, 1]"))
+                .transpose()?
+                .map(Box::new),
+        },
+        "spring" => DrawnShape::Spring {
+            from: place(&wanted("from", "from = [0, 0, 0]")?)?,
+            to: place(&wanted("to", "to = [\"x\", 0, 0]")?)?,
+        },
+        "trace" => DrawnShape::Trace { at: at()? },
+        "text" => DrawnShape::Text { at: at()?, text: wanted("text", "text = \"…\"")?.text()? },
+        _ => DrawnShape::Point { at: at()? },
+    };
+    Ok(Draw { place: table.place.clone(), shape })
+}
+
+/// How many corners a line may have.
+const LINES: &[usize] = &{
+    let mut lengths = [0; 63];
+    let mut i = 0;
+    while i < lengths.len() {
+        lengths[i] = i + 2;
+        i += 1;
+    }
+    lengths
+};
+
+/// Two expressions in a plane, three in space.
+fn place(item: &Item<'_>) -> Result<DrawnPlace, ModelError> {
+    item.list(&[2, 3], "2 or 3 expressions", AT)
+}

@@ -1,0 +1,15 @@
+//! Errors of a report.
+
+use pc_model::ModelError;
+use pc_verify::VerifyError;
+
+/// A report that cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The model is wrong, or something of it cannot be derived.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The second derivation of the equations disagrees with the first.
+    #[error(transparent)]
+    Verify(Box<VerifyError>),
+}

@@ -1,0 +1,36 @@
+//! What is known of a model on one page.
+//!
+//! A [`Model`](pc_model::Model) and, where it was integrated, the [`Record`] of its motion become [one page](report()) for a
+//! browser: the text of the model, frame and operators, verdicts, equations in every form that applies, brackets, integrals,
+//! steady motions, plots. The page needs nothing beside itself, and is read without scripts; where they run, the motion can be watched ([`animation`],
+//! alone). A [`Check`] is what `pc check`
+//! says of a model; it stands on the page too.
+//!
+//! Read `check`, the properties of a model; `record`, what is taken over of a motion, and `scene`, what of it can be drawn; then
+//! `picture`, curves and eigenvalues, and `page`, which puts all of it under headings. Numbers and formulas come from the crates
+//! below.
+//!
+//! ```
+//! use pc_model::{Builtin, Model};
+//!
+//! let model = Model::new(Builtin::named("chaplygin-sleigh").unwrap().document()?);
+//! let page = pc_report::report(&model, None)?;
+//! assert!(page.starts_with("<!DOCTYPE html>") && page.contains("<math"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod check;
+mod error;
+mod page;
+mod picture;
+mod record;
+mod remarks;
+mod scene;
+
+pub use check::check::Check;
+pub use error::ReportError;
+pub use page::player::animation;
+pub use page::report::report;
+pub use record::{Columns, Kind, Record};
+pub use remarks::{NEGATIVE_ENERGY, dropped};
+pub use scene::{Scene, SceneShape};

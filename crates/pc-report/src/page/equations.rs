@@ -1,0 +1,91 @@
+//! The equations of motion in every form that applies.
+
+use pc_model::{Assembly, ModelError, Variables};
+use pc_print::{DisplayedEquations, Form, Layout, displayed_equations};
+
+use crate::page::formulas;
+use crate::page::html::{lines, paragraph, text};
+
+/// Equations that take more bytes are left to `pc derive`, so that a page stays below a megabyte.
+const LONGEST: usize = 120_000;
+
+/// Poincaré's equations, then the other forms.
+pub(super) fn equations(title: &str, assembly: &Assembly<'_>, layout: &Layout) -> Result<String, ModelError> {
+    let first = displayed_equations(Form::Poincare, layout, title, assembly)?;
+    let mut shown = form(&first, Form::Poincare);
+    let mut refused = Vec::new();
+    for other in others(assembly) {
+        match displayed_equations(other, layout, title, assembly) {
+            Ok(equations) => shown += &form(&equations, other),
+            // A limit that is reached ends the work; a form that a model does not have does not.
+            Err(error) => match assembly.within_limits() {
+                Err(limit) => return Err(limit),
+                Ok(()) => refused.push(format!("{}: {error}", other.name())),
+            },
+        }
+    }
+    if !refused.is_empty() {
+        shown += "<h3>Forms that do not apply</h3>\n";
+        shown += &refused.iter().map(|why| paragraph(why)).collect::<String>();
+    }
+    Ok(shown)
+}
+
+/// The forms that may say something else than Poincaré's.
+fn others(assembly: &Assembly<'_>) -> Vec<Form> {
+    let system = &assembly.system;
+    if system.large_tree().is_some() {
+        return Vec::new(); // written from body to body, in one form
+    }
+    let mut forms = vec![Form::Canonical];
+    let reduced = assembly.free_form(Variables::Reduced).ok();
+    let fewer = |count: usize| count < system.frame().coordinates().len();
+    if reduced.is_some_and(|reduced| fewer(reduced.system.frame().coordinates().len())) {
+        forms.extend([Form::Reduced, Form::LiePoisson]);
+    }
+    let eta = system.quasi_velocities();
+    let velocities = system.frame().velocities(eta);
+    let bound = assembly.constraints.multipliers().is_some();
+    if bound || velocities != eta {
+        forms.push(Form::Lagrange);
+    }
+    if bound && assembly.constraints.nonlinear().is_none() {
+        forms.push(Form::Voronets);
+    }
+    forms
+}
+
+fn form(equations: &DisplayedEquations, form: Form) -> String {
+    let name = capitalised(&equations.name);
+    let mut shown = format!("<h3>{}</h3>\n", text(&name));
+    let size = |display: &pc_print::Display| display.mathml.len() + display.latex.len();
+    let sizes = equations.parts.iter().filter_map(|part| part.display.as_ref()).map(size);
+    let bytes: usize = sizes.sum();
+    if bytes > LONGEST {
+        return shown
+            + &paragraph(&format!(
+                "They are too long to be shown here; pc derive --form {} prints them.",
+                form.name()
+            ));
+    }
+    match &equations.plain {
+        Some(whole) if size(whole) > LONGEST => {
+            shown += &paragraph("They are too long to be shown here; pc derive prints them.");
+        }
+        Some(whole) => {
+            shown += &format!("<pre tabindex=\"0\">{}</pre>\n", lines(&whole.mathml));
+            shown += &formulas::source(&whole.latex);
+        }
+        None => shown += &formulas::parts(&equations.parts, 4),
+    }
+    if !equations.operations.is_empty() {
+        shown += "<h4>Operations of one right-hand side</h4>\n";
+        shown += &equations.operations.iter().map(|line| paragraph(line)).collect::<String>();
+    }
+    shown
+}
+
+fn capitalised(name: &str) -> String {
+    let mut chars = name.chars();
+    chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
+}

@@ -1,0 +1,94 @@
+//! Elements, and text that is none.
+
+use pc_print::{one_line, visible};
+
+/// Text of one line between elements or within quotation marks.
+pub(crate) fn text(text: &str) -> String {
+    escaped(&one_line(text))
+}
+
+/// Text of several lines.
+pub(crate) fn lines(text: &str) -> String {
+    escaped(&visible(text))
+}
+
+fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => safe += "&amp;",
+            '<' => safe += "&lt;",
+            '>' => safe += "&gt;",
+            '"' => safe += "&quot;",
+            '\'' => safe += "&#39;",
+            // Not among the characters of XML.
+            '\u{fffe}' | '\u{ffff}' => safe.push('\u{fffd}'),
+            c => safe.push(c),
+        }
+    }
+    safe
+}
+
+/// A part of a page, with a heading that the table of contents leads to.
+pub(crate) struct Part {
+    pub(crate) id: &'static str,
+    pub(crate) title: &'static str,
+    pub(crate) body: String,
+}
+
+impl Part {
+    pub(crate) fn new(id: &'static str, title: &'static str, body: String) -> Part {
+        Part { id, title, body }
+    }
+
+    pub(crate) fn section(&self) -> String {
+        let Part { id, title, body } = self;
+        format!(
+            "<section id=\"{id}\" aria-labelledby=\"{id}-h\">\n<h2 id=\"{id}-h\">{title}</h2>\n{body}</section>\n"
+        )
+    }
+}
+
+/// A paragraph.
+pub(crate) fn paragraph(words: &str) -> String {
+    format!("<p>{}</p>\n", text(words))
+}
+
+/// Labels with what belongs to them, line by line.
+pub(crate) fn described<L: AsRef<str>>(entries: &[(L, Vec<String>)]) -> String {
+    let entry = |(label, all): &(L, Vec<String>)| {
+        let all: Vec<String> = all.iter().map(|line| text(line)).collect();
+        format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", text(label.as_ref()), all.join("<br/>"))
+    };
+    format!(
+        "<div class=\"scroll\"><table class=\"facts\"><tbody>\n{}</tbody></table></div>\n",
+        entries.iter().map(entry).collect::<String>()
+    )
+}
+
+/// A page without anything from elsewhere.
+pub(crate) fn page(title: &str, body: &str) -> String {
+    let title = text(title);
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
+         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{}</style>\n</head>\n\
+         <body>\n{body}</body>\n</html>\n",
+        include_str!("style.css")
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_no_markup() {
+        assert_eq!(
+            text("</title><script>alert('x')</script>&"),
+            "&lt;/title&gt;&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt;&amp;"
+        );
+        assert_eq!(text("a\n\u{202e}b\u{ffff}"), "a \u{fffd}b\u{fffd}");
+        assert_eq!(lines("a\n<b>\u{1b}"), "a\n&lt;b&gt;\u{fffd}");
+    }
+}

@@ -1,0 +1,99 @@
+//! The page of a model.
+
+use pc_model::Model;
+use pc_print::{Layout, TheoryOptions, displayed_system, displayed_theory, short};
+use pc_verify::{Options, VerifyError, verify};
+
+use crate::check::check::Check;
+use crate::error::ReportError;
+use crate::page::html::{Part, described, lines, page, paragraph, text};
+use crate::page::player::player;
+use crate::page::{equations, formulas, motion, theory};
+use crate::record::Record;
+use crate::scene::Scene;
+
+/// Columns of a line of a formula.
+const WIDTH: usize = 92;
+/// Texts of more lines are folded until they are asked for.
+const LONG_TEXT: usize = 40;
+
+/// All that is known of a model, and of its motion if there is one, as one page for a browser. The same model gives the same
+/// bytes.
+///
+/// # Errors
+/// [`ReportError`] if the equations cannot be derived, or a second derivation disagrees with the first.
+pub fn report(model: &Model, motion: Option<&Record>) -> Result<String, ReportError> {
+    let graph = model.graph();
+    let assembly = model.assemble(&graph)?;
+    let equations = assembly.equations()?;
+    let second = match verify(model, &Options::default()) {
+        Err(error @ VerifyError::Disagreement(_)) => return Err(ReportError::Verify(Box::new(error))),
+        outcome => outcome,
+    };
+    let check = Check::new(model, &assembly, &equations)?.compared(second);
+    assembly.within_limits()?;
+    let found = displayed_theory(model, &assembly, &TheoryOptions::default())?;
+    let layout = Layout { width: WIDTH, ..Layout::default() };
+    let mut parts = vec![
+        Part::new("verdicts", "Verdicts", described(&check.entries())),
+        Part::new(
+            "system",
+            "Frame and Lagrangian",
+            formulas::parts(&displayed_system(&assembly, &layout)?, 3),
+        ),
+        Part::new(
+            "equations",
+            "Equations of motion",
+            equations::equations(model.title(), &assembly, &layout)?,
+        ),
+        Part::new("theory", "Theory of the motions", theory::theory(&found)),
+    ];
+    if let Some(record) = motion {
+        let scene = Scene::of(model, &assembly, record)?;
+        let watched = scene.as_ref().map_or_else(String::new, player);
+        parts.push(Part::new("motion", "Motion", watched + &motion::motion(record)));
+    }
+    parts.push(Part::new("text", "Text of the model", written(model)));
+    Ok(page(model.title(), &(head(model, &parts) + &body(&parts))))
+}
+
+fn body(parts: &[Part]) -> String {
+    format!("<main id=\"main\">\n{}</main>\n", parts.iter().map(Part::section).collect::<String>())
+}
+
+/// Title, description, table of contents.
+fn head(model: &Model, parts: &[Part]) -> String {
+    let heading = &model.document().model;
+    let mut head = format!(
+        "<a class=\"skip\" href=\"#main\">Skip to the contents</a>\n<header>\n<h1>{}</h1>\n",
+        text(model.title())
+    );
+    if let Some(description) = &heading.description {
+        head += &paragraph(&description.value);
+    }
+    if let Some(reference) = &heading.reference {
+        head += &format!("<p class=\"soft\">{}</p>\n", text(&reference.value));
+    }
+    let entry = |part: &Part| format!("<li><a href=\"#{}\">{}</a></li>\n", part.id, part.title);
+    let entries: String = parts.iter().map(entry).collect();
+    head + &format!("</header>\n<nav aria-label=\"Contents\">\n<ol>\n{entries}</ol>\n</nav>\n")
+}
+
+/// The text as it was read, with the values that parameters have now.
+fn written(model: &Model) -> String {
+    let source = model.document().source.text();
+    let values: Vec<(String, Vec<String>)> =
+        model.parameters().map(|(name, value)| (name.to_owned(), vec![short(value, 10)])).collect();
+    let mut shown = String::new();
+    if !values.is_empty() {
+        shown += "<h3>Values of the parameters</h3>\n";
+        shown += &described(&values);
+    }
+    let count = source.lines().count();
+    let open = if count <= LONG_TEXT { " open=\"open\"" } else { "" };
+    shown += &format!(
+        "<h3>Source</h3>\n<details{open}><summary>{count} lines</summary><pre tabindex=\"0\"><code>{}</code></pre></details>\n",
+        lines(source)
+    );
+    shown
+}

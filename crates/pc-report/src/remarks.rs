@@ -1,0 +1,17 @@
+//! Remarks on constraints and energy.
+
+use pc_model::Assembly;
+
+/// The constraints that were dropped, each with the reason.
+pub fn dropped(assembly: &Assembly<'_>) -> Vec<(String, String)> {
+    let reason = |names: &[String]| match names {
+        [] => "says nothing".to_owned(),
+        names => format!("follows from {}", names.join(", ")),
+    };
+    let redundant = assembly.constraints.redundant().iter();
+    redundant.map(|redundant| (redundant.constraint.clone(), reason(&redundant.follows_from))).collect()
+}
+
+/// Of a kinetic energy that is negative for some velocities.
+pub const NEGATIVE_ENERGY: &str = "the kinetic energy is negative for some velocities at the start: a mass or a moment of \
+                                   inertia has the wrong sign";

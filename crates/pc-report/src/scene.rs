@@ -1,0 +1,220 @@
+//! Shapes with their places along a motion.
+
+use pc_expr::{Backend, Evaluator, Inputs, Program};
+use pc_mech::{Expr, MechError};
+use pc_model::{Assembly, Model, ModelError, Shape};
+use serde_json::{Value, json};
+
+use crate::record::Record;
+
+/// Numbers of all frames together: a third of a megabyte.
+const MOST_NUMBERS: usize = 60_000;
+
+/// A shape; its numbers stand in the frames, those of each shape behind those of the one before it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SceneShape {
+    /// Three numbers: a dot, with a label.
+    Point(Option<String>),
+    /// Three numbers for each of so many corners.
+    Line(usize),
+    /// Middle, normal, radius.
+    Disc,
+    /// Middle, radius.
+    Sphere,
+    /// Middle, edges, the rows of a rotation.
+    Box,
+    /// Where they meet, the rows of a rotation.
+    Axes,
+    /// The two ends.
+    Spring,
+    /// Three numbers: the point that leaves a trace.
+    Trace,
+    /// Three numbers: where the words begin.
+    Text(String),
+}
+
+impl SceneShape {
+    /// How many numbers it has in each frame.
+    pub fn numbers(&self) -> usize {
+        match self {
+            SceneShape::Point(_) | SceneShape::Trace | SceneShape::Text(_) => 3,
+            SceneShape::Line(corners) => 3 * corners,
+            SceneShape::Disc => 7,
+            SceneShape::Sphere => 4,
+            SceneShape::Box => 15,
+            SceneShape::Axes => 12,
+            SceneShape::Spring => 6,
+        }
+    }
+
+    /// Its name in the script, and what belongs to it.
+    fn word(&self) -> (&'static str, &str) {
+        match self {
+            SceneShape::Point(label) => ("point", label.as_deref().unwrap_or_default()),
+            SceneShape::Line(_) => ("line", ""),
+            SceneShape::Disc => ("disc", ""),
+            SceneShape::Sphere => ("sphere", ""),
+            SceneShape::Box => ("box", ""),
+            SceneShape::Axes => ("axes", ""),
+            SceneShape::Spring => ("spring", ""),
+            SceneShape::Trace => ("trace", ""),
+            SceneShape::Text(text) => ("text", text),
+        }
+    }
+}
+
+impl From<Shape<'_>> for SceneShape {
+    fn from(shape: Shape<'_>) -> SceneShape {
+        match shape {
+            Shape::Point { label, .. } => SceneShape::Point(label),
+            Shape::Line { through } => SceneShape::Line(through.len()),
+            Shape::Disc { .. } => SceneShape::Disc,
+            Shape::Sphere { .. } => SceneShape::Sphere,
+            Shape::Box { .. } => SceneShape::Box,
+            Shape::Axes { .. } => SceneShape::Axes,
+            Shape::Spring { .. } => SceneShape::Spring,
+            Shape::Trace { .. } => SceneShape::Trace,
+            Shape::Text { text, .. } => SceneShape::Text(text),
+        }
+    }
+}
+
+/// The rows that are shown: all, or the first of every few and the last one.
+fn shown(rows: usize, width: usize) -> Vec<usize> {
+    let stride = (rows * width).div_ceil(MOST_NUMBERS).max(1);
+    let last = rows.saturating_sub(1);
+    let between = (0..last).step_by(stride);
+    between.chain((rows > 0).then_some(last)).collect()
+}
+
+/// Shapes along a motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// What is drawn.
+    pub shapes: Vec<SceneShape>,
+    /// The times of the frames.
+    pub times: Vec<f64>,
+    /// The numbers of all shapes, frame by frame.
+    pub frames: Vec<f32>,
+    /// The acceleration of gravity at the start, against which up is.
+    pub gravity: [f64; 3],
+}
+
+impl Scene {
+    /// What of a model can be drawn, along a motion; none where there is nothing, or what it depends on was not computed.
+    ///
+    /// # Errors
+    /// [`ModelError`] if the shapes cannot be resolved or compiled.
+    pub fn of(model: &Model, assembly: &Assembly<'_>, record: &Record) -> Result<Option<Scene>, ModelError> {
+        let drawing = model.drawing(assembly)?;
+        if drawing.is_empty() || record.times.is_empty() {
+            return Ok(None);
+        }
+        let (system, graph) = (&assembly.system, assembly.system.graph());
+        let functions: Vec<Expr<'_>> = drawing.iter().flat_map(Shape::functions).collect();
+        let state = system.state();
+        let column = |symbol: &Expr<'_>| {
+            let name = symbol.symbol_name()?;
+            let mut columns = record.columns.iter().flat_map(|columns| &columns.list);
+            columns.find(|(known, _)| *known == name).map(|(_, values)| values)
+        };
+        let columns: Vec<Option<&Vec<f64>>> = state.iter().map(column).collect();
+        let missing = |symbol: &Expr<'_>| {
+            state.iter().zip(&columns).any(|(known, column)| known == symbol && column.is_none())
+        };
+        if graph.symbols_of(&functions).iter().any(missing) {
+            return Ok(None);
+        }
+        let parameters = system.parameters().iter().map(|&(symbol, _)| symbol).collect();
+        let inputs = Inputs { time: Some(system.frame().time()), parameters, state };
+        let program = assembly.placed(Program::new(graph, &inputs, &functions).map_err(MechError::from))?;
+        let mut evaluator = Evaluator::new(program, Backend::Interpreter);
+        let numbers: Vec<f64> = system.parameters().iter().map(|&(_, value)| value).collect();
+        let (mut values, mut frames) = (vec![0.0; functions.len()], Vec::new());
+        let shown = shown(record.times.len(), functions.len());
+        for &i in &shown {
+            let t = record.times[i];
+            let state: Vec<f64> =
+                columns.iter().map(|column| column.map_or(f64::NAN, |values| values[i])).collect();
+            evaluator.eval(t, &state, &numbers, &mut values);
+            frames.extend(values.iter().map(|&value| value as f32));
+        }
+        let mut at = assembly.at_start();
+        at.extend(system.parameters());
+        let gravity = graph.evaluate(&system.gravity(), &at).unwrap_or_else(|_| vec![0.0; 3]);
+        Ok(Some(Scene {
+            shapes: drawing.into_iter().map(SceneShape::from).collect(),
+            times: shown.iter().map(|&i| record.times[i]).collect(),
+            frames,
+            gravity: [gravity[0], gravity[1], gravity[2]],
+        }))
+    }
+
+    /// The numbers of all shapes in a frame.
+    pub fn width(&self) -> usize {
+        self.shapes.iter().map(SceneShape::numbers).sum()
+    }
+
+    /// What the player reads: names, then times and numbers as IEEE 754 single precision, the least byte first, in base 64.
+    pub(crate) fn data(&self) -> Value {
+        let shapes: Vec<Value> = self
+            .shapes
+            .iter()
+            .map(|shape| {
+                let (kind, text) = shape.word();
+                json!([kind, shape.numbers(), text])
+            })
+            .collect();
+        let single: Vec<f32> = self.times.iter().map(|&t| t as f32).collect();
+        json!({
+            "shapes": shapes,
+            "gravity": self.gravity,
+            "times": base64(&single),
+            "frames": base64(&self.frames),
+        })
+    }
+}
+
+const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+fn base64(numbers: &[f32]) -> String {
+    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for group in bytes.chunks(3) {
+        let bits =
+            group.iter().fold(0u32, |bits, &byte| bits << 8 | u32::from(byte)) << (8 * (3 - group.len()));
+        for digit in 0..4 {
+            let known = digit <= group.len();
+            text.push(if known { char::from(DIGITS[(bits >> (18 - 6 * digit)) as usize & 63]) } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_shapes_have_fewer_frames() {
+        assert_eq!(shown(3, 10), [0, 1, 2]);
+        let few = shown(601, 148);
+        assert!(few.len() * 148 <= MOST_NUMBERS + 148 && few.first() == Some(&0) && few.last() == Some(&600));
+        assert!(shown(0, 3).is_empty());
+    }
+
+    #[test]
+    fn numbers_are_written_in_base_64() {
+        // RFC 4648, section 10, by bytes: numbers have four each.
+        assert_eq!(base64(&[]), "");
+        assert_eq!(base64(&[f32::from_le_bytes(*b"foob")]), "Zm9vYg==");
+        assert_eq!(
+            base64(&[
+                f32::from_le_bytes(*b"foob"),
+                f32::from_le_bytes(*b"arfo"),
+                f32::from_le_bytes(*b"obar")
+            ]),
+            "Zm9vYmFyZm9vYmFy"
+        );
+    }
+}

@@ -1,0 +1,171 @@
+//! Pages of models: well-formed, complete in themselves, the same each time; whatever a model is called, its text stays text.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use pc_model::{BUILTIN, Builtin, Document, Model, Source};
+use pc_report::{Columns, Kind, Record, report};
+use roxmltree::{Document as Xml, Node, ParsingOptions};
+
+/// The page as XML.
+fn parsed(page: &str) -> Xml<'_> {
+    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+    match Xml::parse_with_options(page, options) {
+        Ok(xml) => xml,
+        Err(error) => {
+            let line = page.lines().nth(error.pos().row as usize - 1).unwrap_or_default();
+            panic!("{error}: {}", line.chars().take(400).collect::<String>())
+        }
+    }
+}
+
+fn model(text: &str) -> Model {
+    Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
+}
+
+fn builtin(name: &str) -> Model {
+    Model::new(Builtin::named(name).unwrap().document().unwrap())
+}
+
+/// A motion of three rows.
+fn record() -> Record {
+    let column = |name: &str, values: [f64; 3]| (name.to_owned(), values.to_vec());
+    Record {
+        times: vec![0.0, 0.5, 1.0],
+        columns: vec![
+            Columns {
+                kind: Kind::Coordinates,
+                list: vec![column("x", [1.0, 0.0, -1.0]), column("φ", [0.0, 100.0, 200.0])],
+            },
+            Columns { kind: Kind::Conserved, list: vec![column("energy", [2.0, 2.0 + 2e-12, 2.0])] },
+        ],
+        summary: vec![("method".to_owned(), vec!["Adams <b>".to_owned()])],
+        keeps_energy: true,
+        events: vec![0.25],
+        remark: None,
+    }
+}
+
+const OSCILLATOR: &str = "\
+[model]
+name = \"Oscillator\"
+description = \"A mass on a spring.\"
+[parameters]
+m = 2.0
+k = 8.0
+[coordinates]
+x = 1.0
+[lagrangian]
+kinetic = \"m*x'^2/2\"
+potential = \"k*x^2/2\"
+";
+
+#[test]
+fn an_oscillator_from_its_text_to_its_curves() {
+    let page = report(&model(OSCILLATOR), Some(&record())).unwrap();
+    let style = page.find("<style>").unwrap()..page.find("</style>").unwrap();
+    let page = page.replace(&page[style], "<style>");
+    insta::assert_snapshot!(page);
+}
+
+/// What every page has to satisfy; `name` says of which model it is.
+fn check(name: &str, page: &str) {
+    assert!(page.len() < 1_000_000, "{name}: {} bytes", page.len());
+    assert!(!page.contains("http"), "{name}: nothing from elsewhere");
+    let xml = parsed(page);
+    let with = |tag: &'static str| xml.descendants().filter(move |node| node.has_tag_name(tag));
+    let ids: Vec<&str> = xml.descendants().filter_map(|node| node.attribute("id")).collect();
+    let mut unique = ids.clone();
+    unique.sort_unstable();
+    unique.dedup();
+    assert_eq!(unique.len(), ids.len(), "{name}: ids are there once");
+    for link in with("a").filter_map(|node| node.attribute("href")) {
+        assert!(ids.contains(&link.strip_prefix('#').unwrap()), "{name}: {link} leads somewhere");
+    }
+    assert!(with("math").count() > 3, "{name}: there are formulas");
+    for math in with("math") {
+        let scrolls = math.parent().is_some_and(|parent| parent.attribute("class") == Some("formula"));
+        assert!(scrolls && math.has_children(), "{name}: a formula scrolls in its own box");
+        for element in math.descendants().filter(Node::is_element) {
+            let count = element.children().filter(Node::is_element).count();
+            let wanted = match element.tag_name().name() {
+                "msub" | "msup" | "mfrac" | "mover" => 2,
+                "msubsup" => 3,
+                "mi" | "mn" | "mo" | "mtext" | "mspace" => 0,
+                _ => continue,
+            };
+            assert_eq!(count, wanted, "{name}: {:?}", &page[element.range()]);
+        }
+    }
+    for svg in with("svg") {
+        let says = |tag: &str| svg.children().any(|node| node.has_tag_name(tag) && node.text().is_some());
+        assert!(says("title") && says("desc"), "{name}: a picture says what it shows");
+    }
+    let mut level = 1;
+    for heading in
+        xml.descendants().filter(|node| matches!(node.tag_name().name(), "h1" | "h2" | "h3" | "h4"))
+    {
+        let next = heading.tag_name().name()[1..].parse::<u32>().unwrap();
+        assert!(next <= level + 1, "{name}: headings step down one by one");
+        level = next;
+    }
+    assert!(with("details").filter(|node| node.descendants().any(|n| n.text() == Some("LaTeX"))).count() > 2);
+    // The player is all that needs a script, and is hidden until it runs.
+    let scripts = with("script").count();
+    assert_eq!(scripts, 2 * page.matches("id=\"player\" hidden=\"hidden\"").count(), "{name}");
+}
+
+#[test]
+fn pages_of_models_are_whole_small_and_the_same_each_time() {
+    for name in
+        ["tilted-disk", "heavy-top-euler", "chaplygin-sleigh", "double-pendulum-cartesian", "turning-hoop"]
+    {
+        let page = report(&builtin(name), Some(&record())).unwrap();
+        check(name, &page);
+        assert_eq!(page, report(&builtin(name), Some(&record())).unwrap(), "{name}");
+    }
+}
+
+/// Of every model that comes with the program; some minutes.
+#[test]
+#[ignore = "takes minutes without optimisation"]
+fn pages_of_all_models() {
+    for builtin in BUILTIN {
+        let model = Model::new(builtin.document().unwrap());
+        let page = report(&model, None).unwrap();
+        println!("{:40} {:8} bytes", builtin.name, page.len());
+        check(builtin.name, &page);
+    }
+}
+
+#[test]
+fn hostile_text_stays_text() {
+    let hostile = "</title></code></math><script>alert(1)</script><!-- & ' ]]>";
+    let text = format!(
+        "[model]\nname = \"{hostile}\"\ndescription = \"{hostile}\"\nreference = \"{hostile}\"\n\
+         # {hostile}\n[coordinates]\nx = 1.0\ny = 0.0\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n\
+         [constraints]\n\"{hostile}\" = \"x' - y*y'\"\n"
+    );
+    let text = if Document::parse(Source::new("a", &text)).is_ok() {
+        text
+    } else {
+        // Names of constraints have to be names.
+        text.replace(&format!("\"{hostile}\" = \"x'"), "roll = \"x'")
+    };
+    let mut motion = record();
+    motion.columns[0].list[0].0 = hostile.to_owned();
+    motion.summary.push((hostile.to_owned(), vec![hostile.to_owned()]));
+    motion.remark = Some(hostile.to_owned());
+    let page = report(&model(&text), Some(&motion)).unwrap();
+    check("hostile", &page);
+    let xml = parsed(&page);
+    let heading = xml.descendants().find(|node| node.has_tag_name("h1")).unwrap();
+    assert_eq!(heading.text(), Some(hostile));
+    assert_eq!(page.matches("alert(1)").count(), page.matches("&lt;script&gt;alert(1)").count());
+}
+
+#[test]
+fn the_eigenvalues_of_a_steady_motion_are_drawn() {
+    let page = report(&model(OSCILLATOR), None).unwrap();
+    // ±2i about x = 0
+    assert!(page.contains("0 of 2 have positive real parts: 0 + 2i, 0 − 2i"), "{page}");
+}

@@ -1,0 +1,182 @@
+//! The front of an integration: up to where it is known what occurs.
+
+use pc_expr::{Events, Failure, VectorField};
+
+use crate::error::{NonFinite, Reason, SolveError};
+use crate::events::root_finding::Passage;
+use crate::events::samples::Look;
+use crate::integration::integration::Integration;
+use crate::integration::stepper::Stepper;
+
+impl<S: Stepper, E: Events> Integration<S, E> {
+    /// Moves the front to the next event or to the end of the next step.
+    pub(crate) fn go_on(&mut self, towards: f64) -> Result<(), SolveError> {
+        let time = self.engine.time();
+        if self.engine.end_time() == self.front.t {
+            if self.arrives(towards)? {
+                return Ok(());
+            }
+            self.check_deadline()?;
+            self.engine.step(towards)?;
+            let to = self.engine.end_time();
+            self.ahead.copy_from_slice(self.engine.end_state());
+            let from = (self.front.t, &self.front_state[..]);
+            if let Err(failure) = self.engine.field_mut().leads(from, (to, &self.ahead)) {
+                return Err(self.failed(Reason::Rates { t: to }, Some(failure)));
+            }
+            self.engine.stand_at(time);
+            self.restarted = false;
+            self.direction.get_or_insert(1.0_f64.copysign(towards - self.front.t));
+        }
+        let to = self.engine.end_time();
+        if self.events.events().is_empty() {
+            // The end of the step is in `ahead`, and there are no other states in it to look for.
+            if time == self.front.t {
+                std::mem::swap(&mut self.output, &mut self.front_state);
+            }
+            std::mem::swap(&mut self.front_state, &mut self.ahead);
+            self.front.t = to;
+            return Ok(());
+        }
+        if time == self.front.t {
+            self.output.copy_from_slice(&self.front_state);
+        }
+        let mut times = std::mem::take(&mut self.times);
+        self.look_at(to, &mut times);
+        let (engine, events) = (&mut self.engine, &mut self.events);
+        let mut blamed = 0;
+        let evaluate = |t: f64, values: &mut [f64]| {
+            let state = if t == to {
+                engine.end_state()
+            } else {
+                engine.interpolate(t, 0).map_err(SearchFailure::Method)?
+            };
+            values_at(events, t, state, values, &mut blamed)
+                .map_err(|failure| SearchFailure::Event(t, failure))
+        };
+        let mut look = Look { evaluate, functions: self.front.values.len(), room: &mut self.room };
+        let from = look.copy(&self.front);
+        self.sides_after.clone_from(&self.sides);
+        let found = self.sides_after.first(from, &times, &mut look);
+        self.times = times;
+        let passage = match found {
+            Ok(passage) => passage,
+            Err(SearchFailure::Method(error)) => return Err(self.stay(error)),
+            Err(SearchFailure::Event(t, failure)) => return Err(self.event_error(blamed, t, failure)),
+        };
+        let (front, noise, due, beyond) = match passage {
+            Passage::Clear(end) => (end, Vec::new(), Vec::new(), Vec::new()),
+            Passage::Crossing(crossing) => (crossing.at, crossing.noise, crossing.events, crossing.beyond),
+        };
+        let state =
+            if front.t == to { Ok(self.engine.end_state()) } else { self.engine.interpolate(front.t, 0) };
+        match state {
+            Ok(state) => self.front_state.copy_from_slice(state),
+            Err(error) => return Err(self.stay(error)),
+        }
+        self.engine.stand_at(time);
+        std::mem::swap(&mut self.sides_before, &mut self.sides);
+        std::mem::swap(&mut self.sides, &mut self.sides_after);
+        self.room.take_back(std::mem::replace(&mut self.front, front));
+        (self.noise, self.due, self.beyond) = (noise, due, beyond);
+        Ok(())
+    }
+
+    /// Writes the times up to `to`, the last of them, at which the functions of events are looked at: such that each has at most one root
+    /// between two of them where the method and the events know that, and the ends of equal parts else.
+    fn look_at(&mut self, to: f64, times: &mut Vec<f64>) {
+        times.clear();
+        let from = self.front.t;
+        let mut all = false;
+        if let Some((program, parameters)) = self.events.program() {
+            let separated = self.engine.separate_roots(program, parameters, (from, to), times);
+            all = separated && program.outputs_len() == self.events.events().len();
+        }
+        if all {
+            return;
+        }
+        let (pieces, length) = (self.engine.limits().samples_per_step, to - from);
+        times.extend((1..pieces).map(|k| from + length * (f64::from(k) / f64::from(pieces))));
+        times.push(to);
+        times.sort_unstable_by(|a, b| ((a - b) * length).total_cmp(&0.0));
+        times.dedup();
+    }
+
+    /// Whether the end is so near to a restart that no step can go there. Then it is where the integration is.
+    fn arrives(&mut self, towards: f64) -> Result<bool, SolveError> {
+        let target = self.engine.stop_time().unwrap_or(towards);
+        let rounding = 4.0 * f64::EPSILON * target.abs().max(self.front.t.abs());
+        if !self.restarted || (target - self.front.t).abs() > rounding {
+            return Ok(false);
+        }
+        let time = self.time();
+        let columns = self.engine.columns()?;
+        self.engine.restart(target, &self.front_state, &columns, self.direction)?;
+        self.engine.stand_at(if time == self.front.t { target } else { time });
+        self.front.t = target;
+        Ok(true)
+    }
+
+    /// The functions at a state.
+    pub(crate) fn evaluate(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let (mut values, mut blamed) = (vec![f64::NAN; self.events.events().len()], 0);
+        match values_at(&mut self.events, t, state, &mut values, &mut blamed) {
+            Ok(()) => Ok(values),
+            Err(failure) => Err(self.event_error(blamed, t, failure)),
+        }
+    }
+
+    /// The error of the function of an event.
+    pub(crate) fn event_error(&mut self, event: usize, t: f64, failure: Failure) -> SolveError {
+        let reason = Reason::Event { event: self.name(event), t };
+        self.failed(reason, Some(failure))
+    }
+
+    pub(crate) fn name(&self, event: usize) -> String {
+        self.events.events().get(event).map_or_else(String::new, |event| event.name().to_owned())
+    }
+
+    /// The error of something that did not succeed beyond the front, where the integration stands then.
+    pub(crate) fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
+        let error = self.engine.failed(reason, failure);
+        self.stay(error)
+    }
+
+    pub(crate) fn stay(&mut self, mut error: SolveError) -> SolveError {
+        self.engine.stand_at(self.front.t);
+        if let SolveError::Integration(error) = &mut error {
+            error.time = self.front.t;
+            error.state.clone_from(&self.front_state);
+        }
+        error
+    }
+}
+
+/// Why the events in a step cannot be found.
+enum SearchFailure {
+    Method(SolveError),
+    Event(f64, Failure),
+}
+
+/// Writes the functions at a state to what is NaN before; `blamed` is the first that is not finite, or was not written before the
+/// failure.
+fn values_at(
+    events: &mut impl Events,
+    t: f64,
+    state: &[f64],
+    values: &mut [f64],
+    blamed: &mut usize,
+) -> Result<(), Failure> {
+    if let Err(failure) = events.evaluate(t, state, values) {
+        *blamed = values.iter().position(|value| !value.is_finite()).unwrap_or(0);
+        return Err(failure);
+    }
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(i) => {
+            *blamed = i;
+            let event = events.events()[i].name().to_owned();
+            Err(Failure::recoverable(NonFinite::Event { event, value: values[i], t }))
+        }
+    }
+}
