@@ -265,11 +265,13 @@ fn accelerations_that_are_read_back_are_those_of_the_run() {
             let parameters = system.parameters().iter().map(|(symbol, value)| (symbol.to_string(), *value));
             let mut symbols: Vec<(String, f64)> = names.iter().cloned().zip(y).chain(parameters).collect();
             symbols.push(("t".to_owned(), assembly.t_start));
-            // Constraints and reactions, and their definitions, may have rates in them that are not read here.
+            // Constraints and reactions, and their definitions, may have rates in them that are not read here. A rate that is itself
+            // a component of the state has its value.
             let rates_of = names
                 .iter()
                 .chain(assembly.system.state().iter().map(ToString::to_string).collect::<Vec<_>>().iter())
                 .map(|name| (format!("{name}'"), 0.0))
+                .filter(|(rate, _)| !names.contains(rate))
                 .collect::<Vec<_>>();
             symbols.extend(rates_of);
             let read = Read::at(&object, &symbols);

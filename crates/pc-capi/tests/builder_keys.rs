@@ -201,7 +201,9 @@ fn there_is_a_call_for_every_key_of_the_text() {
         .filter_map(|line| line.strip_prefix('[')?.strip_suffix(']').map(str::to_owned))
         .filter(|header| !header.contains('.'))
         .collect();
-    assert_eq!(headers, keys("[zzzzzz]\n"), "{text}");
+    // Drawings are for the pages of the program, which the library does not write.
+    let known: BTreeSet<String> = keys("[zzzzzz]\n").into_iter().filter(|key| key != "draw").collect();
+    assert_eq!(headers, known, "{text}");
     for (before, header, table) in [
         ("[model]\n", "model", None),
         ("[quasi_velocities]\nv.", "quasi_velocities", Some("v")),

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use pc_cli::args::forms::RunForm;
+use pc_cli::commands::report;
 use pc_cli::commands::run::integrate;
 use pc_cli::motion::plan::Plan;
 use pc_cli::motion::run::Run;
@@ -98,6 +99,7 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
     for file in draw(&fine)? {
         println!("  drawn     {}", file.display());
     }
+    println!("  report    {}, to be opened in a browser", show_page(&model, &fine)?.display());
     let work = &fine.statistics;
     println!(
         "  work      {} steps, {} evaluations in {:.2} ms",
@@ -148,11 +150,27 @@ fn show_table(run: &Run) {
     }
 }
 
-/// Draws the motion into `target/demo` of the workspace.
-fn draw(run: &Run) -> Result<Vec<PathBuf>, Box<dyn Error>> {
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new("."));
+fn workspace() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new("."))
+}
+
+/// `target/demo`, which is there then.
+fn directory() -> Result<PathBuf, Box<dyn Error>> {
     let directory = Path::new("target").join("demo");
-    fs::create_dir_all(workspace.join(&directory))?;
+    fs::create_dir_all(workspace().join(&directory))?;
+    Ok(directory)
+}
+
+/// Writes the page of all that is known of the model.
+fn show_page(model: &Model, run: &Run) -> Result<PathBuf, Box<dyn Error>> {
+    let file = directory()?.join("heavy-top.html");
+    Destination::page(Some(&workspace().join(&file)))?.write_page(&report::page(model, run)?)?;
+    Ok(file)
+}
+
+/// Draws the motion.
+fn draw(run: &Run) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    let (workspace, directory) = (workspace(), directory()?);
     let picture = Picture::of(run);
     let mut files = Vec::new();
     for name in ["heavy-top.svg", "heavy-top.png"] {

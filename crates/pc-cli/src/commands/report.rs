@@ -54,6 +54,14 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
     run.outcome()
 }
 
+/// The page of a model with a motion that has been integrated.
+///
+/// # Errors
+/// [`CliError::Report`] for a model that cannot be derived.
+pub fn page(model: &Model, run: &Run) -> Result<String, CliError> {
+    Ok(report(model, Some(&record(run)))?)
+}
+
 /// The motion with the reactions of constraints.
 fn integrated(model: &mut Model, shown: &ShownArguments) -> Result<Run, CliError> {
     let arguments = shown.as_run();
