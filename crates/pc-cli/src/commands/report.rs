@@ -57,7 +57,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
 /// The page of a model with a motion that has been integrated.
 ///
 /// # Errors
-/// [`CliError::Report`] for a model that cannot be derived.
+/// [`CliError`] for a model that cannot be derived.
 pub fn page(model: &Model, run: &Run) -> Result<String, CliError> {
     Ok(report(model, Some(&record(run)))?)
 }
