@@ -137,7 +137,7 @@ impl<S: Stepper> Integration<S> {
     /// [derivatives](Events::by_parameter) by the parameters of the sensitivities.
     ///
     /// # Errors
-    /// [`SolveError::Integration`] with [`Reason::Event`] if a function of an event cannot be evaluated there;
+    /// [`SolveError::Integration`] with [`Reason::Event`](crate::Reason::Event) if a function of an event cannot be evaluated there;
     /// [`InputError::EventParameters`].
     pub fn with_events<E: Events>(mut self, events: E) -> Result<Integration<S, E>, SolveError> {
         let resets = events.events().iter().any(Event::resets);
