@@ -10,7 +10,7 @@
 //! quasi-velocities are in velocities, and start values that were computed here. Its twin describes the same motion in the
 //! coordinates of the chart and their velocities, without frame, quasi-velocities, brackets or carried coordinates, which
 //! are `[definitions]` there: Lagrange's equations, so that an error in what the twin has not is seen. A finding is shrunk to a
-//! short text that still has it.
+//! short text that still has it. Bodies on joints have a generator of their own, with bodies that are written out as twins.
 
 pub mod campaign;
 pub mod comparison;
@@ -27,3 +27,4 @@ pub mod shrink;
 pub mod specimen;
 pub mod start;
 pub mod text;
+mod trees;

@@ -29,3 +29,8 @@ pub mod verified;
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
+
+/// The programs of the page on the layers.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/layers.md")]
+pub struct Layers;

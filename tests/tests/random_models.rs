@@ -2,21 +2,27 @@
 
 use std::time::Duration;
 
-use pc_tests::fuzz::campaign::Campaign;
+use pc_tests::fuzz::campaign::{Campaign, Subject};
 use pc_tests::fuzz::examination::note_panics;
 use pc_tests::fuzz::report::Report;
 
 /// Enough for each way of writing a model to be met some dozen times; `cargo xtask fuzz models` tries more.
 const MODELS: u64 = 500;
+/// Each joint a dozen times.
+const TREES: u64 = 40;
 
 #[test]
 fn random_models_agree_with_independent_computations() {
     note_panics();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let limit = Duration::from_secs(120);
-    let campaign = Campaign { seed: 1, first: 0, count: MODELS, threads, emitted_every: 50, limit };
-    let report = Report::of(&campaign.run(|_, _| ()));
-    assert!(report.is_clean(), "{}", report.text());
-    // A tester whose models are all refused sees nothing.
-    assert!(report.ran() * 10 > 8 * usize::try_from(MODELS).unwrap_or(0), "{}", report.text());
+    for (subject, count) in [(Subject::Models, MODELS), (Subject::Trees, TREES)] {
+        let campaign = Campaign { subject, seed: 1, first: 0, count, threads, emitted_every: 50, limit };
+        let report = Report::of(&campaign.run(|_, _| ()));
+        // Panics are noted, not printed.
+        println!("{}", report.text());
+        assert!(report.is_clean());
+        // A tester whose models are all refused sees nothing.
+        assert!(report.ran() * 10 > 8 * usize::try_from(count).unwrap_or(0));
+    }
 }

@@ -24,6 +24,12 @@ pub enum AnalysisError {
         /// Names and values of the state where the residual was least.
         state: Vec<(String, f64)>,
     },
+    /// Newton's method ended where the rates vanish but have no derivatives: at a pole of the coordinates or of the frame, say.
+    #[error("the rates vanish, but have no derivatives, at{}", listed(state).trim_start_matches(','))]
+    NotSmooth {
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
     /// A name that no component of the state has.
     #[error("the state has no component `{name}`; it has {}", known.join(", "))]
     UnknownComponent {
@@ -39,6 +45,35 @@ pub enum AnalysisError {
         coordinate: String,
         /// A component that is not.
         component: String,
+    },
+    /// A steady motion asked for of equations that depend on time.
+    #[error("the equations depend on time explicitly, so that no state is steady")]
+    DependsOnTime,
+    /// A steady motion asked for where the coordinates are not independent and their relations are not known.
+    #[error(
+        "the start is not steady, as rates of norm {} show, and the functions of the coordinates that the frame keeps \
+         are not known, so that no other state can be reached from it",
+        readable(*residual)
+    )]
+    LeafUnknown {
+        /// √Σ f_i² over the components that are not cyclic.
+        residual: f64,
+    },
+    /// A box for a coordinate that equilibria do not depend on.
+    #[error("`{name}` is cyclic: equilibria stand at any value of it, so that it has no box")]
+    CyclicBox {
+        /// The coordinate.
+        name: String,
+    },
+    /// A box that contains nothing.
+    #[error("the box of `{name}` from {} to {} contains nothing", readable(*low), readable(*high))]
+    EmptyBox {
+        /// The coordinate.
+        name: String,
+        /// Lower bound.
+        low: f64,
+        /// Upper bound.
+        high: f64,
     },
     /// A function that should be an integral changes along the motion.
     #[error("`{name}` is not a first integral free of time, so it does not prove stability")]

@@ -154,6 +154,12 @@
 //! # Ok::<(), pc_analysis::AnalysisError>(())
 //! ```
 //!
+//! # Linearization
+//!
+//! A [`Linearizer`] gives the matrices of the motions near a state, in independent components of the states on its [`Leaf`]: a
+//! [`Linearization`] with eigenvalues, [modes](Mode) and equations of the [second order](SecondOrder). A [`RootLocus`] follows
+//! eigenvalues over a parameter, an [`EquilibriumSearch`] looks for equilibria in a box.
+//!
 //! # Reduction
 //!
 //! A [`Routhian`] is the Lagrangian of the remaining coordinates when cyclic ones are eliminated, with their momenta
@@ -172,6 +178,7 @@ mod error;
 mod frame_facts;
 mod hamilton_jacobi;
 mod integrals;
+mod linear;
 mod measures;
 mod numeric;
 mod reduction;
@@ -189,6 +196,12 @@ pub use integrals::integral::{ConservationVerdict, Integral, Integrals, Origin};
 pub use integrals::noether::NoetherField;
 pub use integrals::polynomial_search::{AnsatzSearch, PolynomialAnsatz};
 pub use integrals::rates::{Conservation, Rates};
+pub use linear::equilibria::{Equilibria, EquilibriumSearch, FoundEquilibrium};
+pub use linear::linearization::{CyclicCoordinates, Linearization};
+pub use linear::linearizer::{Leaf, Linearizer};
+pub use linear::modes::Mode;
+pub use linear::root_locus::{BranchCount, RootLocus};
+pub use linear::second_order::{NoSecondOrder, SecondOrder};
 pub use measures::invariant_measure::{InvariantMeasure, divergence, invariant_measure};
 pub use measures::phase_measure::{MeasureSearch, PhaseMeasure};
 pub use measures::reducing_multiplier::ReducingMultiplier;

@@ -7,15 +7,15 @@ use std::process::ExitCode;
 
 use pc_cli::args::forms::RunForm;
 use pc_cli::commands::report;
-use pc_cli::commands::run::integrate;
+use pc_cli::commands::run::{drawn, integrate};
 use pc_cli::motion::plan::Plan;
 use pc_cli::motion::run::Run;
 use pc_cli::output::destination::Destination;
-use pc_cli::plot::picture::Picture;
 use pc_cli::report::text;
 use pc_mech::Graph;
 use pc_model::{Builtin, Model};
 use pc_print::{Form, Layout, Page, columns, page};
+use pc_report::picture::Wanted;
 use pc_solve::Method;
 
 const MODEL: &str = "heavy-top-lagrange";
@@ -171,7 +171,7 @@ fn show_page(model: &Model, run: &Run) -> Result<PathBuf, Box<dyn Error>> {
 /// Draws the motion.
 fn draw(run: &Run) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let (workspace, directory) = (workspace(), directory()?);
-    let picture = Picture::of(run);
+    let picture = drawn(run, &Wanted::default())?;
     let mut files = Vec::new();
     for name in ["heavy-top.svg", "heavy-top.png"] {
         let file = directory.join(name);

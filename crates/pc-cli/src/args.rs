@@ -1,13 +1,21 @@
 //! The command line, and the model it names.
 //!
 //! In goes a command line, out come the arguments of a command, and a model. Read `options` first, the options of the
-//! commands with the `forms` of equations, with those of a `sweep` and of a page (`report`), and those for a `checkpoint`; `command_line` is all
-//! of them, and `input` turns MODEL into a model and its equations.
+//! commands with the `forms` of equations, with those of a `sweep`, of a page (`report`), of linearizations (`linear`), of a comparison
+//! (`compare`) and of measurements (`bench`), those of what is `drawn`, those for a `checkpoint`, `models` and other `tools` around
+//! models; `command_line` is all of them with their `examples`, and `input` turns MODEL into a model and its equations.
 
+pub mod bench;
 pub mod checkpoint;
 pub mod command_line;
+pub mod compare;
+pub mod drawn;
+mod examples;
 pub mod forms;
 pub mod input;
+pub mod linear;
+pub mod models;
 pub mod options;
 pub mod report;
 pub mod sweep;
+pub mod tools;

@@ -4,13 +4,16 @@ use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use pc_fmu::FmuError;
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_report::ReportError;
 use pc_solve::{Code, Method, SolveError, Spent};
 use pc_verify::VerifyError;
 
+use crate::compare::error::CompareError;
 use crate::exit_code;
 use crate::import::UrdfError;
+use crate::linear::error::LinearError;
 use crate::motion::checkpoint_error::CheckpointFileError;
 use crate::output::kept::Kept;
 use crate::plot::error::PlotError;
@@ -31,6 +34,36 @@ pub enum CliError {
         name: String,
         /// The built-in model with nearly that name.
         nearest: Option<&'static str>,
+    },
+    /// No command has this manual page.
+    #[error(
+        "there is no command `{name}`; {}",
+        nearest.as_ref().map_or_else(|| format!("the commands are {}", known.join(", ")), |name| format!("did you mean `{name}`?"))
+    )]
+    NoSuchCommand {
+        /// As written.
+        name: String,
+        /// The command with nearly that name.
+        nearest: Option<String>,
+        /// All of them.
+        known: Vec<String>,
+    },
+    /// No built-in model has this tag.
+    #[error(
+        "there is no tag `{name}`{}",
+        nearest.map_or(" (`pc models --tags` lists them)".to_owned(), |name| format!("; did you mean `{name}`?"))
+    )]
+    NoSuchTag {
+        /// As written.
+        name: String,
+        /// The tag with nearly that name.
+        nearest: Option<&'static str>,
+    },
+    /// Several files, where there is place for one.
+    #[error("-o -: the source is in several files, {}; give a directory", files.join(" and "))]
+    SeveralFiles {
+        /// Their names.
+        files: Vec<String>,
     },
     /// The model file cannot be read.
     #[error("cannot read {name}")]
@@ -155,6 +188,9 @@ pub enum CliError {
     /// Something wrong with the model.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// Something wrong with an FMU.
+    #[error(transparent)]
+    Fmu(FmuError),
     /// Something wrong with a robot in URDF.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
@@ -167,6 +203,12 @@ pub enum CliError {
     /// Something wrong with a sweep.
     #[error(transparent)]
     Sweep(#[from] SweepError),
+    /// Something wrong with a linearization or with equilibria.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+    /// Motions that differ, or cannot be compared.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
     /// The integration could not go on.
     #[error("the integration failed{}", at(.cause, names))]
     Integration {
@@ -192,6 +234,15 @@ pub enum CliError {
         /// How far the integration was.
         t: f64,
     },
+}
+
+impl From<FmuError> for CliError {
+    fn from(error: FmuError) -> CliError {
+        match error {
+            FmuError::Model(error) => CliError::Model(error),
+            other => CliError::Fmu(other),
+        }
+    }
 }
 
 impl From<ReportError> for CliError {
@@ -231,11 +282,19 @@ impl CliError {
         match self {
             CliError::Model(error) => error.category().exit_code(),
             CliError::Sweep(error) => error.exit_code(),
+            CliError::Linear(error) => error.exit_code(),
+            CliError::Compare(error) => error.exit_code(),
             CliError::Urdf(_) => 3,
+            CliError::Fmu(error) if error.is_of_model() => 4,
+            CliError::Fmu(FmuError::Step { .. }) => CliError::USAGE,
+            CliError::Fmu(_) => CliError::UNWRITTEN,
             CliError::Verify(_) | CliError::Rows { .. } | CliError::Ended { .. } => 4,
             CliError::Integration { .. } => 5,
             CliError::Interrupted { .. } => 130,
             CliError::NoSuchModel { .. }
+            | CliError::NoSuchCommand { .. }
+            | CliError::NoSuchTag { .. }
+            | CliError::SeveralFiles { .. }
             | CliError::Read { .. }
             | CliError::UnknownParameter(_)
             | CliError::UnknownIntegral(_)

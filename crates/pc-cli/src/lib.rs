@@ -3,10 +3,12 @@
 //! ```text
 //! MODEL ─ input ─► Model ─ derive ─► equations, printed
 //!                        ─ check  ─► ranks, residuals, integrals, printed
+//!                        ─ linearize, equilibria ─► matrices and eigenvalues, printed or in a file
+//!                        ─ compare ─► two Runs, how far they are apart
 //!                        ─ sweep  ─► many motions, a Record of each in a Journal ─► CSV, JSON, npz, Parquet
 //!                        ─ run    ─► Run: a Table and how it came about
 //!                                    ├─ output ─► CSV, JSON, npz
-//!                                    ├─ plot   ─► SVG, PNG
+//!                                    ├─ plot   ─► SVG, PNG, PDF
 //!                                    └─ summary
 //! ```
 //! Each command is a function of its arguments; `main` only dispatches. What a command computes goes to standard
@@ -16,8 +18,11 @@ pub mod error;
 mod exit_code;
 
 pub mod args;
+pub(crate) mod bench;
 pub mod commands;
+pub mod compare;
 pub mod import;
+pub mod linear;
 pub mod motion;
 pub mod output;
 pub mod plot;

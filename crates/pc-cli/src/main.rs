@@ -6,7 +6,10 @@ use std::process::ExitCode;
 use clap::Parser;
 use pc_cli::CliError;
 use pc_cli::args::command_line::{Arguments, Command};
-use pc_cli::commands::{check, derive, emit, import, models, report, run, theory};
+use pc_cli::commands::{
+    bench, check, compare, completions, derive, emit, equilibria, fmu, import, linearize, man, models, new,
+    report, run, schema, theory, version,
+};
 use pc_cli::output::standard_output;
 use pc_cli::report::text;
 use pc_cli::sweep;
@@ -23,17 +26,32 @@ fn main() -> ExitCode {
             return ended(printed.map_err(standard_output::error));
         }
     };
-    let outcome = match &arguments.command {
+    let Some(command) = &arguments.command else {
+        return ended(version::command(arguments.verbose));
+    };
+    let outcome = match command {
+        Command::New(arguments) => new::command(arguments),
         Command::Check(arguments) => check::command(arguments),
         Command::Derive(arguments) => derive::command(arguments),
         Command::Theory(arguments) => theory::command(arguments),
+        Command::Linearize(arguments) => linearize::command(arguments),
+        Command::Equilibria(arguments) => equilibria::command(arguments),
         Command::Run(arguments) => run::command(arguments),
         Command::Report(arguments) => report::command(arguments),
         Command::Animate(arguments) => report::animate(arguments),
         Command::Sweep(arguments) => sweep::command::command(arguments),
-        Command::Emit(arguments) => emit::command(arguments),
+        Command::Merge(arguments) => sweep::merge::command(arguments),
+        Command::Compare(arguments) => compare::command(arguments),
+        Command::Bench(arguments) => bench::command(arguments),
+        Command::Emit(arguments) => match arguments.fmu {
+            Some(version) => fmu::command(arguments, version),
+            None => emit::command(arguments),
+        },
         Command::Import(arguments) => import::command(arguments),
         Command::Models(arguments) => models::command(arguments),
+        Command::Schema(arguments) => schema::command(arguments),
+        Command::Completions(arguments) => completions::command(arguments),
+        Command::Man(arguments) => man::command(arguments),
     };
     ended(outcome)
 }

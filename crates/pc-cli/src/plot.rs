@@ -1,8 +1,9 @@
-//! The picture of a motion.
+//! Pictures as files.
 //!
-//! A finished run becomes vector graphics or a bitmap. `picture` is its contents, `canvas` draws it, and `error` lists
-//! its errors.
+//! A drawing of `pc-report` becomes a bitmap or a page: `glyphs` are the outlines of the built-in font, `png` and `pdf` write, and
+//! `error` lists what can go wrong. As SVG it writes itself.
 
-pub(crate) mod canvas;
 pub mod error;
-pub mod picture;
+mod glyphs;
+pub(crate) mod pdf;
+pub(crate) mod png;

@@ -2,14 +2,20 @@
 //!
 //! A model and the values to vary become a file. Read `design` first, the values of the members; `member` is the
 //! motion of one, `record` its result, kept in a `journal` on disk until the `output` is made, row by row of a
-//! `sheet`. `command` is the whole, with its `progress`, and `error` lists its errors.
+//! `sheet`, and the `plot`, which has a `plot_error`. `command` is the whole, with its `progress`, or a `shard` of it; `shards` are all of these, which
+//! `merge` puts together. `error` lists the errors.
 
 pub mod command;
 pub(crate) mod design;
 pub(crate) mod error;
 pub(crate) mod journal;
 pub(crate) mod member;
+pub mod merge;
 pub mod output;
+pub(crate) mod plot;
+pub mod plot_error;
 pub(crate) mod progress;
 pub(crate) mod record;
+pub mod shard;
+pub(crate) mod shards;
 pub(crate) mod sheet;

@@ -123,8 +123,8 @@ fn the_table_has_its_header_and_all_digits() {
 fn the_same_run_gives_the_same_bytes() {
     let directory = tempfile::tempdir().expect("a directory");
     let mut files = Vec::new();
-    for extension in ["csv", "json", "npz", "svg", "png"] {
-        let option = if matches!(extension, "svg" | "png") { "--plot" } else { "-o" };
+    for extension in ["csv", "json", "npz", "svg", "png", "pdf"] {
+        let option = if matches!(extension, "svg" | "png" | "pdf") { "--plot" } else { "-o" };
         let bytes = ["a", "b"].map(|name| {
             let path = directory.path().join(name).with_extension(extension);
             let output =
@@ -136,8 +136,8 @@ fn the_same_run_gives_the_same_bytes() {
         files.push(bytes[0].clone());
     }
     let text = String::from_utf8(files[3].clone()).expect("UTF-8");
-    assert!(text.starts_with("<svg") && text.contains('ψ') && text.contains("relative drift"));
-    assert!(files[4].starts_with(b"\x89PNG"));
+    assert!(text.starts_with("<svg") && text.contains('ψ') && text.contains("Relative drift"));
+    assert!(files[4].starts_with(b"\x89PNG") && files[5].starts_with(b"%PDF"));
 }
 
 #[test]
@@ -247,7 +247,7 @@ fn wrong_usage_is_exit_2_and_suggests_a_correction() {
     refuses(&["derive", "euler-top", "--format", "html"], 2, "possible values: text, latex, json");
     refuses(&["sweep", "euler-top"], 2, "sweep");
     refuses(&["run", "euler-top", "-o", "motion.xlsx"], 2, ".csv, .json or .npz");
-    refuses(&["run", "euler-top", "--plot", "motion.pdf"], 2, ".svg or .png");
+    refuses(&["run", "euler-top", "--plot", "motion.gif"], 2, ".svg, .png or .pdf");
     refuses(&["run", "euler-top", "-o", "no/such/directory/a.csv"], 2, "no directory no/such/directory");
     refuses(&[], 2, "Usage");
     let output = run(&["--help"]);
@@ -428,4 +428,44 @@ fn source_is_emitted_into_a_directory() {
         }
     }
     refuses(&["emit", "euler-top", "--lang", "fortran", "-o", &path], 2, "possible values: c, rust");
+}
+
+#[test]
+fn an_fmu_is_a_file_of_a_version_with_or_without_a_binary() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("top.fmu").display().to_string();
+    let emit = |more: &[&'static str]| [&["emit", "euler-top", "--fmu", "3", "-o", &path], more].concat();
+    assert_eq!(code(&run(&emit(&["--sources-only"]))), 0);
+    let sources = std::fs::read(&path).expect("written");
+    assert!(sources.starts_with(b"PK"));
+    assert_eq!(code(&run(&emit(&["--sources-only"]))), 0);
+    assert!(std::fs::read(&path).expect("written") == sources, "the same model gives the same bytes");
+    assert_eq!(code(&run(&emit(&[]))), 0);
+    assert!(std::fs::read(&path).expect("written").len() > sources.len());
+
+    refuses(&["emit", "euler-top", "-o", &path], 2, "--lang");
+    refuses(&["emit", "euler-top", "--fmu", "1", "-o", &path], 2, "possible values: 2, 3");
+    refuses(&["emit", "euler-top", "--fmu", "3", "-o", "top.zip"], 2, "the name must end in .fmu");
+    refuses(&emit(&["--lang", "c"]), 2, "cannot be used with");
+    refuses(&emit(&["--solver", "rk4"]), 2, "--step");
+    refuses(&["emit", "euler-top", "--lang", "c", "--sources-only", "-o", &path], 2, "cannot be used with");
+}
+
+#[test]
+fn without_a_compiler_an_fmu_says_what_would_do() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("top.fmu");
+    let output = Command::new(env!("CARGO_BIN_EXE_pc"))
+        .args(["emit", "euler-top", "--fmu", "2", "-o"])
+        .arg(&path)
+        .env("CC", "no-such-compiler")
+        .output()
+        .expect("pc runs");
+    assert_eq!(code(&output), 6);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("there is no C compiler `no-such-compiler`") && said.contains("sources alone"),
+        "{said}"
+    );
+    assert!(!path.exists());
 }

@@ -214,6 +214,35 @@ fn the_bytes_do_not_depend_on_the_number_of_threads() {
     }
 }
 
+/// By DOP853 members stand side by side in vectors: the same bytes for any number of threads, and the numbers of single runs.
+#[test]
+fn members_side_by_side_are_single_runs() {
+    let place = Place::new(MASSES);
+    let options = ["--vary", "k=1:2:23", "--method", "dop853"];
+    let threads = |name: &str, count| place.swept(name, &[&options[..], &["--threads", count]].concat());
+    let one = threads("one.csv", "1");
+    assert!(one == threads("two.csv", "2"), "threads do not matter");
+    let rows = lines(&one);
+    let column = |name: &str| rows[0].iter().position(|column| column == name).expect("a column");
+    let (k, x) = (column("k"), column("x"));
+    assert_eq!(rows.len(), 24);
+    for row in rows.iter().skip(1).step_by(7) {
+        let set = format!("k={}", row[k]);
+        let (model, table) = (place.name("model.toml"), place.name("run.csv"));
+        ends(&["run", &model, "--method", "dop853", "--set", &set, "-o", &table], 0, &[]);
+        let run = lines(&fs::read(place.at("run.csv")).expect("a table"));
+        let end = &run[run.len() - 1][run[0].iter().position(|column| column == "x").expect("a column")];
+        let [a, b] = [&row[x], end].map(|number| number.parse::<f64>().expect("a number"));
+        // A hundred tolerances of a step.
+        assert!((a - b).abs() < 1e-7, "{a} {b}");
+    }
+    // The summary says what ran.
+    let arguments = place.sweep("again.csv", &[&options[..], &["--threads", "1"]].concat());
+    let said = output(&strs(&arguments));
+    let text = [said.stdout, said.stderr].concat();
+    assert!(String::from_utf8_lossy(&text).contains("23 side by side"));
+}
+
 #[test]
 fn random_members_depend_on_the_seed_and_their_number_alone() {
     let place = Place::new(MASSES);

@@ -94,34 +94,6 @@ fn all_models_have_a_theory() {
     }
 }
 
-/// The examples of the page, by the program itself.
-#[test]
-fn the_page_shows_the_output_of_the_program() {
-    let page = include_str!("../../../docs/theory.md");
-    let directory = tempfile::tempdir().expect("a directory");
-    let program = Path::new(env!("CARGO_BIN_EXE_pc")).parent().expect("a directory");
-    let path = format!("{}:{}", program.display(), std::env::var("PATH").expect("a path"));
-    let mut examples = 0;
-    for block in page.split("\n```").skip(1).step_by(2) {
-        let (kind, text) = block.split_once('\n').expect("a block");
-        match kind {
-            "toml" => fs::write(directory.path().join("model.toml"), text).expect("written"),
-            "console" => {
-                let (command, expected) = text.split_once('\n').expect("a command");
-                let command = command.strip_prefix("$ ").expect("a command");
-                let mut shell = Command::new("sh");
-                let output = shell.args(["-c", command]).current_dir(&directory).env("PATH", &path).output();
-                let output = output.expect("a shell");
-                let said = String::from_utf8(output.stdout).expect("UTF-8");
-                assert_eq!(said.trim_end(), expected.trim_end(), "{command}");
-                examples += 1;
-            }
-            other => panic!("a block of {other}"),
-        }
-    }
-    assert_eq!(examples, 4);
-}
-
 /// The lines of a section.
 fn section<'a>(text: &'a str, title: &str) -> &'a str {
     let text = text.split_once(&format!("\n{title}\n")).unwrap_or_else(|| panic!("no {title} in {text}")).1;

@@ -2,10 +2,13 @@
 //!
 //! A [`Program`](crate::Program) gives the same numbers in every [`Kernel`](kernel::Kernel). Read
 //! `kernel` (the interface, and the interpreter, which works everywhere) with `tape`, `jit` (machine code by Cranelift), then
-//! `evaluator`, a program with the kernel that is made when it is first needed.
+//! `evaluator`, a program with the kernel that is made when it is first needed; `lanes` are programs for many states at once. `circle` has the
+//! numbers of sine and cosine.
 
+pub(crate) mod circle;
 pub(crate) mod evaluator;
 #[cfg(feature = "jit")]
 pub(crate) mod jit;
 pub(crate) mod kernel;
+pub(crate) mod lanes;
 pub(crate) mod tape;

@@ -68,8 +68,12 @@ pub use kernel::evaluator::{Backend, Evaluator, compile};
 #[cfg(feature = "jit")]
 pub use kernel::jit::{Jit, JitError, JitOptions};
 pub use kernel::kernel::{Entry, Interpreter, Kernel};
+pub use kernel::lanes::instruction_set::InstructionSet;
+pub use kernel::lanes::kernel::LaneKernel;
+pub use kernel::lanes::tape::{Binary, Fused, LANES, LaneTape, LaneValue, Lanes};
 pub use ode::colouring::Colouring;
 pub use ode::events::{Direction, Event, Events};
+pub use ode::lane_field::{LaneField, Watched};
 pub use ode::pattern::Pattern;
 pub use ode::program_field::ProgramField;
 pub use ode::vector_field::{Failure, VectorField};

@@ -2,10 +2,12 @@
 //!
 //! `vector_field` is the interface between those who derive equations and those who integrate them; `events` are zeros
 //! of functions along a motion and resets there. `pattern` says where a Jacobian may be nonzero, `colouring` which of
-//! its columns one product can separate. `program_field` is a program as a vector field.
+//! its columns one product can separate. `program_field` is a program as a vector field, `lane_field` one to be
+//! evaluated at many states at once.
 
 pub(crate) mod colouring;
 pub(crate) mod events;
+pub(crate) mod lane_field;
 pub(crate) mod pattern;
 pub(crate) mod program_field;
 pub(crate) mod vector_field;

@@ -284,6 +284,9 @@ fn mathml_has_the_structure_of_the_expression() {
         (theta.sin() * theta.cos(), "{sin}@~{θ}·~{cos}@~{θ}"),
         (x.sin() * (a - b), "{sin}@<mrow>({x})</mrow>·~<mrow>({a} −{b})</mrow>"),
         (theta.cos().square(), "<msup>{cos}{2}</msup>@~{θ}"),
+        (theta.cos().square() * (a - b), "<msup>{cos}{2}</msup>@<mrow>({θ})</mrow>·~<mrow>({a} −{b})</mrow>"),
+        // The brackets of the outer call are there; the inner one has none to be given.
+        (x.cos().tanh() * (a - b), "{tanh}@<mrow>({cos}@~{x})</mrow>·~<mrow>({a} −{b})</mrow>"),
         ((a + b).sqrt(), "<msqrt>{a} +{b}</msqrt>"),
         (x.abs() * y, "{y}·<mrow>|{x}|</mrow>"),
         (x.exp(), "<msup><mi mathvariant=\"normal\">e}{x}</msup>"),

@@ -231,6 +231,7 @@ pub use compiled::projection::integrals::KeptIntegrals;
 pub use constraints::body_reactions::BodyReaction;
 pub use constraints::constraint::Constraint;
 pub use constraints::multipliers::Multipliers;
+pub use emit::function::SourceFunction;
 pub use emit::source::{EmitOptions, EmittedFile};
 pub use equations::canonical::Canonical;
 pub use equations::poincare::Equations;

@@ -4,7 +4,7 @@
 //! what its parts share, and these in the order in which `assemble` puts them together: `parameters` and `tables`,
 //! `frame`, `definitions`, `start`, `bodies`, the `tree` of those on joints and `external_force`, `brackets`, `constraints` with
 //! `constraint_treatment`, `body_reactions` and the names of a `resultant`, `action`, `event` and `events`, and
-//! quasi-velocities that are `given` in addition to the text; `trial` and `definite` check the start. A `function` and
+//! quasi-velocities that are `given` in addition to the text; `trial`, `definite` and `orientations` check the start. A `function` and
 //! a `drawing` are assembled by themselves, on request.
 
 pub(crate) mod action;
@@ -25,6 +25,7 @@ pub(crate) mod external_force;
 pub(crate) mod frame;
 pub(crate) mod function;
 pub(crate) mod given;
+pub(crate) mod orientations;
 pub(crate) mod parameters;
 pub(crate) mod resultant;
 pub(crate) mod start;

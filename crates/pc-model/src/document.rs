@@ -5,7 +5,7 @@
 //! bytes, `syntax` TOML, `reader` gives typed access to it, `hidden` lists characters that no label may have;
 //! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation` read the
 //! sections, `hanging` declares what joints move, `checks` holds what must be true between them,
-//! and `parse` puts these together.
+//! and `parse` puts these together. `schema` is the format for editors.
 
 pub(crate) mod bodies;
 pub(crate) mod checks;
@@ -21,6 +21,7 @@ pub(crate) mod loops;
 pub(crate) mod parse;
 pub(crate) mod reader;
 pub(crate) mod reading;
+pub(crate) mod schema;
 pub(crate) mod sections;
 pub(crate) mod simulation;
 pub(crate) mod syntax;
@@ -38,5 +39,6 @@ pub use hidden::is_hidden;
 pub use inertia::Inertia;
 pub use joints::{Joint, JointKind, JointRotation, Point, TreeBody, WORLD};
 pub use reading::{MOST_BYTES, read_bounded, read_file_bounded};
+pub use schema::SCHEMA;
 pub use simulation::MOST_SAMPLES;
 pub use text_map::TextMap;

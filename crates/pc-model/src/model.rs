@@ -3,7 +3,7 @@
 //! A [`Document`](crate::Document) becomes a [`Model`](model::Model), from which equations are derived. Read `model`
 //! first; `blame` finds the entry in the file that causes an error of the derivation, `start` changes the start
 //! values, `given` and `choices` are quasi-velocities requested in addition to those of the text, `builtin` are the
-//! models that come with the library.
+//! models that come with the library, and `tags` words by which these can be found.
 
 pub(crate) mod blame;
 pub(crate) mod builtin;
@@ -11,3 +11,4 @@ pub(crate) mod choices;
 pub(crate) mod given;
 pub(crate) mod model;
 pub(crate) mod start;
+pub(crate) mod tags;

@@ -270,3 +270,100 @@ fn gravity_depends_on_parameters_and_time_only() {
         assert!(error.ends_with("help: use numbers, parameters, inputs and t only"), "{error}");
     }
 }
+
+/// A body whose nine direction cosines, as they are at the start, follow its angular velocity.
+fn by_cosines(start: [&str; 9], rotation: [&str; 9]) -> String {
+    let name = |row: usize, column: usize| format!("r{row}{column}");
+    let mut text = String::from("[coordinates]\n");
+    for (place, value) in start.iter().enumerate() {
+        text += &format!("{} = {value}\n", name(place / 3 + 1, place % 3 + 1));
+    }
+    text += "[quasi_velocities]\nw1 = 0.3\nw2 = -0.2\nw3 = 1.1\n[kinematics]\n";
+    for row in 1..=3 {
+        let [a, b, c] = [1, 2, 3].map(|column| name(row, column));
+        text += &format!("{a} = \"{b}*w3 - {c}*w2\"\n{b} = \"{c}*w1 - {a}*w3\"\n{c} = \"{a}*w2 - {b}*w1\"\n");
+    }
+    text += "[bodies.b]\nmass = 1\nposition = [0, 0, 0]\ninertia = [1, 2, 3]\n";
+    text +=
+        &format!("rotation = {rotation:?}\n[lagrangian]\npotential = \"r33\"\n[simulation]\nt_end = 1.0\n");
+    text
+}
+
+const COSINES: [&str; 9] = ["r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"];
+
+#[test]
+fn a_matrix_of_redundant_coordinates_is_a_rotation_at_the_start_and_after() {
+    let turned =
+        ["\"cos(0.7)\"", "\"-sin(0.7)\"", "0.0", "\"sin(0.7)\"", "\"cos(0.7)\"", "0.0", "0.0", "0.0", "1.0"];
+    let graph = Graph::new();
+    let bound = system(&graph, &by_cosines(turned, COSINES));
+    assert_eq!(bound.quasi_velocities().len(), 3);
+
+    // Nine digits leave 4e-10: ω would be uncertain by as much.
+    let short =
+        ["0.764842187", "-0.644217687", "0.0", "0.644217687", "0.764842187", "0.0", "0.0", "0.0", "1.0"];
+    let refusal = refused(&by_cosines(short, COSINES));
+    assert_eq!(refusal.category(), Category::Inconsistent);
+    assert_eq!(
+        refusal.to_string(),
+        r#"m.toml:29:14: [bodies.b] rotation: the matrix of `b` is no rotation at the start: its columns are not orthogonal and of one length, by 4.94285e-10
+    rotation = ["r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"]
+                 ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+  help: give the start with all digits or as expressions, or the body its `angular_velocity`"#
+    );
+
+    // The transposed matrix is a rotation for as long, of other axes; one with a wrong sign is none, though it is one at the start.
+    let plain = ["1.0", "0.0", "0.0", "0.0", "1.0", "0.0", "0.0", "0.0", "1.0"];
+    let transposed = ["r11", "r21", "r31", "r12", "r22", "r32", "r13", "r23", "r33"];
+    system(&graph, &by_cosines(plain, transposed));
+    let wrong = ["r11", "r12", "r13", "-r21", "r22", "r23", "r31", "r32", "r33"];
+    let refusal = refused(&by_cosines(plain, wrong));
+    assert_eq!(refusal.category(), Category::Inconsistent);
+    assert_eq!(
+        refusal.to_string(),
+        r#"m.toml:29:14: [bodies.b] rotation: the matrix of `b` does not stay a rotation: along the motion its columns do not stay orthogonal and of one length (rate 2)
+    rotation = ["r11", "r12", "r13", "-r21", "r22", "r23", "r31", "r32", "r33"]
+                 ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+  help: check signs and indices of its entries and of [kinematics]"#
+    );
+}
+
+/// A quaternion of any length turns: RᵀR = |q|⁴.
+#[test]
+fn a_quaternion_with_a_square_left_out_is_no_rotation() {
+    let text = |square: &str| {
+        format!(
+            r#"[coordinates]
+q0 = 1.0
+q1 = 0.0
+q2 = 0.0
+q3 = 0.0
+[quasi_velocities]
+w1 = 0.3
+w2 = -0.2
+w3 = 1.1
+[kinematics]
+q0 = "(-q1*w1 - q2*w2 - q3*w3)/2"
+q1 = "(q0*w1 - q3*w2 + q2*w3)/2"
+q2 = "(q3*w1 + q0*w2 - q1*w3)/2"
+q3 = "(-q2*w1 + q1*w2 + q0*w3)/2"
+[bodies.b]
+mass = 1
+position = [0, 0, 0]
+inertia = [1, 2, 3]
+rotation = [
+  "q0^2 + q1^2 - q2^2 - q3^2", "2*(q1*q2 - q0*q3)", "2*(q1*q3 + q0*q2)",
+  "2*(q1*q2 + q0*q3)", "q0^2 - q1^2 + {square} - q3^2", "2*(q2*q3 - q0*q1)",
+  "2*(q1*q3 - q0*q2)", "2*(q2*q3 + q0*q1)", "q0^2 - q1^2 - q2^2 + q3^2",
+]
+[simulation]
+t_end = 1.0
+"#
+        )
+    };
+    system(&Graph::new(), &text("q2^2"));
+    let refusal = refused(&text("q2")).to_string();
+    let expected = "m.toml:20:4: [bodies.b] rotation: the matrix of `b` does not stay a rotation: along the motion its columns do not \
+                    stay orthogonal and of one length (rate 0.666667)\n";
+    assert!(refusal.starts_with(expected), "{refusal}");
+}

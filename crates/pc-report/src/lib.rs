@@ -7,7 +7,7 @@
 //! says of a model; it stands on the page too.
 //!
 //! Read `check`, the properties of a model; `record`, what is taken over of a motion, and `scene`, what of it can be drawn; then
-//! `picture`, curves and eigenvalues, and `page`, which puts all of it under headings. Numbers and formulas come from the crates
+//! [`picture`], curves and eigenvalues, also for files of their own, and `page`, which puts all of it under headings. Numbers and formulas come from the crates
 //! below.
 //!
 //! ```
@@ -22,7 +22,7 @@
 mod check;
 mod error;
 mod page;
-mod picture;
+pub mod picture;
 mod record;
 mod remarks;
 mod scene;
@@ -31,6 +31,6 @@ pub use check::check::Check;
 pub use error::ReportError;
 pub use page::player::animation;
 pub use page::report::report;
-pub use record::{Columns, Kind, Record};
+pub use record::{Columns, Kind, Record, Samples, UnknownColumn};
 pub use remarks::{NEGATIVE_ENERGY, dropped};
 pub use scene::{Scene, SceneShape};

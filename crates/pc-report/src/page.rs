@@ -1,13 +1,14 @@
 //! The page of a browser.
 //!
 //! A model becomes a page in parts under headings. `html` makes text harmless and writes elements, `formulas` shows displays
-//! with their sources, `equations`, `theory` and `motion` with the `player` are the long parts, and `report` puts the parts together.
+//! with their sources, `equations`, `theory` and `motion` with the `player` and the `pairs` of portraits are the long parts, and `report` puts the parts together.
 //! The page is XML as well as HTML: every element is closed.
 
 mod equations;
 mod formulas;
 pub(crate) mod html;
 mod motion;
+mod pairs;
 pub(crate) mod player;
 pub(crate) mod report;
 mod theory;

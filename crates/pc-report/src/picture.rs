@@ -1,7 +1,23 @@
-//! Pictures of a page: curves and eigenvalues as inline SVG in the colours of the page.
+//! Pictures: of a motion, of a sweep, of eigenvalues, for a page and for files.
 //!
-//! `axes` chooses round numbers, `chart` draws curves over time, `plane` eigenvalues.
+//! A [`Record`](crate::Record) becomes [`Panel`]s of curves that one scale shows well, several panels a [`Picture`], and that a
+//! [`Drawing`]: lines, texts and areas that can be written in any format. Read `panel`, what stands on common axes; `scales`, which
+//! curves do; `motion`, the panels of a motion; `axes`, round numbers; `simplify`, the points that are seen; `chart`, a panel
+//! drawn; `drawing` and `svg`, what is drawn and how it is written; `sheet`, panels under each other; `plane`, eigenvalues.
 
 mod axes;
 pub(crate) mod chart;
+mod drawing;
+pub(crate) mod motion;
+mod panel;
 pub(crate) mod plane;
+mod scales;
+mod sheet;
+mod simplify;
+mod svg;
+
+pub use drawing::{Anchor, Drawing, Ink, Shape};
+pub use motion::Wanted;
+pub use panel::{Content, Curve, Panel, Scale};
+pub use scales::by_scale;
+pub use sheet::Picture;

@@ -13,6 +13,8 @@ pub enum Kind {
     Conserved,
     /// Outputs of the model, reactions among them.
     Outputs,
+    /// Derivatives by parameters.
+    Derivatives,
 }
 
 /// Columns of a kind.
@@ -24,13 +26,22 @@ pub struct Columns {
     pub list: Vec<(String, Vec<f64>)>,
 }
 
+/// What was computed at some times.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Samples {
+    /// The times of the values.
+    pub times: Vec<f64>,
+    /// What was computed, an entry for each kind that there is.
+    pub columns: Vec<Columns>,
+}
+
 /// A motion as far as it was computed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
-    /// The times of the values.
-    pub times: Vec<f64>,
-    /// What was computed.
-    pub columns: Vec<Columns>,
+    /// Evenly spaced, as frames of a moving picture are.
+    pub rows: Samples,
+    /// As close as the motion needs to be drawn in curves, where that is known.
+    pub fine: Option<Samples>,
     /// What is said of the motion, each with a label, in lines; nothing that differs from run to run.
     pub summary: Vec<(String, Vec<String>)>,
     /// Whether the energy, the last of what is conserved, is an integral.
@@ -39,4 +50,39 @@ pub struct Record {
     pub events: Vec<f64>,
     /// Why there is no motion, or how it ended, if not at its end.
     pub remark: Option<String>,
+}
+
+/// A column that a motion does not have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no column `{name}`; the columns are {}", known.join(", "))]
+pub struct UnknownColumn {
+    /// The name asked for.
+    pub name: String,
+    /// Those there are.
+    pub known: Vec<String>,
+}
+
+impl Samples {
+    /// The values of the column of a name.
+    ///
+    /// # Errors
+    /// [`UnknownColumn`]
+    pub(crate) fn column(&self, name: &str) -> Result<(Kind, &[f64]), UnknownColumn> {
+        let all =
+            || self.columns.iter().flat_map(|columns| columns.list.iter().map(move |c| (columns.kind, c)));
+        match all().find(|(_, (known, _))| known == name) {
+            Some((kind, (_, values))) => Ok((kind, values)),
+            None => {
+                let known = all().map(|(_, (name, _))| name.clone()).collect();
+                Err(UnknownColumn { name: name.to_owned(), known })
+            }
+        }
+    }
+}
+
+impl Record {
+    /// What curves are drawn through.
+    pub(crate) fn curves(&self) -> &Samples {
+        self.fine.as_ref().unwrap_or(&self.rows)
+    }
 }

@@ -107,7 +107,7 @@ impl Scene {
     /// [`ModelError`] if the shapes cannot be resolved or compiled.
     pub fn of(model: &Model, assembly: &Assembly<'_>, record: &Record) -> Result<Option<Scene>, ModelError> {
         let drawing = model.drawing(assembly)?;
-        if drawing.is_empty() || record.times.is_empty() {
+        if drawing.is_empty() || record.rows.times.is_empty() {
             return Ok(None);
         }
         let (system, graph) = (&assembly.system, assembly.system.graph());
@@ -115,7 +115,7 @@ impl Scene {
         let state = system.state();
         let column = |symbol: &Expr<'_>| {
             let name = symbol.symbol_name()?;
-            let mut columns = record.columns.iter().flat_map(|columns| &columns.list);
+            let mut columns = record.rows.columns.iter().flat_map(|columns| &columns.list);
             columns.find(|(known, _)| *known == name).map(|(_, values)| values)
         };
         let columns: Vec<Option<&Vec<f64>>> = state.iter().map(column).collect();
@@ -131,9 +131,9 @@ impl Scene {
         let mut evaluator = Evaluator::new(program, Backend::Interpreter);
         let numbers: Vec<f64> = system.parameters().iter().map(|&(_, value)| value).collect();
         let (mut values, mut frames) = (vec![0.0; functions.len()], Vec::new());
-        let shown = shown(record.times.len(), functions.len());
+        let shown = shown(record.rows.times.len(), functions.len());
         for &i in &shown {
-            let t = record.times[i];
+            let t = record.rows.times[i];
             let state: Vec<f64> =
                 columns.iter().map(|column| column.map_or(f64::NAN, |values| values[i])).collect();
             evaluator.eval(t, &state, &numbers, &mut values);
@@ -144,7 +144,7 @@ impl Scene {
         let gravity = graph.evaluate(&system.gravity(), &at).unwrap_or_else(|_| vec![0.0; 3]);
         Ok(Some(Scene {
             shapes: drawing.into_iter().map(SceneShape::from).collect(),
-            times: shown.iter().map(|&i| record.times[i]).collect(),
+            times: shown.iter().map(|&i| record.rows.times[i]).collect(),
             frames,
             gravity: [gravity[0], gravity[1], gravity[2]],
         }))

@@ -2,8 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
-use pc_model::{BUILTIN, Builtin, Document, Model, Source};
-use pc_report::{Columns, Kind, Record, report};
+use pc_model::{Builtin, Document, Model, Source};
+use pc_report::{Columns, Kind, Record, Samples, report};
 use roxmltree::{Document as Xml, Node, ParsingOptions};
 
 /// The page as XML.
@@ -30,14 +30,18 @@ fn builtin(name: &str) -> Model {
 fn record() -> Record {
     let column = |name: &str, values: [f64; 3]| (name.to_owned(), values.to_vec());
     Record {
-        times: vec![0.0, 0.5, 1.0],
-        columns: vec![
-            Columns {
-                kind: Kind::Coordinates,
-                list: vec![column("x", [1.0, 0.0, -1.0]), column("φ", [0.0, 100.0, 200.0])],
-            },
-            Columns { kind: Kind::Conserved, list: vec![column("energy", [2.0, 2.0 + 2e-12, 2.0])] },
-        ],
+        rows: Samples {
+            times: vec![0.0, 0.5, 1.0],
+            columns: vec![
+                Columns {
+                    kind: Kind::Coordinates,
+                    list: vec![column("x", [1.0, 0.0, -1.0]), column("φ", [0.0, 100.0, 200.0])],
+                },
+                Columns { kind: Kind::QuasiVelocities, list: vec![column("x'", [0.0, -3.0, 0.0])] },
+                Columns { kind: Kind::Conserved, list: vec![column("energy", [2.0, 2.0 + 2e-12, 2.0])] },
+            ],
+        },
+        fine: None,
         summary: vec![("method".to_owned(), vec!["Adams <b>".to_owned()])],
         keeps_energy: true,
         events: vec![0.25],
@@ -125,16 +129,20 @@ fn pages_of_models_are_whole_small_and_the_same_each_time() {
     }
 }
 
-/// Of every model that comes with the program; some minutes.
+/// The long pages, of trees and loops, among them.
 #[test]
-#[ignore = "takes minutes without optimisation"]
 fn pages_of_all_models() {
-    for builtin in BUILTIN {
-        let model = Model::new(builtin.document().unwrap());
-        let page = report(&model, None).unwrap();
-        println!("{:40} {:8} bytes", builtin.name, page.len());
-        check(builtin.name, &page);
-    }
+    let models: Vec<_> = Builtin::all().collect();
+    let half = |first: usize| {
+        for builtin in models.iter().skip(first).step_by(2) {
+            let model = Model::new(builtin.document().unwrap());
+            check(builtin.name, &report(&model, None).unwrap());
+        }
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(|| half(0));
+        half(1);
+    });
 }
 
 #[test]
@@ -152,7 +160,7 @@ fn hostile_text_stays_text() {
         text.replace(&format!("\"{hostile}\" = \"x'"), "roll = \"x'")
     };
     let mut motion = record();
-    motion.columns[0].list[0].0 = hostile.to_owned();
+    motion.rows.columns[0].list[0].0 = hostile.to_owned();
     motion.summary.push((hostile.to_owned(), vec![hostile.to_owned()]));
     motion.remark = Some(hostile.to_owned());
     let page = report(&model(&text), Some(&motion)).unwrap();

@@ -5,7 +5,7 @@
 //! `quadrature_callbacks` inside its steps, and `integrals` computed as a `quadrature`; `breaks` and `foresee`, by
 //! `foresight`, handle fields that are not smooth in time; `restart` continues after jumps; `statistics` counts the
 //! work. `stepper` makes it a method, `integration` begins an integration by it. `linear` are its linear systems,
-//! `forward` its sensitivities.
+//! `forward` its sensitivities. `version` names the library.
 
 pub(crate) mod breaks;
 pub(crate) mod callback;
@@ -26,3 +26,4 @@ pub(crate) mod restart;
 pub(crate) mod setup;
 pub(crate) mod statistics;
 pub(crate) mod stepper;
+pub(crate) mod version;

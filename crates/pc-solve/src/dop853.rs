@@ -8,13 +8,16 @@
 //!
 //! `coefficients` are its numbers, `arithmetic` its sums. Read `stepper` first: `setup` begins, `step` makes a step, by
 //! `stages`, as long as `control` says; `dense` are the states inside it, `hindsight` looks there for what the step has
-//! not seen, `stiffness` whether the stability of the method limits the steps.
+//! not seen, `stiffness` whether the stability of the method limits the steps. `lockstep` is the same for many members of an
+//! ensemble at once.
 
 mod arithmetic;
 mod coefficients;
 mod control;
 mod dense;
 mod hindsight;
+#[cfg(feature = "cvode")]
+pub(crate) mod lockstep;
 pub(crate) mod setup;
 mod stages;
 mod step;

@@ -4,6 +4,7 @@
 //! stream of random numbers, `stop` ends them early.
 
 pub(crate) mod ensemble;
+pub(crate) mod in_lanes;
 pub(crate) mod ordered;
 pub(crate) mod random;
 pub(crate) mod stop;

@@ -2,10 +2,11 @@
 //!
 //! A [`VectorField`](pc_expr::VectorField), a start and a method give states, occurrences and
 //! [`Statistics`](statistics::Statistics). Read `stepper` first, the interface of a method, and `method`, how one
-//! begins; then `integration`, which is built on it: `front` goes on by a step and looks for events in it, `run` goes from event to event, `step` gives single steps and
-//! their polynomials, `occur` handles events, `saltation` their effect on derivatives; an `observer` is informed of
-//! everything. `limits` bound an integration, `checks` validate its input; `trajectory` and `dense_output` hold
-//! motions. `fn_field` makes closures vector fields, `breaks` ends steps where a field is not smooth.
+//! begins; then `integration`, which is built on it: `front` goes on by a step and looks for events in it, `run` goes from
+//! event to event, `step` gives single steps and their polynomials, `occur` handles events, `saltation` their effect on
+//! derivatives; an `observer` is informed of everything. `limits` bound an integration, `checks` validate its input;
+//! `trajectory` and `dense_output` hold motions. `fn_field` makes closures vector fields, `breaks` ends steps where a field
+//! is not smooth.
 
 pub(crate) mod breaks;
 pub(crate) mod checks;

@@ -70,6 +70,8 @@ pub use cvode::linear::krylov::{Krylov, Side};
 pub use cvode::linear::preconditioner::Preconditioner;
 #[cfg(feature = "cvode")]
 pub use cvode::linear::solver::LinearSolver;
+#[cfg(feature = "cvode")]
+pub use cvode::version::sundials_version;
 pub use dop853::setup::Dop853;
 #[cfg(feature = "cvode")]
 pub use ensemble::ensemble::{Ensemble, EnsembleError, MemberError, Panicked};

@@ -54,7 +54,7 @@ fn integration(error: SolveError) -> pc_solve::IntegrationError {
 /// 2, exact in both methods: what is left is the rounding of the location, 1e-15 of the time, and of the speeds.
 #[test]
 fn a_ball_bounces_when_it_should() {
-    for method in [Method::Adams, Method::Bdf] {
+    for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
         for restitution in [0.5_f64, 0.9] {
             let outputs: Vec<f64> = (1..=40).map(|i| f64::from(i) * 0.1).collect();
             let motion = Solve::new(falling(), 0.0, &[1.0, 0.0])
@@ -128,7 +128,7 @@ fn bounces_that_accumulate_are_an_error_with_their_limit() {
 #[test]
 fn zeros_are_found_once_in_their_direction() {
     let half = std::f64::consts::FRAC_PI_2;
-    for method in [Method::Adams, Method::Bdf] {
+    for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
         for end in [30.0, -30.0] {
             let events = FnEvents::new()
                 .with(Event::new("both"), |_, y| Ok(y[0]))
@@ -207,7 +207,7 @@ fn a_function_that_is_zero_at_the_start_has_to_leave_first() {
 /// y = (t − 1)² − depth: no event above zero, two close ones below, found within steps that begin and end above.
 #[test]
 fn grazing_functions_cause_no_event() {
-    for method in [Method::Adams, Method::Bdf] {
+    for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
         for (depth, expected) in [(-1e-6, 0), (1e-4, 2), (1e-8, 2), (1e-12, 2)] {
             let f: f64 = depth;
             let events = FnEvents::new().with(Event::new("graze"), move |_, y| Ok(y[0] - f));
@@ -349,7 +349,7 @@ fn observers_may_stop() {
 /// The work before restarts is counted, and each evaluation of the field is.
 #[test]
 fn statistics_continue_over_restarts() {
-    for method in [Method::Adams, Method::Bdf] {
+    for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
         let calls = std::cell::Cell::new(0);
         let counted = from_fn(2, |_, y: &[f64], ydot: &mut [f64]| {
             calls.set(calls.get() + 1);

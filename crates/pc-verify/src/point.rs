@@ -30,6 +30,8 @@ pub(crate) struct Point<'a, T: Number> {
     /// What they are on bodies, where that is known.
     resultants: Option<Resultants>,
     definitions: Vec<OnceCell<T>>,
+    /// The largest summands of definitions.
+    pub(crate) largest: Vec<OnceCell<f64>>,
     /// How many of the first ones were tried in order.
     tried: Cell<usize>,
     /// The definitions that are being evaluated.
@@ -72,6 +74,7 @@ impl<'a, T: Number> Point<'a, T> {
             reactions: None,
             resultants: None,
             definitions: vec![OnceCell::new(); text.definitions.len()],
+            largest: vec![OnceCell::new(); text.definitions.len()],
             tried: Cell::new(0),
             open: vec![Cell::new(false); text.definitions.len()],
             velocities: OnceCell::new(),

@@ -12,7 +12,13 @@ impl Point<'_, f64> {
         Ok(match term {
             Term::Negative(inner) => self.largest_term(inner)?,
             Term::Definition(j) => match self.text().definitions.get(*j) {
-                Some(definition) => self.largest_term(definition)?,
+                Some(definition) => match self.largest[*j].get() {
+                    Some(known) => *known,
+                    None => {
+                        let largest = self.largest_term(definition)?;
+                        *self.largest[*j].get_or_init(|| largest)
+                    }
+                },
                 None => self.value(term)?.abs(),
             },
             Term::Sum(terms) => {

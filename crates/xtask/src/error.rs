@@ -31,6 +31,8 @@ pub(crate) enum Error {
     Installed { wrong: String },
     /// An example does not give the numbers of the program `pc`.
     Numbers { example: String, wrong: String },
+    /// The wheel of the Python package is not as it should be.
+    Package { wrong: String },
     /// Installing on a system that has other names and tools for it.
     NotLinux { system: String },
     /// Every test binary was empty, or none was run.
@@ -67,6 +69,7 @@ impl fmt::Display for Error {
             Error::Tests { failure, .. } => failure.fmt(f),
             Error::Installed { wrong } => write!(f, "the installed library: {wrong}"),
             Error::Numbers { example, wrong } => write!(f, "the example {example}: {wrong}"),
+            Error::Package { wrong } => write!(f, "the Python package: {wrong}"),
             Error::NotLinux { system } => write!(
                 f,
                 "installing is made for Linux; on {system} take the library from target/release and the headers from \

@@ -5,18 +5,22 @@
 
 mod attack;
 mod bench;
+mod book;
 mod c_examples;
 mod c_fresh;
 mod c_interface;
 mod c_numbers;
+mod cargo_tools;
 mod command;
 mod counts;
 mod demo;
 mod error;
+mod fmu;
 mod fuzz;
 mod header;
 mod install;
 mod packages;
+mod python;
 mod setup;
 mod test;
 mod tools;
@@ -34,13 +38,18 @@ usage: cargo xtask <command>
   demo             build `pc`, derive, integrate and plot a heavy top in target/demo
   test [--quick]   format, lints, tests, documentation, licences; --quick stops after the tests
   bench [NAME…]    run the benchmarks, all of them or those named
-  fuzz models [--count N] [--seed S] [--model K]
+  fuzz models|trees [--count N] [--seed S] [--model K]
                    run random models and compare them with independent computations; --model shows one of them
   attack [--minutes N] [--seed S]
                    run the program on hostile models, files and checkpoints, and kill it; 10 minutes unless told
+  book             make target/book of the pages in docs, if mdbook is installed
   header           write include/pc.h from the sources of the C interface
   c-examples       build the examples in C and C++, run them, compare their numbers with those of `pc`, and run them
                    under sanitizers and valgrind
+  fmu              validate and simulate FMUs of models by FMPy, which is installed into target/fmu, and compare their numbers
+                   with those of `pc`
+  python [--quick] build the wheel of the Python package, install it in a fresh environment and test it there; --quick tests
+                   the package on what is built for debugging, without a wheel
   valgrind         run the tests of failures, panics and events of pc-solve under valgrind, where it is installed
   install --prefix DIR [--libdir DIR] [--includedir DIR] [--destdir DIR]
                    build the C library and install it with its headers; `uninstall` with the same removes it
@@ -74,8 +83,12 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
             no_more(name, rest)?;
             demo::run()
         }
-        "test" => test::run(quick(rest)?),
+        "test" => test::run(quick(name, rest)?),
         "bench" => bench::run(rest),
+        "book" => {
+            no_more(name, rest)?;
+            book::run()
+        }
         "attack" => attack::run(rest),
         "fuzz" => fuzz::run(rest),
         "header" => {
@@ -85,6 +98,17 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
         "c-examples" => {
             no_more(name, rest)?;
             c_examples::run()
+        }
+        "fmu" => {
+            no_more(name, rest)?;
+            fmu::run()
+        }
+        "python" => {
+            if quick(name, rest)? {
+                python::quick()
+            } else {
+                python::run()
+            }
         }
         "valgrind" => {
             no_more(name, rest)?;
@@ -104,11 +128,11 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
     }
 }
 
-fn quick(rest: &[String]) -> Result<bool, Error> {
+fn quick(name: &str, rest: &[String]) -> Result<bool, Error> {
     match rest {
         [] => Ok(false),
-        [flag, more @ ..] if flag == "--quick" => no_more("test --quick", more).map(|()| true),
-        [other, ..] => Err(Error::Usage { message: format!("`test` does not take `{other}`") }),
+        [flag, more @ ..] if flag == "--quick" => no_more(&format!("{name} --quick"), more).map(|()| true),
+        [other, ..] => Err(Error::Usage { message: format!("`{name}` does not take `{other}`") }),
     }
 }
 

@@ -70,6 +70,9 @@ impl PackageManager {
     fn packages_of(self, tool: Tool) -> &'static [&'static str] {
         match (self, tool) {
             (PackageManager::Brew, Tool::CCompiler | Tool::Make | Tool::Libclang | Tool::CppCompiler) => &[],
+            (PackageManager::Apt, Tool::Python) => &["python3", "python3-venv"],
+            (PackageManager::Pacman | PackageManager::Brew, Tool::Python) => &["python"],
+            (PackageManager::Dnf | PackageManager::Zypper, Tool::Python) => &["python3"],
             (_, Tool::Cmake) => &["cmake"],
             (_, Tool::Make) => &["make"],
             (PackageManager::Apt, Tool::CCompiler) => &["gcc", "libc6-dev"],

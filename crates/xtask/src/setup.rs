@@ -8,10 +8,11 @@ use crate::error::Error;
 use crate::packages::{PackageManager, remedy};
 use crate::tools::{Machine, Tool};
 
-/// Everything that building, formatting and linting need.
+/// Everything that building, formatting and linting need, and the browser in which reports are looked at where it can be had.
 pub(crate) fn everything() -> Result<(), Error> {
     native_tools()?;
     rust_components()?;
+    browser();
     println!("set-up: nothing is missing");
     Ok(())
 }
@@ -38,23 +39,34 @@ pub(crate) fn native_tools_and_cpp() -> Result<(), Error> {
     tools(&[Tool::CppCompiler])
 }
 
+/// Python, installed where we may: whoever asks has looked for it.
+///
+/// # Errors
+/// As there.
+pub(crate) fn python() -> Result<(), Error> {
+    obtain(&Machine::this(), &[Tool::Python])
+}
+
 fn tools(wanted: &[Tool]) -> Result<(), Error> {
     let machine = Machine::this();
     let missing = machine.missing(wanted);
     if missing.is_empty() {
         return Ok(());
     }
-    let manager = PackageManager::of(&machine);
-    let rights = if manager == Some(PackageManager::Apt) { Rights::of(&machine) } else { Rights::None };
-    let Some(prefix) = rights.prefix() else {
-        return Err(Error::Missing { tools: names(&missing), remedy: remedy(manager, &missing) });
-    };
-
-    println!("set-up: missing: {}", names(&missing).join(", "));
-    install(prefix, &PackageManager::Apt.packages(&missing))?;
-
+    obtain(&machine, &missing)?;
     let missing = Machine::this().missing(wanted);
     if missing.is_empty() { Ok(()) } else { Err(Error::StillMissing { tools: names(&missing) }) }
+}
+
+/// Installs tools, or says how to.
+fn obtain(machine: &Machine, missing: &[Tool]) -> Result<(), Error> {
+    let manager = PackageManager::of(machine);
+    let rights = if manager == Some(PackageManager::Apt) { Rights::of(machine) } else { Rights::None };
+    let Some(prefix) = rights.prefix() else {
+        return Err(Error::Missing { tools: names(missing), remedy: remedy(manager, missing) });
+    };
+    println!("set-up: missing: {}", names(missing).join(", "));
+    install(prefix, &PackageManager::Apt.packages(missing))
 }
 
 /// Installs packages of Debian.
@@ -65,6 +77,29 @@ fn install(prefix: &[&str], packages: &[&str]) -> Result<(), Error> {
     }
     let install = ["install", "-q", "--yes", "--no-install-recommends"];
     announce_and_run(apt_get(prefix, &install).args(packages))
+}
+
+/// Chromium, without which the tests of pages in a browser are skipped: it is installed where we may, and named where not.
+fn browser() {
+    let machine = Machine::this();
+    let found = |machine: &Machine| {
+        machine.has_variable("CHROMIUM")
+            || ["chromium", "chromium-browser", "google-chrome"].iter().any(|name| machine.has_program(name))
+    };
+    if found(&machine) {
+        return;
+    }
+    if PackageManager::of(&machine) == Some(PackageManager::Apt)
+        && let Some(prefix) = Rights::of(&machine).prefix()
+    {
+        println!("set-up: missing: chromium");
+        if let Err(error) = install(prefix, &["chromium"]) {
+            eprintln!("set-up: {error}; going on");
+        }
+    }
+    if !found(&Machine::this()) {
+        println!("skipped: the tests of pages in a browser; install chromium, or name one by CHROMIUM");
+    }
 }
 
 /// Whether clang's sanitizers are there, which distributions have in a package of their own: it is installed where we may, and

@@ -1,13 +1,15 @@
 //! `cargo xtask test`: everything that has to hold before a change goes in.
 
-use std::env;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use crate::command::{announce_and_run, announce_and_tee, cargo, succeeds};
+use crate::cargo_tools::CargoTool;
+use crate::command::{announce_and_run, announce_and_tee, cargo};
 use crate::counts::{Counter, Counts};
 use crate::error::Error;
-use crate::{attack, c_examples, setup};
+use crate::{attack, book, c_examples, setup};
+
+const DENY: CargoTool = CargoTool { name: "cargo-deny", version: "~0.20" };
 
 /// Runs the stages in order and stops at the first that fails.
 ///
@@ -26,6 +28,7 @@ pub(crate) fn run(quick: bool) -> Result<(), Error> {
         stage("C examples", c_examples::quick)?;
         let mut doc = cargo(&["doc", "--workspace", "--no-deps"]);
         cargo_stage("documentation", doc.env("RUSTDOCFLAGS", "-D warnings"))?;
+        stage("book", book::run)?;
         stage("licences", licences)?;
     }
     println!("\nall of it: {}", seconds(start.elapsed()));
@@ -50,26 +53,10 @@ fn tests() -> Result<Counts, Error> {
 ///
 /// Advisories are left out: they need a database from the network and change without a change of ours.
 fn licences() -> Result<(), Error> {
-    if !succeeds(&mut cargo(&["deny", "--version"])) {
-        if !is_ci() {
-            println!("skipped: cargo-deny is not installed (cargo install --locked cargo-deny)");
-            return Ok(());
-        }
-        // Unoptimised it takes a third of the time to build and checks us in a second all the same.
-        announce_and_run(&mut cargo(&[
-            "install",
-            "--debug",
-            "--locked",
-            "cargo-deny",
-            "--version",
-            "~0.20",
-        ]))?;
+    if !DENY.is_available()? {
+        return Ok(());
     }
     announce_and_run(&mut cargo(&["deny", "check", "--hide-inclusion-graph", "licenses", "bans", "sources"]))
-}
-
-fn is_ci() -> bool {
-    env::var_os("CI").is_some_and(|value| value == "true")
 }
 
 fn cargo_stage(title: &str, command: &mut Command) -> Result<(), Error> {

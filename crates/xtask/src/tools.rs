@@ -20,6 +20,8 @@ pub(crate) enum Tool {
     Libclang,
     /// `g++` or `clang++`, for the examples in C++; not for the build.
     CppCompiler,
+    /// Python from 3.10 on with `venv`, for the Python package; not for the build.
+    Python,
 }
 
 impl Tool {
@@ -34,6 +36,7 @@ impl Tool {
             Tool::Make => "make",
             Tool::Libclang => "libclang with its headers",
             Tool::CppCompiler => "a C++ compiler",
+            Tool::Python => "Python from 3.10 on with venv",
         }
     }
 }
@@ -90,6 +93,11 @@ impl Machine {
         self.variable("PATH").is_some_and(|path| env::split_paths(path).any(|d| d.join(name).is_file()))
     }
 
+    /// Whether a variable of the environment is set.
+    pub(crate) fn has_variable(&self, name: &str) -> bool {
+        self.variable(name).is_some()
+    }
+
     /// `LIBCLANG_PATH`, if it is set and leads to no libclang.
     pub(crate) fn wrong_libclang_path(&self) -> Option<PathBuf> {
         let path = PathBuf::from(self.variable("LIBCLANG_PATH")?);
@@ -104,6 +112,8 @@ impl Machine {
             Tool::Cmake => self.variable("CMAKE").is_some() || self.has_program("cmake"),
             Tool::Make => self.variable("CMAKE_GENERATOR").is_some() || self.has_program("make"),
             Tool::Libclang => self.has_libclang(),
+            // It is tried where it is used.
+            Tool::Python => false,
             // One of C without its sister is no use to examples that are built by both.
             Tool::CppCompiler => {
                 [["gcc", "g++"], ["clang", "clang++"]].iter().any(|c| c.iter().all(|c| self.has_program(c)))

@@ -5,11 +5,33 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use super::examination::{Examined, Thoroughness, examine};
+use super::examination::{self, Examined, Thoroughness};
+use super::trees;
+
+/// What is varied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// Models over the whole format, but for bodies on joints.
+    Models,
+    /// Bodies on joints.
+    Trees,
+}
+
+impl Subject {
+    /// Examines number `index` of a seed.
+    pub fn examine(self, seed: u64, index: u64, thoroughness: Thoroughness) -> Examined {
+        match self {
+            Subject::Models => examination::examine(seed, index, thoroughness),
+            Subject::Trees => trees::examine(seed, index, thoroughness),
+        }
+    }
+}
 
 /// Which models are examined.
 #[derive(Clone, Copy, Debug)]
 pub struct Campaign {
+    /// What they are models of.
+    pub subject: Subject,
     /// The seed of all.
     pub seed: u64,
     /// The number of the first.
@@ -43,7 +65,7 @@ impl Campaign {
                     return;
                 }
                 let index = self.first + number;
-                let examined = examine(self.seed, index, self.thoroughness(index));
+                let examined = self.subject.examine(self.seed, index, self.thoroughness(index));
                 done(index, &examined);
                 results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((index, examined));
             }

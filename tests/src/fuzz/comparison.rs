@@ -26,6 +26,9 @@ const NOISE: f64 = 1e-3;
 /// An event is located on the computed motion, which passes its zero at an angle of some hundredths at least.
 const SAME_TIME: f64 = 1e-8;
 
+/// An integral, or the energy.
+const NOT_KEPT: &str = "claimed to be kept, but changes";
+
 /// A finding: something that must agree does not, or a panic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
@@ -50,8 +53,8 @@ fn finding(kind: &'static str, detail: String) -> Finding {
     Finding { kind, detail }
 }
 
-/// Everything that does not agree within one model.
-pub fn within(specimen: &Specimen, start: &Start, execution: &Execution) -> Vec<Finding> {
+/// What does not agree between the forms of one model, nor with what is claimed of it.
+pub fn of_forms(execution: &Execution) -> Vec<Finding> {
     let mut findings = Vec::new();
     let motion = &execution.motion;
     findings.extend(second(execution));
@@ -65,19 +68,28 @@ pub fn within(specimen: &Specimen, start: &Start, execution: &Execution) -> Vec<
             findings.extend(compare(kind, motion, other, same, held));
         }
     }
-    let kept = execution.keeps_energy.then_some("energy").into_iter();
-    let integrals = execution.conserved.iter().flatten().map(String::as_str);
-    let jumps = specimen.events.iter().any(|event| !event.reset.is_empty());
-    for name in kept.chain(integrals.filter(|_| !jumps)) {
-        findings.extend(drift("claimed to be kept, but changes", name, motion));
-    }
-    if is_conservative(specimen) && !jumps {
-        findings.extend(drift("energy must be kept, but changes", "energy", motion));
+    if execution.keeps_energy {
+        findings.extend(drift(NOT_KEPT, "energy", motion));
     }
     if let Some((name, residual)) = &motion.residual
         && exceeds(*residual, TOLERANCE)
     {
         findings.push(finding("constraint violated", format!("{name} by {residual:e}")));
+    }
+    findings
+}
+
+/// Everything that does not agree within one model.
+pub fn within(specimen: &Specimen, start: &Start, execution: &Execution) -> Vec<Finding> {
+    let mut findings = of_forms(execution);
+    let motion = &execution.motion;
+    let integrals = execution.conserved.iter().flatten();
+    let jumps = specimen.events.iter().any(|event| !event.reset.is_empty());
+    for name in integrals.filter(|_| !jumps) {
+        findings.extend(drift(NOT_KEPT, name, motion));
+    }
+    if is_conservative(specimen) && !jumps {
+        findings.extend(drift("energy must be kept, but changes", "energy", motion));
     }
     for happening in &motion.happenings {
         findings.extend(is_crossing(specimen, happening));
@@ -91,13 +103,13 @@ pub fn within(specimen: &Specimen, start: &Start, execution: &Execution) -> Vec<
 /// What a second derivation does not agree with.
 pub fn second(execution: &Execution) -> Option<Finding> {
     match &execution.second {
-        Err(VerifyError::Disagreement(disagreement)) => {
+        Some(Err(VerifyError::Disagreement(disagreement))) => {
             Some(finding("second derivation disagrees", disagreement.to_string()))
         }
-        Err(VerifyError::Unable(Unable::NoBrackets)) => {
+        Some(Err(VerifyError::Unable(Unable::NoBrackets))) => {
             Some(finding("second derivation has no brackets", "the first takes some".to_owned()))
         }
-        Ok(_) | Err(_) => None,
+        Some(_) | None => None,
     }
 }
 
@@ -163,7 +175,7 @@ fn is_noise(motion: &Motion, column: usize, other: &Motion, other_column: usize)
 
 /// `held` is the column that the other motion has at its start value whatever its tolerances are: that it is not moved there
 /// does not say that it is resolved, nor that it is noise here.
-fn compare(
+pub(super) fn compare(
     kind: &'static str,
     motion: &Motion,
     other: &Motion,
@@ -308,7 +320,7 @@ pub fn refusals(execution: &Execution) -> Vec<Refusal> {
     if let Some(Err(refusal)) = &execution.emitted {
         refusals.push(refusal.clone());
     }
-    if let (Err(error), None) = (&execution.second, second(execution)) {
+    if let (Some(Err(error)), None) = (&execution.second, second(execution)) {
         refusals.push(Refusal { stage: "second derivation", message: error.to_string() });
     }
     refusals

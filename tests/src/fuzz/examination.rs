@@ -62,23 +62,25 @@ pub fn examine(seed: u64, index: u64, thoroughness: Thoroughness) -> Examined {
 pub fn examine_specimen(specimen: &Specimen, thoroughness: Thoroughness) -> Examined {
     let Some(start) = Start::of(specimen) else { return Examined::default() };
     let (text, twin) = (text::model(specimen, &start), text::twin(specimen, &start));
-    let (sender, receiver) = mpsc::channel();
     let (copy, texts) = (specimen.clone(), (text.clone(), twin.clone()));
+    let work = move || examine_texts(&copy, &start, &texts.0, texts.1.as_deref(), thoroughness);
+    Examined { text, twin, ..bounded(thoroughness.limit, work) }
+}
+
+/// Work in a thread of its own, for so long; a panic is a finding.
+pub(super) fn bounded(limit: Duration, work: impl FnOnce() -> Examined + Send + 'static) -> Examined {
+    let (sender, receiver) = mpsc::channel();
     let work = move || {
-        let work =
-            AssertUnwindSafe(|| examine_texts(&copy, &start, &texts.0, texts.1.as_deref(), thoroughness));
         // Nobody listens any more where the limit has passed.
-        let _ = sender.send(panic::catch_unwind(work).map_err(|_| last_panic()));
+        let _ = sender.send(panic::catch_unwind(AssertUnwindSafe(work)).map_err(|_| last_panic()));
     };
     let thread = thread::Builder::new().stack_size(STACK).spawn(work);
-    let mut examined = match thread.map(|_| receiver.recv_timeout(thoroughness.limit)) {
+    match thread.map(|_| receiver.recv_timeout(limit)) {
         Ok(Ok(Ok(examined))) => examined,
         Ok(Ok(Err(message))) => Examined::of_finding("panic", message),
-        Ok(Err(_)) => Examined::of_refusal("time", format!("given up after {:?}", thoroughness.limit)),
+        Ok(Err(_)) => Examined::of_refusal("time", format!("given up after {limit:?}")),
         Err(error) => Examined::of_refusal("time", format!("no thread: {error}")),
-    };
-    (examined.text, examined.twin) = (text, twin);
-    examined
+    }
 }
 
 impl Examined {
@@ -105,27 +107,30 @@ fn examine_texts(
 ) -> Examined {
     let mut examined = Examined::default();
     let undetermined = comparison::is_undetermined(specimen);
-    let execution = match execute("model.toml", text, Forms { all: true, emitted: thoroughness.emitted }) {
-        Ok(execution) => execution,
-        Err(refusal) => {
-            examined.rightly_refused = undetermined;
-            let twin = twin.map(|twin| execute("twin.toml", twin, Forms { all: false, emitted: false }));
-            match (refusal.stage, twin) {
-                (GIVEN_UP, Some(Ok(twin))) if stays_regular(specimen, start, &twin.motion) => {
-                    examined.findings.push(Finding {
-                        kind: "given up, though not in ordinary velocities",
-                        detail: refusal.message,
-                    });
+    let execution =
+        match execute("model.toml", text, Forms { all: true, emitted: thoroughness.emitted, second: true }) {
+            Ok(execution) => execution,
+            Err(refusal) => {
+                examined.rightly_refused = undetermined;
+                let twin = twin.map(|twin| {
+                    execute("twin.toml", twin, Forms { all: false, emitted: false, second: true })
+                });
+                match (refusal.stage, twin) {
+                    (GIVEN_UP, Some(Ok(twin))) if stays_regular(specimen, start, &twin.motion) => {
+                        examined.findings.push(Finding {
+                            kind: "given up, though not in ordinary velocities",
+                            detail: refusal.message,
+                        });
+                    }
+                    (GIVEN_UP, Some(Ok(_))) => examined.refusals.push(Refusal { stage: SINGULAR, ..refusal }),
+                    (GIVEN_UP, Some(Err(twin))) if twin.stage == GIVEN_UP => {
+                        examined.refusals.push(Refusal { stage: BOTH, ..refusal });
+                    }
+                    _ => examined.refusals.push(refusal),
                 }
-                (GIVEN_UP, Some(Ok(_))) => examined.refusals.push(Refusal { stage: SINGULAR, ..refusal }),
-                (GIVEN_UP, Some(Err(twin))) if twin.stage == GIVEN_UP => {
-                    examined.refusals.push(Refusal { stage: BOTH, ..refusal });
-                }
-                _ => examined.refusals.push(refusal),
+                return examined;
             }
-            return examined;
-        }
-    };
+        };
     examined.ran = true;
     if undetermined {
         let detail = "the fields are dependent over the constants, and no [algebra] is given".to_owned();
@@ -137,7 +142,7 @@ fn examine_texts(
         examined.findings.extend(emission::compare(emission));
     }
     let Some(twin) = twin else { return examined };
-    match execute("twin.toml", twin, Forms { all: false, emitted: false }) {
+    match execute("twin.toml", twin, Forms { all: false, emitted: false, second: true }) {
         Ok(twin) => {
             let second = comparison::second(&twin).map(|finding| Finding { kind: TWIN_DISAGREES, ..finding });
             examined.findings.extend(second);
@@ -174,7 +179,7 @@ fn last_panic() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fuzz::campaign::Campaign;
+    use crate::fuzz::campaign::{Campaign, Subject};
     use crate::fuzz::expression::Expression;
     use crate::fuzz::report::Report;
     use crate::fuzz::specimen::{Coordinate, Frame};
@@ -221,6 +226,7 @@ mod tests {
     #[test]
     fn a_campaign_is_the_same_with_any_number_of_threads() {
         let campaign = Campaign {
+            subject: Subject::Models,
             seed: 3,
             first: 10,
             count: 8,

@@ -142,7 +142,7 @@ pub struct Execution {
     /// Its emitted source, with states and what the interpreter makes of them.
     pub emitted: Option<Result<Emission, Refusal>>,
     /// What a second derivation says.
-    pub second: Result<Agreement, VerifyError>,
+    pub second: Option<Result<Agreement, VerifyError>>,
 }
 
 /// What emitted source has to compute.
@@ -163,6 +163,8 @@ pub struct Forms {
     pub all: bool,
     /// As source.
     pub emitted: bool,
+    /// Beside its second derivation.
+    pub second: bool,
 }
 
 /// Runs a text; what it is called names emitted source.
@@ -194,7 +196,7 @@ pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusa
     };
     let emitted = forms.emitted.then(|| emission(name, &assembly, &equations?));
     model.observe_reactions(false);
-    let second = verify(&model, &pc_verify::Options { states: STATES, seed: 0 });
+    let second = forms.second.then(|| verify(&model, &pc_verify::Options { states: STATES, seed: 0 }));
     Ok(Execution { motion, canonical, projected, keeps_energy, conserved, emitted, second })
 }
 

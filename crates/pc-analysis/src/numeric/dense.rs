@@ -1,5 +1,6 @@
 //! Small dense matrices of numbers: eigenvalues and norms.
 
+use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use pc_mech::{Matrix, MatrixError, MechError};
 
@@ -15,6 +16,33 @@ pub(crate) fn eigenvalues(matrix: &Matrix<f64>) -> Result<Vec<(f64, f64)>, MechE
     let failure = || MechError::Matrix(MatrixError::NoEigenvalues { rows: size, columns: size });
     let values = finite(matrix).ok_or_else(failure)?.eigenvalues().map_err(|_| failure())?;
     Ok(values.iter().map(|value| (value.re, value.im)).collect())
+}
+
+/// An eigenvalue, as a pair of real and imaginary part, with the components of an eigenvector, likewise.
+pub(crate) type Eigenpair = ((f64, f64), Vec<(f64, f64)>);
+
+/// The eigenvalues of a square matrix with an eigenvector each.
+///
+/// # Errors
+/// As [`eigenvalues`].
+pub(crate) fn eigenvectors(matrix: &Matrix<f64>) -> Result<Vec<Eigenpair>, MechError> {
+    let size = matrix.rows();
+    if size == 0 {
+        return Ok(Vec::new());
+    }
+    let failure = || MechError::Matrix(MatrixError::NoEigenvalues { rows: size, columns: size });
+    let factors = finite(matrix).ok_or_else(failure)?.eigen().map_err(|_| failure())?;
+    let (values, vectors) = (factors.S().column_vector(), factors.U());
+    let pair = |z: faer::c64| (z.re, z.im);
+    let column = |j: usize| (0..size).map(|i| pair(vectors[(i, j)])).collect();
+    Ok((0..size).map(|j| (pair(values[j]), column(j))).collect())
+}
+
+/// A⁻¹ B of a regular A.
+pub(crate) fn solve(a: &Matrix<f64>, b: &Matrix<f64>) -> Matrix<f64> {
+    let copy = |m: &Matrix<f64>| Mat::from_fn(m.rows(), m.columns(), |i, j| m[(i, j)]);
+    let solution = copy(a).partial_piv_lu().solve(copy(b));
+    Matrix::from_fn(b.rows(), b.columns(), |i, j| solution[(i, j)])
 }
 
 /// Eigenvalues of a symmetric matrix, rising, and orthonormal eigenvectors as columns.

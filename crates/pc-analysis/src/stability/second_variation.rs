@@ -15,7 +15,7 @@ pub struct SecondVariation {
     pub variables: Vec<String>,
     /// The names of the integrals with the multipliers λ_j.
     pub multipliers: Vec<(String, f64)>,
-    /// |dH + λ_j dI_j| relative to the largest of |dH| and |dI_j|: zero up to rounding at a steady motion.
+    /// |dH + λ_j dI_j| relative to the largest of |dH|, |dI_j| and |d²H| (1 + |y|): zero up to rounding at a steady motion.
     pub residual: f64,
     /// The eigenvalues of the second variation on the kernel of the dI_j, in ascending order.
     pub eigenvalues: Vec<f64>,
@@ -88,7 +88,7 @@ impl SecondVariation {
             .map(|&f| expand(system.graph(), f, &variables, &values))
             .collect::<Result<_, _>>()?;
         let names = integrals.iter().map(|(name, _)| name.clone());
-        let mut result = decide(&expansions)?;
+        let mut result = decide(&expansions, 1.0 + norm(state))?;
         result.variables = variables.iter().map(Expr::to_string).collect();
         result.multipliers = names.zip(result.multipliers).map(|(name, (_, value))| (name, value)).collect();
         Ok(result)
@@ -146,7 +146,8 @@ struct Multipliers {
 }
 
 impl Multipliers {
-    fn of(energy: &Expansion, integrals: &[Expansion]) -> Result<Multipliers, MechError> {
+    /// `size` is that of the state, whose rounding alone makes of dH what d²H makes of it.
+    fn of(energy: &Expansion, integrals: &[Expansion], size: f64) -> Result<Multipliers, MechError> {
         let (n, count) = (energy.gradient.len(), integrals.len());
         let factors = SingularValues::of(&Matrix::from_fn(n, count, |i, j| integrals[j].gradient[i]))?;
         let largest = factors.values.first().copied().unwrap_or(0.0);
@@ -157,7 +158,7 @@ impl Multipliers {
         let weights: Vec<f64> = (0..rank).map(|l| -along(l) / factors.values[l]).collect();
         let lambda = |j: usize| (0..rank).map(|l| factors.right[(j, l)] * weights[l]).sum();
         let left_over: Vec<f64> = (rank..n).map(along).collect();
-        let scale = norm(&energy.gradient).max(largest);
+        let scale = norm(&energy.gradient).max(largest).max(norm(&energy.hessian.entries()) * size);
         Ok(Multipliers {
             lambda: (0..count).map(lambda).collect(),
             free: factors.kernel(rank),
@@ -169,8 +170,8 @@ impl Multipliers {
 }
 
 /// The second variation from the expansions of H, I_1, I_2, …, without names.
-fn decide(expansions: &[Expansion]) -> Result<SecondVariation, MechError> {
-    let critical = Multipliers::of(&expansions[0], &expansions[1..])?;
+fn decide(expansions: &[Expansion], size: f64) -> Result<SecondVariation, MechError> {
+    let critical = Multipliers::of(&expansions[0], &expansions[1..], size)?;
     let rounding = critical.rounding;
     let hessians: Vec<Matrix<f64>> =
         expansions.iter().map(|expansion| restricted(&expansion.hessian, &critical.kernel)).collect();

@@ -56,6 +56,11 @@ impl SteadyOptions {
         SteadyOptions { fixed: names.into_iter().map(Into::into).collect(), ..self }
     }
 
+    /// Whether that component keeps its value.
+    pub(crate) fn holds(&self, name: &str) -> bool {
+        self.fixed.iter().any(|fixed| fixed == name)
+    }
+
     /// The largest number of steps.
     #[must_use]
     pub fn iterations(self, iterations: usize) -> SteadyOptions {
@@ -96,8 +101,8 @@ impl SteadyMotion {
     /// system what is found is an equilibrium of the rates at that time.
     ///
     /// # Errors
-    /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::UnknownComponent`],
-    /// [`AnalysisError::NotCyclic`] for unsuitable names; otherwise as [`first_approximation`].
+    /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::NotSmooth`] where the rates have no
+    /// derivatives; [`AnalysisError::UnknownComponent`], [`AnalysisError::NotCyclic`] for unsuitable names; otherwise as [`first_approximation`].
     pub fn near(
         motion: &mut Motion,
         t: f64,
@@ -155,6 +160,7 @@ impl SteadyMotion {
         }
         let rates = motion.rates(t, &state)?;
         let matrix = part(&first_approximation(motion, t, &state)?, &kept, &kept);
+        check_smooth(motion, t, &state, &kept, &matrix)?;
         Ok(SteadyMotion {
             residual,
             rates: cyclic.iter().map(|&i| (motion.names()[i].clone(), rates[i])).collect(),
@@ -185,6 +191,40 @@ pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Mat
     let mut entries = vec![0.0; n * n];
     motion.jacobian(t, y, &mut entries)?;
     Ok(Matrix::from_fn(n, n, |i, j| entries[i + j * n]))
+}
+
+/// So near, relative to 1 + |y|, derivatives are as at the state, but for this part of what they are there or somewhat farther,
+/// unless rates have none there: Newton's method ends some roundings beside a pole of the coordinates.
+const BESIDE: f64 = 1e-7;
+const FARTHER: f64 = 1e-2;
+const AS_THERE: f64 = 1e-3;
+
+/// That the slopes of the rates change continuously at the state.
+fn check_smooth(
+    motion: &mut Motion,
+    t: f64,
+    state: &[f64],
+    kept: &[usize],
+    slopes: &Matrix<f64>,
+) -> Result<(), AnalysisError> {
+    // All components to one side, no two by as much.
+    let mut at = |distance: f64| {
+        let step = |i: usize| distance * (1.0 + norm(state)) * (1.0 + 0.3 * (1.0 + i as f64).sqrt().fract());
+        let there: Vec<f64> = state.iter().enumerate().map(|(i, y)| y + step(i)).collect();
+        Ok::<_, AnalysisError>(part(&first_approximation(motion, t, &there)?, kept, kept))
+    };
+    let largest = |a: &Matrix<f64>| a.entries().iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+    // Where rates are products of velocities, all slopes vanish at rest.
+    let scale = at(FARTHER).map_or(0.0, |farther| largest(&farther)).max(largest(slopes));
+    let is_near = |there: &Matrix<f64>| {
+        let (there, here) = (there.entries(), slopes.entries());
+        there.iter().zip(here.iter()).all(|(a, b)| (a - b).abs() <= AS_THERE * scale)
+    };
+    if [BESIDE, -BESIDE].into_iter().all(|distance| at(distance).is_ok_and(|there| is_near(&there))) {
+        return Ok(());
+    }
+    let state = motion.names().iter().cloned().zip(state.iter().copied()).collect();
+    Err(AnalysisError::NotSmooth { state })
 }
 
 /// Where the components with those names stand.
@@ -218,7 +258,7 @@ fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>,
 }
 
 /// The largest set of coordinates on which no rates depend but those of the set itself.
-fn cyclic_coordinates(pattern: &Pattern, coordinates: usize) -> Vec<usize> {
+pub(crate) fn cyclic_coordinates(pattern: &Pattern, coordinates: usize) -> Vec<usize> {
     let mut cyclic: Vec<usize> = (0..coordinates).collect();
     loop {
         let ends_in = |j: &usize| pattern.column(*j).iter().all(|i| cyclic.contains(i));

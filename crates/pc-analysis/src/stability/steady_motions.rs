@@ -25,7 +25,7 @@ const ON_SURFACE: f64 = 1e-6;
 const MOST_COMPONENTS: usize = 150;
 
 /// Steady motions that agree so well are one.
-const SAME: f64 = 1e-6;
+pub(crate) const SAME: f64 = 1e-6;
 
 /// Singular values below this part of the largest are zeros.
 const ZERO: f64 = 1e-8;
@@ -210,7 +210,7 @@ fn family(steady: &SteadyMotion, surface: &Surface<'_>, kept: &[usize]) -> Optio
 }
 
 /// 2π for the coordinates in which the rates have this period, at the start and beside it.
-fn periods(motion: &mut Motion, t: f64, start: &[f64]) -> Vec<Option<f64>> {
+pub(crate) fn periods(motion: &mut Motion, t: f64, start: &[f64]) -> Vec<Option<f64>> {
     let beside: Vec<f64> = start.iter().map(|z| z + 0.37 + 0.11 * z.abs()).collect();
     let coordinates = motion.coordinates();
     let mut is_periodic = |i: usize| {
@@ -249,6 +249,6 @@ fn guesses(start: &[f64], periods: &[Option<f64>]) -> Vec<Vec<f64>> {
     (0..count).map(guess).collect()
 }
 
-fn primes() -> impl Iterator<Item = u32> {
+pub(crate) fn primes() -> impl Iterator<Item = u32> {
     (2..).filter(|n: &u32| (2..*n).take_while(|d| d * d <= *n).all(|d| !n.is_multiple_of(d)))
 }

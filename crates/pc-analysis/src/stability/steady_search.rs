@@ -1,6 +1,6 @@
 //! The steady motion near the start, and whether it is stable.
 
-use pc_mech::{Equations, Expr, ExprError, Graph, Matrix, Motion};
+use pc_mech::{Equations, Expr, ExprError, Graph, Matrix, Motion, System};
 
 use crate::integrals::integral::{Integral, bind};
 use crate::integrals::search::rank_of_gradients;
@@ -132,22 +132,32 @@ impl SteadySearch {
     }
 }
 
-/// Whether nothing in the equations depends on time or on inputs.
-pub(super) fn is_autonomous(equations: &Equations<'_>) -> bool {
-    let (system, time) = (equations.system(), equations.system().frame().time());
-    let mass = equations.mass_matrix().nonzero_entries();
-    let mut all = equations
-        .velocities()
-        .iter()
-        .chain(&mass)
-        .chain(equations.right_hand_side())
-        .chain(system.states().iter().map(|(_, rate)| rate));
-    let moves = |x: Expr<'_>| x.depends_on(time) || system.signals().iter().any(|&u| x.depends_on(u));
-    !all.any(|&x| moves(x) && moves(bind(system, x)))
+/// Whether nothing in the equations depends on time or on inputs, for the values that the parameters have.
+pub(crate) fn is_autonomous(equations: &Equations<'_>) -> bool {
+    let system = equations.system();
+    !timed(equations).any(|x| moves(system, x) && moves(system, bind(system, x)))
+}
+
+/// Whether something in the equations depends on time or on inputs for some values of the parameters.
+pub(crate) fn names_time(equations: &Equations<'_>) -> bool {
+    timed(equations).any(|x| moves(equations.system(), x))
+}
+
+fn moves<'g>(system: &System<'g>, x: Expr<'g>) -> bool {
+    x.depends_on(system.frame().time()) || system.signals().iter().any(|&u| x.depends_on(u))
+}
+
+/// What rates are made of.
+fn timed<'g>(equations: &Equations<'g>) -> impl Iterator<Item = Expr<'g>> {
+    let all =
+        [equations.velocities(), &equations.mass_matrix().nonzero_entries(), equations.right_hand_side()];
+    all.concat()
+        .into_iter()
+        .chain(equations.system().states().iter().map(|&(_, rate)| rate).collect::<Vec<_>>())
 }
 
 /// What a search has in hand at each of its starts.
-pub(super) struct Seeker<'a, 'g> {
+pub(crate) struct Seeker<'a, 'g> {
     equations: &'a Equations<'g>,
     bound: Equations<'g>,
     integrals: Vec<(String, Expr<'g>)>,
@@ -158,7 +168,7 @@ pub(super) struct Seeker<'a, 'g> {
 
 impl<'a, 'g> Seeker<'a, 'g> {
     /// None where the motion has no derivatives at the start.
-    pub(super) fn new(
+    pub(crate) fn new(
         equations: &'a Equations<'g>,
         motion: &mut Motion,
         t: f64,
@@ -203,7 +213,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
     }
 
     /// The motion in names and numbers, with what is known of its stability.
-    pub(super) fn described(
+    pub(crate) fn described(
         &self,
         found: &SteadyMotion,
         start: &[f64],
@@ -304,12 +314,12 @@ fn constant_rates(equations: &Equations<'_>, found: &SteadyMotion) -> Vec<(Strin
 }
 
 /// The largest size of an entry.
-fn largest(matrix: &Matrix<f64>) -> f64 {
+pub(crate) fn largest(matrix: &Matrix<f64>) -> f64 {
     matrix.entries().iter().fold(0.0, |largest, entry| entry.abs().max(largest))
 }
 
 /// The integrals that do not contain the time, independent of the energy and of each other; parameters are numbers.
-pub(super) struct Known<'g> {
+pub(crate) struct Known<'g> {
     integrals: Vec<(String, Expr<'g>)>,
     /// Those of them that are Casimirs.
     casimirs: Vec<(String, Expr<'g>)>,
@@ -318,7 +328,7 @@ pub(super) struct Known<'g> {
 }
 
 impl<'g> Known<'g> {
-    pub(super) fn of(equations: &Equations<'g>, integrals: &[Integral<'g>]) -> Known<'g> {
+    pub(crate) fn of(equations: &Equations<'g>, integrals: &[Integral<'g>]) -> Known<'g> {
         let system = equations.system();
         let (graph, eta) = (system.graph(), system.quasi_velocities());
         let variables = system.state();

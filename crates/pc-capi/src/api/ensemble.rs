@@ -7,8 +7,10 @@ use std::ptr;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ::pc_model::FlowEvents;
+use pc_expr::LaneField;
 use pc_solve::{
-    Checkpoint, Chosen, Ending, Ensemble, Observed, Options, Panicked, Sensitivities, Stepper, Stop,
+    Checkpoint, Chosen, Ending, Ensemble, Events, Observed, Options, Panicked, Sensitivities, Stepper, Stop,
+    Trajectory, VectorField,
 };
 
 use crate::api::options::{pc_solver_options, take};
@@ -75,6 +77,10 @@ impl Outcome {
         Outcome { status: pc_status::PC_OK, message: None, times: Vec::new(), states: Vec::new() }
     }
 
+    fn completed(motion: &Trajectory) -> Outcome {
+        Outcome { times: motion.times().to_vec(), states: motion.states().to_vec(), ..Outcome::new() }
+    }
+
     fn of(fault: &CallError) -> Outcome {
         let mut outcome = Outcome::new();
         outcome.fail(fault);
@@ -138,27 +144,53 @@ impl Plan<'_> {
         outcome
     }
 
-    fn engine(&self, member: usize) -> Result<Engine, CallError> {
-        let row = |all: &'_ [f64], length: usize| all[member * length..(member + 1) * length].to_vec();
-        // Nothing is changed while it is locked.
-        let (mut field, mut events) = self.prototype.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let start = self.states.map_or_else(|| self.start.to_vec(), |all| row(all, self.start.len()));
+    /// What it takes to integrate a member beside others, if that can be.
+    fn lane(&self, member: usize) -> Option<(LaneField, Vec<f64>)> {
+        let mut prototype = self.prototype.lock().unwrap_or_else(PoisonError::into_inner);
+        let (field, events) = &mut *prototype;
+        if !events.events().is_empty() || field.has_projection() || !field.breaks().is_empty() {
+            return None;
+        }
         if let Some(all) = self.parameters {
-            let values = row(all, field.parameters().len());
+            let values = row(all, member, field.parameters().len());
+            if !values.iter().all(|value| value.is_finite()) {
+                return None;
+            }
+            field.parameters_mut().copy_from_slice(values);
+        }
+        Some((field.lanes()?, self.start_of(member).to_vec()))
+    }
+
+    fn start_of(&self, member: usize) -> &[f64] {
+        self.states.map_or(self.start, |all| row(all, member, self.start.len()))
+    }
+
+    fn engine(&self, member: usize) -> Result<Engine, CallError> {
+        let (mut field, mut events) = self.prototype.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let start = self.start_of(member);
+        if let Some(all) = self.parameters {
+            let values = row(all, member, field.parameters().len()).to_vec();
             for &value in &values {
                 finite(value, "a parameter")?;
             }
             field.parameters_mut().copy_from_slice(&values);
             events.set_parameters(&values);
         }
-        let (start, events) = (Checkpoint::start(self.t, &start), Followed::new(events));
+        let (start, events) = (Checkpoint::start(self.t, start), Followed::new(events));
         Ok(engine(field, &start, &self.options, events, &Sensitivities::new())?)
     }
 }
 
+/// The numbers of a member among those of all.
+fn row(all: &[f64], member: usize, length: usize) -> &[f64] {
+    &all[member * length..(member + 1) * length]
+}
+
 /// Integrates many members through the times, each from its own state, with its own parameters,
 /// as a solver of its own would: the numbers are the same for any number of threads. The events
-/// of the model are followed.
+/// of the model are followed. By PC_DOP853, members of a model without events, projection,
+/// tables and explicit dependence on time are integrated side by side in vectors: their last
+/// digits may differ from those of a solver, within the tolerances.
 ///
 /// `states` has members × dim numbers, member by member, at the time t; NULL for the start of
 /// the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
@@ -225,7 +257,10 @@ pub unsafe extern "C" fn pc_ensemble_run(
         if let Some(threads) = NonZeroUsize::new(threads.min(members)) {
             ensemble = ensemble.threads(threads);
         }
-        let work = |member: u64, stop: &Stop<'_>| plan.follow(member as usize, stop);
+        let span = (plan.t, plan.times, &plan.options);
+        let begin = |member: u64| ((), plan.lane(member as usize));
+        let in_lane = |_, (), motion: Trajectory| Outcome::completed(&motion);
+        let alone = |member: u64, (), stop: &Stop<'_>| plan.follow(member as usize, stop);
         let mut ended = None;
         let consume = |member: u64, outcome: Result<Outcome, Panicked>| {
             let outcome =
@@ -238,7 +273,7 @@ pub unsafe extern "C" fn pc_ensemble_run(
             // SAFETY: a function of that type, as the preamble demands.
             unsafe { outcome.tell(member as usize, start.len(), observer, user) }
         };
-        match ensemble.map(0..members as u64, work, consume)? {
+        match ensemble.map_in_lanes(0..members as u64, span, begin, in_lane, alone, consume)? {
             Ending::Stopped => Err(ended.map_or(CallError::Stopped, CallError::Limit)),
             Ending::Completed | Ending::Event { .. } => Ok(()),
         }

@@ -151,6 +151,10 @@ impl VectorField for MotionField {
         delegate!(self, field => field.checks_rates())
     }
 
+    fn lanes(&mut self) -> Option<pc_expr::LaneField> {
+        delegate!(self, field => field.lanes())
+    }
+
     fn has_jacobian(&self) -> bool {
         delegate!(self, field => field.has_jacobian())
     }

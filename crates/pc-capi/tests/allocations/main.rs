@@ -114,7 +114,7 @@ fn evaluations_allocate_nothing() {
     let mut found = Vec::new();
     for case in cases() {
         let system = system(&case);
-        let on_nothing = case.1.is_empty();
+        let (on_nothing, has_tables) = (case.1.is_empty(), case.0 == "quarter-car");
         let (s, n) = (system.0, system.dim());
         let (t, mut y) = system.start();
         // A little off, so that there is something to project.
@@ -160,7 +160,7 @@ fn evaluations_allocate_nothing() {
             note("right", again(|e| pc_system_right_hand_side(s, t, yp, n, mass.as_mut_ptr(), k, e)));
             let w = product[..k].as_mut_ptr();
             note("solve_mass", again(|e| pc_system_solve_mass_matrix(s, t, yp, n, v, k, w, k, e)));
-            if on_nothing {
+            if on_nothing && !has_tables {
                 note("time", again(|e| pc_system_time_derivative(s, t, yp, n, product.as_mut_ptr(), n, e)));
             }
             note("residual", again(|e| pc_system_residual(s, t, yp, n, v, n, product.as_mut_ptr(), n, e)));

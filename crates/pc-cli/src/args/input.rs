@@ -26,8 +26,17 @@ pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
     for name in &arguments.keep {
         model.hold_start(name)?;
     }
-    for (i, Setting { name, value }) in arguments.set.iter().enumerate() {
-        if arguments.set[..i].iter().any(|known| known.name == *name) {
+    set(&mut model, &arguments.set)?;
+    Ok(model)
+}
+
+/// Sets parameters.
+///
+/// # Errors
+/// [`CliError::UnknownParameter`], [`CliError::SetTwice`], [`CliError::BadValue`].
+pub(crate) fn set(model: &mut Model, settings: &[Setting]) -> Result<(), CliError> {
+    for (i, Setting { name, value }) in settings.iter().enumerate() {
+        if settings[..i].iter().any(|known| known.name == *name) {
             return Err(CliError::SetTwice { name: name.clone() });
         }
         match value.parse::<f64>() {
@@ -38,7 +47,7 @@ pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
             }
         }
     }
-    Ok(model)
+    Ok(())
 }
 
 /// The same with the velocities that its equations are to be written in; `is_hamel` says whether they are in those given.

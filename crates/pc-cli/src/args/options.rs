@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use pc_model::document::MOST_SAMPLES;
 
 use crate::args::checkpoint::CheckpointArguments;
+use crate::args::drawn::DrawnArguments;
 use crate::args::forms::{EmitForm, Form, RunForm, choice, emit_form, form, run_form};
 
 /// The model and the values of its parameters.
@@ -46,7 +47,7 @@ pub struct VelocityArguments {
 }
 
 /// A number of bytes: `500M` are 500·2²⁰.
-fn bytes(text: &str) -> Result<u64, String> {
+pub(crate) fn bytes(text: &str) -> Result<u64, String> {
     let (number, unit) = match text.find(|c: char| !c.is_ascii_digit()) {
         Some(end) => text.split_at(end),
         None => (text, ""),
@@ -64,7 +65,7 @@ fn bytes(text: &str) -> Result<u64, String> {
 }
 
 /// A positive number of seconds.
-fn seconds(text: &str) -> Result<Duration, String> {
+pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse::<f64>().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     seconds
         .filter(|time| !time.is_zero())
@@ -151,21 +152,9 @@ pub struct EventArguments {
     pub accumulation: Option<f64>,
 }
 
-/// Arguments of `pc run`.
-#[derive(Clone, Debug, Args)]
-pub struct RunArguments {
-    /// The model.
-    #[command(flatten)]
-    pub model: ModelArguments,
-    /// Velocities.
-    #[command(flatten)]
-    pub velocities: VelocityArguments,
-    /// End time; else that of the file
-    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = finite)]
-    pub t_end: Option<f64>,
-    /// Number of rows, evenly spaced, start and end included; else that of the file, else 201
-    #[arg(long, value_name = "N", value_parser = samples)]
-    pub samples: Option<usize>,
+/// How a motion is integrated.
+#[derive(Clone, Debug, Default, Args)]
+pub struct IntegrationArguments {
     /// Relative tolerance; else that of the file, else 1e-9
     #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = positive)]
     pub rtol: Option<f64>,
@@ -182,6 +171,26 @@ pub struct RunArguments {
     /// else adams
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
+}
+
+/// Arguments of `pc run`.
+#[derive(Clone, Debug, Args)]
+pub struct RunArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Velocities.
+    #[command(flatten)]
+    pub velocities: VelocityArguments,
+    /// End time; else that of the file
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = finite)]
+    pub t_end: Option<f64>,
+    /// Number of rows, evenly spaced, start and end included; else that of the file, else 201
+    #[arg(long, value_name = "N", value_parser = samples)]
+    pub samples: Option<usize>,
+    /// Tolerances and method.
+    #[command(flatten)]
+    pub integration: IntegrationArguments,
     /// Form of the equations: poincare, canonical, reduced, lie-poisson, orthonormal or hamel (see `pc derive --help`); else that
     /// of the file, else poincare. Columns stay the same, except that reduced and lie-poisson lack some coordinates,
     /// and hamel adds each NAME after the outputs
@@ -206,9 +215,13 @@ pub struct RunArguments {
     /// Write the table to FILE.csv, FILE.json or FILE.npz instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Draw the motion into FILE.svg or FILE.png
+    /// Draw the motion into FILE.svg, FILE.png or FILE.pdf: in groups of like scale, with events and the drift of integrals,
+    /// between the rows too
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// What is drawn.
+    #[command(flatten)]
+    pub drawn: DrawnArguments,
     /// Checkpoints.
     #[command(flatten)]
     pub checkpoints: CheckpointArguments,
@@ -221,8 +234,22 @@ pub struct EmitArguments {
     #[command(flatten)]
     pub model: ModelArguments,
     /// Language of the source
-    #[arg(long)]
-    pub lang: Lang,
+    #[arg(long, required_unless_present = "fmu", conflicts_with = "fmu")]
+    pub lang: Option<Lang>,
+    /// Write a Functional Mock-up Unit of this version of FMI, for Model Exchange and Co-Simulation, with sources and a binary for this
+    /// machine
+    #[arg(long, value_name = "VERSION")]
+    pub fmu: Option<FmuVersion>,
+    /// With --fmu: how it integrates by itself in Co-Simulation: dop853 (not stiff), radau5 (stiff) or rk4 (fixed steps, see --step)
+    /// [default: radau5 where the model says bdf or auto, else dop853]
+    #[arg(long, value_name = "METHOD", requires = "fmu", conflicts_with = "lang")]
+    pub solver: Option<FmuMethod>,
+    /// With --solver rk4: the length of its steps
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = positive, requires = "solver", required_if_eq("solver", "rk4"))]
+    pub step: Option<f64>,
+    /// With --fmu: leave out the binary; importers compile the sources
+    #[arg(long, requires = "fmu", conflicts_with = "lang")]
+    pub sources_only: bool,
     /// Velocities.
     #[command(flatten)]
     pub velocities: VelocityArguments,
@@ -230,11 +257,33 @@ pub struct EmitArguments {
     #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = emit_form)]
     pub form: EmitForm,
     /// Leave out the Jacobian
-    #[arg(long)]
+    #[arg(long, conflicts_with = "fmu")]
     pub no_jacobian: bool,
-    /// Output directory; it is created if it does not exist
+    /// Output directory, which is created if it does not exist; `-` for standard output, of Rust; with --fmu the file to write
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
+}
+
+/// Versions of FMI.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FmuVersion {
+    /// FMI 2.0.
+    #[value(name = "2")]
+    V2,
+    /// FMI 3.0.
+    #[value(name = "3")]
+    V3,
+}
+
+/// How an FMU integrates by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FmuMethod {
+    /// Runge–Kutta of order 8 by Dormand and Prince.
+    Dop853,
+    /// Runge–Kutta of order 5 by Radau, implicit.
+    Radau5,
+    /// Runge–Kutta of order 4 with fixed steps.
+    Rk4,
 }
 
 /// Languages of emitted source.
@@ -249,7 +298,7 @@ pub enum Lang {
 /// Arguments of `pc import`.
 #[derive(Clone, Debug, Args)]
 pub struct ImportArguments {
-    /// The robot, in URDF, macros expanded
+    /// The robot, in URDF, macros expanded; `-` for standard input
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Let the root link move freely; it stands still otherwise
@@ -258,17 +307,6 @@ pub struct ImportArguments {
     /// The model to write; standard output if it is not given
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-}
-
-/// Arguments of `pc models`.
-#[derive(Clone, Debug, Args)]
-pub struct ModelsArguments {
-    /// Print the text of this model, as a start for your own
-    #[arg(value_name = "NAME", conflicts_with = "algebras")]
-    pub name: Option<String>,
-    /// List the Lie algebras that `[algebra]` accepts by name instead
-    #[arg(long)]
-    pub algebras: bool,
 }
 
 /// How a result is printed.
@@ -327,11 +365,11 @@ pub(crate) fn method(text: &str) -> Result<Method, String> {
     choice(text, &[])
 }
 
-fn definition(text: &str) -> Result<Setting, String> {
+pub(crate) fn definition(text: &str) -> Result<Setting, String> {
     setting(text).map_err(|_| "write NAME=EXPR, as in `\"v=r*φ'\"`".to_owned())
 }
 
-fn setting(text: &str) -> Result<Setting, String> {
+pub(crate) fn setting(text: &str) -> Result<Setting, String> {
     match text.split_once('=') {
         Some((name, value)) if !name.trim().is_empty() => {
             Ok(Setting { name: name.trim().to_owned(), value: value.trim().to_owned() })
@@ -351,6 +389,13 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if value > 0.0 => Ok(value),
         _ => Err("it must be positive".to_owned()),
+    }
+}
+
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if value >= 0.0 => Ok(value),
+        _ => Err("it must not be negative".to_owned()),
     }
 }
 

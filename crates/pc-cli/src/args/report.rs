@@ -5,11 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::args::checkpoint::CheckpointArguments;
+use crate::args::drawn::DrawnArguments;
 use crate::args::forms::{RunForm, run_form};
 use crate::args::options;
-use crate::args::options::{
-    EventArguments, Method, ModelArguments, Outputs, RunArguments, VelocityArguments,
-};
+use crate::args::options::{IntegrationArguments, ModelArguments, Outputs, RunArguments, VelocityArguments};
 
 /// The motion on a page.
 #[derive(Clone, Debug, Args)]
@@ -24,21 +23,9 @@ pub struct ShownArguments {
     /// is more
     #[arg(long, value_name = "N", value_parser = options::samples)]
     pub samples: Option<usize>,
-    /// Relative tolerance; else that of the file, else 1e-9
-    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = options::positive)]
-    pub rtol: Option<f64>,
-    /// Absolute tolerance; else that of the file, else 1e-12
-    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = options::positive)]
-    pub atol: Option<f64>,
-    /// Largest step; else that of the file, else unlimited. Events that come and go within a step are not seen
-    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = options::positive)]
-    pub max_step: Option<f64>,
-    /// Events.
+    /// Tolerances and method.
     #[command(flatten)]
-    pub events: EventArguments,
-    /// Method: adams (not stiff) or bdf (stiff); else that of the file, else adams
-    #[arg(long, value_name = "METHOD", value_parser = options::method)]
-    pub method: Option<Method>,
+    pub integration: IntegrationArguments,
     /// Form of the equations that are integrated, as for `pc run`
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<RunForm>,
@@ -52,7 +39,7 @@ pub struct ShownArguments {
 #[command(after_help = "Examples:\n  \
                         pc report tilted-disk -o disk.html\n  \
                         pc report my-model.toml --t-end 20 --set m=2.5 -o report.html\n  \
-                        pc models heavy-top-euler | pc report - --no-run > top.html\n\
+                        pc models heavy-top-euler | pc report - --no-run > top.html\n\n\
                         The page needs nothing beside itself: no network and no other file; it is read without scripts, by which \
                         the motion can be watched. The same model gives the same bytes. Without an end of time there is no \
                         motion. What was reached of one that fails stands on the page, and the exit code is that of `pc run`.")]
@@ -72,7 +59,7 @@ pub struct ReportArguments {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:\n  \
                         pc animate spatial-chain -o chain.html\n  \
-                        pc animate tilted-disk --t-end 20 > disk.html\n\
+                        pc animate tilted-disk --t-end 20 > disk.html\n\n\
                         What is drawn are bodies, joints and points, and the shapes of `[[draw]]` in the text of the model. The \
                         page needs nothing beside itself; the same model gives the same bytes.")]
 pub struct AnimateArguments {
@@ -93,17 +80,14 @@ impl ShownArguments {
             model: self.model.clone(),
             t_end: self.t_end,
             samples: self.samples,
-            rtol: self.rtol,
-            atol: self.atol,
-            max_step: self.max_step,
-            events: self.events.clone(),
-            method: self.method,
+            integration: self.integration.clone(),
             form: self.form,
             project: self.project.clone(),
             outputs: Some(Outputs::Reactions),
             no_verify: false,
             output: None,
             plot: None,
+            drawn: DrawnArguments::default(),
             checkpoints: CheckpointArguments::default(),
         }
     }

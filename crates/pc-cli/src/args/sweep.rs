@@ -1,20 +1,25 @@
 //! Arguments of `pc sweep`.
 
+use std::fmt;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 
 use crate::args::checkpoint::CheckpointArguments;
+use crate::args::drawn::DrawnArguments;
+use crate::args::examples;
 use crate::args::forms::{RunForm, run_form};
 use crate::args::options;
-use crate::args::options::{EventArguments, Method, ModelArguments, RunArguments, VelocityArguments};
+use crate::args::options::{IntegrationArguments, ModelArguments, RunArguments, VelocityArguments};
+use crate::sweep::shard::Shard;
 
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]
 #[command(
     group(ArgGroup::new("members").args(["vary", "random"]).required(true)),
-    after_help = "Members of a grid are all combinations of the values, the last --vary changing fastest. \
+    after_help = format!("{}\n\n\
+                  Members of a grid are all combinations of the values, the last --vary changing fastest. \
                   lognormal(m,s) is exp of normal(m,s).\n\
                   A row has the number of the member, the varied values (start values as NAME(start)), how it ended \
                   (completed; event: it was ended by the event of the message; failed: the row is what was reached; refused: it could not start; panicked), the \
@@ -23,13 +28,14 @@ use crate::args::options::{EventArguments, Method, ModelArguments, RunArguments,
                   What is finished is kept in FILE.partial until FILE is complete: after an interruption of any kind \
                   the same command goes on from there, and gives the same bytes.\n\
                   Exit codes: 0 also if some members were not completed, they are counted in the summary; 5 if none \
-                  was; 6 if something could not be written; 130 interrupted."
+                  was; 6 if something could not be written; 130 interrupted.", examples::SWEEP)
 )]
 pub struct SweepArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Give a parameter or start value N values evenly spaced, both ends included (repeatable)
+    /// Give a parameter or start value N values evenly spaced, both ends included, or with FROM:TO:N:log as many times
+    /// the one before each, or with A,B,… these (repeatable)
     #[arg(long, value_name = "NAME=FROM:TO:N", value_parser = vary, conflicts_with = "random")]
     pub vary: Vec<Vary>,
     /// Draw a parameter or start value: normal(m,s), uniform(a,b) or lognormal(m,s) (repeatable)
@@ -50,22 +56,9 @@ pub struct SweepArguments {
     /// Write N rows of each member, evenly spaced, start and end included, instead of the last one and the drifts
     #[arg(long, value_name = "N", value_parser = options::samples)]
     pub rows: Option<usize>,
-    /// Relative tolerance; else that of the file, else 1e-9
-    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = options::positive)]
-    pub rtol: Option<f64>,
-    /// Absolute tolerance; else that of the file, else 1e-12
-    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = options::positive)]
-    pub atol: Option<f64>,
-    /// Largest step; else that of the file, else unlimited. Events that come and go within a step are not seen
-    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = options::positive)]
-    pub max_step: Option<f64>,
-    /// Events.
+    /// Tolerances and method.
     #[command(flatten)]
-    pub events: EventArguments,
-    /// Method: adams, dop853 or taylor (not stiff), bdf (stiff) or auto (dop853, and bdf where stiffness is seen); else that of the file,
-    /// else adams
-    #[arg(long, value_name = "METHOD", value_parser = options::method)]
-    pub method: Option<Method>,
+    pub integration: IntegrationArguments,
     /// Form of the equations: poincare or canonical; else that of the file, else poincare. Columns stay the same
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<RunForm>,
@@ -75,6 +68,39 @@ pub struct SweepArguments {
     /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
+    /// Compute the members I, I + N, … alone and keep them in FILE.shard-I-of-N, for `pc merge` to make the table of all N
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse, conflicts_with = "plot")]
+    pub shard: Option<Shard>,
+    /// Draw the last row of each member into FILE.svg, FILE.png or FILE.pdf: over one value curves, over two a colour for each
+    /// pair, of drawn members histograms with quantiles; with --rows curves over time
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// With --plot: draw these columns, separated by commas
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
+    pub columns: Vec<String>,
+}
+
+/// Arguments of `pc merge`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:\n  \
+                        pc merge sweep.csv.shard-* -o sweep.csv    # of four jobs\n  \
+                        pc merge part1/cloud.npz.shard-* part2/cloud.npz.shard-* -o cloud.npz    # of several machines\n\
+                        The jobs were `pc sweep MODEL … -o sweep.csv --shard 1/4` to `4/4`. The table has the bytes of the same sweep by one process. A shard that was killed goes on where it was by \
+                        the same command. Shards that are missing, there twice, not complete or of another sweep are named, and \
+                        nothing is written then. The shards stay where they are.")]
+pub struct MergeArguments {
+    /// The files that `pc sweep --shard` has left, in any order
+    #[arg(value_name = "SHARD", required = true)]
+    pub shards: Vec<PathBuf>,
+    /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Draw it, as `pc sweep --plot` does
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// With --plot: draw these columns, separated by commas
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
+    pub columns: Vec<String>,
 }
 
 impl SweepArguments {
@@ -86,33 +112,82 @@ impl SweepArguments {
             model: self.model.clone(),
             t_end: self.t_end,
             samples: self.rows,
-            rtol: self.rtol,
-            atol: self.atol,
-            max_step: self.max_step,
-            events: self.events.clone(),
-            method: self.method,
+            integration: self.integration.clone(),
             form: self.form,
             project: self.project.clone(),
             outputs: None,
             no_verify: true,
             output: None,
             plot: None,
+            drawn: DrawnArguments::default(),
             checkpoints: CheckpointArguments::default(),
         }
     }
 }
 
-/// `NAME=FROM:TO:N`
+/// `NAME=FROM:TO:N`, `NAME=FROM:TO:N:log` or `NAME=A,B,…`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vary {
     /// The parameter, coordinate or quasi-velocity.
     pub name: String,
-    /// First value.
-    pub from: f64,
-    /// Last value.
-    pub to: f64,
-    /// How many, at least 1.
-    pub count: u64,
+    /// Its values.
+    pub values: Values,
+}
+
+/// The values of what is varied, at least one.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// So many from one to another, evenly spaced.
+    Even(f64, f64, u64),
+    /// So many from one to another, each the same number of times the one before.
+    Logarithmic(f64, f64, u64),
+    /// These.
+    List(Vec<f64>),
+}
+
+impl Values {
+    /// How many they are.
+    pub fn count(&self) -> u64 {
+        match self {
+            Values::Even(_, _, count) | Values::Logarithmic(_, _, count) => *count,
+            Values::List(list) => list.len() as u64,
+        }
+    }
+
+    /// All of them, in order.
+    pub(crate) fn in_order(&self) -> Vec<f64> {
+        (0..self.count()).map(|place| self.at(place)).collect()
+    }
+
+    /// Value number `place`; the ends of a range are exact.
+    pub fn at(&self, place: u64) -> f64 {
+        let part = |count: u64| place as f64 / (count - 1) as f64;
+        match self {
+            Values::List(list) => list[place as usize],
+            Values::Even(from, _, _) | Values::Logarithmic(from, _, _) if place == 0 => *from,
+            Values::Even(_, to, count) | Values::Logarithmic(_, to, count) if place == count - 1 => *to,
+            Values::Even(from, to, count) => from + (to - from) * part(*count),
+            // By decimal logarithms, so that powers of ten between powers of ten are what they are.
+            Values::Logarithmic(from, to, count) => {
+                let (a, b) = (from.abs().log10(), to.abs().log10());
+                10f64.powf(a + (b - a) * part(*count)).copysign(*from)
+            }
+        }
+    }
+}
+
+/// As on the command line.
+impl fmt::Display for Vary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}=", self.name)?;
+        match &self.values {
+            Values::Even(from, to, count) => write!(f, "{from}:{to}:{count}"),
+            Values::Logarithmic(from, to, count) => write!(f, "{from}:{to}:{count}:log"),
+            Values::List(list) => {
+                write!(f, "{}", list.iter().map(f64::to_string).collect::<Vec<_>>().join(","))
+            }
+        }
+    }
 }
 
 /// `NAME=DISTRIBUTION`
@@ -135,25 +210,52 @@ pub enum Law {
     LogNormal(f64, f64),
 }
 
-fn vary(text: &str) -> Result<Vary, String> {
-    let usage = || "write NAME=FROM:TO:N, as in `--vary m=1:2:11`".to_owned();
-    let (name, range) = text.split_once('=').ok_or_else(usage)?;
-    let parts: Vec<&str> = range.split(':').map(str::trim).collect();
-    let &[from, to, count] = &parts[..] else { return Err(usage()) };
+pub(crate) fn vary(text: &str) -> Result<Vary, String> {
+    let usage = || {
+        "write NAME=FROM:TO:N, NAME=FROM:TO:N:log or NAME=A,B,…, as in `--vary m=1:2:11` or `--vary m=1,2,5`"
+            .to_owned()
+    };
+    let (name, values) = text.split_once('=').ok_or_else(usage)?;
+    let parts: Vec<&str> = values.split(':').map(str::trim).collect();
+    let values = match &parts[..] {
+        [from, to, count] => range(from, to, count, false)?,
+        [from, to, count, "log"] => range(from, to, count, true)?,
+        [values] if values.contains(',') => list(values)?,
+        _ => return Err(usage()),
+    };
+    match name.trim() {
+        "" => Err(usage()),
+        name => Ok(Vary { name: name.to_owned(), values }),
+    }
+}
+
+fn range(from: &str, to: &str, count: &str, is_logarithmic: bool) -> Result<Values, String> {
     let (from, to) = (options::finite(from)?, options::finite(to)?);
     let count = count.parse().ok().filter(|&count: &u64| count > 0);
     let count = count.ok_or("the number of values must be a whole number, at least 1")?;
-    if !(to - from).is_finite() {
-        return Err("the range is too large".to_owned());
-    }
     if count == 1 && from != to {
         return Err(
             "one value cannot be at both ends; give 2 values, or the same number at both ends".to_owned()
         );
     }
-    match name.trim() {
-        "" => Err(usage()),
-        name => Ok(Vary { name: name.to_owned(), from, to, count }),
+    if is_logarithmic {
+        if from == 0.0 || to == 0.0 || (from > 0.0) != (to > 0.0) {
+            return Err("a logarithmic range lies on one side of 0".to_owned());
+        }
+        return Ok(Values::Logarithmic(from, to, count));
+    }
+    if !(to - from).is_finite() {
+        return Err("the range is too large".to_owned());
+    }
+    Ok(Values::Even(from, to, count))
+}
+
+fn list(values: &str) -> Result<Values, String> {
+    let list =
+        values.split(',').map(|value| options::finite(value.trim())).collect::<Result<Vec<f64>, _>>()?;
+    match list.iter().enumerate().find(|(i, value)| list[..*i].contains(value)) {
+        Some((_, value)) => Err(format!("the value {value} is given twice")),
+        None => Ok(Values::List(list)),
     }
 }
 
@@ -183,10 +285,26 @@ mod tests {
     use super::*;
 
     #[test]
+    fn values_are_where_they_are_said_to_be() {
+        let all = |values: Values| (0..values.count()).map(|i| values.at(i)).collect::<Vec<_>>();
+        assert_eq!(all(Values::Even(1.0, 2.0, 3)), [1.0, 1.5, 2.0]);
+        assert_eq!(all(Values::Logarithmic(1e-3, 100.0, 6)), [1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0]);
+        // Rounding of the logarithm.
+        let negative = all(Values::Logarithmic(-8.0, -2.0, 3));
+        assert!((negative[1] + 4.0).abs() < 1e-14 && negative[0] == -8.0 && negative[2] == -2.0);
+        assert_eq!(all(Values::List(vec![5.0, 1.0])), [5.0, 1.0]);
+        for text in ["m=1:2:3", "m=0.001:10:5:log", "m=5,1,-2"] {
+            assert_eq!(vary(text).map(|vary| vary.to_string()), Ok(text.to_owned()));
+        }
+    }
+
+    #[test]
     fn variations_are_read_or_refused() {
-        let m = |from, to, count| Vary { name: "m".to_owned(), from, to, count };
-        assert_eq!(vary("m=1:2:11"), Ok(m(1.0, 2.0, 11)));
-        assert_eq!(vary("m = -1e3 : -1e3 : 1"), Ok(m(-1e3, -1e3, 1)));
+        let m = |values| Vary { name: "m".to_owned(), values };
+        assert_eq!(vary("m=1:2:11"), Ok(m(Values::Even(1.0, 2.0, 11))));
+        assert_eq!(vary("m = -1e3 : -1e3 : 1"), Ok(m(Values::Even(-1e3, -1e3, 1))));
+        assert_eq!(vary("m=1e-3:10:5:log"), Ok(m(Values::Logarithmic(1e-3, 10.0, 5))));
+        assert_eq!(vary("m = 5, 1,-2"), Ok(m(Values::List(vec![5.0, 1.0, -2.0]))));
         for wrong in [
             "m",
             "m=1:2",
@@ -197,6 +315,14 @@ mod tests {
             "m=1:2:3:4",
             "=1:2:3",
             "m=-1e308:1e308:3",
+            "m=1",
+            "m=1,",
+            "m=1,2,1",
+            "m=1,nan",
+            "m=0:1:3:log",
+            "m=-1:1:3:log",
+            "m=1:0:3:log",
+            "m=1:2:3:lin",
         ] {
             assert!(vary(wrong).is_err(), "{wrong}");
         }

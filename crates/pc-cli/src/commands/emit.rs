@@ -11,7 +11,8 @@ use crate::args::forms::EmitForm;
 use crate::args::input;
 use crate::args::options::{EmitArguments, Lang};
 use crate::error::CliError;
-use crate::output::place::Place;
+use crate::output::place::{Place, file};
+use crate::output::standard_output::print;
 use crate::report::notes::{choice, say_choice, say_dropped, say_moved};
 use crate::report::text::say;
 
@@ -31,8 +32,8 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     let assembly = model.assemble(&graph)?;
     let (equations, form) = assembly.equations_of(arguments.form.into())?;
     let language = match arguments.lang {
-        Lang::C => Language::C,
-        Lang::Rust => Language::Rust,
+        Some(Lang::Rust) => Language::Rust,
+        Some(Lang::C) | None => Language::C, // the command line asks for one
     };
     let mut options = EmitOptions::new(language, name(model.document().source.name()));
     options = options.title(model.title()).jacobian(!arguments.no_jacobian);
@@ -62,7 +63,15 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     }
     let files = assembly.placed(equations.emit(&options))?;
 
-    let directory = &arguments.output;
+    let Some(directory) = file(Some(&arguments.output)) else {
+        return match files.as_slice() {
+            [file] => print(|out| out.write_all(file.text.as_bytes())),
+            _ => {
+                let files = files.into_iter().map(|file| file.name).collect();
+                Err(CliError::SeveralFiles { files })
+            }
+        };
+    };
     fs::create_dir_all(directory).map_err(|source| CliError::cannot_write(directory, source))?;
     let mut places = Vec::new();
     for file in &files {
@@ -80,6 +89,6 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
 }
 
 /// The name of a model file without directory and ending.
-fn name(file: &str) -> &str {
+pub(super) fn name(file: &str) -> &str {
     Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or("model").trim_matches(['<', '>'])
 }

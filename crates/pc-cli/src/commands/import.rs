@@ -1,14 +1,14 @@
 //! `pc import`: models in other formats, as text models.
 
-use std::io::Write;
+use std::io::{self, Write};
 
 use pc_model::Source;
-use pc_model::document::read_file_bounded;
+use pc_model::document::{read_bounded, read_file_bounded};
 
 use crate::args::options::ImportArguments;
 use crate::error::CliError;
 use crate::import::model_of_urdf;
-use crate::output::place::Place;
+use crate::output::place::{Place, file};
 use crate::output::standard_output::print;
 use crate::report::text::say;
 
@@ -17,17 +17,18 @@ use crate::report::text::say;
 /// # Errors
 /// [`CliError`].
 pub fn command(arguments: &ImportArguments) -> Result<(), CliError> {
-    let path = &arguments.file;
-    let name = path.display().to_string();
-    let place = arguments.output.as_ref().map(|output| (output, Place::new(output)));
+    let path = file(Some(&arguments.file));
+    let name = path.map_or("<stdin>".to_owned(), |path| path.display().to_string());
+    let place = file(arguments.output.as_deref()).map(|output| (output, Place::new(output)));
     let place = place
         .map(|(output, place)| place.map_err(|source| CliError::no_place(output, source)))
         .transpose()?;
-    let bytes = read_file_bounded(path).map_err(|source| CliError::Read { name: name.clone(), source })?;
+    let bytes = path.map_or_else(|| read_bounded(io::stdin().lock()), read_file_bounded);
+    let bytes = bytes.map_err(|source| CliError::Read { name: name.clone(), source })?;
     let source = match String::from_utf8(bytes) {
         Ok(text) => Source::new(name, text),
         Err(error) => {
-            let source = std::io::Error::new(std::io::ErrorKind::InvalidData, error);
+            let source = io::Error::new(io::ErrorKind::InvalidData, error);
             return Err(CliError::Read { name, source });
         }
     };

@@ -3,43 +3,87 @@
 use std::io::{self, Write};
 
 use pc_algebra::{CATALOGUE, LieAlgebra};
-use pc_model::Builtin;
+use pc_expr::parse::nearest;
+use pc_model::document::{Heading, Located};
+use pc_model::{Builtin, TAGS};
 use pc_print::{columns, combination};
+use serde_json::{Value, json};
 
 use crate::args::input::no_such_model;
-use crate::args::options::ModelsArguments;
+use crate::args::models::ModelsArguments;
+use crate::args::options::Format;
 use crate::error::CliError;
 use crate::output::standard_output::print;
 
-/// Prints the list of the built-in models, the text of one, or the algebras that have a name.
+/// Prints the list of the built-in models, the text of one, their tags, or the algebras that have a name.
 ///
 /// # Errors
-/// [`CliError::NoSuchModel`]; [`CliError::Write`].
+/// [`CliError::NoSuchModel`]; [`CliError::NoSuchTag`]; [`CliError::Write`].
 pub fn command(arguments: &ModelsArguments) -> Result<(), CliError> {
-    match &arguments.name {
-        Some(name) => {
-            let model = Builtin::named(name).ok_or_else(|| no_such_model(name))?;
-            print(|out| out.write_all(model.text.as_bytes()))
-        }
-        None => print(if arguments.algebras { algebras } else { models }),
+    if let Some(name) = &arguments.name {
+        let model = Builtin::named(name).ok_or_else(|| no_such_model(name))?;
+        return print(|out| out.write_all(model.text.as_bytes()));
     }
+    if arguments.algebras {
+        return print(algebras);
+    }
+    if arguments.tags {
+        return print(tags);
+    }
+    if let Some(name) = arguments.tag.iter().find(|name| TAGS.iter().all(|tag| tag.name != **name)) {
+        let nearest = nearest(name, TAGS.iter().map(|tag| tag.name));
+        return Err(CliError::NoSuchTag { name: name.clone(), nearest });
+    }
+    let has_all =
+        |model: &&Builtin| arguments.tag.iter().all(|name| model.tags().any(|tag| tag.name == *name));
+    let listed: Vec<&Builtin> = Builtin::all().filter(has_all).collect();
+    print(|out| match arguments.format {
+        Format::Text => models(&listed, arguments.long || !arguments.tag.is_empty(), out),
+        Format::Json => writeln!(out, "{}", listed.iter().map(|model| object(model)).collect::<Value>()),
+    })
 }
 
-fn models(out: &mut dyn Write) -> io::Result<()> {
-    let width = Builtin::all().map(|model| columns(model.name)).max().unwrap_or(0);
-    for model in Builtin::all() {
-        writeln!(out, "{:width$}  {}", model.name, described(model))?;
+fn models(listed: &[&Builtin], long: bool, out: &mut dyn Write) -> io::Result<()> {
+    let width = listed.iter().map(|model| columns(model.name)).max().unwrap_or(0);
+    for model in listed {
+        let heading = heading(model);
+        let parts: Vec<&str> = [&heading.name, &heading.description].into_iter().filter_map(text).collect();
+        writeln!(out, "{:width$}  {}", model.name, parts.join(": "))?;
+        if long {
+            if let Some(reference) = text(&heading.reference) {
+                writeln!(out, "{:width$}  {reference}", "")?;
+            }
+            let tags: Vec<&str> = model.tags().map(|tag| tag.name).collect();
+            writeln!(out, "{:width$}  [{}]", "", tags.join(", "))?;
+        }
     }
     Ok(())
 }
 
-/// The name and description that stand in the model.
-fn described(model: &Builtin) -> String {
-    let Ok(document) = model.document() else { return String::new() };
-    let heading = &document.model;
-    let parts = [&heading.name, &heading.description];
-    let parts: Vec<&str> = parts.into_iter().flatten().map(|part| part.value.as_str()).collect();
-    parts.join(": ")
+fn object(model: &Builtin) -> Value {
+    let heading = heading(model);
+    json!({
+        "name": model.name,
+        "title": text(&heading.name),
+        "description": text(&heading.description),
+        "reference": text(&heading.reference),
+        "tags": model.tags().map(|tag| tag.name).collect::<Vec<_>>(),
+    })
+}
+
+/// What stands above the model; nothing of one that cannot be read, which the tests exclude.
+fn heading(model: &Builtin) -> Heading {
+    model.document().map(|document| document.model).unwrap_or_default()
+}
+
+fn text(part: &Option<Located<String>>) -> Option<&str> {
+    part.as_ref().map(|part| part.value.as_str())
+}
+
+fn tags(out: &mut dyn Write) -> io::Result<()> {
+    let width = TAGS.iter().map(|tag| columns(tag.name)).max().unwrap_or(0);
+    TAGS.iter()
+        .try_for_each(|tag| writeln!(out, "{:width$}  {:2}  {}", tag.name, tag.models.len(), tag.meaning))
 }
 
 fn algebras(out: &mut dyn Write) -> io::Result<()> {

@@ -1,18 +1,15 @@
 //! `pc report`: all that is known of a model on one page; `pc animate`: its motion alone.
 
-use std::ops::Range;
-
 use pc_model::Model;
-use pc_report::{Columns, Kind, Record, Scene, animation, report};
+use pc_report::{Record, Scene, animation, report};
 
 use crate::args::input;
 use crate::args::report::{AnimateArguments, ReportArguments, ShownArguments};
 use crate::commands::run::integrate;
 use crate::error::CliError;
 use crate::motion::plan::Plan;
-use crate::motion::run::{Ending, Run};
+use crate::motion::run::Run;
 use crate::output::destination::Destination;
-use crate::report::summary;
 
 /// Points of a curve that looks smooth.
 const SMOOTH: usize = 601;
@@ -32,7 +29,7 @@ pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
         run => Some(run?),
     };
     let none = || Record { remark: Some(NO_END.to_owned()), ..Record::default() };
-    let record = run.as_ref().map_or_else(none, record);
+    let record = run.as_ref().map_or_else(none, Run::record);
     destination.write_page(&report(&model, Some(&record))?)?;
     run.map_or(Ok(()), Run::outcome)
 }
@@ -48,7 +45,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
     let mut model = input::open(&arguments.shown.model)?;
     let run = integrated(&mut model, &arguments.shown)?;
     let graph = model.graph();
-    let scene = Scene::of(&model, &model.assemble(&graph)?, &record(&run))?;
+    let scene = Scene::of(&model, &model.assemble(&graph)?, &run.record())?;
     let scene = scene.ok_or_else(|| CliError::NothingToDraw { model: model.title().to_owned() })?;
     destination.write_page(&animation(model.title(), &scene))?;
     run.outcome()
@@ -59,7 +56,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
 /// # Errors
 /// [`CliError`] for a model that cannot be derived.
 pub fn page(model: &Model, run: &Run) -> Result<String, CliError> {
-    Ok(report(model, Some(&record(run)))?)
+    Ok(report(model, Some(&run.record()))?)
 }
 
 /// The motion with the reactions of constraints.
@@ -72,32 +69,4 @@ fn integrated(model: &mut Model, shown: &ShownArguments) -> Result<Run, CliError
     let plan = Plan::new(model, &arguments)?;
     let samples = shown.samples.unwrap_or(plan.samples.max(SMOOTH));
     integrate(model, Plan::form(model, &arguments), || Ok(Plan { samples, ..plan }))
-}
-
-/// What a page shows of a run.
-fn record(run: &Run) -> Record {
-    let table = &run.table;
-    let columns = |kind, places: Range<usize>| Columns {
-        kind,
-        list: places.map(|j| (table.columns()[j].clone(), table.column(j).collect())).collect(),
-    };
-    let remark = match &run.ending {
-        Ending::Completed => None,
-        Ending::Event { name } => Some(format!("The event {name} ended the motion.")),
-        ending => Some(format!("The motion {}; what was reached is shown.", ending.word())),
-    };
-    Record {
-        times: table.column(0).collect(),
-        columns: vec![
-            columns(Kind::Coordinates, table.coordinates()),
-            columns(Kind::QuasiVelocities, table.quasi_velocities()),
-            columns(Kind::States, table.states()),
-            columns(Kind::Conserved, table.conserved()),
-            columns(Kind::Outputs, table.conserved().end..table.columns().len()),
-        ],
-        summary: summary::entries(run).into_iter().map(|(label, lines)| (label.to_owned(), lines)).collect(),
-        keeps_energy: run.keeps_energy,
-        events: run.occurrences.iter().map(|&(_, t)| t).collect(),
-        remark,
-    }
 }

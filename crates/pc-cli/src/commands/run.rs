@@ -7,6 +7,7 @@ use pc_mech::Expr;
 use pc_model::{Assembly, Flow, Model, Variables};
 use pc_print::energy_remark;
 use pc_report::dropped;
+use pc_report::picture::{Drawing, Picture, Wanted};
 use pc_solve::{self as solver, Events, Solution, Trajectory};
 
 use crate::args::checkpoint::CheckpointArguments;
@@ -15,6 +16,7 @@ use crate::args::input;
 use crate::args::options::{Outputs, RunArguments};
 use crate::error::CliError;
 use crate::motion::checkpoint::Checkpoints;
+use crate::motion::fine;
 use crate::motion::follow::follow;
 use crate::motion::given::{Given, note_residuals};
 use crate::motion::interrupt;
@@ -26,7 +28,7 @@ use crate::motion::sensitivities::Derivatives;
 use crate::motion::table::Table;
 use crate::output::destination::Destination;
 use crate::output::stream::Stream;
-use crate::plot::picture::Picture;
+use crate::plot::error::PlotError;
 use crate::report::notes::{choice, say_choice, say_moved, say_negative_energy, say_undetermined};
 use crate::report::verification::Verification;
 use crate::report::{summary, text};
@@ -37,7 +39,8 @@ use crate::report::{summary, text};
 /// [`CliError`]; what was reached has been written then.
 pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     let destination = Destination::table(arguments.output.as_deref())?;
-    let picture = Destination::plot(arguments.plot.as_deref())?;
+    let picture =
+        Destination::plot(arguments.plot.as_deref())?.map(|place| (place, arguments.drawn.wanted()));
     let is_hamel = arguments.form == Some(RunForm::Hamel);
     let mut model = input::open_in(&arguments.model, &arguments.velocities, is_hamel)?;
     model.observe_reactions(arguments.outputs == Some(Outputs::Reactions));
@@ -49,10 +52,10 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
     let form = Plan::form(&model, arguments);
-    let verify = !arguments.no_verify;
+    let asked = Asked { verify: !arguments.no_verify, fine: picture.is_some() };
     // A picture needs all rows.
     let mut stream = destination.stream().filter(|_| picture.is_none());
-    let run = integrate_into(stream.as_mut(), &model, form, verify, &arguments.checkpoints, || {
+    let run = integrate_into(stream.as_mut(), &model, form, asked, &arguments.checkpoints, || {
         Plan::new(&model, arguments)
     });
     let run = run?;
@@ -72,7 +75,7 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
 
 /// Derives, compiles and integrates the motion of a model; `plan` is asked for once the model is known to be sound.
 /// Whatever the form, the table shows quasi-velocities. At the start and, where that is soon done, at the end the
-/// equations are compared with a second derivation.
+/// equations are compared with a second derivation. Curves can be drawn of it.
 ///
 /// # Errors
 /// [`CliError`] if there is no motion at all, or the second derivation disagrees; one that could not be completed is a
@@ -82,29 +85,25 @@ pub fn integrate(
     form: RunForm,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
-    integrate_with_checkpoints(model, form, true, &CheckpointArguments::default(), plan)
+    let asked = Asked { verify: true, fine: true };
+    integrate_into(None, model, form, asked, &CheckpointArguments::default(), plan)
 }
 
-/// As [`integrate`], with checkpoints, and without the second derivation unless `verify` says so.
-///
-/// # Errors
-/// As there, and what is wrong with a checkpoint to go on from.
-pub fn integrate_with_checkpoints(
-    model: &Model,
-    form: RunForm,
+/// What is done besides.
+#[derive(Clone, Copy, Debug)]
+struct Asked {
+    /// Whether the equations are compared with a second derivation.
     verify: bool,
-    checkpoints: &CheckpointArguments,
-    plan: impl FnOnce() -> Result<Plan, CliError>,
-) -> Result<Run, CliError> {
-    integrate_into(None, model, form, verify, checkpoints, plan)
+    /// Whether the motion is known between its rows.
+    fine: bool,
 }
 
-/// As [`integrate_with_checkpoints`], and writes the rows to `stream` at once where they are too many to be held.
+/// As [`integrate`], with checkpoints, and writes the rows to `stream` at once where they are too many to be held.
 fn integrate_into(
     stream: Option<&mut Stream<'_>>,
     model: &Model,
     form: RunForm,
-    verify: bool,
+    asked: Asked,
     checkpoints: &CheckpointArguments,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
@@ -134,11 +133,13 @@ fn integrate_into(
         parameters => Some(Derivatives::new(model, form, parameters)?),
     };
 
-    let mut verification = verify.then(|| Verification::new(model, &assembly, form));
+    let mut verification = asked.verify.then(|| Verification::new(model, &assembly, form));
     if let Some(verification) = &mut verification {
         verification.compare(&flow, &assembly, "the start", plan.t_start, &flow.start)?;
     }
 
+    // Derivatives are known at the rows alone; what was resumed is not integrated from its start again.
+    let mut again = (asked.fine && alone).then(|| flow.clone());
     let mut given = stream.map(|stream| Given::new(&flow, stream)).transpose()?;
     interrupt::catch();
     let mut progress = Progress::new(plan.t_start, plan.t_end);
@@ -185,6 +186,9 @@ fn integrate_into(
             residuals(&mut flow, &trajectory),
         ),
     };
+    let statistics = *trajectory.statistics();
+    let fine =
+        again.as_mut().and_then(|flow| fine::table(flow, &plan, statistics.steps, statistics.current_time));
     Ok(Run {
         title: model.title().to_owned(),
         parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
@@ -194,7 +198,8 @@ fn integrate_into(
         dropped: dropped(&assembly),
         jumps: jumps(&assembly),
         keeps_energy: assembly.keeps_energy() && assembly.events.iter().all(|event| event.resets.is_empty()),
-        statistics: *trajectory.statistics(),
+        fine,
+        statistics,
         plan,
         events,
         occurrences: occurrences.iter().map(|occurrence| (occurrence.event, occurrence.time)).collect(),
@@ -220,17 +225,30 @@ fn residuals(flow: &mut Flow, trajectory: &Trajectory) -> Vec<(String, f64)> {
     worst
 }
 
-fn write(run: &Run, destination: &Destination, picture: Option<&Destination>) -> Result<(), CliError> {
+fn write(
+    run: &Run,
+    destination: &Destination,
+    picture: Option<&(Destination, Wanted)>,
+) -> Result<(), CliError> {
     destination.write_table(run)?;
     match picture {
-        Some(picture) => picture.write_plot(&Picture::of(run)),
+        Some((place, wanted)) => place.write_plot(&drawn(run, wanted)?),
         None => Ok(()),
     }
 }
 
+/// What is wanted of a motion, drawn.
+///
+/// # Errors
+/// [`CliError::Plot`] where it has no such column.
+pub fn drawn(run: &Run, wanted: &Wanted) -> Result<Drawing, CliError> {
+    let picture = Picture::of(&run.title, &run.record(), wanted);
+    Ok(picture.map_err(|source| PlotError::Column { option: "plot", source })?.drawing())
+}
+
 impl Run {
     /// An error unless the run was completed.
-    pub(super) fn outcome(self) -> Result<(), CliError> {
+    pub(crate) fn outcome(self) -> Result<(), CliError> {
         let names = self.state;
         match self.ending {
             // How the file was written says why.

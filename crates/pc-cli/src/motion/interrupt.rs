@@ -23,3 +23,8 @@ pub(crate) fn catch() {
 pub(crate) fn requested() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
+
+/// What says so.
+pub(crate) fn flag() -> &'static AtomicBool {
+    &INTERRUPTED
+}

@@ -82,7 +82,8 @@ impl Plan {
             return Err(CliError::EndIsStart { t: t_end });
         }
         let written = simulation.method.as_ref().map(|method| method.value);
-        let method = arguments.method.map(of_arguments).or(written.map(of_file)).unwrap_or(Method::Adams);
+        let method =
+            arguments.integration.method.map(of_arguments).or(written.map(of_file)).unwrap_or(Method::Adams);
         let sensitivities = sensitivities::parameters(model, &arguments.sensitivities)?;
         if matches!(method, Method::Dop853 | Method::Taylor) && !sensitivities.is_empty() {
             return Err(CliError::NoSensitivities { method });
@@ -91,14 +92,19 @@ impl Plan {
             t_start,
             t_end,
             samples: arguments.samples.or(simulation.samples.as_ref().map(|n| n.value)).unwrap_or(SAMPLES),
-            rtol: arguments.rtol.or(simulation.rtol.as_ref().map(|r| r.value)).unwrap_or(1e-9),
-            atol: arguments.atol.or(simulation.atol.as_ref().map(|a| a.value)).unwrap_or(1e-12),
-            max_step: arguments.max_step.or(simulation.max_step.as_ref().map(|h| h.value)),
+            rtol: arguments.integration.rtol.or(simulation.rtol.as_ref().map(|r| r.value)).unwrap_or(1e-9),
+            atol: arguments.integration.atol.or(simulation.atol.as_ref().map(|a| a.value)).unwrap_or(1e-12),
+            max_step: arguments.integration.max_step.or(simulation.max_step.as_ref().map(|h| h.value)),
             samples_per_step: arguments
+                .integration
                 .events
                 .samples_per_step
                 .or(simulation.samples_per_step.as_ref().map(|n| n.value)),
-            accumulation: arguments.events.accumulation.or(simulation.accumulation.as_ref().map(|p| p.value)),
+            accumulation: arguments
+                .integration
+                .events
+                .accumulation
+                .or(simulation.accumulation.as_ref().map(|p| p.value)),
             method,
             sensitivities,
             deadline: model.budget().deadline().clone(),

@@ -21,6 +21,8 @@ pub struct Run {
     pub state: Vec<String>,
     /// The table as far as it was reached.
     pub table: Table,
+    /// The motion between its rows too, as close as it needs to be drawn, where that was asked for.
+    pub fine: Option<Table>,
     /// The constraints that are held, with the largest residual of each at the output times.
     pub constraints: Vec<(String, f64)>,
     /// The constraints that were dropped, each with the reason.

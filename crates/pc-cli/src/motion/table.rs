@@ -13,6 +13,7 @@ pub struct Table {
     quasi_velocities: usize,
     states: usize,
     conserved: usize,
+    derivatives: usize,
     /// One row after the other.
     values: Vec<f64>,
     /// Of rows that were given away: then the last one alone is here.
@@ -76,6 +77,16 @@ impl Table {
         table
     }
 
+    /// Rows at states.
+    pub(crate) fn of_states(flow: &mut Flow, states: &[(f64, Vec<f64>)]) -> Table {
+        let mut table = Table::empty(flow, Vec::new());
+        for (t, y) in states {
+            table.values.push(*t);
+            table.values.extend(flow.row(*t, y));
+        }
+        table
+    }
+
     /// A table whose rows are given away.
     pub(crate) fn given(flow: &Flow) -> Table {
         let given = Given { rows: 0, start: Vec::new(), worst: Vec::new(), not_finite: Vec::new() };
@@ -104,6 +115,7 @@ impl Table {
 
     fn empty(flow: &Flow, more: Vec<String>) -> Table {
         let names = flow.names.iter().chain(flow.motion.observable_names()).cloned();
+        let derivatives = more.len();
         let columns: Vec<String> = std::iter::once("t".to_owned()).chain(names).chain(more).collect();
         Table {
             columns,
@@ -111,6 +123,7 @@ impl Table {
             quasi_velocities: flow.quasi_velocities(),
             states: flow.motion.states(),
             conserved: flow.motion.conserved_len(),
+            derivatives,
             values: Vec::new(),
             given: None,
         }
@@ -170,6 +183,16 @@ impl Table {
     pub fn conserved(&self) -> std::ops::Range<usize> {
         let start = self.states().end;
         start..start + self.conserved
+    }
+
+    /// The numbers of the columns that are outputs of the model, reactions among them.
+    pub fn outputs(&self) -> std::ops::Range<usize> {
+        self.conserved().end..self.columns.len() - self.derivatives
+    }
+
+    /// The numbers of the columns that are derivatives by parameters.
+    pub fn derivatives(&self) -> std::ops::Range<usize> {
+        self.outputs().end..self.columns.len()
     }
 
     /// max |I(t) − I(t_start)| over the rows for column `j`.

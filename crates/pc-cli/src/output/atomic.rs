@@ -24,6 +24,17 @@ impl Place {
         }
     }
 
+    /// The same for a file that is not there, and is kept should it have come into being since.
+    ///
+    /// # Errors
+    /// [`io::Error`]
+    pub(crate) fn create(&self, write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>) -> io::Result<()> {
+        let mut made = partial::make(&self.file)?;
+        fill(made.as_file_mut(), write)?;
+        made.as_file().sync_all()?;
+        made.persist_noclobber(&self.file).map(drop).map_err(|error| error.error)
+    }
+
     /// The same for a regular file; what could be written where not all could.
     pub(super) fn replace(
         &self,

@@ -3,12 +3,16 @@
 use std::io::Write;
 use std::path::Path;
 
+use pc_report::picture::Drawing;
+
 use crate::error::CliError;
 use crate::motion::run::Run;
+use crate::output::place;
 use crate::output::place::Place;
 use crate::output::stream::Stream;
 use crate::output::{csv, json, npz, standard_output};
-use crate::plot::picture::Picture;
+use crate::plot::pdf::pdf;
+use crate::plot::png::png;
 
 /// How a result is encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +27,8 @@ pub enum Encoding {
     Svg,
     /// A bitmap.
     Png,
+    /// A page for print.
+    Pdf,
     /// A page of a browser.
     Html,
 }
@@ -36,12 +42,14 @@ pub struct Destination {
 }
 
 impl Destination {
-    /// The place of the table: the file, else standard output as CSV.
+    /// The place of the table: the file, else, as for `-`, standard output as CSV.
     ///
     /// # Errors
     /// [`CliError::UnknownExtension`]; [`CliError::Place`] where no file can be.
     pub fn table(path: Option<&Path>) -> Result<Destination, CliError> {
-        let Some(path) = path else { return Ok(Destination { encoding: Encoding::Csv, place: None }) };
+        let Some(path) = place::file(path) else {
+            return Ok(Destination { encoding: Encoding::Csv, place: None });
+        };
         let encodings = [("csv", Encoding::Csv), ("json", Encoding::Json), ("npz", Encoding::Npz)];
         Destination::file("-o", path, &encodings, ".csv, .json or .npz")
     }
@@ -51,16 +59,18 @@ impl Destination {
     /// # Errors
     /// As for [`table`](Destination::table).
     pub fn plot(path: Option<&Path>) -> Result<Option<Destination>, CliError> {
-        let encodings = [("svg", Encoding::Svg), ("png", Encoding::Png)];
-        path.map(|path| Destination::file("--plot", path, &encodings, ".svg or .png")).transpose()
+        let encodings = [("svg", Encoding::Svg), ("png", Encoding::Png), ("pdf", Encoding::Pdf)];
+        path.map(|path| Destination::file("--plot", path, &encodings, ".svg, .png or .pdf")).transpose()
     }
 
-    /// The place of a page: the file, else standard output.
+    /// The place of a page: the file, else, as for `-`, standard output.
     ///
     /// # Errors
     /// As for [`table`](Destination::table).
     pub fn page(path: Option<&Path>) -> Result<Destination, CliError> {
-        let Some(path) = path else { return Ok(Destination { encoding: Encoding::Html, place: None }) };
+        let Some(path) = place::file(path) else {
+            return Ok(Destination { encoding: Encoding::Html, place: None });
+        };
         Destination::file("-o", path, &[("html", Encoding::Html), ("htm", Encoding::Html)], ".html")
     }
 
@@ -92,7 +102,9 @@ impl Destination {
         place.write_or_keep(self.encoding == Encoding::Csv, |out| match self.encoding {
             Encoding::Json => json::write(run, out),
             Encoding::Npz => npz::write(run, out),
-            Encoding::Csv | Encoding::Svg | Encoding::Png | Encoding::Html => csv::write(&run.table, out),
+            Encoding::Csv | Encoding::Svg | Encoding::Png | Encoding::Pdf | Encoding::Html => {
+                csv::write(&run.table, out)
+            }
         })
     }
 
@@ -117,10 +129,11 @@ impl Destination {
     ///
     /// # Errors
     /// As for [`write_table`](Destination::write_table), and [`CliError::Plot`].
-    pub fn write_plot(&self, picture: &Picture) -> Result<(), CliError> {
+    pub fn write_plot(&self, drawing: &Drawing) -> Result<(), CliError> {
         let bytes = match self.encoding {
-            Encoding::Png => picture.png()?,
-            _ => picture.svg()?.into_bytes(),
+            Encoding::Png => png(drawing)?,
+            Encoding::Pdf => pdf(drawing)?,
+            _ => drawing.svg().into_bytes(),
         };
         match &self.place {
             None => standard_output::print(|out| out.write_all(&bytes)),

@@ -7,6 +7,11 @@ use std::path::{Path, PathBuf};
 use crate::output::partial;
 use crate::output::partial::directory;
 
+/// The file that an option names; none for `-`, which is standard output.
+pub(crate) fn file(path: Option<&Path>) -> Option<&Path> {
+    path.filter(|path| *path != Path::new("-"))
+}
+
 /// The place of a file that is replaced whole, or of a device that is written through.
 #[derive(Debug)]
 pub(crate) struct Place {
@@ -27,6 +32,21 @@ impl Place {
         match fs::metadata(path) {
             Ok(found) if !found.is_file() && !found.is_dir() => Err(refused("it is not a regular file")),
             _ => Place::new(path),
+        }
+    }
+
+    /// A file that is not there yet, be it by a dangling link.
+    ///
+    /// # Errors
+    /// As for [`regular`](Place::regular).
+    pub(crate) fn fresh(path: &Path) -> io::Result<Place> {
+        match fs::symlink_metadata(path) {
+            Ok(_) => {
+                let message = "it is there already, and nothing is replaced; give another name";
+                Err(io::Error::new(ErrorKind::AlreadyExists, message))
+            }
+            Err(error) if error.kind() == ErrorKind::NotFound => Place::new(path),
+            Err(error) => Err(error),
         }
     }
 

@@ -17,22 +17,25 @@ use pc_solve::{Ending, Ensemble};
 
 use crate::args::forms::RunForm;
 use crate::args::input;
-use crate::args::sweep::{Law, Random, SweepArguments, Vary};
+use crate::args::sweep::{Law, Random, SweepArguments};
 use crate::error::CliError;
 use crate::motion::identity;
 use crate::motion::identity::Identity;
 use crate::motion::interrupt;
 use crate::motion::memory;
 use crate::motion::plan::Plan;
+use crate::output;
 use crate::report::text::{labelled, short};
 use crate::report::{notes, text};
 use crate::sweep::design::Design;
 use crate::sweep::error::SweepError;
-use crate::sweep::journal::Journal;
+use crate::sweep::journal::{Journal, Records, Tally};
 use crate::sweep::member::Members;
 use crate::sweep::output::destination::Destination;
 use crate::sweep::progress::Progress;
+use crate::sweep::shard::Shard;
 use crate::sweep::sheet::Sheet;
+use crate::sweep::{plot, shards};
 
 /// Bytes of finished members that may wait for an earlier one.
 const WAITING: usize = 64 << 20;
@@ -45,6 +48,7 @@ const MOST_WAITING: usize = 4096;
 /// [`CliError`]; what was finished is kept then.
 pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let destination = Destination::new(&arguments.output)?;
+    let picture = output::destination::Destination::plot(arguments.plot.as_deref())?;
     let mut model = input::open(&arguments.model)?;
     for name in &arguments.project {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
@@ -58,18 +62,32 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let motion = Sheet::motion(&model, !all_rows);
     let columns = Sheet::motion(&model, false).len();
     let sheet = Sheet::new(&design, &motion);
+    let is_random = arguments.samples.is_some();
+    if picture.is_some() {
+        let counts: Vec<u64> = arguments.vary.iter().map(|vary| vary.values.count()).collect();
+        plot::check(&sheet, &arguments.columns, &counts, is_random).map_err(SweepError::Drawn)?;
+    }
     let title = model.title().to_owned();
-    let header = header(&model, arguments, &plan, form);
+    let shard = arguments.shard.unwrap_or(Shard::ALL);
+    let all = design.members();
+    let mut header = header(&model, arguments, &plan, form);
+    if arguments.shard.is_some() {
+        header = shards::described(header, shard, all, &title, &sheet);
+    }
     // Of each member at work its trajectory, its table, its record and the bytes of that.
     let threads =
         arguments.threads.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     memory::allow(plan.samples as u64, (4 * columns * threads) as u64, model.budget().limits())?;
-    let mut journal = Journal::open(destination.path(), &header)?;
-    let (members, before) = (design.members(), journal.tally().done);
+    let path = match arguments.shard {
+        Some(shard) => shard.beside(destination.path()),
+        None => Journal::beside(destination.path()),
+    };
+    let mut journal = Journal::open(path, shard, &header)?;
+    let (members, before) = (shard.members(all), journal.tally().done);
 
     let row = 8 * motion.len() * if all_rows { plan.samples } else { 1 };
     let window = NonZeroUsize::new((WAITING / row.max(1)).min(MOST_WAITING)).unwrap_or(NonZeroUsize::MIN);
-    let mut ensemble = Ensemble::new().window(window);
+    let mut ensemble = Ensemble::new().window(window).stopped_by(interrupt::flag());
     if let Some(threads) = arguments.threads {
         ensemble = ensemble.threads(threads);
     }
@@ -78,19 +96,29 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     interrupt::catch();
     let mut progress = Progress::new(before, members);
     let mut kept = Ok(());
-    let consume = |member, record: Result<Option<_>, pc_solve::Panicked>| {
-        let record = record.unwrap_or_else(|panicked| Some(work.panicked(member, &panicked.message)));
+    let consume = |place, record: Result<Option<_>, pc_solve::Panicked>| {
+        let record = record.unwrap_or_else(|panicked| {
+            let message = &panicked.message;
+            Some(work.panicked(shard.member(place), message))
+        });
         // None: interrupted on its way, or ended by a limit.
         let Some(record) = record else { return ControlFlow::Break(()) };
         kept = journal.append(&record);
-        progress.at(member + 1);
+        progress.at(place + 1);
         if kept.is_err() || interrupt::requested() {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
         }
     };
-    let ending = ensemble.map(before..members, |member, stop| work.integrate(member, stop), consume);
+    let ending = ensemble.map_in_lanes(
+        before..members,
+        work.span(),
+        |place| work.begin(shard.member(place)),
+        |_, begun, trajectory| work.completed(begun, &trajectory),
+        |_, begun, stop| work.integrate(begun, stop),
+        consume,
+    );
     drop(progress);
     kept?;
     let done = journal.tally().done;
@@ -101,14 +129,44 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
         }
         .into());
     }
-    destination.write(&title, &sheet, &journal)?;
-    let elapsed = start.elapsed().as_secs_f64();
     let tally = journal.tally().clone();
+    let mut said = summary(&title, &plan, &tally, (before, work.beside()), start.elapsed().as_secs_f64());
+    if arguments.shard.is_some() {
+        // Whether any member was completed is known when all shards are there.
+        said += &labelled("shard", 9, &[format!("{shard}, in {}, for pc merge", journal.path().display())]);
+        text::say(format_args!("{said}"));
+        return Ok(());
+    }
+    destination.write(&title, &sheet, &journal)?;
+    let drawn = picture.map(|place| draw(&place, &title, &sheet, &journal, &arguments.columns, is_random));
     journal.remove()?;
-    text::say(format_args!("{}", summary(&title, &plan, &tally, before, elapsed)));
+    text::say(format_args!("{said}"));
+    drawn.transpose()?;
+    judged(&tally)
+}
+
+/// Writes the picture.
+///
+/// # Errors
+/// [`SweepError::Drawn`], [`CliError::Write`]
+pub(super) fn draw(
+    place: &output::destination::Destination,
+    title: &str,
+    sheet: &Sheet,
+    members: &dyn Records,
+    columns: &[String],
+    is_random: bool,
+) -> Result<(), CliError> {
+    let picture = plot::picture(title, sheet, members, columns, is_random);
+    let picture = picture.map_err(SweepError::Read)?.map_err(SweepError::Drawn)?;
+    place.write_plot(&picture.drawing())
+}
+
+/// An error where no member was completed.
+pub(super) fn judged(tally: &Tally) -> Result<(), CliError> {
     match tally.others.first() {
         Some((_, _, first)) if tally.completed + tally.by_event == 0 => {
-            Err(SweepError::NoneCompleted { members, first: first.clone() }.into())
+            Err(SweepError::NoneCompleted { members: tally.done, first: first.clone() }.into())
         }
         _ => Ok(()),
     }
@@ -130,8 +188,7 @@ fn look(model: &Model) -> Result<(), CliError> {
 
 /// What the result depends on.
 fn header(model: &Model, arguments: &SweepArguments, plan: &Plan, form: RunForm) -> Identity {
-    let vary =
-        arguments.vary.iter().map(|Vary { name, from, to, count }| format!("{name}={from}:{to}:{count}"));
+    let vary = arguments.vary.iter().map(ToString::to_string);
     let random = arguments.random.iter().map(|Random { name, law }| match law {
         Law::Normal(m, s) => format!("{name}=normal({m},{s})"),
         Law::Uniform(a, b) => format!("{name}=uniform({a},{b})"),
@@ -152,17 +209,8 @@ fn header(model: &Model, arguments: &SweepArguments, plan: &Plan, form: RunForm)
     header
 }
 
-fn summary(
-    title: &str,
-    plan: &Plan,
-    tally: &crate::sweep::journal::Tally,
-    before: u64,
-    elapsed: f64,
-) -> String {
-    let mut text = format!("{}\n", one_line(title));
-    let mut line = |label: &str, line: String| text += &labelled(label, 9, &[line]);
-    line("method", plan.in_words());
-    line("time", format!("{} to {}", short(plan.t_start, 10), short(plan.t_end, 10)));
+/// How many members ended how.
+pub(super) fn counted(tally: &Tally) -> String {
     let others = tally.done - tally.completed - tally.by_event;
     let mut members = format!("{}, {} completed", tally.done, tally.completed);
     if tally.by_event > 0 {
@@ -171,17 +219,39 @@ fn summary(
     if others > 0 {
         members += &format!(", {others} not");
     }
+    members
+}
+
+/// Lines for the first members that were not completed.
+pub(super) fn uncompleted(tally: &Tally) -> String {
+    let others = tally.done - tally.completed - tally.by_event;
+    let mut lines = String::new();
+    for (member, status, message) in &tally.others {
+        lines += &labelled(status.word(), 9, &[format!("member {member}: {message}")]);
+    }
+    if others > tally.others.len() as u64 {
+        lines += &labelled("", 9, &[format!("… and {} more", others - tally.others.len() as u64)]);
+    }
+    lines
+}
+
+fn summary(title: &str, plan: &Plan, tally: &Tally, (before, beside): (u64, u64), elapsed: f64) -> String {
+    let mut text = format!("{}\n", one_line(title));
+    let mut line = |label: &str, line: String| text += &labelled(label, 9, &[line]);
+    line("method", plan.in_words());
+    line("time", format!("{} to {}", short(plan.t_start, 10), short(plan.t_end, 10)));
+    let mut members = counted(tally);
     if before > 0 {
         members += &format!("; {before} were finished before");
     }
     line("members", members);
-    for (member, status, message) in &tally.others {
-        line(status.word(), format!("member {member}: {message}"));
-    }
-    if others > tally.others.len() as u64 {
-        line("", format!("… and {} more", others - tally.others.len() as u64));
-    }
+    text += &uncompleted(tally);
+    let mut line = |label: &str, line: String| text += &labelled(label, 9, &[line]);
     let computed = tally.done - before;
-    line("work", format!("{elapsed:.3} s, {:.0} members/s", computed as f64 / elapsed));
+    let mut work = format!("{elapsed:.3} s, {:.0} members/s", computed as f64 / elapsed);
+    if beside > 0 {
+        work += &format!(", {beside} side by side in vectors");
+    }
+    line("work", work);
     text
 }

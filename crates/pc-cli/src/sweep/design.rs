@@ -43,7 +43,7 @@ impl Design {
             }
         }
         let targets = names.iter().map(|name| target(model, name)).collect::<Result<_, _>>()?;
-        let mut counts = arguments.vary.iter().map(|vary| vary.count);
+        let mut counts = arguments.vary.iter().map(|vary| vary.values.count());
         let grid = || counts.try_fold(1, u64::checked_mul);
         let members = arguments.samples.or_else(grid).ok_or(SweepError::TooMany)?;
         let values = match arguments.samples {
@@ -79,9 +79,9 @@ impl Design {
                     .iter()
                     .rev()
                     .map(|vary| {
-                        let place = rest % vary.count;
-                        rest /= vary.count;
-                        at(vary, place)
+                        let place = rest % vary.values.count();
+                        rest /= vary.values.count();
+                        vary.values.at(place)
                     })
                     .collect();
                 values.reverse();
@@ -128,15 +128,5 @@ fn target(model: &Model, name: &str) -> Result<Target, SweepError> {
         Ok(Target::Start(name.to_owned()))
     } else {
         Err(SweepError::UnknownName { name: name.to_owned(), parameters, starts })
-    }
-}
-
-/// Value number `place` of a range, whose ends are exact.
-fn at(vary: &Vary, place: u64) -> f64 {
-    let last = vary.count - 1;
-    match place {
-        0 => vary.from,
-        place if place == last => vary.to,
-        place => vary.from + (vary.to - vary.from) * (place as f64 / last as f64),
     }
 }

@@ -6,6 +6,8 @@ use std::path::PathBuf;
 use pc_solve::{EnsembleError, Spent};
 
 use crate::exit_code;
+use crate::sweep::plot_error::SweepPlotError;
+use crate::sweep::shard::Shard;
 
 /// Why a sweep was not begun or not completed.
 #[derive(Debug, thiserror::Error)]
@@ -78,6 +80,62 @@ pub enum SweepError {
         /// Why.
         source: io::Error,
     },
+    /// A file that is to be put together is none that a sweep with `--shard` has left.
+    #[error("{} was not left by `pc sweep --shard` of this version", path.display())]
+    NoShard {
+        /// The file.
+        path: PathBuf,
+    },
+    /// There is no shard to be put together.
+    #[error("there are no shards to put together: give the files that `pc sweep --shard` has left")]
+    NoShards,
+    /// A shard is of another sweep than another.
+    #[error("{} and {} are not of the same sweep: the first has {what}", path.display(), other.display())]
+    OtherShard {
+        /// The one.
+        path: PathBuf,
+        /// The other.
+        other: PathBuf,
+        /// What is different.
+        what: String,
+    },
+    /// A shard is there twice.
+    #[error("the shard {shard} is there twice: {} and {}", paths[0].display(), paths[1].display())]
+    ShardTwice {
+        /// Which.
+        shard: Shard,
+        /// The files.
+        paths: [PathBuf; 2],
+    },
+    /// Shards are not there.
+    #[error("of {of} shards {} missing: {}", if shards.len() == 1 { "one is" } else { "some are" }, numbers(shards))]
+    Missing {
+        /// Their numbers.
+        shards: Vec<u64>,
+        /// How many there are.
+        of: u64,
+    },
+    /// A shard is not complete.
+    #[error(
+        "{}, the shard {shard}, has {done} of its {members} members; repeat its command, which continues from there",
+        path.display()
+    )]
+    Unfinished {
+        /// The file.
+        path: PathBuf,
+        /// Which.
+        shard: Shard,
+        /// How many members it has.
+        done: u64,
+        /// How many it should have.
+        members: u64,
+    },
+    /// The finished members cannot be read once more.
+    #[error("cannot draw the sweep: its finished members cannot be read")]
+    Read(#[source] io::Error),
+    /// The picture that is asked for cannot be drawn.
+    #[error("--plot: {0}")]
+    Drawn(#[from] SweepPlotError),
     /// The threads cannot be started.
     #[error(transparent)]
     Ensemble(#[from] EnsembleError),
@@ -122,10 +180,23 @@ impl SweepError {
             | SweepError::InUse { .. }
             | SweepError::Foreign { .. }
             | SweepError::OtherSweep { .. }
+            | SweepError::NoShard { .. }
+            | SweepError::NoShards
+            | SweepError::OtherShard { .. }
+            | SweepError::ShardTwice { .. }
+            | SweepError::Missing { .. }
+            | SweepError::Unfinished { .. }
+            | SweepError::Drawn(_)
             | SweepError::Ensemble(_) => exit_code::USAGE,
-            SweepError::Journal { .. } | SweepError::Append { .. } => exit_code::UNWRITTEN,
+            SweepError::Read(_) | SweepError::Journal { .. } | SweepError::Append { .. } => {
+                exit_code::UNWRITTEN
+            }
         }
     }
+}
+
+fn numbers(shards: &[u64]) -> String {
+    shards.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")
 }
 
 fn list(names: &[String]) -> String {

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::SweepError;
 use super::record::{Record, Status};
+use super::shard::Shard;
 use crate::motion::identity;
 use crate::motion::identity::Identity;
 
@@ -26,7 +27,21 @@ pub(crate) struct Journal {
     file: File,
     /// Where the records begin.
     records: u64,
+    /// Which members they are of.
+    shard: Shard,
     tally: Tally,
+}
+
+/// Finished members in order.
+pub(crate) trait Records {
+    /// The records.
+    ///
+    /// # Errors
+    /// What the system says of the file.
+    fn records(&self) -> io::Result<Box<dyn Iterator<Item = io::Result<Record>> + '_>>;
+
+    /// Where they are if they cannot be written, unless they stay where they were found.
+    fn kept(&self) -> Option<&Path>;
 }
 
 /// How many members have ended how.
@@ -46,6 +61,20 @@ pub(crate) struct Tally {
 const MESSAGES: usize = 5;
 
 impl Tally {
+    /// Of several journals together.
+    pub(crate) fn sum<'t>(parts: impl Iterator<Item = &'t Tally>) -> Tally {
+        let mut sum = Tally::default();
+        for part in parts {
+            sum.done += part.done;
+            sum.completed += part.completed;
+            sum.by_event += part.by_event;
+            sum.others.extend(part.others.iter().cloned());
+        }
+        sum.others.sort_by_key(|(member, ..)| *member);
+        sum.others.truncate(MESSAGES);
+        sum
+    }
+
     fn count(&mut self, record: &Record) {
         self.done += 1;
         match record.status {
@@ -60,14 +89,18 @@ impl Tally {
 }
 
 impl Journal {
-    /// The journal beside the table `output`: a new one, or the one that the same sweep has left.
+    /// Where that of a whole sweep is, beside its table.
+    pub(crate) fn beside(table: &Path) -> PathBuf {
+        let mut name = table.as_os_str().to_owned();
+        name.push(".partial");
+        PathBuf::from(name)
+    }
+
+    /// The journal of a shard: a new one, or the one that the same sweep has left.
     ///
     /// # Errors
     /// [`SweepError`] if it is that of another sweep or is in use.
-    pub(crate) fn open(output: &Path, header: &Identity) -> Result<Journal, SweepError> {
-        let mut name = output.as_os_str().to_owned();
-        name.push(".partial");
-        let path = PathBuf::from(name);
+    pub(crate) fn open(path: PathBuf, shard: Shard, header: &Identity) -> Result<Journal, SweepError> {
         let refused = |source| SweepError::Journal { journal: path.clone(), source };
         if std::fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
             return Err(SweepError::Foreign { journal: path });
@@ -82,12 +115,47 @@ impl Journal {
         let text = serde_json::to_vec(header).map_err(|error| refused(error.into()))?;
         beginning.extend(frame(&text));
         let records = beginning.len() as u64;
-        let mut journal = Journal { path, file, records, tally: Tally::default() };
+        let mut journal = Journal { path, file, records, shard, tally: Tally::default() };
         journal.begin(&beginning, header)?;
         let refused = |source| SweepError::Journal { journal: journal.path.clone(), source };
         let (tally, end) = journal.scan().map_err(refused)?;
         journal.file.set_len(end).map_err(refused)?;
         Ok(Journal { tally, ..journal })
+    }
+
+    /// One that is only read, with its header; `shard` is what the header says.
+    ///
+    /// # Errors
+    /// [`SweepError`] if it is none, or in use.
+    pub(crate) fn finished(
+        path: &Path,
+        shard: impl FnOnce(&Identity) -> Option<Shard>,
+    ) -> Result<(Journal, Identity), SweepError> {
+        let path = path.to_owned();
+        let refused = |source| SweepError::Journal { journal: path.clone(), source };
+        let file = File::open(&path).map_err(refused)?;
+        match file.try_lock_shared() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(SweepError::InUse { journal: path }),
+            Err(TryLockError::Error(source)) => return Err(refused(source)),
+        }
+        let mut journal = Journal { path, file, records: 0, shard: Shard::ALL, tally: Tally::default() };
+        let mut reader = journal
+            .reader(0)
+            .map_err(|source| SweepError::Journal { journal: journal.path.clone(), source })?;
+        let text = read_magic(&mut reader).and_then(|()| Ok(read_frame(&mut reader)?.unwrap_or_default()));
+        let header = text.ok().and_then(|text| {
+            let header = serde_json::from_slice::<Identity>(&text).ok()?;
+            Some(((MAGIC.len() + text.len()) as u64 + FRAME, shard(&header)?, header))
+        });
+        let Some((records, shard, header)) = header else {
+            return Err(SweepError::NoShard { path: journal.path });
+        };
+        (journal.records, journal.shard) = (records, shard);
+        match journal.scan() {
+            Ok((tally, _)) => Ok((Journal { tally, ..journal }, header)),
+            Err(source) => Err(SweepError::Journal { journal: journal.path, source }),
+        }
     }
 
     /// Writes the `beginning`, unless it is there.
@@ -119,7 +187,7 @@ impl Journal {
         let mut reader = self.reader(self.records)?;
         while let Some(bytes) = read_frame(&mut reader)? {
             match Record::from_bytes(&bytes) {
-                Some(record) if record.member == tally.done => tally.count(&record),
+                Some(record) if record.member == self.shard.member(tally.done) => tally.count(&record),
                 _ => break,
             }
             end += FRAME + bytes.len() as u64;
@@ -149,25 +217,6 @@ impl Journal {
         &self.tally
     }
 
-    /// The records in order.
-    pub(crate) fn records(&self) -> io::Result<impl Iterator<Item = io::Result<Record>>> {
-        let mut reader = self.reader(self.records)?;
-        let mut left = self.tally.done;
-        Ok(std::iter::from_fn(move || {
-            left = left.checked_sub(1)?;
-            let bytes = match read_frame(&mut reader) {
-                Ok(bytes) => bytes,
-                Err(error) => return Some(Err(error)),
-            };
-            let record = bytes.as_deref().and_then(Record::from_bytes);
-            Some(
-                record.ok_or_else(|| {
-                    io::Error::new(io::ErrorKind::InvalidData, "a record has changed on disk")
-                }),
-            )
-        }))
-    }
-
     /// Removes it: the table is complete.
     ///
     /// # Errors
@@ -181,6 +230,30 @@ impl Journal {
         let mut file = &self.file;
         file.seek(SeekFrom::Start(from))?;
         Ok(BufReader::new(file))
+    }
+}
+
+impl Records for Journal {
+    fn records(&self) -> io::Result<Box<dyn Iterator<Item = io::Result<Record>> + '_>> {
+        let mut reader = self.reader(self.records)?;
+        let mut left = self.tally.done;
+        Ok(Box::new(std::iter::from_fn(move || {
+            left = left.checked_sub(1)?;
+            let bytes = match read_frame(&mut reader) {
+                Ok(bytes) => bytes,
+                Err(error) => return Some(Err(error)),
+            };
+            let record = bytes.as_deref().and_then(Record::from_bytes);
+            Some(
+                record.ok_or_else(|| {
+                    io::Error::new(io::ErrorKind::InvalidData, "a record has changed on disk")
+                }),
+            )
+        })))
+    }
+
+    fn kept(&self) -> Option<&Path> {
+        Some(&self.path)
     }
 }
 

@@ -2,10 +2,10 @@
 
 use std::error::Error;
 use std::ops::ControlFlow;
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use pc_mech::VectorField;
-use pc_model::{Flow, Model, ModelError};
+use pc_expr::{LaneField, VectorField};
+use pc_model::{Flow, Model, ModelError, Prototype};
 use pc_solve::{Ending, Events, Options, Solution, Stop, Trajectory};
 
 use super::design::Design;
@@ -15,10 +15,6 @@ use crate::motion::follow::follow;
 use crate::motion::interrupt;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
-
-/// A start that a projection moves by no more than this, relative to the larger of 1 and its size, satisfies the
-/// constraints up to the rounding of the numbers it is written with; a tenth of what a model is refused for.
-const ON_CONSTRAINTS: f64 = 1e-9;
 
 /// What all members have in common.
 pub(crate) struct Members {
@@ -33,59 +29,12 @@ pub(crate) struct Members {
     /// Number of columns of a motion, `t` first.
     columns: usize,
     prototype: Option<Prototype>,
+    /// How many came to their end beside others.
+    beside: AtomicU64,
 }
 
-/// The equations compiled once, for members of which only numbers are different.
-struct Prototype {
-    flow: Mutex<Flow>,
-    /// For each component of the state its place among the start values; none where it starts at 0.
-    places: Vec<Option<usize>>,
-    /// Start values that are no components of the state, because constraints say that they vanish.
-    vanishing: Vec<usize>,
-}
-
-impl Prototype {
-    /// None where the equations may depend on the start or on the values of the parameters: momenta solved for
-    /// velocities near the start, constraints left out because they follow from others; or where the start has to be solved for.
-    fn new(model: &Model, form: RunForm) -> Option<Prototype> {
-        if form != RunForm::Poincare || model.derives_start() {
-            return None;
-        }
-        let graph = model.graph();
-        let assembly = model.assemble(&graph).ok()?;
-        if !assembly.constraints.redundant().is_empty() {
-            return None;
-        }
-        let flow = Flow::new(model, &assembly, form.into()).ok()?;
-        let names = model.start_names();
-        let state = flow.motion.names();
-        let places = state.iter().map(|x| names.iter().position(|name| name == x)).collect();
-        let vanishing = (0..names.len()).filter(|&i| !state.contains(&names[i])).collect();
-        Some(Prototype { flow: Mutex::new(flow), places, vanishing })
-    }
-
-    /// The equations with the values of a model, at its start; none if something about it has to be looked at closer.
-    fn flow(&self, model: &Model, t: f64) -> Option<Flow> {
-        let values = model.start().ok()?;
-        let start: Vec<f64> =
-            self.places.iter().map(|place| place.map_or(0.0, |place| values[place])).collect();
-        let parameters: Vec<f64> = model.parameters().map(|(_, value)| value).collect();
-        let prototype = self.flow.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut flow = prototype.with_values(&parameters, start);
-        drop(prototype);
-        let start = flow.start.clone();
-        flow.motion.keep_from(t, &start).ok()?;
-        let mut nearest = flow.start.clone();
-        flow.motion.project(t, &mut nearest).ok()?;
-        let near = |(a, b): (&f64, &f64)| (a - b).abs() <= ON_CONSTRAINTS * a.abs().max(1.0);
-        let on = self.vanishing.iter().all(|&place| values[place] == 0.0)
-            && flow.start.iter().zip(&nearest).all(near);
-        let mut rate = vec![0.0; nearest.len()];
-        flow.motion.rhs(t, &start, &mut rate).ok()?;
-        let finite = flow.row(t, &start).iter().chain(&rate).all(|value| value.is_finite());
-        (on && finite).then_some(flow)
-    }
-}
+/// A member before its motion: its equations with what is known of it, or its record; none if time was over.
+type Begun = Result<Box<(Flow, Record)>, Option<Record>>;
 
 impl Members {
     /// `rows`: whether all rows of the plan are wanted instead of the last.
@@ -98,13 +47,13 @@ impl Members {
         columns: usize,
     ) -> Self {
         let (t_start, times, options) = (plan.t_start, plan.times(), plan.options());
-        let projected = model.projects_start();
-        let prototype = if projected { None } else { Prototype::new(&model, form) };
-        Members { model, design, form, t_start, times, options, all_rows: rows, columns, prototype }
+        let prototype = Prototype::new(&model, form.into());
+        let beside = AtomicU64::new(0);
+        Members { model, design, form, t_start, times, options, all_rows: rows, columns, prototype, beside }
     }
 
-    /// Integrates a member; none if it was stopped on its way, or time was over.
-    pub(crate) fn integrate(&self, member: u64, stop: &Stop<'_>) -> Option<Record> {
+    /// What is known of a member before its motion and, if it can be integrated beside others, its field and its start.
+    pub(crate) fn begin(&self, member: u64) -> (Begun, Option<(LaneField, Vec<f64>)>) {
         let values = self.design.values(member);
         let blank = Record {
             member,
@@ -117,10 +66,35 @@ impl Members {
         let mut model = self.design.model(&self.model, &blank.values);
         // Memory is each member's own, time that of all.
         model.within(self.model.budget().beside());
-        let mut flow = match self.flow(&model) {
-            Ok(flow) => flow,
-            Err(_) if model.budget().deadline().passed().is_some() => return None,
-            Err(error) => return Some(Record { message: line(&error.diagnostic().message), ..blank }),
+        match self.flow(&model) {
+            Ok(mut flow) => {
+                let free = flow.events.events().is_empty() && flow.motion.breaks().is_empty();
+                let lane = if free { flow.motion.lanes() } else { None };
+                let lane = lane.map(|field| (field, flow.start.clone()));
+                (Ok(Box::new((flow, blank))), lane)
+            }
+            Err(_) if model.budget().deadline().passed().is_some() => (Err(None), None),
+            Err(error) => (Err(Some(Record { message: line(&error.diagnostic().message), ..blank })), None),
+        }
+    }
+
+    /// The record of a member that came to its end beside others.
+    pub(crate) fn completed(&self, begun: Begun, trajectory: &Trajectory) -> Option<Record> {
+        let (mut flow, blank) = *begun.ok()?;
+        self.beside.fetch_add(1, Ordering::Relaxed);
+        Some(Record {
+            status: Status::Completed,
+            steps: trajectory.statistics().steps,
+            rows: self.rows(&mut flow, trajectory, None),
+            ..blank
+        })
+    }
+
+    /// Integrates a member; none if it was stopped on its way, or time was over.
+    pub(crate) fn integrate(&self, begun: Begun, stop: &Stop<'_>) -> Option<Record> {
+        let (mut flow, blank) = match begun {
+            Ok(begun) => *begun,
+            Err(record) => return record,
         };
         let observer = |_, _: &[f64]| {
             if stop.requested() || interrupt::requested() {
@@ -149,6 +123,16 @@ impl Members {
             rows: self.rows(&mut flow, &trajectory, reached),
             ..blank
         })
+    }
+
+    /// How many members came to their end beside others.
+    pub(crate) fn beside(&self) -> u64 {
+        self.beside.load(Ordering::Relaxed)
+    }
+
+    /// Start, output times and options of all.
+    pub(crate) fn span(&self) -> (f64, &[f64], &Options) {
+        (self.t_start, &self.times, &self.options)
     }
 
     /// What is kept of a member whose computation panicked.

@@ -1,6 +1,7 @@
 //! The table of a sweep: rows of numbers and text, member by member.
 
 use pc_model::Model;
+use serde_json::json;
 
 use super::design::Design;
 use super::record::Record;
@@ -25,6 +26,8 @@ pub(crate) enum Cell<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Sheet {
     columns: Vec<(String, Kind)>,
+    /// How many values are varied.
+    varied: usize,
     /// Numbers in a row that are of the motion.
     width: usize,
 }
@@ -51,7 +54,42 @@ impl Sheet {
             free("steps", Kind::Integer),
             free("message", Kind::Text),
         ];
-        Sheet { columns: columns.concat(), width: motion.len() }
+        Sheet { columns: columns.concat(), varied: design.names().len(), width: motion.len() }
+    }
+
+    /// The sheet as text.
+    pub(crate) fn to_text(&self) -> String {
+        let columns: Vec<_> = self.columns.iter().map(|(name, kind)| json!([name, *kind as u8])).collect();
+        json!([self.varied, self.width, columns]).to_string()
+    }
+
+    /// The sheet of a text.
+    pub(crate) fn from_text(text: &str) -> Option<Sheet> {
+        let (varied, width, columns): (usize, usize, Vec<(String, u8)>) = serde_json::from_str(text).ok()?;
+        let kind = |kind| match kind {
+            0 => Some(Kind::Integer),
+            1 => Some(Kind::Number),
+            2 => Some(Kind::Text),
+            _ => None,
+        };
+        let columns: Option<Vec<_>> = columns.into_iter().map(|(name, k)| Some((name, kind(k)?))).collect();
+        // member, what is varied, status, the motion, steps and message
+        columns.filter(|all| all.len() == varied + width + 4 && width > 0).map(|columns| Sheet {
+            columns,
+            varied,
+            width,
+        })
+    }
+
+    /// Names of what is varied.
+    pub(crate) fn varied(&self) -> impl Iterator<Item = &str> {
+        self.columns[1..=self.varied].iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Names of the columns of the motion.
+    pub(crate) fn motion_names(&self) -> Vec<&str> {
+        let from = self.varied + 2;
+        self.columns[from..from + self.width].iter().map(|(name, _)| name.as_str()).collect()
     }
 
     /// The columns of a motion of a model: those of `pc run`, with the drifts of what should be constant if these are

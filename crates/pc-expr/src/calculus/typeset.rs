@@ -145,49 +145,6 @@ impl Dag {
         product
     }
 
-    /// Columns of an expression in print, about: what is below `DEPTH` levels of it counts as a name.
-    pub(super) fn columns(&self, atom: Atom) -> usize {
-        const DEPTH: usize = 5;
-        match atom {
-            Atom::Constant(c) => c.to_string().len(),
-            Atom::Node(node) => self.node_columns(node, DEPTH),
-        }
-    }
-
-    fn node_columns(&self, node: NodeId, depth: usize) -> usize {
-        const NAME: usize = 3;
-        if depth == 0 {
-            return NAME;
-        }
-        match self.node(node) {
-            Node::Constant(c) => c.to_string().len(),
-            Node::Symbol(index) => self.symbol_name(index).chars().count(),
-            Node::Call { function, args } => {
-                let args = Dag::args(function, &args).iter();
-                function.name().len() + args.map(|&arg| self.node_columns(arg, depth - 1) + 2).sum::<usize>()
-            }
-            Node::Product { factors } => {
-                let factor = |&(node, e): &(NodeId, i32)| {
-                    let brackets = if matches!(self.node(node), Node::Sum { .. }) { 2 } else { 0 };
-                    self.node_columns(node, depth - 1) + 1 + brackets + usize::from(e.unsigned_abs() > 1)
-                };
-                self.factors(factors).iter().map(factor).sum()
-            }
-            Node::Sum { constant, terms } => {
-                let term = |&(node, q): &(NodeId, Number)| {
-                    let is_sum = matches!(self.node(node), Node::Sum { .. });
-                    let coefficient = match q.abs().is_one() {
-                        true => 0,
-                        false => q.abs().to_string().len() + if is_sum { 3 } else { 1 },
-                    };
-                    self.node_columns(node, depth - 1) + coefficient + 3
-                };
-                let constant = if constant.is_zero() { 0 } else { constant.to_string().len() + 3 };
-                self.terms(terms).iter().map(term).sum::<usize>() + constant
-            }
-        }
-    }
-
     /// q and the terms of a sum q (c + Σ …).
     pub(super) fn terms_of(&self, sum: Atom) -> Option<(Number, Number, Vec<Term>)> {
         let Atom::Node(node) = sum else { return None };

@@ -18,6 +18,7 @@ pub enum Backend {
 }
 
 /// Machine code of more operations would take longer to make, and more memory, than it saves.
+#[cfg(feature = "jit")]
 const LONGEST_MACHINE_CODE: usize = 250_000;
 
 /// The fastest kernel for `program` on this host: machine code, or the interpreter where none can be made or the program has

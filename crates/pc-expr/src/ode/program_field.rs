@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::kernel::evaluator::{Backend, Evaluator};
+use crate::ode::lane_field::{LaneField, Watched};
 use crate::ode::vector_field::{Failure, VectorField};
 use crate::program::program::Program;
 use crate::taylor::coefficients::TaylorSeries;
@@ -76,6 +77,14 @@ impl VectorField for ProgramField {
 
     fn component_name(&self, i: usize) -> String {
         self.program().input_names()[1 + i].clone()
+    }
+
+    fn lanes(&mut self) -> Option<LaneField> {
+        (self.backend == Backend::Fastest).then(|| LaneField {
+            program: Arc::clone(self.rates.program()),
+            parameters: self.parameters.clone(),
+            watched: Watched::NOTHING,
+        })
     }
 
     fn series(&mut self) -> Result<&TaylorSeries, Failure> {

@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::fmt;
 
+use crate::ode::lane_field::LaneField;
 use crate::ode::pattern::Pattern;
 use crate::taylor::coefficients::TaylorSeries;
 use crate::time_profile::profile::TimeDependence;
@@ -158,6 +159,12 @@ pub trait VectorField {
         Err(Failure::fatal(NoSeries))
     }
 
+    /// f as a program to be evaluated at many states at once, with the parameters as they are; none where it is more than
+    /// that, or is to be interpreted.
+    fn lanes(&mut self) -> Option<LaneField> {
+        None
+    }
+
     /// Announces that the motion continues from `y` at time t, a state that it did not reach by itself, such as one
     /// after an impact: conserved quantities may have new values.
     fn restart(&mut self, _t: f64, _y: &[f64]) {}
@@ -248,6 +255,9 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
     }
     fn expand(&mut self, t: f64, y: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
         (**self).expand(t, y, sides, order)
+    }
+    fn lanes(&mut self) -> Option<LaneField> {
+        (**self).lanes()
     }
     fn restart(&mut self, t: f64, y: &[f64]) {
         (**self).restart(t, y);

@@ -147,7 +147,7 @@ pub(super) fn juxtaposed(factors: &[String]) -> String {
                 (false, false) => TIMES,
             });
         }
-        match factor.split_once(BARE).filter(|_| is_call(factor)) {
+        match bare_call(factor) {
             Some((head, argument)) if factors.get(i + 1).is_some_and(|next| !is_call(next)) => {
                 text.push_str(&format!("{head}{APPLY}{}", bracketed(argument)));
             }
@@ -208,6 +208,18 @@ fn is_call(factor: &str) -> bool {
             .and_then(|rest| rest.strip_prefix(function.name()))
             .is_some_and(|rest| rest.starts_with("</mi>") && factor.contains(APPLY))
     })
+}
+
+/// The name of a function, with its power, and its argument, if that has no brackets; those of calls in the argument do not
+/// count.
+fn bare_call(factor: &str) -> Option<(&str, &str)> {
+    let is_outermost = |before: &str| {
+        let closed = before.matches("</m").count() + before.matches("/>").count();
+        before.matches("<m").count() == closed
+    };
+    let mut places = factor.match_indices(BARE).map(|(place, _)| place);
+    let place = places.find(|&place| is_outermost(&factor[..place])).filter(|_| is_call(factor))?;
+    Some((&factor[..place], &factor[place + BARE.len()..]))
 }
 
 /// Names of several letters and those with indices do not run into each other.

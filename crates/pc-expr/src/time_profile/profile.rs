@@ -29,20 +29,25 @@ impl TimeDependence {
     /// The time dependence of rates computed by these programs, whose states begin with `dim` components of y, for
     /// these values of the parameters.
     pub fn of(programs: &[&Program], dim: usize, parameters: &[f64]) -> TimeDependence {
-        let mut profile =
-            TimeProfile { parts: Vec::new(), mixed: Vec::new(), sampled: false, room: Vec::new() };
+        let mut profile = TimeProfile {
+            parts: Vec::new(),
+            mixed: Vec::new(),
+            sampled: false,
+            room: Vec::new(),
+            times: Surprises::default(),
+        };
         let mut explicit = false;
         for program in programs {
             let Analysis { explicit: here, forcing, mixed } = Analysis::of(program, parameters);
             explicit |= here;
             if !forcing.is_empty() {
-                profile.parts.push(Watched { part: forcing, scan: None });
+                profile.parts.push(Watched { part: forcing, scan: Scan::new() });
             }
             if mixed.is_empty() {
                 continue;
             }
             if program.state_len() == dim && mixed.len() <= LONGEST {
-                profile.mixed.push(mixed);
+                profile.mixed.push(Watched { part: mixed, scan: Scan::new() });
             } else {
                 profile.sampled = true;
             }
@@ -85,11 +90,12 @@ impl TimeDependence {
 #[derive(Clone, Debug)]
 pub struct TimeProfile {
     parts: Vec<Watched>,
-    mixed: Vec<Part>,
+    mixed: Vec<Watched>,
     /// Whether there are functions of t and the state that are not followed.
     sampled: bool,
-    /// Room for what is seen of each function of a part.
+    /// Room for what is seen of each function of a part, and for what is answered.
     room: Vec<Seen>,
+    times: Surprises,
 }
 
 /// Times of features that the two ends of an interval would not show, in order.
@@ -106,6 +112,29 @@ pub struct Surprises {
 }
 
 impl Surprises {
+    /// For another interval.
+    fn forget(&mut self) {
+        self.few.clear();
+        self.many.clear();
+        (self.until, self.noise) = (None, false);
+    }
+
+    /// Takes note of what a scan finds.
+    fn add(
+        &mut self,
+        part: &mut Part,
+        scan: &mut Scan,
+        (t, to): (f64, f64),
+        line: Line<'_>,
+        enough: bool,
+        room: &mut Vec<Seen>,
+    ) {
+        let (known, features) = scan.between(part, (t, to), line, enough);
+        choose(features.iter(), (t, known), part, room, self);
+        self.limit(known, (t, to));
+        self.noise |= scan.is_noise();
+    }
+
     /// Takes note that of the interval not all is known.
     fn limit(&mut self, known: f64, (t, to): (f64, f64)) {
         if known != to && self.until.is_none_or(|until| (known - t).abs() < (until - t).abs()) {
@@ -117,11 +146,11 @@ impl Surprises {
 /// So many are few.
 const FEW: usize = 32;
 
-/// Functions of t alone, and how far they are known.
+/// Functions, and how far they are known.
 #[derive(Clone, Debug)]
 struct Watched {
     part: Part,
-    scan: Option<Scan>,
+    scan: Scan,
 }
 
 impl TimeProfile {
@@ -146,33 +175,25 @@ impl TimeProfile {
         at: (&[f64], &[f64]),
         end: f64,
         enough: bool,
-    ) -> Surprises {
+    ) -> &Surprises {
         let direction = if to < t { -1.0 } else { 1.0 };
-        let mut times = Surprises::default();
-        for Watched { part, scan } in &mut self.parts {
-            let scan = match scan {
-                Some(scan) if scan.covers(t, to) => scan,
-                _ => {
-                    // Where no end is in sight, a window that is not outrun at once.
-                    let far = if (end - to) * direction >= 0.0 { end } else { t + 16.0 * (to - t) };
-                    scan.insert(Scan::new(part, t, far, Line::default()))
-                }
-            };
-            let (known, features) = scan.between(part, (t, to), Line::default(), enough);
-            choose(features.iter(), (t, known), part, &mut self.room, &mut times);
-            times.limit(known, (t, to));
-            times.noise |= scan.is_noise();
+        let TimeProfile { parts, mixed, room, times, .. } = self;
+        times.forget();
+        for Watched { part, scan } in parts {
+            if !scan.covers(t, to) {
+                // Where no end is in sight, a window that is not outrun at once.
+                let far = if (end - to) * direction >= 0.0 { end } else { t + 16.0 * (to - t) };
+                scan.begin(part, t, far, Line::default());
+            }
+            times.add(part, scan, (t, to), Line::default(), enough, room);
         }
         let line = Line { t, state: at.0, rates: at.1 };
-        for part in &mut self.mixed {
-            let mut scan = Scan::new(part, t, to, line);
-            let (known, features) = scan.between(part, (t, to), line, enough);
-            choose(features.iter(), (t, known), part, &mut self.room, &mut times);
-            times.limit(known, (t, to));
-            times.noise |= scan.is_noise();
+        for Watched { part, scan } in mixed {
+            scan.begin(part, t, to, line);
+            times.add(part, scan, (t, to), line, enough, room);
         }
         for times in [&mut times.few, &mut times.many] {
-            times.sort_by(|a, b| ((a - b) * direction).total_cmp(&0.0));
+            times.sort_unstable_by(|a, b| ((a - b) * direction).total_cmp(&0.0));
             times.dedup();
         }
         times

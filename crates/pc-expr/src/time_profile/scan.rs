@@ -50,7 +50,8 @@ pub(crate) enum Kind {
 /// What is known of one function so far.
 #[derive(Clone, Debug)]
 struct Track {
-    /// How much it varies over the window.
+    /// Its values over the window, as far as they are finite, and how much it varies there.
+    values: Option<Interval>,
     range: f64,
     rate: Sign,
     bend: Sign,
@@ -84,7 +85,8 @@ impl Sign {
     }
 }
 
-/// The features of what is watched along a window, found as far as asked for.
+/// The features of what is watched along a window, found as far as asked for. What it holds serves for the next window, too: it is
+/// asked at each step.
 #[derive(Clone, Debug)]
 pub(crate) struct Scan {
     /// From where the features are kept.
@@ -95,24 +97,32 @@ pub(crate) struct Scan {
     pieces: Vec<(f64, f64)>,
     tracks: Vec<Track>,
     features: VecDeque<Feature>,
+    /// What is watched over a piece.
+    jets: Vec<Jet>,
     /// Whether what is watched turns faster than time is told. It is not looked at closely any more.
     noise: bool,
 }
 
 impl Scan {
-    pub(crate) fn new(part: &mut Part, start: f64, end: f64, line: Line<'_>) -> Scan {
-        let at = |i: u32| start + (end - start) * (f64::from(i) / f64::from(PIECES));
-        let mut pieces: Vec<(f64, f64)> = (0..PIECES).map(|i| (at(i), at(i + 1))).collect();
-        let mut ranges = vec![None::<Interval>; part.watched.len()];
-        for &piece in &pieces {
-            for (range, jet) in ranges.iter_mut().zip(part.over(piece, line)) {
-                if jet.value.width().is_finite() {
-                    *range = Some(range.map_or(jet.value, |range| range.hull(jet.value)));
-                }
-            }
+    /// Of no window yet.
+    pub(crate) fn new() -> Scan {
+        Scan {
+            from: f64::NAN,
+            end: f64::NAN,
+            shortest: f64::NAN,
+            pieces: Vec::new(),
+            tracks: Vec::new(),
+            features: VecDeque::new(),
+            jets: Vec::new(),
+            noise: false,
         }
-        let track = |range: Option<Interval>| Track {
-            range: range.map_or(0.0, Interval::width),
+    }
+
+    /// Begins a window.
+    pub(crate) fn begin(&mut self, part: &mut Part, start: f64, end: f64, line: Line<'_>) {
+        let track = Track {
+            values: None,
+            range: 0.0,
             rate: Sign { sign: 0, until: start },
             bend: Sign { sign: 0, until: start },
             last_rate: Interval::ALL,
@@ -120,18 +130,27 @@ impl Scan {
             at_end: 0.0,
             sharp: None,
         };
-        pieces.reverse();
-        Scan {
-            from: start,
-            end,
-            shortest: (SHORTEST * (end - start).abs())
-                .max(8.0 * f64::EPSILON * start.abs().max(end.abs()))
-                .max(f64::MIN_POSITIVE),
-            pieces,
-            tracks: ranges.into_iter().map(track).collect(),
-            features: VecDeque::new(),
-            noise: false,
+        self.tracks.clear();
+        self.tracks.resize(part.watched.len(), track);
+        let at = |i: u32| start + (end - start) * (f64::from(i) / f64::from(PIECES));
+        self.pieces.clear();
+        self.pieces.extend((0..PIECES).rev().map(|i| (at(i), at(i + 1))));
+        for &piece in self.pieces.iter().rev() {
+            for (track, jet) in self.tracks.iter_mut().zip(part.over(piece, line)) {
+                if jet.value.width().is_finite() {
+                    track.values = Some(track.values.map_or(jet.value, |values| values.hull(jet.value)));
+                }
+            }
         }
+        for track in &mut self.tracks {
+            track.range = track.values.map_or(0.0, Interval::width);
+        }
+        (self.from, self.end) = (start, end);
+        self.shortest = (SHORTEST * (end - start).abs())
+            .max(8.0 * f64::EPSILON * start.abs().max(end.abs()))
+            .max(f64::MIN_POSITIVE);
+        self.features.clear();
+        self.noise = false;
     }
 
     /// Whether what is watched turns faster than time is told, as far as has been seen.
@@ -176,15 +195,17 @@ impl Scan {
             let shortest = indivisible || left == 0;
             left = left.saturating_sub(1);
             let tracks = &mut self.tracks;
-            let jets: Vec<Jet> = part.over((a, b), line).collect();
-            let plain = tracks.iter().zip(&jets).all(|(track, jet)| track.is_plain(jet));
+            let jets = &mut self.jets;
+            jets.clear();
+            jets.extend(part.over((a, b), line));
+            let plain = tracks.iter().zip(&*jets).all(|(track, jet)| track.is_plain(jet));
             if !shortest && !plain {
                 self.pieces.extend([(middle, b), (a, middle)]);
                 continue;
             }
             sharp += u32::from(indivisible && !plain);
             self.noise |= sharp >= NOISE;
-            for (function, (track, jet)) in tracks.iter_mut().zip(&jets).enumerate() {
+            for (function, (track, jet)) in tracks.iter_mut().zip(&*jets).enumerate() {
                 track.pass((a, b), jet, shortest, |t, kind| {
                     self.features.push_back(Feature { t, function, kind });
                 });

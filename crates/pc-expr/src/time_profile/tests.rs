@@ -21,7 +21,7 @@ fn profile(program: &Program) -> TimeProfile {
 }
 
 fn found(program: &Program, from: f64, to: f64) -> Vec<f64> {
-    let found = profile(program).surprises((from, to), (&[0.0], &[0.0]), to, false);
+    let found = profile(program).surprises((from, to), (&[0.0], &[0.0]), to, false).clone();
     [found.few, found.many].concat()
 }
 
@@ -128,6 +128,6 @@ fn features_beyond_the_resolution_of_time_are_noise() {
     assert_eq!((later.noise, later.until), (true, None));
     assert!(later.few.len() + later.many.len() < 100);
     let square = program(|_, t, y| (300.0 * t).sin().sign() + y);
-    let found = profile(&square).surprises((0.0, 10.0), (&[0.0], &[0.0]), 10.0, false);
+    let found = profile(&square).surprises((0.0, 10.0), (&[0.0], &[0.0]), 10.0, false).clone();
     assert!(!found.noise && found.many.len() > 100, "{}", found.many.len());
 }

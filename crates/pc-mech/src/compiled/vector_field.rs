@@ -1,6 +1,6 @@
 //! A compiled motion as a vector field.
 
-use pc_expr::{Failure, Pattern, TaylorSeries, TimeDependence, VectorField};
+use pc_expr::{Failure, LaneField, Pattern, TaylorSeries, TimeDependence, VectorField};
 
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
@@ -171,6 +171,16 @@ impl VectorField for Motion {
             let error = failure.at(&self.quasi_velocities, t, &self.names, y);
             Failure::recoverable(error)
         })
+    }
+
+    fn lanes(&mut self) -> Option<LaneField> {
+        if !self.signals.is_empty() || !self.charts.is_empty() || self.has_projection() {
+            return None;
+        }
+        match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.lanes(self.names.len(), &self.parameters),
+            Form::Staged(_) | Form::InMomenta(_) => None,
+        }
     }
 
     fn restart(&mut self, t: f64, y: &[f64]) {

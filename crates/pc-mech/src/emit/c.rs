@@ -41,6 +41,7 @@ fn extent(source: &Source<'_>, extent: Extent) -> String {
         Extent::QuasiVelocitiesSquared => format!("{name}_K*{name}_K"),
         Extent::Integrals => format!("{name}_INTEGRALS"),
         Extent::Outputs => format!("{name}_OUTPUTS"),
+        Extent::Count(count) => count.to_string(),
     }
 }
 

@@ -4,6 +4,7 @@ use pc_expr::{Chain, ChainLayout, Expr, FunctionBody, Language, Layout, Place, P
 
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::first_order::{FirstOrder, Linearised};
+use crate::emit::function::SourceFunction;
 use crate::emit::source::{EmitOptions, EmittedFile, Extent, Routine, Source};
 use crate::emit::{c, rust};
 use crate::equations::poincare::Equations;
@@ -48,14 +49,41 @@ impl<'g> Equations<'g> {
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor declared
     /// parameter.
     pub fn emit(&self, options: &EmitOptions) -> Result<Vec<EmittedFile>, MechError> {
-        let source = self.source(options)?;
+        self.emit_with(options, &[])
+    }
+
+    /// The same with more functions.
+    ///
+    /// # Errors
+    /// As for [`emit`](Equations::emit).
+    pub fn emit_with(
+        &self,
+        options: &EmitOptions,
+        functions: &[SourceFunction<'g>],
+    ) -> Result<Vec<EmittedFile>, MechError> {
+        let source = self.source(options, functions)?;
         Ok(match options.language {
             Language::C => c::files(&source),
             Language::Rust => rust::files(&source),
         })
     }
 
-    fn source<'a>(&self, options: &'a EmitOptions) -> Result<Source<'a>, MechError> {
+    /// Whether derivatives of the right-hand side are too long to be written out, as [`emit`](Equations::emit) does not: those
+    /// of a [directional](SourceFunction::directional) function would take compilers minutes, too.
+    ///
+    /// # Errors
+    /// As for [`emit`](Equations::emit).
+    pub fn has_long_derivatives(&self) -> Result<bool, MechError> {
+        let system = self.first_order();
+        let solved = Solved::new(self, &system);
+        is_long(&system, &solved)
+    }
+
+    fn source<'a>(
+        &self,
+        options: &'a EmitOptions,
+        functions: &[SourceFunction<'g>],
+    ) -> Result<Source<'a>, MechError> {
         let system = &self.system;
         let names = |symbols: &[Expr<'g>]| symbols.iter().map(Expr::to_string).collect::<Vec<_>>();
         let of = |list: &[(String, Expr<'g>)]| list.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
@@ -69,6 +97,10 @@ impl<'g> Equations<'g> {
         let writer = Writer::new(self.first_order(), options);
         let solved = Solved::new(self, &writer.system);
         let shared = self.shared(&writer, &solved)?;
+        let mut routines = self.routines(&writer, &solved, shared.as_ref())?;
+        for function in functions {
+            routines.push(self.function(&writer, &solved, function)?);
+        }
         Ok(Source {
             options,
             name: options.language.identifiers(&[&options.name], &[]).remove(0),
@@ -83,7 +115,7 @@ impl<'g> Equations<'g> {
             integrals: of(&system.integrals),
             outputs: of(&system.outputs),
             equations: self.equations_as_text(),
-            routines: self.routines(&writer, &solved, shared.as_ref())?,
+            routines,
             shared: shared.map(|(chain, _)| chain),
         })
     }
@@ -110,11 +142,7 @@ impl<'g> Equations<'g> {
         solved: &Solved<'g>,
     ) -> Result<Option<(Chain, Program)>, MechError> {
         let (graph, inputs) = (self.system.graph(), writer.system.inputs(&[]));
-        let operations = Program::new(graph, &inputs, &solved.motion)?.code().len();
-        if !writer.options.jacobian
-            || writer.options.fused
-            || operations * inputs.state.len() <= LONG_JACOBIAN
-        {
+        if !writer.options.jacobian || writer.options.fused || !is_long(&writer.system, solved)? {
             return Ok(None);
         }
         let columns = (0..self.mass_matrix().rows()).flat_map(|s| self.mass_matrix().column(s));
@@ -168,10 +196,11 @@ impl<'g> Equations<'g> {
                 Some((chain, program)) => {
                     let body = of_chain(chain.jacobian(program, "jac"));
                     Routine {
-                        name: "jacobian",
+                        name: "jacobian".to_owned(),
                         purpose,
                         array: "jac",
                         extent: Extent::StateSquared,
+                        directional: false,
                         sparse: false,
                         body,
                     }
@@ -197,10 +226,11 @@ impl<'g> Equations<'g> {
         if let Some((chain, _)) = shared {
             let (array, extent, sparse) = ("mass", Extent::QuasiVelocitiesSquared, false);
             let body = of_chain(chain.values(array, dim, k * k));
-            routines.push(Routine { name: "mass_matrix", purpose, array, extent, sparse, body });
+            let (name, directional) = ("mass_matrix".to_owned(), false);
+            routines.push(Routine { name, purpose, array, extent, directional, sparse, body });
             let body = of_chain(chain.value(dim + k * k));
-            let (array, extent) = ("", Extent::One);
-            routines.push(Routine { name: "energy", purpose: energy, array, extent, sparse, body });
+            let (name, purpose, array, extent) = ("energy".to_owned(), energy, "", Extent::One);
+            routines.push(Routine { name, purpose, array, extent, directional, sparse, body });
         } else {
             let columns: Vec<Expr<'g>> = (0..k).flat_map(|s| self.mass_matrix().column(s)).collect();
             let slot = |e: usize| (format!("[{} + {k}*{}]", e % k, e / k), String::new());
@@ -230,6 +260,46 @@ impl<'g> Equations<'g> {
         }
         Ok(routines)
     }
+
+    fn function(
+        &self,
+        writer: &Writer<'_, 'g>,
+        solved: &Solved<'g>,
+        function: &SourceFunction<'g>,
+    ) -> Result<Routine, MechError> {
+        let system = &self.system;
+        let names: Vec<String> = function.values.iter().map(|(name, _)| name.clone()).collect();
+        let values: Vec<Expr<'g>> = function.values.iter().map(|&(_, value)| value).collect();
+        let (name, purpose) = (&function.name, function.purpose.clone());
+        if function.is_directional {
+            let symbols = writer.system.state.iter().copied().chain(writer.system.parameter_symbols());
+            let symbols: Vec<Expr<'g>> = symbols.collect();
+            let seeds = writer.system.fresh("d", &symbols);
+            let direction: Vec<_> = symbols.into_iter().zip(seeds.iter().copied()).collect();
+            let observing = FirstOrder {
+                rates: writer.system.rates.iter().chain(&values).copied().collect(),
+                ..writer.system.clone()
+            };
+            let along = Linearised::new(&observing, &solved.factors, &solved.accelerations).along(&direction);
+            let what: Vec<String> =
+                writer.system.state.iter().map(|name| format!("{name}'")).chain(names).collect();
+            let extent = Extent::Count(along.len());
+            let slot = |i: usize| (format!("[{i}]"), format!("along: {}", what[i]));
+            return writer.routine_along(&seeds, name, purpose, ("values", extent), &along, slot);
+        }
+        let rates: Vec<_> =
+            system.accelerations().into_iter().zip(solved.accelerations.iter().copied()).collect();
+        let (values, extent) = (system.graph().substitute(&values, &rates), Extent::Count(values.len()));
+        let slot = |i: usize| (format!("[{i}]"), names[i].clone());
+        writer.routine(name, purpose, ("values", extent), &values, slot)
+    }
+}
+
+/// Whether the Jacobian of the right-hand side would be no text to be read.
+fn is_long<'g>(system: &FirstOrder<'g>, solved: &Solved<'g>) -> Result<bool, MechError> {
+    let inputs = system.inputs(&[]);
+    let operations = Program::new(system.graph, &inputs, &solved.motion)?.code().len();
+    Ok(operations * inputs.state.len() > LONG_JACOBIAN)
 }
 
 /// The motion solved for its accelerations.
@@ -280,14 +350,29 @@ impl<'a, 'g> Writer<'a, 'g> {
     /// it is.
     fn routine(
         &self,
-        name: &'static str,
+        name: &str,
+        purpose: String,
+        (array, extent): (&'static str, Extent),
+        values: &[Expr<'g>],
+        slot: impl Fn(usize) -> (String, String),
+    ) -> Result<Routine, MechError> {
+        self.routine_along(&[], name, purpose, (array, extent), values, slot)
+    }
+
+    /// The same with these symbols of a direction after the parameters.
+    fn routine_along(
+        &self,
+        direction: &[Expr<'g>],
+        name: &str,
         purpose: String,
         (array, extent): (&'static str, Extent),
         values: &[Expr<'g>],
         slot: impl Fn(usize) -> (String, String),
     ) -> Result<Routine, MechError> {
         let language = self.options.language;
-        let mut program = Program::new(self.system.graph, &self.system.inputs(&[]), values)?;
+        let mut inputs = self.system.inputs(&[]);
+        inputs.parameters.extend_from_slice(direction);
+        let mut program = Program::new(self.system.graph, &inputs, values)?;
         if self.options.fused {
             program = program.fused();
         }
@@ -297,12 +382,20 @@ impl<'a, 'g> Writer<'a, 'g> {
             true => vec![String::new(); slots.len()],
             false => language.identifiers(&slots.iter().map(|(_, what)| what).collect::<Vec<_>>(), &[array]),
         };
+        let identifiers = match direction {
+            [] => self.inputs.clone(),
+            _ => {
+                let symbols = inputs.state.iter().chain(&inputs.parameters);
+                let reserved: Vec<&str> = self.reserved.iter().map(String::as_str).collect();
+                language.identifiers(&symbols.map(Expr::to_string).collect::<Vec<_>>(), &reserved)
+            }
+        };
         let place = |index: &str| match extent {
             Extent::One => Place::Returned,
             _ => Place::Entry(format!("{array}{index}")),
         };
         let layout = Layout {
-            inputs: self.inputs.clone(),
+            inputs: identifiers,
             slots: slots
                 .iter()
                 .zip(locals)
@@ -313,6 +406,15 @@ impl<'a, 'g> Writer<'a, 'g> {
             reserved: self.reserved.clone(),
         };
         let sparse = is_matrix && values.iter().any(|value| value.is_zero());
-        Ok(Routine { name, purpose, array, extent, sparse, body: program.emit(language, &layout) })
+        let (name, directional) = (name.to_owned(), !direction.is_empty());
+        Ok(Routine {
+            name,
+            purpose,
+            array,
+            extent,
+            directional,
+            sparse,
+            body: program.emit(language, &layout),
+        })
     }
 }

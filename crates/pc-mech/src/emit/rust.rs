@@ -126,19 +126,21 @@ fn constants(source: &Source<'_>, text: &mut String) {
 
 fn function(source: &Source<'_>, routine: &Routine, text: &mut String) {
     let size = match routine.extent {
-        Extent::One => "",
-        Extent::State => "DIM",
-        Extent::StateSquared => "DIM * DIM",
-        Extent::QuasiVelocitiesSquared => "QUASI_VELOCITIES * QUASI_VELOCITIES",
-        Extent::Integrals => "INTEGRALS",
-        Extent::Outputs => "OUTPUTS",
+        Extent::One => String::new(),
+        Extent::State => "DIM".to_owned(),
+        Extent::StateSquared => "DIM * DIM".to_owned(),
+        Extent::QuasiVelocitiesSquared => "QUASI_VELOCITIES * QUASI_VELOCITIES".to_owned(),
+        Extent::Integrals => "INTEGRALS".to_owned(),
+        Extent::Outputs => "OUTPUTS".to_owned(),
+        Extent::Count(count) => count.to_string(),
     };
+    let parameters = if routine.directional { "DIM + 2 * PARAMETERS" } else { "PARAMETERS" };
     let purpose = source.options.language.comment(&routine.purpose);
     let verb = if routine.extent == Extent::One { "Returns" } else { "Writes" };
     let _ = writeln!(text, "\n/// {verb} {purpose}.");
     let Routine { name, array, .. } = routine;
     let mut arguments =
-        vec!["t: f64".to_owned(), "y: &[f64; DIM]".to_owned(), "p: &[f64; PARAMETERS]".to_owned()];
+        vec!["t: f64".to_owned(), "y: &[f64; DIM]".to_owned(), format!("p: &[f64; {parameters}]")];
     let mut result = "";
     match routine.extent {
         Extent::One => result = " -> f64",

@@ -100,15 +100,19 @@ pub(super) enum Extent {
     QuasiVelocitiesSquared,
     Integrals,
     Outputs,
+    /// So many.
+    Count(usize),
 }
 
 /// A function of the source.
 pub(super) struct Routine {
-    pub(super) name: &'static str,
+    pub(super) name: String,
     pub(super) purpose: String,
     /// The array that it writes.
     pub(super) array: &'static str,
     pub(super) extent: Extent,
+    /// Whether a direction follows the parameters.
+    pub(super) directional: bool,
     /// Whether zeros have to be written before the rest.
     pub(super) sparse: bool,
     pub(super) body: FunctionBody,

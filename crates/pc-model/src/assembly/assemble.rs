@@ -98,6 +98,7 @@ impl<'g> Assembler<'g, '_> {
         values.extend(state.iter().copied().zip(start.iter().copied()));
         self.check_finite(&values, &x_dot, &state)?;
         self.check_frame_at_start(&frame, &values)?;
+        self.check_orientations(&frame, &values)?;
 
         let mut builder = System::builder(self.graph)
             .coordinates(document.coordinates.iter().map(|c| &c.name.text))

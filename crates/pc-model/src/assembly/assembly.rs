@@ -92,6 +92,15 @@ impl<'g> Assembly<'g> {
         self.document.stage(self.system.graph(), "the equations of motion", equations)
     }
 
+    /// The conditions f(t, x) = 0 that multipliers hold, by the names of their constraints.
+    pub fn held_positions(&self) -> Vec<(String, Expr<'g>)> {
+        let ConstraintFormulation::Multipliers(held) = self.constraints.formulation() else {
+            return Vec::new();
+        };
+        let positions = held.multipliers.constraints().iter().filter(|c| c.is_holonomic(&self.system));
+        positions.map(|c| (c.name().to_owned(), c.expression())).collect()
+    }
+
     /// The system of the independent quasi-velocities whose equations (9) are the equations of motion.
     ///
     /// # Errors

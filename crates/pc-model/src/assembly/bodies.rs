@@ -76,7 +76,7 @@ impl<'g> Assembler<'g, '_> {
     }
 
     /// Functions of what may stand at that stage.
-    fn resolved<const N: usize>(
+    pub(super) fn resolved<const N: usize>(
         &mut self,
         list: &[Expression; N],
         stage: Stage,

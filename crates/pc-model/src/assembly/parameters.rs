@@ -121,6 +121,11 @@ impl Parameters {
         }
     }
 
+    /// Whether number `place` follows others by an expression.
+    pub fn follows(&self, place: usize) -> bool {
+        matches!(self.formulas.get(place), Some(Formula::Of(_)))
+    }
+
     /// Whether number `place` is an input with a table.
     pub fn is_table(&self, place: usize) -> bool {
         matches!(self.formulas.get(place), Some(Formula::Table(_)))

@@ -19,6 +19,8 @@ impl MeaningError {
             | MeaningError::Degenerate { .. }
             | MeaningError::ZeroAxis
             | MeaningError::NotARotation { .. }
+            | MeaningError::NotARotationAtTheStart { .. }
+            | MeaningError::NotARotationAlong { .. }
             | MeaningError::QuaternionNotUnit { .. }
             | MeaningError::Massless { .. }
             | MeaningError::NotHolonomic { .. }
@@ -129,6 +131,10 @@ impl MeaningError {
             MeaningError::NotARotation { .. } => {
                 "its rows are orthogonal unit vectors; angles about axes are given by `turns`".into()
             }
+            MeaningError::NotARotationAtTheStart { .. } => {
+                "give the start with all digits or as expressions, or the body its `angular_velocity`".into()
+            }
+            MeaningError::NotARotationAlong { .. } => "check signs and indices of its entries and of [kinematics]".into(),
             MeaningError::QuaternionNotUnit { .. } => {
                 "a turn by the angle a about the unit vector u has the quaternion cos(a/2), u*sin(a/2)".into()
             }

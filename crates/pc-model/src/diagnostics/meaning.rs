@@ -343,6 +343,29 @@ pub enum MeaningError {
         /// The determinant.
         determinant: f64,
     },
+    /// The matrix of a body in redundant coordinates, at the start.
+    #[error(
+        "the matrix of `{body}` is no rotation at the start: its columns are not orthogonal and of one length, by {}",
+        rounded(*defect)
+    )]
+    NotARotationAtTheStart {
+        /// The body.
+        body: String,
+        /// How much RᵀR misses a multiple of the unit matrix.
+        defect: f64,
+    },
+    /// The same along the motion.
+    #[error(
+        "the matrix of `{body}` does not stay a rotation: along the motion its columns do not stay orthogonal and of one length \
+         (rate {})",
+        rounded(*defect)
+    )]
+    NotARotationAlong {
+        /// The body.
+        body: String,
+        /// The largest component of the rates of RᵀR along the operators, less a multiple of the unit matrix.
+        defect: f64,
+    },
     /// The quaternion of a joint at the start.
     #[error("the quaternion of `{body}` has length {length} at the start, not 1")]
     QuaternionNotUnit {

@@ -1,6 +1,6 @@
 //! The equations of independent quasi-velocities, in the coordinates and quasi-velocities of a form.
 
-use pc_mech::{Equations, Expr, Matrix, MechError, Motion, QuasiVelocityChange, System};
+use pc_mech::{Equations, Expr, Graph, Matrix, MechError, Motion, QuasiVelocityChange, System, determinant};
 
 use crate::assembly::assembly::Assembly;
 use crate::assembly::constraint_treatment::ConstraintFormulation;
@@ -194,6 +194,30 @@ impl<'g> Assembly<'g> {
         matches!(self.constraints.formulation(), ConstraintFormulation::Multipliers(_))
     }
 
+    /// Determinants, functions of time, coordinates and parameters, that vanish where the state of a form does not determine
+    /// velocities, as `within_chart` watches them; none for a matrix of more than four rows, whose
+    /// determinant is not a short expression.
+    pub fn chart_determinants(&self, form: &FreeForm<'g>) -> Vec<Option<Expr<'g>>> {
+        let (graph, frame, all) = (self.system.graph(), self.system.frame(), self.system.quasi_velocities());
+        if form.system.frame().coordinates() != frame.coordinates() {
+            return Vec::new();
+        }
+        let mut squares: Vec<Matrix<Expr<'g>>> = Vec::new();
+        squares.extend(frame.definition_matrix().cloned());
+        squares.extend(form.matrix.clone());
+        if let ConstraintFormulation::Multipliers(held) = self.constraints.formulation()
+            && !held.multipliers.is_nonlinear()
+        {
+            squares.push(dependent_columns(held.multipliers.coefficients(), all, &form.independent));
+        }
+        let is_fixed = |x: &Expr<'g>| {
+            !frame.coordinates().iter().chain([&frame.time()]).any(|&symbol| x.depends_on(symbol))
+        };
+        let moving = squares.iter().filter(|square| !square.nonzero_entries().iter().all(is_fixed));
+        let determinants = moving.map(|square| short_determinant(graph, square));
+        determinants.filter(|value| !value.as_ref().is_some_and(is_fixed)).collect()
+    }
+
     /// A motion of a form that does not go on past a place where its state does not determine velocities.
     ///
     /// # Errors
@@ -223,11 +247,40 @@ impl<'g> Assembly<'g> {
         if held.multipliers.is_nonlinear() || self.constraints.held().is_some() {
             return Ok(motion);
         }
-        let dependent: Vec<usize> = (0..all.len()).filter(|&s| !form.independent.contains(&all[s])).collect();
-        let c = held.multipliers.coefficients();
-        let square = Matrix::from_fn(c.rows(), dependent.len(), |a, d| c[(a, dependent[d])]);
+        let square = dependent_columns(held.multipliers.coefficients(), all, &form.independent);
         self.placed(motion.within_choice(&self.system, &square))
     }
+}
+
+/// The columns of the matrix of constraints that belong to quasi-velocities other than the independent ones.
+fn dependent_columns<'g>(
+    c: &Matrix<Expr<'g>>,
+    all: &[Expr<'g>],
+    independent: &[Expr<'g>],
+) -> Matrix<Expr<'g>> {
+    let dependent: Vec<usize> = (0..all.len()).filter(|&s| !independent.contains(&all[s])).collect();
+    Matrix::from_fn(c.rows(), dependent.len(), |a, d| c[(a, dependent[d])])
+}
+
+/// A determinant but for its sign, rows and columns with one entry taken out first; none where more than four rows are left.
+fn short_determinant<'g>(graph: &'g Graph, square: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
+    let (mut rows, mut columns): (Vec<usize>, Vec<usize>) =
+        ((0..square.rows()).collect(), (0..square.columns()).collect());
+    let mut factors = Vec::new();
+    loop {
+        let filled = |&(r, c): &(usize, usize)| !square[(r, c)].is_zero();
+        let of_row = |r: usize| columns.iter().map(move |&c| (r, c)).filter(filled).collect::<Vec<_>>();
+        let of_column = |c: usize| rows.iter().map(move |&r| (r, c)).filter(filled).collect::<Vec<_>>();
+        let lines = rows.iter().map(|&r| of_row(r)).chain(columns.iter().map(|&c| of_column(c)));
+        let alone = lines.map(|line| (line.len(), line)).find(|&(entries, _)| entries == 1);
+        let Some((r, c)) = alone.map(|(_, line)| line[0]) else { break };
+        factors.push(square[(r, c)]);
+        rows.retain(|&row| row != r);
+        columns.retain(|&column| column != c);
+    }
+    let rest = Matrix::from_fn(rows.len(), columns.len(), |r, c| square[(rows[r], columns[c])]);
+    let rest = if rows.is_empty() { Expr::ONE } else { determinant(graph, &rest)? };
+    Some(factors.into_iter().fold(rest, |product, factor| product * factor))
 }
 
 /// What a row says beside those known, all of length one, and how large a part of the row that is.

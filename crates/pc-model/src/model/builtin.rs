@@ -84,10 +84,32 @@ pub const TREES: &[Builtin] = models![
     "stewart-platform",
 ];
 
+/// Classics that come with the library, too: motions that books are written about.
+pub const CLASSICS: &[Builtin] = models![
+    "foucault-pendulum",
+    "kapitza-pendulum",
+    "swinging-atwood",
+    "wilberforce-pendulum",
+    "double-spherical-pendulum",
+    "three-bodies",
+    "dumbbell-satellite",
+    "elroys-beanie",
+    "cart-pole",
+    "furuta-pendulum",
+    "segway",
+    "quarter-car",
+    "roller-racer",
+    "snake",
+    "tractor-trailers",
+    "whipple-bicycle",
+    "rattleback",
+    "rolling-spheroid",
+];
+
 impl Builtin {
     /// All models that come with the library.
     pub fn all() -> impl Iterator<Item = &'static Builtin> {
-        BUILTIN.iter().chain(TREES)
+        BUILTIN.iter().chain(TREES).chain(CLASSICS)
     }
 
     /// The model of that name.

@@ -1,7 +1,7 @@
 //! What all parts of the theory start from.
 
 use pc_analysis::AnalysisError;
-use pc_mech::{Canonical, Equations, Expr, MechError, Neighbourhood, System};
+use pc_mech::{Canonical, Equations, MechError, Neighbourhood, System};
 use pc_model::{Assembly, ConstraintFormulation, ModelError};
 use pc_nonholo::Constrained;
 
@@ -55,16 +55,6 @@ impl<'a, 'g> Ground<'a, 'g> {
     /// Whether forces are computed outside.
     pub(crate) fn has_external_forces(&self) -> bool {
         !self.assembly.system.external_forces().is_empty()
-    }
-
-    /// The conditions on positions that multipliers hold, by their names.
-    pub(crate) fn positions(&self) -> Vec<(String, Expr<'g>)> {
-        let ConstraintFormulation::Multipliers(held) = self.assembly.constraints.formulation() else {
-            return Vec::new();
-        };
-        let constraints = held.multipliers.constraints().iter();
-        let positions = constraints.filter(|constraint| constraint.is_holonomic(&self.assembly.system));
-        positions.map(|c| (c.name().to_owned(), c.expression())).collect()
     }
 
     /// What came of an analysis, its error put at the place in the file that is to blame.

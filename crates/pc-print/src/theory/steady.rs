@@ -32,7 +32,8 @@ pub(crate) fn section<'g>(
     let mut motion = assembly.placed(equations.compile())?;
     let start = assembly.start_of(&equations.system().state());
     let at = (assembly.t_start, start.as_slice());
-    let found = SteadyMotions::search(equations, &mut motion, at, integrals.list(), &ground.positions());
+    let found =
+        SteadyMotions::search(equations, &mut motion, at, integrals.list(), &assembly.held_positions());
     section(match found {
         Ok(found) if found.list.is_empty() => {
             vec![Entry::words(format!("none found from {} starts", found.starts))]

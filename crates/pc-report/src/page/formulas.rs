@@ -1,12 +1,31 @@
 //! Formulas, each with its source to copy.
 
+use std::borrow::Cow;
+
 use pc_print::{Display, DisplayedPart};
 
 use crate::page::html::{lines, text};
 
-/// A `math` element in a box that scrolls by itself; browsers let the keyboard reach those that do.
+/// Lines of a formula that stand together; paper breaks between such parts, and what is longer than a page would be lost.
+const LINES: usize = 14;
+
+/// A formula in a box that scrolls by itself; browsers let the keyboard reach those that do.
 pub(super) fn formula(mathml: &str) -> String {
-    format!("<div class=\"formula\">{mathml}</div>\n")
+    format!("<div class=\"formula\">{}</div>\n", in_parts(mathml))
+}
+
+/// The same table of lines as several tables, where it is long.
+fn in_parts(mathml: &str) -> Cow<'_, str> {
+    let (Some(start), Some(end)) = (mathml.find("<mtr>"), mathml.rfind("</mtr>")) else {
+        return mathml.into();
+    };
+    let (head, lines, tail) =
+        (&mathml[..start], &mathml[start..end + "</mtr>".len()], &mathml[end + "</mtr>".len()..]);
+    let lines: Vec<&str> = lines.split_inclusive("</mtr>").collect();
+    if lines.len() <= LINES {
+        return mathml.into();
+    }
+    lines.chunks(LINES).map(|part| format!("{head}{}{tail}", part.concat())).collect::<String>().into()
 }
 
 /// The source for a paper.
@@ -30,4 +49,20 @@ fn part(part: &DisplayedPart, level: u8) -> String {
         shown += &source(latex);
     }
     shown + &notes.iter().map(|note| format!("<p class=\"soft\">{}</p>\n", text(note))).collect::<String>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_table_is_several() {
+        let table = |lines: std::ops::Range<usize>| {
+            let lines: String = lines.map(|i| format!("<mtr><mtd>{i}</mtd></mtr>")).collect();
+            format!("<math display=\"block\"><mtable>{lines}</mtable></math>")
+        };
+        assert_eq!(in_parts(&table(0..14)), table(0..14));
+        assert_eq!(in_parts(&table(0..30)), table(0..14) + &table(14..28) + &table(28..30));
+        assert_eq!(in_parts("<math><mi>x</mi></math>"), "<math><mi>x</mi></math>");
+    }
 }

@@ -7,6 +7,7 @@ use pc_verify::{Options, VerifyError, verify};
 use crate::check::check::Check;
 use crate::error::ReportError;
 use crate::page::html::{Part, described, lines, page, paragraph, text};
+use crate::page::pairs::pairs;
 use crate::page::player::player;
 use crate::page::{equations, formulas, motion, theory};
 use crate::record::Record;
@@ -51,7 +52,8 @@ pub fn report(model: &Model, motion: Option<&Record>) -> Result<String, ReportEr
     if let Some(record) = motion {
         let scene = Scene::of(model, &assembly, record)?;
         let watched = scene.as_ref().map_or_else(String::new, player);
-        parts.push(Part::new("motion", "Motion", watched + &motion::motion(record)));
+        let shown = motion::motion(record, &pairs(&assembly, record));
+        parts.push(Part::new("motion", "Motion", watched + &shown));
     }
     parts.push(Part::new("text", "Text of the model", written(model)));
     Ok(page(model.title(), &(head(model, &parts) + &body(&parts))))

@@ -1,6 +1,10 @@
 //! Axes with round numbers.
 
-/// An interval of values laid on one of pixels.
+use pc_print::short;
+
+use crate::picture::panel::Scale;
+
+/// An interval of values laid on one of points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis {
     pub(crate) low: f64,
@@ -19,9 +23,25 @@ impl Axis {
         self.from + (value - self.low) / (self.high - self.low) * (self.to - self.from)
     }
 
+    /// The axis widened about its middle so that a point is as much of it as of another.
+    pub(crate) fn widened_to(&self, per_point: f64) -> Axis {
+        let half = per_point * (self.to - self.from).abs() / 2.0;
+        let middle = f64::midpoint(self.low, self.high);
+        Axis { low: middle - half, high: middle + half, ..*self }
+    }
+
+    /// How much of it a point is.
+    pub(crate) fn per_point(&self) -> f64 {
+        (self.high - self.low) / (self.to - self.from).abs()
+    }
+
     /// About `count` multiples of 1, 2 or 5 times a power of ten.
     pub(crate) fn ticks(&self, count: usize) -> Vec<f64> {
         let step = round_step((self.high - self.low) / count as f64);
+        self.multiples(step, count)
+    }
+
+    fn multiples(&self, step: f64, count: usize) -> Vec<f64> {
         let first = (self.low / step).ceil() as i64;
         let last = (self.high / step).floor() as i64;
         if !step.is_finite() || step <= 0.0 || last.saturating_sub(first) > 4 * count as i64 {
@@ -29,29 +49,100 @@ impl Axis {
         }
         (first..=last).map(|n| n as f64 * step).collect()
     }
+
+    /// About `count` values with what is written beside them.
+    pub(crate) fn labels(&self, scale: Scale, count: usize) -> Vec<(f64, String)> {
+        match scale {
+            Scale::Linear => {
+                let ticks = self.ticks(count);
+                let zero = 1e-9 * (self.high - self.low);
+                ticks.into_iter().map(|v| (v, linear(if v.abs() < zero { 0.0 } else { v }))).collect()
+            }
+            Scale::Angles => self
+                .multiples(std::f64::consts::FRAC_PI_2, 4)
+                .into_iter()
+                .map(|v| {
+                    let halves = (v / std::f64::consts::FRAC_PI_2).round() as i64;
+                    let label = match halves {
+                        0 => "0".to_owned(),
+                        1 => "π/2".to_owned(),
+                        -1 => "−π/2".to_owned(),
+                        2 => "π".to_owned(),
+                        -2 => "−π".to_owned(),
+                        _ => linear(v),
+                    };
+                    (v, label)
+                })
+                .collect(),
+            // A few numbers to each power of ten.
+            Scale::Decades if self.high - self.low < 2.5 => {
+                let powers = self.low.floor() as i32..=self.high.floor() as i32;
+                let numbers = powers.flat_map(|n| [1.0, 2.0, 5.0].map(|m| m * 10f64.powi(n)));
+                numbers
+                    .map(|v| (v.log10(), linear(v)))
+                    .filter(|(v, _)| (self.low - 1e-9..=self.high + 1e-9).contains(v))
+                    .collect()
+            }
+            Scale::Decades => {
+                let step = round_step((self.high - self.low) / count as f64).max(1.0);
+                self.multiples(step, count).into_iter().map(|v| (v, power(v))).collect()
+            }
+        }
+    }
 }
 
-/// The least of 1, 2, 5 times a power of ten that is not below a length.
+/// The number as it is written beside an axis.
+pub(crate) fn label(value: f64, scale: Scale) -> String {
+    match scale {
+        Scale::Linear | Scale::Angles => linear(value),
+        Scale::Decades => power(value),
+    }
+}
+
+fn linear(value: f64) -> String {
+    short(value, 5).replace('-', "−")
+}
+
+/// 10 to a whole power.
+fn power(exponent: f64) -> String {
+    let raised = |c: char| match c {
+        '-' => '⁻',
+        c => c
+            .to_digit(10)
+            .map_or(c, |digit| ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize]),
+    };
+    format!("10{}", format!("{exponent:.0}").chars().map(raised).collect::<String>())
+}
+
+/// That of 1, 2, 5 times a power of ten that is the least number of times larger or smaller than a length.
 fn round_step(length: f64) -> f64 {
     let power = 10f64.powf(length.log10().floor());
-    [1.0, 2.0, 5.0, 10.0]
-        .map(|n| n * power)
-        .into_iter()
-        .find(|step| *step >= length * (1.0 - 1e-9))
-        .unwrap_or(length)
+    let between = [(1.0, 2.0), (2.0, 5.0), (5.0, 10.0)];
+    let step = between.into_iter().find(|(a, b)| length * length < a * b * power * power);
+    step.map_or(10.0 * power, |(step, _)| step * power)
+}
+
+/// The range of some values, if any is finite.
+pub(crate) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let finite = values.filter(|value| value.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    (low <= high).then_some((low, high))
 }
 
 /// The range of some values, a little widened; one about a constant.
 pub(crate) fn widened(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let finite = values.filter(|value| value.is_finite());
-    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    if low > high {
-        return (0.0, 1.0);
+    let Some((low, high)) = range(values) else { return (0.0, 1.0) };
+    if is_still(low, high) {
+        let margin = 0.1 * high.abs().max(1.0);
+        return (low - margin, high + margin);
     }
     let margin = 0.05 * (high - low);
-    // Less than that is rounding, which would look like noise.
-    let margin = if margin > 1e-9 * low.abs().max(high.abs()) { margin } else { 0.1 * high.abs().max(1.0) };
     (low - margin, high + margin)
+}
+
+/// Whether what lies between these does not move: less is rounding, which would look like noise.
+pub(crate) fn is_still(low: f64, high: f64) -> bool {
+    0.05 * (high - low) <= 1e-9 * low.abs().max(high.abs())
 }
 
 #[cfg(test)]
@@ -62,13 +153,35 @@ mod tests {
     fn ticks_are_round() {
         let ticks = |low, high| Axis::new((low, high), (0.0, 1.0)).ticks(5);
         assert_eq!(ticks(0.0, 10.0), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
-        assert_eq!(ticks(-0.3, 1.1), [0.0, 0.5, 1.0]);
+        assert_eq!(ticks(-3.0, 1.4), [-3.0, -2.0, -1.0, 0.0, 1.0]);
         assert!(ticks(1.0, 1.0).is_empty() && ticks(0.0, f64::NAN).is_empty());
+    }
+
+    #[test]
+    fn labels_are_those_of_the_scale() {
+        let labels = |scale, low, high| {
+            let all = Axis::new((low, high), (0.0, 1.0)).labels(scale, 5);
+            all.into_iter().map(|(_, label)| label).collect::<Vec<_>>()
+        };
+        assert_eq!(labels(Scale::Linear, -1.0, 1.0), ["−1", "−0.5", "0", "0.5", "1"]);
+        assert_eq!(labels(Scale::Angles, -3.2, 3.2), ["−π", "−π/2", "0", "π/2", "π"]);
+        assert_eq!(
+            labels(Scale::Decades, -12.0, 0.0),
+            ["10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²", "10⁰"]
+        );
+        assert_eq!(labels(Scale::Decades, 0.0, 1.0), ["1", "2", "5", "10"]);
     }
 
     #[test]
     fn constants_have_a_range() {
         assert_eq!(widened([3.0, 3.0].into_iter()), (3.0 - 0.3, 3.0 + 0.3));
         assert_eq!(widened([f64::NAN].into_iter()), (0.0, 1.0));
+    }
+
+    #[test]
+    fn a_length_may_be_as_long_on_both_axes() {
+        let (x, y) = (Axis::new((0.0, 10.0), (0.0, 100.0)), Axis::new((0.0, 1.0), (100.0, 0.0)));
+        let y = y.widened_to(x.per_point());
+        assert_eq!((y.low, y.high), (0.5 - 5.0, 0.5 + 5.0));
     }
 }

@@ -1,219 +1,349 @@
-//! Curves over time.
+//! A panel drawn: axes, lines through round numbers, what stands on them.
 
-use std::borrow::Cow;
-use std::fmt::Write as _;
+use crate::picture::axes::{Axis, label, range, widened};
+use crate::picture::drawing::{Anchor, Drawing, Ink};
+use crate::picture::panel::{Content, Curve, Panel, Scale};
+use crate::picture::simplify::simplified;
 
-use pc_print::short;
-
-use crate::page::html::text;
-use crate::picture::axes::{Axis, widened};
-
-const WIDTH: f64 = 480.0;
-const HEIGHT: f64 = 250.0;
-const LEFT: f64 = 58.0;
-const RIGHT: f64 = 12.0;
-const TOP: f64 = 8.0;
-const BOTTOM: f64 = 38.0;
-/// Points of a curve: the least and the greatest of each pixel or so.
-const MOST_POINTS: usize = 400;
 /// Events that are marked.
 const MOST_EVENTS: usize = 60;
-/// Colours, told apart by colour-blind readers [Okabe, Ito 2008].
-const COLOURS: usize = 8;
+/// Width of the colours beside cells, with their numbers.
+const LEGEND: f64 = 96.0;
+/// The colours of values, the lowest first [Smith, van der Walt 2015].
+const COLOURS: [[u8; 3]; 9] = [
+    [68, 1, 84],
+    [71, 44, 122],
+    [59, 81, 139],
+    [44, 113, 142],
+    [33, 144, 141],
+    [39, 173, 129],
+    [92, 200, 99],
+    [170, 220, 50],
+    [253, 231, 37],
+];
 
-/// How values are shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scale {
-    Linear,
-    /// Values are decimal logarithms.
-    Decades,
+/// A panel of a page, with a description of it, its texts in the size of the page.
+pub(crate) fn figure(panel: &Panel, most: usize, id: &str) -> String {
+    const WIDTH: f64 = 480.0;
+    const SIZE: f64 = 13.0;
+    let (height, top) = if panel.is_portrait() { (420.0, 26.0) } else { (250.0, 8.0) };
+    let mut drawing = Drawing { width: WIDTH, height, ..Drawing::default() };
+    let margin = panel.margin(height - top - 38.0, SIZE).max(48.0);
+    let frame = Frame { left: margin, right: WIDTH - 12.0, top, bottom: height - 38.0 };
+    panel.draw(&mut drawing, frame, SIZE, most);
+    let (span, values) = (panel.span_in_words(), panel.values_in_words());
+    let over = match panel.across.0.as_str() {
+        "t" => "over time",
+        _ => "to the right",
+    };
+    let names = panel.names().join(", ");
+    let described =
+        format!("{names}: {over} from {} to {}; values from {} to {}", span.0, span.1, values.0, values.1);
+    drawing.inline(id, &panel.title, &described)
 }
 
-/// A curve with its values, one for each time.
-#[derive(Clone, Debug)]
-pub(crate) struct Curve<'a> {
-    pub(crate) name: &'a str,
-    pub(crate) values: Cow<'a, [f64]>,
+/// The place of what is within the axes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    pub(super) left: f64,
+    pub(super) right: f64,
+    pub(super) top: f64,
+    pub(super) bottom: f64,
 }
 
-/// Curves on common axes.
-#[derive(Clone, Debug)]
-pub(crate) struct Chart<'a> {
-    title: &'static str,
-    scale: Scale,
-    curves: Vec<Curve<'a>>,
-}
-
-impl<'a> Chart<'a> {
-    pub(crate) fn new(title: &'static str, scale: Scale, curves: Vec<Curve<'a>>) -> Chart<'a> {
-        Chart { title, scale, curves }
+impl Frame {
+    fn axes(&self, panel: &Panel) -> (Axis, Axis) {
+        let across = Axis::new(panel.across_range(), (self.left, self.right));
+        let up = Axis::new(panel.up_range(), (self.bottom, self.top));
+        if !panel.equal {
+            return (across, up);
+        }
+        let per_point = across.per_point().max(up.per_point());
+        (across.widened_to(per_point), up.widened_to(per_point))
     }
+}
 
-    /// The number of curves.
-    pub(crate) fn len(&self) -> usize {
-        self.curves.len()
-    }
+/// Width of a text, about.
+pub(super) fn width_of(text: &str, size: f64) -> f64 {
+    0.6 * size * text.chars().count() as f64
+}
 
-    /// The chart with a legend.
-    pub(crate) fn figure(&self, times: &[f64], events: &[f64], id: &str) -> String {
-        let (first, last) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(1.0));
-        let span = if first == last { (first, first + 1.0) } else { (first.min(last), first.max(last)) };
-        let t = Axis::new(span, (LEFT, WIDTH - RIGHT));
-        let values = || self.curves.iter().flat_map(|curve| curve.values.iter().copied());
-        let range = match self.scale {
-            Scale::Linear => widened(values()),
-            Scale::Decades => {
-                let (low, high) = widened(values());
-                (low.floor(), high.ceil().max(low.floor() + 1.0))
+impl Panel {
+    fn across_range(&self) -> (f64, f64) {
+        let edge = |middles: &[f64]| match middles {
+            [] => (0.0, 1.0),
+            [only] => (only - 0.5, only + 0.5),
+            [first, second, ..] => {
+                let n = middles.len();
+                let last = middles[n - 1];
+                (first - (second - first) / 2.0, last + (last - middles[n - 2]) / 2.0)
             }
         };
-        let v = Axis::new(range, (HEIGHT - BOTTOM, TOP));
-        let names: Vec<&str> = self.curves.iter().map(|curve| curve.name).collect();
-        let described = format!(
-            "{} over time from {} to {}: {}; values from {} to {}",
-            self.title,
-            short(span.0, 6),
-            short(span.1, 6),
-            names.join(", "),
-            self.label(range.0),
-            self.label(range.1)
-        );
-        let mut svg = format!(
-            "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-labelledby=\"{id}-t {id}-d\">\
-             <title id=\"{id}-t\">{}</title><desc id=\"{id}-d\">{}</desc>\n",
-            text(self.title),
-            text(&described)
-        );
-        svg += &self.mesh(&t, &v);
-        for &event in events.iter().filter(|t| (span.0..=span.1).contains(*t)).take(MOST_EVENTS) {
-            let x = t.place(event);
-            put(&mut svg, format_args!("<path class=\"event\" d=\"M{x:.1} {TOP}V{:.1}\"/>", HEIGHT - BOTTOM));
+        match (&self.content, self.span) {
+            (_, Some(span)) => span,
+            (Content::Curves(curves), None) => match self.across.1 {
+                Scale::Angles => ANGLES,
+                _ => widened(curves.iter().flat_map(|curve| curve.points.iter().map(|p| p.0))),
+            },
+            (Content::Bars(bars), None) => widened(bars.iter().flat_map(|bar| [bar[0], bar[1]])),
+            (Content::Cells { columns, .. }, None) => edge(columns),
         }
-        for (i, curve) in self.curves.iter().enumerate() {
-            let path = path(times, &curve.values, &t, &v);
-            put(&mut svg, format_args!("<path class=\"curve s{}\" d=\"{path}\"/>\n", i % COLOURS));
-        }
-        svg += "</svg>";
-        let key = |(i, name): (usize, &&str)| {
-            format!("<span class=\"key\"><i class=\"k{}\"></i>{}</span>", i % COLOURS, text(name))
-        };
-        let keys: String = names.iter().enumerate().map(key).collect();
-        format!("<figure>{svg}<figcaption>{keys}</figcaption></figure>\n")
     }
 
-    /// Axes, their numbers, and lines through them.
-    fn mesh(&self, t: &Axis, v: &Axis) -> String {
-        let mut svg = String::new();
-        let (right, floor) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
-        for value in v.ticks(5).into_iter().filter(|v| self.scale == Scale::Linear || v.fract() == 0.0) {
-            let y = v.place(value);
-            put(&mut svg, format_args!("<path class=\"grid\" d=\"M{LEFT} {y:.1}H{right}\"/>"));
-            let label = self.label(value);
-            put(
-                &mut svg,
-                format_args!(
-                    "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>",
-                    LEFT - 6.0,
-                    y + 4.0
-                ),
-            );
-        }
-        for value in t.ticks(6) {
-            let x = t.place(value);
-            put(&mut svg, format_args!("<path class=\"grid\" d=\"M{x:.1} {TOP}V{floor}\"/>"));
-            let label = short(value, 6);
-            put(
-                &mut svg,
-                format_args!(
-                    "<text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{label}</text>",
-                    floor + 17.0
-                ),
-            );
-        }
-        put(
-            &mut svg,
-            format_args!("<text x=\"{right}\" y=\"{}\" text-anchor=\"end\">t</text>", HEIGHT - 4.0),
-        );
-        put(&mut svg, format_args!("<path class=\"axis\" d=\"M{LEFT} {TOP}V{floor}H{right}\"/>\n"));
-        svg
-    }
-
-    fn label(&self, value: f64) -> String {
-        match self.scale {
-            Scale::Linear => short(value, 4).replace('-', "−"),
-            Scale::Decades => {
-                let raised = |c: char| match c {
-                    '-' => '⁻',
-                    c => c.to_digit(10).map_or(c, |digit| {
-                        ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize]
-                    }),
+    fn up_range(&self) -> (f64, f64) {
+        match &self.content {
+            Content::Curves(curves) => {
+                let range = || widened(curves.iter().flat_map(|curve| curve.points.iter().map(|p| p.1)));
+                match self.up.1 {
+                    Scale::Linear => range(),
+                    Scale::Angles => ANGLES,
+                    Scale::Decades => {
+                        let (low, high) = range();
+                        (low.floor(), high.ceil().max(low.floor() + 1.0))
+                    }
+                }
+            }
+            Content::Bars(bars) => {
+                (0.0, 1.05 * bars.iter().fold(f64::MIN_POSITIVE, |most, bar| most.max(bar[2])))
+            }
+            Content::Cells { rows, .. } => {
+                let turned = Panel {
+                    content: Content::Cells { columns: rows.clone(), rows: Vec::new(), values: Vec::new() },
+                    ..self.clone()
                 };
-                format!("10{}", format!("{value:.0}").chars().map(raised).collect::<String>())
+                Panel { span: None, ..turned }.across_range()
             }
         }
     }
-}
 
-/// Adds to a picture.
-pub(crate) fn put(svg: &mut String, element: std::fmt::Arguments<'_>) {
-    let _ = svg.write_fmt(element); // writing to a string cannot fail
-}
+    /// The range of its values, as it is written.
+    pub(super) fn values_in_words(&self) -> (String, String) {
+        let (low, high) = self.up_range();
+        (label(low, self.up.1), label(high, self.up.1))
+    }
 
-/// The path of a curve, broken where it has no value.
-fn path(times: &[f64], values: &[f64], t: &Axis, v: &Axis) -> String {
-    let mut path = String::new();
-    let mut drawing = false;
-    for j in thinned(values) {
-        let (x, y) = (t.place(times[j]), v.place(values[j]));
-        if !(x.is_finite() && y.is_finite()) {
-            drawing = false;
-            continue;
+    /// The range to the right, as it is written.
+    pub(super) fn span_in_words(&self) -> (String, String) {
+        let (low, high) = self.across_range();
+        (label(low, self.across.1), label(high, self.across.1))
+    }
+
+    /// The width that numbers beside its axis take.
+    pub(super) fn margin(&self, height: f64, size: f64) -> f64 {
+        let axis = Axis::new(self.up_range(), (height, 0.0));
+        let labels = axis.labels(self.up.1, count(height, 38.0));
+        let widest = labels.iter().map(|(_, label)| width_of(label, size)).fold(0.0, f64::max);
+        (widest + 12.0).max(36.0)
+    }
+
+    /// Draws it on axes around `frame`; texts have a size, curves up to so many points.
+    pub(super) fn draw(&self, drawing: &mut Drawing, frame: Frame, size: f64, most: usize) {
+        let frame = match self.content {
+            Content::Cells { .. } => Frame { right: frame.right - LEGEND, ..frame },
+            Content::Curves(_) | Content::Bars(_) => frame,
+        };
+        let (across, up) = frame.axes(self);
+        if let Content::Cells { columns, rows, values } = &self.content {
+            cells(drawing, (&across, &up), (columns, rows, values), size, frame);
         }
-        put(&mut path, format_args!("{}{x:.1} {y:.1}", if drawing { "L" } else { "M" }));
-        drawing = true;
+        self.mesh(drawing, frame, (&across, &up), size);
+        // Bars are wide enough to hide them; curves are not hidden by them.
+        let is_behind = !matches!(self.content, Content::Bars(_));
+        if is_behind {
+            self.mark(drawing, frame, &across);
+        }
+        match &self.content {
+            Content::Curves(curves) => {
+                for (i, curve) in curves.iter().enumerate() {
+                    draw_curve(drawing, curve, (&across, &up), Ink::Curve(i), most);
+                }
+            }
+            Content::Bars(bars) => {
+                for &[from, to, height] in bars.iter().filter(|bar| bar[2] > 0.0) {
+                    let (left, right) = (across.place(from) + 0.5, across.place(to) - 0.5);
+                    drawing.area(
+                        [left, up.place(height)],
+                        [right.max(left + 0.5), frame.bottom],
+                        Ink::Curve(0),
+                    );
+                }
+            }
+            Content::Cells { .. } => {}
+        }
+        if !is_behind {
+            self.mark(drawing, frame, &across);
+        }
+        drawing.line(
+            vec![[frame.left, frame.top], [frame.left, frame.bottom], [frame.right, frame.bottom]],
+            Ink::Axis,
+        );
     }
-    path
-}
 
-/// The numbers of the points that are drawn: where there are more than can be seen, the least and the greatest of each
-/// stretch, in their order, and the ends.
-fn thinned(values: &[f64]) -> Vec<usize> {
-    if values.len() <= MOST_POINTS {
-        return (0..values.len()).collect();
-    }
-    let stretch = values.len().div_ceil(MOST_POINTS / 2);
-    let mut kept = vec![0];
-    for start in (0..values.len()).step_by(stretch) {
-        let here = || start..(start + stretch).min(values.len());
-        let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
-        let ends = (here().min_by(by_value), here().max_by(by_value));
-        if let (Some(low), Some(high)) = ends {
-            kept.extend([low.min(high), low.max(high)]);
+    fn mark(&self, drawing: &mut Drawing, frame: Frame, across: &Axis) {
+        let marked = self.events.iter().filter(|&&t| (across.low..=across.high).contains(&t));
+        for &event in marked.take(MOST_EVENTS) {
+            let x = across.place(event);
+            drawing.line(vec![[x, frame.top], [x, frame.bottom]], Ink::Event);
         }
     }
-    kept.push(values.len() - 1);
-    kept.dedup();
-    kept
+
+    /// Numbers beside the axes, and lines through them.
+    fn mesh(&self, drawing: &mut Drawing, frame: Frame, (across, up): (&Axis, &Axis), size: f64) {
+        let is_open = !matches!(self.content, Content::Cells { .. });
+        for (value, label) in up.labels(self.up.1, count(frame.bottom - frame.top, 38.0)) {
+            let y = up.place(value);
+            if is_open {
+                drawing.line(vec![[frame.left, y], [frame.right, y]], Ink::Grid);
+            }
+            drawing.text([frame.left - 6.0, y + 0.35 * size], Anchor::End, size, Ink::Soft, label);
+        }
+        for (value, label) in across.labels(self.across.1, count(frame.right - frame.left, 75.0)) {
+            let x = across.place(value);
+            if is_open {
+                drawing.line(vec![[x, frame.top], [x, frame.bottom]], Ink::Grid);
+            }
+            drawing.text([x, frame.bottom + 1.35 * size], Anchor::Middle, size, Ink::Soft, label);
+        }
+        let below = [frame.right, frame.bottom + 2.6 * size];
+        drawing.text(below, Anchor::End, size, Ink::Soft, self.across.0.clone());
+        if !self.up.0.is_empty() {
+            let above = [frame.left - 6.0, frame.top - 0.6 * size];
+            drawing.text(above, Anchor::Start, size, Ink::Soft, self.up.0.clone());
+        }
+    }
+}
+
+/// From −π to π, a little widened.
+const ANGLES: (f64, f64) = (-1.03 * std::f64::consts::PI, 1.03 * std::f64::consts::PI);
+
+/// How many numbers stand along a length.
+fn count(length: f64, each: f64) -> usize {
+    ((length / each) as usize).max(2)
+}
+
+/// The curve, broken where it has no value.
+fn draw_curve(drawing: &mut Drawing, curve: &Curve, (across, up): (&Axis, &Axis), ink: Ink, most: usize) {
+    let placed: Vec<[f64; 2]> = curve.points.iter().map(|&(x, y)| [across.place(x), up.place(y)]).collect();
+    let is_there = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite();
+    let pieces = || placed.split(|p| !is_there(p)).filter(|piece| !piece.is_empty());
+    if let (Some([[x, y]]), 1) = (pieces().next(), pieces().count()) {
+        // One point alone is seen as a small cross.
+        drawing.line(vec![[x - 2.0, *y], [x + 2.0, *y]], ink);
+        drawing.line(vec![[*x, y - 2.0], [*x, y + 2.0]], ink);
+    }
+    pieces().filter(|piece| piece.len() > 1).for_each(|piece| drawing.line(simplified(piece, most), ink));
+}
+
+/// A colour for each value, and what the colours mean.
+fn cells(
+    drawing: &mut Drawing,
+    (across, up): (&Axis, &Axis),
+    (columns, rows, values): (&[f64], &[f64], &[f64]),
+    size: f64,
+    frame: Frame,
+) {
+    let (low, high) = range(values.iter().copied()).unwrap_or((0.0, 1.0));
+    let span = if high > low { high - low } else { 1.0 };
+    let borders = |middles: &[f64], axis: &Axis| -> Vec<f64> {
+        let between = middles.windows(2).map(|pair| axis.place(f64::midpoint(pair[0], pair[1])));
+        std::iter::once(axis.place(axis.low)).chain(between).chain([axis.place(axis.high)]).collect()
+    };
+    let (x, y) = (borders(columns, across), borders(rows, up));
+    for (i, column) in values.chunks(rows.len().max(1)).enumerate() {
+        for (j, &value) in column.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+            drawing.area([x[i], y[j + 1]], [x[i + 1], y[j]], Ink::Mixed(colour((value - low) / span)));
+        }
+    }
+    // What has no value stays as the paper is.
+    let scale = Axis::new((low, low + span), (frame.bottom, frame.top));
+    let (left, right) = (frame.right + 18.0, frame.right + 34.0);
+    const SHADES: usize = 64;
+    let step = (frame.bottom - frame.top) / SHADES as f64;
+    for k in 0..SHADES {
+        let bottom = frame.bottom - k as f64 * step;
+        let ink = Ink::Mixed(colour((k as f64 + 0.5) / SHADES as f64));
+        drawing.area([left, bottom - step], [right, bottom], ink);
+    }
+    for (value, label) in scale.labels(Scale::Linear, count(frame.bottom - frame.top, 48.0)) {
+        let y = scale.place(value);
+        drawing.line(vec![[right, y], [right + 4.0, y]], Ink::Axis);
+        drawing.text([right + 7.0, y + 0.35 * size], Anchor::Start, size, Ink::Soft, label);
+    }
+}
+
+/// The colour of a value from 0 to 1.
+fn colour(value: f64) -> [u8; 3] {
+    let place = value.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
+    let i = (place as usize).min(COLOURS.len() - 2);
+    let part = place - i as f64;
+    [0, 1, 2].map(|k| {
+        let (a, b) = (f64::from(COLOURS[i][k]), f64::from(COLOURS[i + 1][k]));
+        (a + part * (b - a)).round() as u8
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::drawing::Shape;
 
-    #[test]
-    fn thinning_keeps_ends_and_extremes() {
-        let values: Vec<f64> = (0..100_000).map(|i| f64::from(i % 777)).collect();
-        let kept = thinned(&values);
-        assert!(kept.len() <= MOST_POINTS + 4 && kept.is_sorted());
-        assert!(kept.iter().any(|&j| values[j] == 776.0) && kept.iter().any(|&j| values[j] == 0.0));
-        assert_eq!((kept[0], kept[kept.len() - 1]), (0, 99_999));
-        assert_eq!(thinned(&values[..3]), [0, 1, 2]);
+    const FRAME: Frame = Frame { left: 0.0, right: 100.0, top: 0.0, bottom: 100.0 };
+
+    fn lines(panel: &Panel, ink: Ink) -> Vec<Vec<[f64; 2]>> {
+        let mut drawing = Drawing::default();
+        panel.draw(&mut drawing, FRAME, 10.0, 1000);
+        let of = |shape: Shape| match shape {
+            Shape::Line { points, ink: other } if other == ink => Some(points),
+            _ => None,
+        };
+        drawing.shapes.into_iter().filter_map(of).collect()
     }
 
     #[test]
     fn a_gap_breaks_the_curve() {
-        let axis = Axis::new((0.0, 4.0), (0.0, 4.0));
-        let drawn = path(&[0.0, 1.0, 2.0, 3.0], &[1.0, 2.0, f64::NAN, 3.0], &axis, &axis);
-        assert_eq!(drawn, "M0.0 1.0L1.0 2.0M3.0 3.0");
+        let points = vec![(0.0, 1.0), (1.0, 2.0), (2.0, f64::NAN), (3.0, 3.0), (4.0, 1.0)];
+        let curve = Curve { name: "x".to_owned(), points };
+        let panel = Panel { span: Some((0.0, 4.0)), ..Panel::over("t", "a", Scale::Linear, vec![curve]) };
+        let drawn = lines(&panel, Ink::Curve(0));
+        assert_eq!(drawn.iter().map(Vec::len).collect::<Vec<_>>(), [2, 2]);
+        assert_eq!((drawn[0][0][0], drawn[1][1][0]), (0.0, 100.0));
+    }
+
+    #[test]
+    fn circles_are_round() {
+        let points =
+            (0..=100).map(|i| f64::from(i) * 0.0628).map(|t| (3.0 * t.cos(), 7.0 + 3.0 * t.sin())).collect();
+        let curve = Curve { name: "y over x".to_owned(), points };
+        let panel = Panel { equal: true, ..Panel::over("x", "a", Scale::Linear, vec![curve]) };
+        let wide = Frame { right: 300.0, ..FRAME };
+        let (across, up) = wide.axes(&panel);
+        assert!((across.per_point() - up.per_point()).abs() < 1e-15);
+        assert!(across.place(3.0) < 300.0 && across.place(-3.0) > 0.0 && up.place(10.0) > 0.0);
+    }
+
+    #[test]
+    fn cells_have_the_colours_of_their_values() {
+        let content = Content::Cells {
+            columns: vec![0.0, 1.0],
+            rows: vec![0.0, 1.0],
+            values: vec![0.0, 1.0, f64::NAN, 2.0],
+        };
+        let panel = Panel { content, ..Panel::over("a", "z", Scale::Linear, Vec::new()) };
+        let mut drawing = Drawing::default();
+        panel.draw(&mut drawing, Frame { right: 200.0, ..FRAME }, 10.0, 1000);
+        let areas: Vec<_> = drawing
+            .shapes
+            .iter()
+            .filter_map(|shape| match shape {
+                Shape::Area { from, to, ink: Ink::Mixed(colour) } if to[0] <= 104.0 => {
+                    Some((*from, *to, *colour))
+                }
+                _ => None,
+            })
+            .collect();
+        // Three values of four, the first at the lower left.
+        assert_eq!(areas.len(), 3);
+        assert_eq!(areas[0], ([0.0, 50.0], [52.0, 100.0], COLOURS[0]));
+        assert_eq!((areas[1].2, areas[2].2), (COLOURS[4], COLOURS[8]));
     }
 }

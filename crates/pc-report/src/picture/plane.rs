@@ -3,7 +3,7 @@
 use pc_print::short;
 
 use crate::picture::axes::Axis;
-use crate::picture::chart::put;
+use crate::picture::svg::put;
 
 const SIDE: f64 = 260.0;
 const EDGE: f64 = 26.0;

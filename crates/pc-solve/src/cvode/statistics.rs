@@ -48,6 +48,7 @@ impl Statistics {
             preconditioner_solves: of_linear(sys::CVodeGetNumPrecSolves),
             limited_steps: 0,
             implicit_steps: 0,
+            lane_steps: 0,
             changes: 0,
             stiff_from: None,
             last_order: order(sys::CVodeGetLastOrder),

@@ -1,17 +1,19 @@
 //! How long the steps are.
 //!
-//! The next step is h 0.9 err^(−1/8), between h/3 and 6 h. The source has room for a power β of the error of the step
-//! before too, which makes lengths change more evenly, and takes β = 0 for this method, as is done here.
+//! The next step is h 0.85 err^(−1/8), between h/3 and 6 h. The source has 0.9, and room for a power β of the error of the
+//! step before. Both decide how many steps are refused, of which each costs eleven evaluations. To global errors of 1e-8
+//! and 1e-10, 0.85 takes 5 to 15 % fewer evaluations than 0.9 for tops, pendulums and orbits; β = 0.02 saves no more and β =
+//! 0.04 costs orbits 5 % beside either, so that there is no β.
 
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
 /// The part of the length that the error lets expect.
-const SAFETY: f64 = 0.9;
+pub(super) const SAFETY: f64 = 0.85;
 /// A step is at most so many times as long as the one before …
-const GROWTH: f64 = 6.0;
+pub(super) const GROWTH: f64 = 6.0;
 /// … and at least this part of it.
-const SHRINKING: f64 = 1.0 / 3.0;
+pub(super) const SHRINKING: f64 = 1.0 / 3.0;
 
 /// Tolerances and lengths of steps, in both directions of time positive.
 #[derive(Debug, Clone)]

@@ -13,7 +13,7 @@ use crate::integration::stepper::Stepper;
 /// A step that would leave less than this part of itself to a stop time or a break ends there.
 const LEFT: f64 = 0.01;
 /// A step from a start whose state or rates vanish, at the first try.
-const FIRST: f64 = 1e-6;
+pub(super) const FIRST: f64 = 1e-6;
 
 /// Why a step does not stand.
 enum Refusal {

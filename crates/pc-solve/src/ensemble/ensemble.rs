@@ -36,7 +36,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::AtomicBool;
 use std::thread;
 
-use pc_expr::VectorField;
+use pc_expr::{LANES, VectorField};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 use crate::ensemble::ordered::Queue;
@@ -63,6 +63,8 @@ pub struct Ensemble<'a> {
     threads: NonZeroUsize,
     window: Option<NonZeroUsize>,
     flag: Option<&'a AtomicBool>,
+    /// How many lanes of a vector are used.
+    pub(super) lanes: usize,
 }
 
 impl Default for Ensemble<'_> {
@@ -75,7 +77,7 @@ impl<'a> Ensemble<'a> {
     /// A thread for each core.
     pub fn new() -> Self {
         let threads = thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-        Ensemble { threads, window: None, flag: None }
+        Ensemble { threads, window: None, flag: None, lanes: LANES }
     }
 
     /// The number of threads, at most 1024. The results are the same for any number.
@@ -89,6 +91,12 @@ impl<'a> Ensemble<'a> {
         Ensemble { window: Some(members), ..self }
     }
 
+    /// How many members are integrated [beside each other](Ensemble::map_in_lanes) by a thread, at most, and unless given, as many as a
+    /// vector has lanes: eight. The results are the same for any number.
+    pub fn lanes(self, lanes: NonZeroUsize) -> Self {
+        Ensemble { lanes: lanes.get(), ..self }
+    }
+
     /// Stops as soon as `flag` is true: members in progress end at their next internal step and are dropped.
     pub fn stopped_by(self, flag: &'a AtomicBool) -> Self {
         Ensemble { flag: Some(flag), ..self }
@@ -98,6 +106,9 @@ impl<'a> Ensemble<'a> {
     /// the members.
     ///
     /// `make` gives a member its vector field and its state at `t0`. It is called on the thread that integrates.
+    ///
+    /// By [`Method::Dop853`](crate::Method::Dop853), members whose fields are [programs](VectorField::lanes) that do not read time
+    /// are integrated eight at a time, each in a lane of a vector, as [`map_in_lanes`](Ensemble::map_in_lanes) says.
     ///
     /// # Errors
     /// [`EnsembleError`] if threads cannot be started. An error of a member is its result.
@@ -115,10 +126,10 @@ impl<'a> Ensemble<'a> {
         E: Send,
     {
         // None where the member was stopped on its way.
-        let work = |member, stop: &Stop<'_>| {
+        let alone = |made: Result<(F, Vec<f64>), MemberError<E>>, stop: &Stop<'_>| {
             let reached = RefCell::new(None);
             let solved = caught(|| {
-                let (field, start) = make(member).map_err(MemberError::Make)?;
+                let (field, start) = made?;
                 let observe = |t, y: &[f64]| {
                     keep(&mut reached.borrow_mut(), t, y);
                     if stop.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -135,11 +146,23 @@ impl<'a> Ensemble<'a> {
                 Err(message) => Some(Err(MemberError::Panic { message, reached: reached.into_inner() })),
             }
         };
-        self.map(members, work, |member, solved| match solved {
+        let make = |member| make(member).map_err(MemberError::Make);
+        let begin = |member| {
+            let mut made = make(member);
+            let lane = made.as_mut().ok().and_then(|(field, start)| {
+                let lanes = field.lanes().filter(|_| !field.has_projection() && field.breaks().is_empty());
+                lanes.map(|lanes| (lanes, start.clone()))
+            });
+            (made, lane)
+        };
+        let consume = |member, solved: Result<Option<_>, Panicked>| match solved {
             Ok(Some(solved)) => consume(member, solved),
             Ok(None) => ControlFlow::Break(()),
             Err(Panicked { message }) => consume(member, Err(MemberError::Panic { message, reached: None })),
-        })
+        };
+        let in_lane = |_, _, motion| Some(Ok(motion));
+        let alone = |_, made, stop: &Stop<'_>| alone(made, stop);
+        self.map_in_lanes(members, (t0, times, options), begin, in_lane, alone, consume)
     }
 
     /// Does any `work` for each member and gives its result to `consume` in the order of the members.
@@ -154,25 +177,47 @@ impl<'a> Ensemble<'a> {
         work: impl Fn(u64, &Stop<'_>) -> T + Sync,
         mut consume: impl FnMut(u64, Result<T, Panicked>) -> ControlFlow<()>,
     ) -> Result<Ending, EnsembleError> {
-        let threads = self.threads.get().min(MOST_THREADS);
-        let window = self.window.map_or(WINDOW.saturating_mul(threads), NonZeroUsize::get);
+        let worker = |queue: &Queue<'_, Result<T, Panicked>>, stop: &Stop<'_>| {
+            while let Some(member) = queue.begin() {
+                let result = caught(|| work(member, stop)).map_err(|message| Panicked { message });
+                queue.finish(member, result);
+            }
+        };
+        self.of_items(members, self.items_in_window(), worker, &mut consume)
+    }
+
+    /// The number of threads that work.
+    pub(super) fn workers(&self) -> usize {
+        self.threads.get().min(MOST_THREADS)
+    }
+
+    /// The number of members that may be begun and not yet consumed.
+    pub(super) fn items_in_window(&self) -> u64 {
+        self.window.map_or(WINDOW.saturating_mul(self.workers()), NonZeroUsize::get) as u64
+    }
+
+    /// Has a worker on each thread take items from a queue and give back their results, of which `window` may be begun and not
+    /// yet consumed; these are consumed in the order of the items.
+    pub(super) fn of_items<R: Send>(
+        &self,
+        items: Range<u64>,
+        window: u64,
+        worker: impl Fn(&Queue<'_, R>, &Stop<'_>) + Sync,
+        consume: &mut impl FnMut(u64, R) -> ControlFlow<()>,
+    ) -> Result<Ending, EnsembleError> {
+        let threads = self.workers();
         let stopped = AtomicBool::new(false);
         let stop = Stop { own: &stopped, flag: self.flag };
-        let queue = Queue::new(members.clone(), window as u64, &stop);
+        let queue = Queue::new(items.clone(), window, &stop);
         let consume_all = |pool: &ThreadPool| {
             pool.in_place_scope(|scope| {
                 // One for each thread; work that is itself parallel cannot begin another of these.
-                scope.spawn_broadcast(|_, _| {
-                    while let Some(member) = queue.begin() {
-                        let result = caught(|| work(member, &stop)).map_err(|message| Panicked { message });
-                        queue.finish(member, result);
-                    }
-                });
+                scope.spawn_broadcast(|_, _| worker(&queue, &stop));
                 // Lets the threads end however this one does.
                 let _closing = queue.closing();
-                for member in members {
-                    let Some(result) = queue.take(member) else { return Ending::Stopped };
-                    if consume(member, result).is_break() {
+                for item in items {
+                    let Some(result) = queue.take(item) else { return Ending::Stopped };
+                    if consume(item, result).is_break() {
                         return Ending::Stopped;
                     }
                 }
@@ -265,7 +310,7 @@ pub enum EnsembleError {
 }
 
 /// What `compute` gives, or what it said when it panicked.
-fn caught<T>(compute: impl FnOnce() -> T) -> Result<T, String> {
+pub(super) fn caught<T>(compute: impl FnOnce() -> T) -> Result<T, String> {
     // Unwind safe: what the computation worked on is dropped with it.
     catch_unwind(AssertUnwindSafe(compute)).map_err(|panic: Box<dyn Any + Send>| {
         let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());

@@ -43,6 +43,19 @@ impl<'a, T> Queue<'a, T> {
         while full(&state) && !self.stop.requested() {
             state = self.taken.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
+        self.hand_out(&mut state)
+    }
+
+    /// The same; none if the window has no room now.
+    pub(super) fn begin_if_room(&self) -> Option<u64> {
+        let mut state = self.state();
+        if state.next < self.end && state.next - state.wanted >= self.window {
+            return None;
+        }
+        self.hand_out(&mut state)
+    }
+
+    fn hand_out(&self, state: &mut State<T>) -> Option<u64> {
         if state.next >= self.end || self.stop.requested() {
             self.finished.notify_all();
             return None;

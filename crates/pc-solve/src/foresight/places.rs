@@ -49,6 +49,8 @@ pub(crate) struct Places {
     pub(crate) found: Vec<f64>,
     /// A place beyond which there are too many for it.
     pub(crate) crowded: Option<f64>,
+    /// Places of fast oscillations, and how many there are.
+    many: Vec<f64>,
     crowd: usize,
     unknown: bool,
 }
@@ -79,6 +81,7 @@ impl Places {
             limited: 0,
             found: Vec::new(),
             crowded: None,
+            many: Vec::new(),
             crowd: 0,
             unknown: false,
         }
@@ -107,12 +110,12 @@ impl Places {
         if self.are_absent() || ahead.length() <= least {
             return Ok(false);
         }
-        let mut sampled = false;
-        let Surprises { few, mut many, mut until, noise } = match &mut self.dependence {
-            TimeDependence::Absent => Surprises::default(),
+        let (mut sampled, nothing) = (false, Surprises::default());
+        let Surprises { few, many, until, noise } = match &mut self.dependence {
+            TimeDependence::Absent => &nothing,
             TimeDependence::Unknown => {
                 sampled = !ahead.given;
-                Surprises::default()
+                &nothing
             }
             TimeDependence::Known(profile) => {
                 let tangent = if profile.follows_states() { here.tangent()? } else { (&[][..], &[][..]) };
@@ -120,17 +123,21 @@ impl Places {
                 profile.surprises((t, reach), tangent, end, self.unsurprising > ENOUGH)
             }
         };
-        self.found.extend_from_slice(&few);
+        let (mut until, noise) = (*until, *noise);
+        self.found.extend_from_slice(few);
+        self.many.clear();
+        self.many.extend_from_slice(many);
         if sampled {
             self.sample(ahead);
         }
         if noise && let Some(near) = until.take() {
-            many.clear();
+            self.many.clear();
             here.resolve(near, ahead.length())?;
         }
-        for places in [&mut self.found, &mut many] {
+        for places in [&mut self.found, &mut self.many] {
             places.retain(|place| (place - t).abs() > least);
         }
+        let many = &mut self.many;
         self.crowd = many.len();
         self.unknown = until.is_some();
         // Of fast oscillations not all are looked at, and a step holds no more than those before it let expect.

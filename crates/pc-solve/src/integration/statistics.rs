@@ -38,6 +38,8 @@ pub struct Statistics {
     pub limited_steps: u64,
     /// Steps by the formulas for stiff systems of a method that changes by itself.
     pub implicit_steps: u64,
+    /// Steps made beside those of other members of an [ensemble](crate::Ensemble), in vectors.
+    pub lane_steps: u64,
     /// How often a method that changes by itself did so.
     pub changes: u64,
     /// When an explicit method saw first that stability and not accuracy limits its steps, if it did.
@@ -77,6 +79,7 @@ impl Statistics {
             preconditioner_solves: self.preconditioner_solves.saturating_add(later.preconditioner_solves),
             limited_steps: self.limited_steps.saturating_add(later.limited_steps),
             implicit_steps: self.implicit_steps.saturating_add(later.implicit_steps),
+            lane_steps: self.lane_steps.saturating_add(later.lane_steps),
             changes: self.changes.saturating_add(later.changes),
             stiff_from: self.stiff_from.or(later.stiff_from),
             first_step: if self.steps > 0 { self.first_step } else { later.first_step },

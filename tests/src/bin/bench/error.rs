@@ -69,6 +69,9 @@ pub(crate) enum Error {
     /// Two integrations of one motion end apart.
     #[error("{system}, rtol {rtol:e}: ours ends {distance:e} from that of plain C")]
     Apart { system: &'static str, rtol: f64, distance: f64 },
+    /// Members of an ensemble did not come to their end.
+    #[error("of {members} members {ended} came to their end")]
+    Ensemble { members: usize, ended: usize },
     /// The report could not be written.
     #[error("cannot write {}", path.display())]
     Write { path: PathBuf, source: io::Error },

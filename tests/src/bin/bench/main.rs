@@ -5,6 +5,7 @@
 
 mod capi;
 mod derive;
+mod ensembles;
 mod error;
 mod hand;
 mod measure;
@@ -43,6 +44,7 @@ const BENCHMARKS: &[Benchmark] = &[
         about: "a whole integration to one global error, by our methods and by hand",
         run: speed::run,
     },
+    Benchmark { name: "ensembles", about: "many motions at once, in lanes and by hand", run: ensembles::run },
     Benchmark {
         name: "trees",
         about: "chains of bodies, joint after joint, derived and by hand",

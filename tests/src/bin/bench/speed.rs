@@ -5,6 +5,7 @@ use std::time::Instant;
 use pc_mech::{Graph, Motion};
 use pc_solve::{Method, Options, solve};
 
+use crate::ensembles;
 use crate::error::Error;
 use crate::hand::{self, Hand, Routine};
 use crate::measure::Times;
@@ -171,8 +172,10 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
             ]);
         }
     }
+    let ensemble = ensembles::compare(report)?.map_or("-".to_owned(), |ratio| format!("{ratio:.2}"));
     report.line(format!(
-        "\nworst of taylor/hand-dop853 {worst_taylor:.2}, dop853/hand {worst:.2}, ensemble/hand -"
+        "\nworst of taylor/hand-dop853 {worst_taylor:.2}, dop853/hand {worst:.2}, ensemble/hand {ensemble} \
+         (in trajectories a second)"
     ));
     Ok(())
 }

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use pc_tests::fuzz::campaign::Campaign;
+use pc_tests::fuzz::campaign::{Campaign, Subject};
 
-pub(crate) const USAGE: &str = "usage: fuzz models [--count N] [--seed S] [--first K] [--model K] [--threads T] [--emitted-every N] \
+pub(crate) const USAGE: &str = "usage: fuzz models|trees [--count N] [--seed S] [--first K] [--model K] [--threads T] [--emitted-every N] \
      [--save DIR]";
 
 /// What is to be done.
@@ -20,12 +20,15 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn of(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
-        if words.next().as_deref() != Some("models") {
-            return Err("what is varied are `models`".to_owned());
-        }
+        let subject = match words.next().as_deref() {
+            Some("models") => Subject::Models,
+            Some("trees") => Subject::Trees,
+            _ => return Err("what is varied are `models` or `trees`".to_owned()),
+        };
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let limit = Duration::from_secs(60);
-        let campaign = Campaign { seed: 1, first: 0, count: 20_000, threads, emitted_every: 50, limit };
+        let campaign =
+            Campaign { subject, seed: 1, first: 0, count: 20_000, threads, emitted_every: 50, limit };
         let mut arguments = Arguments { campaign, model: None, save: None };
         while let Some(word) = words.next() {
             let mut text = || words.next().ok_or_else(|| format!("`{word}` needs a value"));

@@ -1,4 +1,4 @@
-//! The differential tester: `cargo xtask fuzz models [--count N] [--seed S] [--model K] [--threads T]
+//! The differential tester: `cargo xtask fuzz models|trees [--count N] [--seed S] [--model K] [--threads T]
 //! [--save DIR]`.
 //!
 //! It runs random models over the whole text format and compares what the product makes of them with independent
@@ -13,8 +13,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use arguments::Arguments;
-use pc_tests::fuzz::campaign::Campaign;
-use pc_tests::fuzz::examination::{Examined, examine, note_panics};
+use pc_tests::fuzz::campaign::{Campaign, Subject};
+use pc_tests::fuzz::examination::{Examined, note_panics};
 use pc_tests::fuzz::generator;
 use pc_tests::fuzz::report::Report;
 use pc_tests::fuzz::shrink::shrink;
@@ -36,7 +36,7 @@ fn main() -> ExitCode {
 
 /// Shows a model, what came of it, and the shortest that has the same findings.
 fn one(campaign: &Campaign, index: u64) -> ExitCode {
-    let examined = examine(campaign.seed, index, campaign.thoroughness(index));
+    let examined = campaign.subject.examine(campaign.seed, index, campaign.thoroughness(index));
     show(&examined);
     for refusal in &examined.refusals {
         println!("# refused, {}: {}", refusal.stage, refusal.message.replace('\n', "\n#   "));
@@ -83,7 +83,11 @@ fn keep(arguments: &Arguments, index: u64, examined: &Examined) {
     }
 }
 
+/// Of a tree nothing is shrunk: it has few bodies.
 fn show_shrunk(campaign: &Campaign, index: u64, kind: &str) {
+    if campaign.subject == Subject::Trees {
+        return;
+    }
     let specimen = generator::specimen(campaign.seed, index);
     let (_, examined) = shrink(&specimen, kind, campaign.thoroughness(index));
     println!("\n# model {index} of seed {}, shrunk: {kind}", campaign.seed);

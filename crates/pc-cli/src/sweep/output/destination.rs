@@ -8,7 +8,7 @@ use super::{csv, json, npz};
 use crate::error::CliError;
 use crate::output::kept::Kept;
 use crate::output::place::Place;
-use crate::sweep::journal::Journal;
+use crate::sweep::journal::Records;
 use crate::sweep::sheet::Sheet;
 
 /// Where the table goes.
@@ -60,17 +60,17 @@ impl Destination {
     ///
     /// # Errors
     /// [`CliError::Write`]; an existing file is then as it was.
-    pub(crate) fn write(&self, title: &str, sheet: &Sheet, journal: &Journal) -> Result<(), CliError> {
+    pub(crate) fn write(&self, title: &str, sheet: &Sheet, members: &dyn Records) -> Result<(), CliError> {
         let written = self.place.write(|out| match self.encoding {
-            Encoding::Csv => csv::write(sheet, journal, out),
-            Encoding::Json => json::write(title, sheet, journal, out),
-            Encoding::Npz => npz::write(sheet, journal, out),
+            Encoding::Csv => csv::write(sheet, members, out),
+            Encoding::Json => json::write(title, sheet, members, out),
+            Encoding::Npz => npz::write(sheet, members, out),
             #[cfg(feature = "parquet")]
-            Encoding::Parquet => parquet::write(sheet, journal, out),
+            Encoding::Parquet => parquet::write(sheet, members, out),
         });
         written.map_err(|source| CliError::Write {
             path: self.path().display().to_string(),
-            kept: Kept::Journal(journal.path().to_owned()),
+            kept: members.kept().map_or(Kept::Nowhere, |path| Kept::Journal(path.to_owned())),
             source,
         })
     }

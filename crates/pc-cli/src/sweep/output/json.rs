@@ -5,20 +5,20 @@ use std::io::{self, Write};
 use serde_json::{Value, json};
 
 use crate::output::atomic::FileWriter;
-use crate::sweep::journal::Journal;
+use crate::sweep::journal::Records;
 use crate::sweep::sheet::{Cell, Sheet};
 
 /// Numbers are as short as gives the same number back; what is not finite is null.
 pub(super) fn write(
     title: &str,
     sheet: &Sheet,
-    journal: &Journal,
+    members: &dyn Records,
     out: &mut FileWriter<'_>,
 ) -> io::Result<()> {
     let names: Vec<&str> = sheet.columns().iter().map(|(name, _)| name.as_str()).collect();
     write!(out, "{{\n\"model\": {},\n\"columns\": {},\n\"rows\": [", json!(title), json!(names))?;
     let mut comma = "";
-    for record in journal.records()? {
+    for record in members.records()? {
         for row in sheet.rows(&record?) {
             let cells = row.iter().map(|cell| match *cell {
                 Cell::Integer(value) => json!(value),

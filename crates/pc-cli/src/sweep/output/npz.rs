@@ -8,12 +8,12 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::output::atomic::FileWriter;
 use crate::output::npz::entry;
-use crate::sweep::journal::Journal;
+use crate::sweep::journal::Records;
 use crate::sweep::sheet::{Cell, Kind, Sheet};
 
 /// One array for each column, of `f64`, `u64` or text; the archive bears no date.
-pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut FileWriter<'_>) -> io::Result<()> {
-    let (rows, lengths) = extent(sheet, journal)?;
+pub(super) fn write(sheet: &Sheet, members: &dyn Records, out: &mut FileWriter<'_>) -> io::Result<()> {
+    let (rows, lengths) = extent(sheet, members)?;
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
         .last_modified_time(DateTime::default())
@@ -27,7 +27,7 @@ pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut FileWriter<'_>) 
             Kind::Text => format!("<U{}", lengths[j].max(1)),
         };
         let dtype = DType::new_scalar(dtype.parse().map_err(|e| Error::new(ErrorKind::InvalidInput, e))?);
-        let table = (sheet, journal, rows);
+        let table = (sheet, members, rows);
         match kind {
             Kind::Integer => fill(&mut archive, dtype, table, |row| match row[j] {
                 Cell::Integer(value) => value,
@@ -48,9 +48,9 @@ pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut FileWriter<'_>) 
 }
 
 /// The number of rows, and of characters of the longest text of each column.
-fn extent(sheet: &Sheet, journal: &Journal) -> io::Result<(u64, Vec<usize>)> {
+fn extent(sheet: &Sheet, members: &dyn Records) -> io::Result<(u64, Vec<usize>)> {
     let (mut rows, mut lengths) = (0, vec![0; sheet.columns().len()]);
-    for record in journal.records()? {
+    for record in members.records()? {
         for row in sheet.rows(&record?) {
             rows += 1;
             for (longest, cell) in lengths.iter_mut().zip(row) {
@@ -67,11 +67,11 @@ fn extent(sheet: &Sheet, journal: &Journal) -> io::Result<(u64, Vec<usize>)> {
 fn fill<T: npyz::Serialize>(
     archive: &mut ZipWriter<&mut FileWriter<'_>>,
     dtype: DType,
-    (sheet, journal, rows): (&Sheet, &Journal, u64),
+    (sheet, members, rows): (&Sheet, &dyn Records, u64),
     value: impl Fn(&[Cell<'_>]) -> T,
 ) -> io::Result<()> {
     let mut array = npyz::WriteOptions::new().dtype(dtype).shape(&[rows]).writer(archive).begin_nd()?;
-    for record in journal.records()? {
+    for record in members.records()? {
         for row in sheet.rows(&record?) {
             array.push(&value(&row))?;
         }

@@ -11,7 +11,7 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
 
 use crate::output::atomic::FileWriter;
-use crate::sweep::journal::Journal;
+use crate::sweep::journal::Records;
 use crate::sweep::sheet::{Cell, Kind, Sheet};
 
 /// Rows that are held in memory.
@@ -25,12 +25,12 @@ enum Column {
 }
 
 /// Required columns INT64 (unsigned), DOUBLE and BYTE_ARRAY (UTF-8), not compressed.
-pub(super) fn write(sheet: &Sheet, journal: &Journal, out: &mut FileWriter<'_>) -> io::Result<()> {
+pub(super) fn write(sheet: &Sheet, members: &dyn Records, out: &mut FileWriter<'_>) -> io::Result<()> {
     let schema = schema(sheet).map_err(io::Error::other)?;
     let properties = Arc::new(WriterProperties::builder().build());
     let mut file = SerializedFileWriter::new(out, Arc::new(schema), properties).map_err(io::Error::other)?;
     let (mut group, mut rows) = (empty(sheet), 0);
-    for record in journal.records()? {
+    for record in members.records()? {
         for row in sheet.rows(&record?) {
             group.iter_mut().zip(row).for_each(|(column, cell)| column.push(cell));
             rows += 1;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pc_expr::{Backend, Evaluator, Expr, ExprError, Program};
+use pc_expr::{Backend, Evaluator, Expr, ExprError, Program, Watched};
 
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::failure::EvaluationFailure;
@@ -176,6 +176,13 @@ impl Pivots {
             self.fix(state, parameters);
         }
         self.partition.check(|k| self.fixed[k], moving)
+    }
+
+    /// The same for many states at once.
+    pub(crate) fn watched(&mut self, state: &[f64], parameters: &[f64]) -> Watched {
+        let fixed = self.fixed(state, parameters);
+        let (smallest, largest) = (fixed[SMALLEST], fixed[LARGEST]);
+        Watched { pivots: self.partition.moving_pivots, smallest, largest, vanishing: VANISHING_PIVOT }
     }
 
     /// What says what is fixed.

@@ -1,5 +1,7 @@
 //! What parameters alone determine, computed once for their values.
 
+use std::sync::Arc;
+
 use pc_expr::{Backend, Entry, Evaluator, Program};
 
 /// A program without what the parameters alone determine, as regrouped masses: this is computed when they change.
@@ -68,6 +70,11 @@ impl Prologue {
             self.numbers[place] = p[place];
         }
         self.rest.eval(t, y, &self.numbers, outputs);
+    }
+
+    /// The rest, which takes [`numbers`](Prologue::numbers) for parameters.
+    pub(crate) fn rest(&self) -> &Arc<Program> {
+        self.rest.program()
     }
 
     /// The machine code of the rest, which takes [`numbers`](Prologue::numbers) for parameters.

@@ -3,7 +3,9 @@
 use std::cell::LazyCell;
 use std::sync::Arc;
 
-use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TaylorSeries, TimeDependence};
+use pc_expr::{
+    Backend, Cost, Evaluator, Expr, ExprError, LaneField, Pattern, Program, TaylorSeries, TimeDependence,
+};
 
 use crate::compiled::elimination::columns::{Columns, Storage, derivative};
 use crate::compiled::elimination::pivots::Pivots;
@@ -185,6 +187,19 @@ impl Unrolled {
         series.expand(t, y, sides, p, order);
         self.pivots.check(y, p, series.watched())?;
         Ok(series)
+    }
+
+    /// f for many states at once; none where it is interpreted.
+    pub(crate) fn lanes(&mut self, dim: usize, p: &[f64]) -> Option<LaneField> {
+        if self.backend != Backend::Fastest {
+            return None;
+        }
+        let watched = self.pivots.watched(&self.known[..dim], p);
+        let (program, parameters) = match &mut self.prologue {
+            Some(prologue) => (Arc::clone(prologue.rest()), prologue.numbers(p).to_vec()),
+            None => (Arc::clone(self.rates.program()), p.to_vec()),
+        };
+        Some(LaneField { program, parameters, watched })
     }
 
     pub(crate) fn machine_code(&mut self, dim: usize) -> Option<MachineCode> {

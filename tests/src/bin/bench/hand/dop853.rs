@@ -6,6 +6,7 @@
 #[path = "../../../../../crates/pc-solve/src/dop853/coefficients.rs"]
 #[expect(dead_code, reason = "those of dense output")]
 mod coefficients;
+pub(super) mod lockstep;
 
 use coefficients::{A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12, B, B3, E5};
 

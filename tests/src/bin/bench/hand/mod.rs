@@ -18,6 +18,7 @@ use pc_mech::MachineCode;
 
 pub(crate) use chain::chain;
 pub(crate) use dop853::integrate;
+pub(crate) use dop853::lockstep::tops;
 pub(crate) use particle::{charged, relativistic};
 pub(crate) use pendulum::{pendulum, pendulum_by_tensions};
 pub(crate) use rolling::{disk, sleigh};

@@ -7,16 +7,16 @@ const CENTRE: [f64; 3] = [0.1, 0.2, 0.3];
 const WEIGHT: f64 = 10.0;
 
 /// (I_j − I_k)/I_i
-const GYROSCOPIC: [f64; 3] = [
+pub(super) const GYROSCOPIC: [f64; 3] = [
     (INERTIA[1] - INERTIA[2]) / INERTIA[0],
     (INERTIA[2] - INERTIA[0]) / INERTIA[1],
     (INERTIA[0] - INERTIA[1]) / INERTIA[2],
 ];
 /// mg r_k/I_i
-const FORTH: [f64; 3] =
+pub(super) const FORTH: [f64; 3] =
     [WEIGHT * CENTRE[2] / INERTIA[0], WEIGHT * CENTRE[0] / INERTIA[1], WEIGHT * CENTRE[1] / INERTIA[2]];
 /// −mg r_j/I_i
-const BACK: [f64; 3] =
+pub(super) const BACK: [f64; 3] =
     [-WEIGHT * CENTRE[1] / INERTIA[0], -WEIGHT * CENTRE[2] / INERTIA[1], -WEIGHT * CENTRE[0] / INERTIA[2]];
 
 /// ω̇_i = (I_j − I_k)/I_i ω_j ω_k + mg (γ_j r_k − γ_k r_j)/I_i, (i, j, k) cyclic.

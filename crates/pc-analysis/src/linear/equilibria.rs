@@ -1,0 +1,394 @@
+//! The equilibria in a box.
+
+use pc_mech::{Equations, Matrix, Motion};
+
+use crate::error::AnalysisError;
+use crate::integrals::integral::Integral;
+use crate::linear::linearization::Linearization;
+use crate::linear::linearizer::Linearizer;
+use crate::numeric::dense::symmetric_eigenvalues;
+use crate::numeric::newton;
+use crate::stability::spectrum::Verdict;
+use crate::stability::steady_motion::SteadyOptions;
+use crate::stability::steady_motions::{SAME, periods, primes};
+use crate::stability::steady_search::{EnergyCriterion, Known, NearbySteadyMotion, Seeker, largest};
+
+/// A search for equilibria by Newton's method from many starts: those of a sequence of low discrepancy, multiples of roots of
+/// primes modulo 1 (R. Kronecker, H. Weyl), the same each time.
+///
+/// ```
+/// use pc_analysis::{EquilibriumSearch, Leaf, Linearizer};
+/// use pc_mech::{Graph, System};
+///
+/// // A bead on a hoop that turns twice as fast as it takes to leave the lowest point: cos θ = 1/4 too.
+/// let graph = Graph::new();
+/// let bead = System::builder(&graph)
+///     .coordinates(["θ"])
+///     .lagrangian(|_, x, v| v[0].square() / 2.0 + 2.0 * x[0].sin().square() + x[0].cos())
+///     .build()?;
+/// let equations = bead.poincare()?;
+/// let mut linearizer = Linearizer::new(&equations, &Leaf::of(&bead), &[])?;
+/// let found = EquilibriumSearch::default().run(&equations, &mut linearizer, (0.0, &[0.3, 0.0]), &[])?;
+/// assert_eq!(found.list.len(), 4); // below, above, and on both sides
+/// assert!((found.list[0].state[0].abs() - 0.25f64.acos()).abs() < 1e-12);
+/// # Ok::<(), pc_analysis::AnalysisError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct EquilibriumSearch {
+    bounds: Vec<(String, f64, f64)>,
+    starts: usize,
+}
+
+impl Default for EquilibriumSearch {
+    /// Angles over a turn about the start, other coordinates and first-order states from it by 2 (1 + |x|) to both sides; 256 starts.
+    fn default() -> EquilibriumSearch {
+        EquilibriumSearch { bounds: Vec::new(), starts: 256 }
+    }
+}
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Equilibria {
+    /// The equilibria in ascending order of energy.
+    pub list: Vec<FoundEquilibrium>,
+    /// The cyclic coordinates: whatever their values, equilibria remain such. They have those of the start.
+    pub anywhere: Vec<String>,
+    /// The coordinates and first-order states that were searched over, with the bounds of the starts.
+    pub bounds: Vec<(String, f64, f64)>,
+    /// The number of starts, and of those from which Newton's method converged.
+    pub starts: usize,
+    /// Of these.
+    pub converged: usize,
+}
+
+/// An equilibrium.
+#[derive(Clone, Debug)]
+pub struct FoundEquilibrium {
+    /// The whole state.
+    pub state: Vec<f64>,
+    /// The energy y_s η_s − L.
+    pub energy: f64,
+    /// The first approximation without cyclic coordinates.
+    pub linearization: Linearization,
+    /// What is known of its stability.
+    pub motion: NearbySteadyMotion,
+    /// The dimension of the family of which it is one, beside what cyclic coordinates make of it; 0 if it is isolated.
+    pub family: usize,
+    /// How many members of the family were found.
+    pub members: usize,
+}
+
+/// Steps of Newton's method.
+const MOST_STEPS: usize = 60;
+
+/// Where rates are steeper than this many times those at the start, coordinates are singular.
+const MOST_STEEPER: f64 = 1e6;
+
+/// A rate that is more than this part of what its slopes make of the state would vanish at another state only, such as a
+/// force that falls off with distance.
+const FALLING: f64 = 1e-3;
+
+/// Energies of a family that agree so well are one.
+const SAME_ENERGY: f64 = 1e-9;
+
+impl EquilibriumSearch {
+    /// Bounds a coordinate or first-order state: starts are in the box, and what is found outside is left out.
+    #[must_use]
+    pub fn within(mut self, name: impl Into<String>, low: f64, high: f64) -> EquilibriumSearch {
+        self.bounds.push((name.into(), low, high));
+        self
+    }
+
+    /// The number of starts.
+    #[must_use]
+    pub fn starts(self, starts: usize) -> EquilibriumSearch {
+        EquilibriumSearch { starts, ..self }
+    }
+
+    /// The equilibria found, on the leaf of the start (t, y): all rates vanish. No two are the same modulo the periods of
+    /// angles; of a family with one energy there is one member. There may be others.
+    ///
+    /// `integrals` are those of the `equations` in independent quasi-velocities, by which the energy criterion judges; `linearizer` is
+    /// of these equations, or of those with multipliers.
+    ///
+    /// # Errors
+    /// [`AnalysisError::UnknownComponent`], [`AnalysisError::CyclicBox`] or [`AnalysisError::EmptyBox`] for a wrong box;
+    /// [`AnalysisError::DependsOnTime`], [`AnalysisError::LeafUnknown`].
+    pub fn run<'g>(
+        &self,
+        equations: &Equations<'g>,
+        linearizer: &mut Linearizer,
+        (t, start): (f64, &[f64]),
+        integrals: &[Integral<'g>],
+    ) -> Result<Equilibria, AnalysisError> {
+        let mut motion = linearizer.motion.clone();
+        let domain = self.domain(linearizer, &mut motion, t, start)?;
+        linearizer.check_searchable(t, start)?;
+        let steepest = MOST_STEEPER * largest(&linearizer.at(t, start)?.state_matrix).max(1.0);
+        let known = Known::of(equations, integrals);
+        // Of equations in other variables than those of the state only the energy is of use.
+        let is_own = equations.system().state().len() == start.len();
+        let seeker = if is_own { Seeker::new(equations, &mut motion, t, start, &known) } else { None };
+        let keeps_energy = integrals.iter().any(|integral| integral.is_energy() && integral.is_conserved());
+
+        let cyclic = linearizer.cyclic();
+        let at_rest =
+            SteadyOptions::default().cyclic([] as [&str; 0]).fixed(cyclic.clone()).iterations(MOST_STEPS);
+        let (mut list, mut converged) = (Vec::<FoundEquilibrium>::new(), 0);
+        for number in 0..self.starts {
+            let guess =
+                domain.guess(number, start, linearizer.sizes.coordinates, linearizer.sizes.velocities);
+            let Some(state) = linearizer.equilibrium(t, start, &guess, &at_rest, steepest) else { continue };
+            converged += 1;
+            let state = domain.normalised(state, start);
+            if !domain.contains(&state) {
+                continue;
+            }
+            if list.iter().any(|known| domain.is_same(&known.state, &state)) {
+                continue;
+            }
+            let mut found = linearizer.described(&mut motion, t, state, seeker.as_ref(), start)?;
+            if keeps_energy && found.motion.second_variation.is_none() {
+                found.motion.second_variation = found.by_stiffness()?;
+            }
+            match list.iter_mut().find(|known| known.is_of_family(&found)) {
+                Some(known) => known.members += 1,
+                None => list.push(found),
+            }
+        }
+        let place = |a: &FoundEquilibrium, b: &FoundEquilibrium| {
+            let near = (a.energy - b.energy).abs() <= SAME_ENERGY * (1.0 + a.energy.abs());
+            let by_energy = if near { std::cmp::Ordering::Equal } else { a.energy.total_cmp(&b.energy) };
+            let mut components = a.state.iter().zip(&b.state);
+            by_energy.then_with(|| {
+                let apart = components.find(|(a, b)| (*a - *b).abs() > SAME);
+                apart.map_or(std::cmp::Ordering::Equal, |(a, b)| a.total_cmp(b))
+            })
+        };
+        insertion_sorted(&mut list, place);
+        Ok(Equilibria {
+            list,
+            anywhere: cyclic,
+            bounds: domain.named(linearizer.names()),
+            starts: self.starts,
+            converged,
+        })
+    }
+
+    fn domain(
+        &self,
+        linearizer: &Linearizer,
+        motion: &mut Motion,
+        t: f64,
+        start: &[f64],
+    ) -> Result<Domain, AnalysisError> {
+        let (n, l) = (linearizer.sizes.coordinates, linearizer.sizes.velocities);
+        let places: Vec<usize> =
+            (0..n).chain(n + l..start.len()).filter(|i| !linearizer.cyclic.contains(i)).collect();
+        let names = linearizer.names();
+        let known: Vec<String> = places.iter().map(|&i| names[i].clone()).collect();
+        for (name, low, high) in &self.bounds {
+            if linearizer.cyclic().contains(name) {
+                return Err(AnalysisError::CyclicBox { name: name.clone() });
+            }
+            if !known.contains(name) {
+                return Err(AnalysisError::UnknownComponent { name: name.clone(), known });
+            }
+            if low > high || !(high - low).is_finite() {
+                return Err(AnalysisError::EmptyBox { name: name.clone(), low: *low, high: *high });
+            }
+        }
+        let periods = periods(motion, t, start);
+        let edge = |&i: &usize| {
+            let given = self.bounds.iter().rev().find(|(name, ..)| *name == names[i]);
+            let reach = periods[i].map_or(2.0 * (1.0 + start[i].abs()), |period| period / 2.0);
+            let (low, high) =
+                given.map_or((start[i] - reach, start[i] + reach), |&(_, low, high)| (low, high));
+            Edge { place: i, low, high, is_given: given.is_some() }
+        };
+        Ok(Domain { edges: places.iter().map(edge).collect(), periods })
+    }
+}
+
+/// In a stable order; what is equal but for rounding is no order that the standard library may be given.
+fn insertion_sorted<T>(list: &mut [T], order: impl Fn(&T, &T) -> std::cmp::Ordering) {
+    for i in 1..list.len() {
+        let mut j = i;
+        while j > 0 && order(&list[j - 1], &list[j]).is_gt() {
+            list.swap(j - 1, j);
+            j -= 1;
+        }
+    }
+}
+
+/// Where it is searched.
+struct Domain {
+    edges: Vec<Edge>,
+    periods: Vec<Option<f64>>,
+}
+
+struct Edge {
+    place: usize,
+    low: f64,
+    high: f64,
+    is_given: bool,
+}
+
+impl Domain {
+    /// Start number 0 is that of the model at rest, if it is in the box.
+    fn guess(&self, number: usize, start: &[f64], coordinates: usize, velocities: usize) -> Vec<f64> {
+        let mut guess = start.to_vec();
+        guess[coordinates..coordinates + velocities].fill(0.0);
+        if number == 0 && self.contains(&guess) {
+            return guess;
+        }
+        for (edge, prime) in self.edges.iter().zip(primes()) {
+            let part = (number as f64 * f64::from(prime).sqrt()).fract();
+            guess[edge.place] = edge.low + (edge.high - edge.low) * part;
+        }
+        guess
+    }
+
+    /// Angles within a turn from the lower bound of their box, else nearest to zero.
+    fn normalised(&self, mut state: Vec<f64>, start: &[f64]) -> Vec<f64> {
+        for (i, period) in self.periods.iter().enumerate() {
+            let Some(period) = period else { continue };
+            let given = self.edges.iter().find(|edge| edge.place == i && edge.is_given);
+            let turns = match given {
+                // At the bound, but for rounding, is in the box.
+                Some(edge) => ((state[i] - edge.low + SAME) / period).floor(),
+                None if self.edges.iter().any(|edge| edge.place == i) => (state[i] / period).round(),
+                None => ((state[i] - start[i]) / period).round(),
+            };
+            state[i] -= turns * period;
+            // Half a turn back is half a turn on.
+            if given.is_none() && (state[i] + period / 2.0).abs() <= SAME {
+                state[i] += period;
+            }
+        }
+        state
+    }
+
+    /// Whether it is in the boxes that are given.
+    fn contains(&self, state: &[f64]) -> bool {
+        self.edges.iter().filter(|edge| edge.is_given).all(|edge| {
+            let margin = SAME * (1.0 + edge.low.abs().max(edge.high.abs()));
+            (edge.low - margin..=edge.high + margin).contains(&state[edge.place])
+        })
+    }
+
+    fn is_same(&self, a: &[f64], b: &[f64]) -> bool {
+        a.iter().zip(b).zip(&self.periods).all(|((a, b), period)| {
+            let distance = (a - b).abs();
+            let around = period.map_or(distance, |period| (period - distance).abs());
+            distance.min(around) <= SAME * (1.0 + a.abs())
+        })
+    }
+
+    fn named(&self, names: &[String]) -> Vec<(String, f64, f64)> {
+        self.edges.iter().map(|edge| (names[edge.place].clone(), edge.low, edge.high)).collect()
+    }
+}
+
+/// Eigenvalues of a form that are a smaller part of the largest are zeros.
+const DEFINITE: f64 = 1e-10;
+
+impl FoundEquilibrium {
+    /// The energy criterion in independent coordinates: where nothing is lost or gained, a least potential energy, K > 0, is stable
+    /// (J. L. Lagrange, P. G. L. Dirichlet).
+    fn by_stiffness(&self) -> Result<Option<EnergyCriterion>, AnalysisError> {
+        let Ok(second) = &self.linearization.second_order else { return Ok(None) };
+        let k = &second.stiffness;
+        let half = |i: usize, j: usize| (k[(i, j)] + k[(j, i)]) / 2.0;
+        let values = symmetric_eigenvalues(&Matrix::from_fn(k.rows(), k.columns(), half))?.0;
+        let largest = values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
+        let is_least = values.iter().all(|&value| value > DEFINITE * largest);
+        let verdict = if is_least { Verdict::Stable } else { Verdict::Undecided };
+        Ok(Some(EnergyCriterion { verdict, variables: None }))
+    }
+
+    /// Whether both are members of what may be one family: energy is constant along one, and so is the kind of stability.
+    fn is_of_family(&self, other: &FoundEquilibrium) -> bool {
+        self.family > 0
+            && self.family == other.family
+            && (self.energy - other.energy).abs() <= SAME_ENERGY.sqrt() * (1.0 + self.energy.abs())
+            && self.linearization.spectrum.verdict() == other.linearization.spectrum.verdict()
+    }
+}
+
+impl Linearizer {
+    /// The state of an equilibrium near a guess, if there is one where coordinates are regular.
+    fn equilibrium(
+        &mut self,
+        t: f64,
+        start: &[f64],
+        guess: &[f64],
+        options: &SteadyOptions,
+        steepest: f64,
+    ) -> Option<Vec<f64>> {
+        let guess = self.onto_leaf(t, start, guess)?;
+        let found = self.find_on(t, start, &guess, options).ok()?;
+        let slopes = &found.first_approximation;
+        let rates = self.motion.rates(t, &found.state).ok()?;
+        let reached = |i: usize| {
+            let of_state: f64 =
+                (0..slopes.columns()).map(|j| slopes[(i, j)].abs() * (1.0 + found.state[j].abs())).sum();
+            rates[i].abs() <= FALLING * of_state
+        };
+        (largest(slopes) <= steepest && (0..rates.len()).all(reached)).then_some(found.state)
+    }
+
+    /// A state near the guess on the leaf of the start.
+    fn onto_leaf(&mut self, t: f64, start: &[f64], guess: &[f64]) -> Option<Vec<f64>> {
+        let levels = self.levels(t, start).ok()?;
+        if levels.is_empty() {
+            return Some(guess.to_vec());
+        }
+        let end = newton::solve(guess.to_vec(), MOST_STEPS, |y| self.surface_at(t, y, Some(&levels))).ok()?;
+        end.is_solution(SAME).then_some(end.point)
+    }
+
+    fn described(
+        &mut self,
+        motion: &mut Motion,
+        t: f64,
+        state: Vec<f64>,
+        seeker: Option<&Seeker<'_, '_>>,
+        start: &[f64],
+    ) -> Result<FoundEquilibrium, AnalysisError> {
+        let all: Vec<usize> = (0..state.len()).collect();
+        let free: Vec<usize> = all.iter().copied().filter(|i| !self.cyclic.contains(i)).collect();
+        let family = self.family(t, &state, &all, &free)?;
+        let cyclic = self.cyclic.clone();
+        let linearization = self.put_together(t, &state, &cyclic, true)?;
+        let steady = self.find_on(t, start, &state, &SteadyOptions::default().iterations(0))?;
+        let spectrum = &linearization.spectrum;
+        let mut described = match seeker {
+            Some(seeker) => seeker.described(&steady, start, Vec::new()),
+            None => NearbySteadyMotion {
+                state: Vec::new(),
+                rates: Vec::new(),
+                distance: 0.0,
+                same: Vec::new(),
+                eigenvalues: Vec::new(),
+                tolerance: 0.0,
+                first_approximation: Verdict::Undecided,
+                neutral: None,
+                second_variation: None,
+            },
+        };
+        described.eigenvalues = spectrum.eigenvalues().to_vec();
+        described.tolerance = spectrum.tolerance();
+        described.first_approximation = spectrum.verdict();
+        let energy = motion.observable_names().iter().position(|name| name == "energy");
+        let observed = motion.observe(t, &state);
+        Ok(FoundEquilibrium {
+            energy: energy.map_or(f64::NAN, |place| observed[place]),
+            state,
+            linearization,
+            motion: described,
+            family,
+            members: 1,
+        })
+    }
+}

@@ -1,0 +1,254 @@
+//! A motion near a state, to first order.
+
+use pc_mech::{Matrix, VectorField};
+
+use crate::error::{AnalysisError, shape};
+use crate::linear::leaf::Velocities;
+use crate::linear::linearizer::{Evaluated, Linearizer};
+use crate::linear::modes::{Mode, modes};
+use crate::linear::second_order::{NoSecondOrder, Parts, Reduced, SecondOrder};
+use crate::numeric::dense::{norm, product};
+use crate::stability::spectrum::Spectrum;
+use crate::stability::steady_motion::{SteadyOptions, first_approximation};
+
+/// δẏ = A δy + B δu, δh = C δy + D δu for small deviations of the reduced state: independent coordinates of the states that
+/// satisfy the constraints, independent quasi-velocities, and first-order states. Inputs deviate from the values they have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linearization {
+    /// Time.
+    pub t: f64,
+    /// The whole state with its names.
+    pub state: Vec<(String, f64)>,
+    /// Whether all rates vanish but those of cyclic coordinates.
+    pub is_steady: bool,
+    /// √Σ f_i² over the components that are not cyclic.
+    pub residual: f64,
+    /// The Euclidean distance from the state asked for.
+    pub distance: f64,
+    /// The names of the r components of the reduced state.
+    pub components: Vec<String>,
+    /// The cyclic coordinates that are left out, with their rates.
+    pub cyclic: Vec<(String, f64)>,
+    /// A, r × r.
+    pub state_matrix: Matrix<f64>,
+    /// The names of the inputs.
+    pub inputs: Vec<String>,
+    /// B.
+    pub input_matrix: Matrix<f64>,
+    /// The names of the outputs that depend on no coordinate that is left out.
+    pub outputs: Vec<String>,
+    /// C.
+    pub output_matrix: Matrix<f64>,
+    /// D.
+    pub feedthrough: Matrix<f64>,
+    /// The names of the other outputs.
+    pub other_outputs: Vec<String>,
+    /// The eigenvalues of A.
+    pub spectrum: Spectrum,
+    /// Its eigenvectors.
+    pub modes: Vec<Mode>,
+    /// M q̈ + G q̇ + K q = F u.
+    pub second_order: Result<SecondOrder, NoSecondOrder>,
+}
+
+/// Which cyclic coordinates are components of the reduced state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum CyclicCoordinates {
+    /// None: stability is judged without them.
+    #[default]
+    LeftOut,
+    /// Those that rest, unless others that move act on them: equations with constant coefficients hold for these.
+    KeptAtRest,
+}
+
+/// The part of |∂f/∂y| (1 + |y|) up to which a rate counts as zero.
+const AT_REST: f64 = 1e-12;
+
+impl Linearizer {
+    /// At the equilibrium or steady motion near a state, found by Newton's method; cyclic coordinates are left out.
+    ///
+    /// # Errors
+    /// [`AnalysisError::NoSteadyMotion`] with the residual; [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`].
+    pub fn steady(
+        &mut self,
+        t: f64,
+        guess: &[f64],
+        options: &SteadyOptions,
+    ) -> Result<Linearization, AnalysisError> {
+        self.steady_with(t, guess, options, CyclicCoordinates::LeftOut)
+    }
+
+    /// The same with a choice about the cyclic coordinates.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn steady_with(
+        &mut self,
+        t: f64,
+        guess: &[f64],
+        options: &SteadyOptions,
+        cyclic: CyclicCoordinates,
+    ) -> Result<Linearization, AnalysisError> {
+        let found = self.find(t, guess, options)?;
+        let left_out = match cyclic {
+            CyclicCoordinates::LeftOut => self.cyclic.clone(),
+            CyclicCoordinates::KeptAtRest => self.moving(t, &found.state)?,
+        };
+        let mut result = self.put_together(t, &found.state, &left_out, true)?;
+        let steps = found.state.iter().zip(guess).map(|(y, guess)| y - guess);
+        result.distance = norm(&steps.collect::<Vec<_>>());
+        Ok(result)
+    }
+
+    /// The Jacobian on the states that satisfy the constraints, at any of them, whether or not it is steady; with all cyclic
+    /// coordinates. The reduced state deviates from a solution that moves there.
+    ///
+    /// # Errors
+    /// [`ShapeError`](pc_mech::ShapeError); where f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
+    pub fn at(&mut self, t: f64, state: &[f64]) -> Result<Linearization, AnalysisError> {
+        shape("the state", state.len(), self.names().len())?;
+        let rates = self.motion.rates(t, state)?;
+        let jacobian = first_approximation(&mut self.motion, t, state)?;
+        let enough = AT_REST * norm(&jacobian.entries()) * (1.0 + norm(state));
+        let kept = (0..state.len()).filter(|i| !self.cyclic.contains(i));
+        let residual = norm(&kept.map(|i| rates[i]).collect::<Vec<_>>());
+        let is_steady = !self.depends_on_time() && residual <= enough;
+        self.put_together(t, state, &[], is_steady)
+    }
+
+    /// The cyclic coordinates that move, and those on whose rates these act.
+    fn moving(&mut self, t: f64, state: &[f64]) -> Result<Vec<usize>, AnalysisError> {
+        let rates = self.motion.rates(t, state)?;
+        let jacobian = first_approximation(&mut self.motion, t, state)?;
+        let enough = AT_REST * norm(&jacobian.entries()) * (1.0 + norm(state));
+        let mut moving: Vec<usize> =
+            self.cyclic.iter().copied().filter(|&i| rates[i].abs() > enough).collect();
+        loop {
+            let acted_on = self.acted_on(&moving);
+            let more: Vec<usize> = acted_on.into_iter().filter(|i| !moving.contains(i)).collect();
+            if more.is_empty() {
+                moving.sort_unstable();
+                return Ok(moving);
+            }
+            moving.extend(more);
+        }
+    }
+
+    /// The cyclic coordinates on whose rates some of these act.
+    fn acted_on(&self, by: &[usize]) -> Vec<usize> {
+        let pattern = self.motion.sparsity();
+        let acts_on = |i: usize| by.iter().any(|&j| pattern.is_none_or(|all| all.column(j).contains(&i)));
+        self.cyclic.iter().copied().filter(|&i| acts_on(i)).collect()
+    }
+
+    pub(super) fn put_together(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        left_out: &[usize],
+        is_steady: bool,
+    ) -> Result<Linearization, AnalysisError> {
+        let evaluated = self.evaluated(t, state)?;
+        let rates = self.motion.rates(t, state)?;
+        let (n, all) = (self.sizes.coordinates, state.len());
+        let coordinates: Vec<usize> = (0..n).filter(|i| !left_out.contains(i)).collect();
+        let reduced = evaluated.reduced(&coordinates, n, all)?;
+        let Evaluated { jacobian, by_inputs, outputs, outputs_by_inputs, .. } = &evaluated;
+        let Reduced { kept, extension, .. } = &reduced;
+        let r = kept.len();
+        let moved = product(jacobian, extension);
+        let state_matrix = Matrix::from_fn(r, r, |i, j| moved[(kept[i], j)]);
+        let input_matrix = Matrix::from_fn(r, by_inputs.columns(), |i, j| by_inputs[(kept[i], j)]);
+
+        let is_own = |&o: &usize| left_out.iter().all(|&x| outputs[(o, x)] == 0.0);
+        let (own, others): (Vec<usize>, Vec<usize>) = (0..outputs.rows()).partition(is_own);
+        let seen = product(outputs, extension);
+        let name = |o: &usize| self.outputs()[*o].clone();
+
+        let not_cyclic = |i: &usize| !self.cyclic.contains(i);
+        let resting: Vec<f64> = (0..all).filter(not_cyclic).map(|i| rates[i]).collect();
+        let residual = norm(&resting);
+        let scale = norm(&jacobian.entries()) * (1.0 + norm(state));
+        let uncertainty = if is_steady && scale > 0.0 { residual / scale } else { 0.0 };
+        let spectrum = Spectrum::of(&state_matrix, uncertainty)?;
+        let named = |i: &usize| (self.names()[*i].clone(), rates[*i]);
+        Ok(Linearization {
+            t,
+            state: self.names().iter().cloned().zip(state.iter().copied()).collect(),
+            is_steady,
+            residual,
+            distance: 0.0,
+            components: kept.iter().map(|&i| self.names()[i].clone()).collect(),
+            cyclic: left_out.iter().map(named).collect(),
+            modes: modes(&state_matrix, &spectrum)?,
+            second_order: self.second_order(&evaluated, &rates, scale, is_steady)?,
+            inputs: self.inputs(),
+            input_matrix,
+            outputs: own.iter().map(name).collect(),
+            output_matrix: Matrix::from_fn(own.len(), r, |i, j| seen[(own[i], j)]),
+            feedthrough: Matrix::from_fn(own.len(), outputs_by_inputs.columns(), |i, j| {
+                outputs_by_inputs[(own[i], j)]
+            }),
+            other_outputs: others.iter().map(name).collect(),
+            state_matrix,
+            spectrum,
+        })
+    }
+
+    /// In the coordinates that are not cyclic, and as many cyclic ones as it takes.
+    fn second_order(
+        &self,
+        evaluated: &Evaluated,
+        rates: &[f64],
+        scale: f64,
+        is_steady: bool,
+    ) -> Result<Result<SecondOrder, NoSecondOrder>, AnalysisError> {
+        if !is_steady {
+            return Ok(Err(NoSecondOrder::NotSteady));
+        }
+        let Some(mass) = &evaluated.mass else { return Ok(Err(NoSecondOrder::LargeTree)) };
+        let others: Vec<usize> = (0..self.sizes.coordinates).filter(|i| !self.cyclic.contains(i)).collect();
+        let reduced = evaluated.reduced(&others, self.sizes.coordinates, self.names().len())?;
+        let moving: Vec<usize> =
+            self.cyclic.iter().copied().filter(|&i| rates[i].abs() > AT_REST * scale).collect();
+        let parts = Parts {
+            names: self.names(),
+            quasi_velocities: self.quasi_velocities(),
+            jacobian: &evaluated.jacobian,
+            moved: &product(&evaluated.jacobian, &reduced.extension),
+            by_inputs: &evaluated.by_inputs,
+            mass,
+            cyclic: &self.cyclic,
+            acted_on: &self.acted_on(&moving),
+            reduced: &reduced,
+        };
+        Ok(parts.second_order())
+    }
+}
+
+impl Evaluated {
+    /// The reduced state with these coordinates of n, of a state of `all` components.
+    fn reduced(&self, coordinates: &[usize], n: usize, all: usize) -> Result<Reduced, AnalysisError> {
+        let chart = self.directions.chart(coordinates)?;
+        let Velocities { independent, of_independent, of_coordinates } = &self.velocities;
+        let (d, l, k) = (chart.independent.len(), independent.len(), of_independent.rows());
+        let of_place = |i: usize, j: usize| match coordinates.iter().position(|&x| x == i) {
+            Some(row) if j < d => chart.of_independent[(row, j)],
+            _ => 0.0,
+        };
+        let of_velocity = |s: usize, j: usize| match j.checked_sub(d) {
+            None => (0..n).map(|i| of_coordinates[(s, i)] * of_place(i, j)).sum(),
+            Some(j) if j < l => of_independent[(s, j)],
+            Some(_) => 0.0,
+        };
+        let entry = |i: usize, j: usize| match i.checked_sub(n) {
+            None => of_place(i, j),
+            Some(s) if s < k => of_velocity(s, j),
+            Some(state) => f64::from(u8::from(j == d + l + state - k)),
+        };
+        let extension = Matrix::from_fn(all, d + l + all - n - k, entry);
+        let velocities = independent.iter().map(|s| n + s);
+        let kept = chart.independent.iter().copied().chain(velocities).chain(n + k..all).collect();
+        Ok(Reduced { kept, coordinates: d, velocities: l, extension })
+    }
+}

@@ -1,0 +1,424 @@
+//! The derivatives of a motion, compiled once and evaluated at any state.
+
+use std::ops::Range;
+
+use pc_expr::{Backend, Evaluator, Inputs, Program};
+use pc_mech::{
+    CompileOptions, Equations, Expr, Matrix, Motion, Multipliers, SingularValues, System, VectorField,
+};
+
+use crate::error::AnalysisError;
+use crate::integrals::search::rank_of_gradients;
+use crate::linear::leaf::{Directions, Velocities};
+use crate::numeric::dense::norm;
+use crate::stability::steady_motion::{SteadyMotion, SteadyOptions, cyclic_coordinates, first_approximation};
+use crate::stability::steady_search::{is_autonomous, names_time};
+
+/// The states that a motion can reach from its start.
+#[derive(Clone, Debug)]
+pub struct Leaf<'g> {
+    /// The system with all quasi-velocities, those that constraints make vanish too: its frame is integrable.
+    pub whole: System<'g>,
+    /// The f of the conditions f(x) = 0 that constraints imply.
+    pub positions: Vec<Expr<'g>>,
+    /// Functions of the coordinates alone that motions keep at their start values, such as the length of a quaternion.
+    pub kept: Vec<Expr<'g>>,
+}
+
+impl<'g> Leaf<'g> {
+    /// All states of a system without constraints whose coordinates are independent.
+    pub fn of(system: &System<'g>) -> Leaf<'g> {
+        Leaf { whole: system.clone(), positions: Vec::new(), kept: Vec::new() }
+    }
+
+    /// How many functions of the coordinates the frame keeps, n − rank b.
+    pub fn codimension(&self) -> usize {
+        self.whole.frame().coordinates().len() - self.whole.frame().rank()
+    }
+}
+
+/// Linearizes the equations of motion, ẏ = f(t, y, u) with outputs h(t, y, u), by derivatives from the graph.
+///
+/// ```
+/// use pc_analysis::{Leaf, Linearizer, SteadyOptions};
+/// use pc_mech::{Graph, System};
+///
+/// // An inverted pendulum with a torque: θ̈ = g sin θ + u.
+/// let graph = Graph::new();
+/// let [g, u] = graph.symbols(["g", "u"]);
+/// let pendulum = System::builder(&graph)
+///     .parameter(g, 9.0)
+///     .parameter(u, 0.0)
+///     .coordinates(["θ"])
+///     .lagrangian(|_, x, v| v[0].square() / 2.0 - g * x[0].cos())
+///     .forces(|_, _, _| [u])
+///     .build()?;
+/// let mut linearizer = Linearizer::new(&pendulum.poincare()?, &Leaf::of(&pendulum), &["u"])?;
+/// let upright = linearizer.steady(0.0, &[0.2, 0.0], &SteadyOptions::default())?;
+/// assert_eq!(upright.components, ["θ", "θ'"]);
+/// assert_eq!(upright.state_matrix.to_rows(), [[0.0, 1.0], [9.0, 0.0]]);
+/// assert_eq!(upright.input_matrix.to_rows(), [[0.0], [1.0]]);
+/// let second_order = upright.second_order?;
+/// assert_eq!((second_order.mass[(0, 0)], second_order.stiffness[(0, 0)]), (1.0, -9.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Linearizer {
+    pub(super) motion: Motion,
+    pub(super) cyclic: Vec<usize>,
+    /// Whether rates depend on time for the values of the parameters that the equations have, and for any.
+    depends_on_time: bool,
+    names_time: bool,
+    /// Names and places of the inputs among the parameters.
+    inputs: Vec<(String, usize)>,
+    outputs: Vec<String>,
+    /// The positions, what is kept and the conditions on velocities, then their slopes.
+    surface: Evaluator,
+    /// b, M, and of each output the derivatives by the state, the accelerations and the inputs.
+    parts: Evaluator,
+    pub(super) sizes: Sizes,
+    /// Whether as many functions are known as the frame keeps.
+    is_leaf_known: bool,
+}
+
+/// How many there are of what.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sizes {
+    pub(super) coordinates: usize,
+    /// Quasi-velocities of the state, and all.
+    pub(super) velocities: usize,
+    whole: usize,
+    /// Rows of the mass matrix; none of a large tree.
+    mass: usize,
+    positions: usize,
+    kept: usize,
+    /// Conditions on the velocities.
+    conditions: usize,
+}
+
+/// What the parts are at a state.
+pub(super) struct Evaluated {
+    /// ∂f/∂y
+    pub(super) jacobian: Matrix<f64>,
+    /// ∂f/∂u
+    pub(super) by_inputs: Matrix<f64>,
+    pub(super) mass: Option<Matrix<f64>>,
+    pub(super) directions: Directions,
+    pub(super) velocities: Velocities,
+    /// ∂h/∂y and ∂h/∂u with the accelerations put in.
+    pub(super) outputs: Matrix<f64>,
+    pub(super) outputs_by_inputs: Matrix<f64>,
+}
+
+impl Linearizer {
+    /// Of equations in independent quasi-velocities, with the parameters that are inputs.
+    ///
+    /// # Errors
+    /// [`AnalysisError::UnknownComponent`] for an input that is no parameter; otherwise as
+    /// [`Equations::compile`](pc_mech::Equations::compile).
+    pub fn new<'g>(
+        equations: &Equations<'g>,
+        leaf: &Leaf<'g>,
+        inputs: &[&str],
+    ) -> Result<Linearizer, AnalysisError> {
+        let options = CompileOptions::default().parameter_jacobian(!inputs.is_empty());
+        Linearizer::of(equations.compile_for(options)?, equations, leaf, &[], inputs)
+    }
+
+    /// Of equations with multipliers, which are regular wherever the constraints are: no choice of independent velocities is, as
+    /// that of ẏ at the lowest point of a circle.
+    ///
+    /// # Errors
+    /// As [`new`](Linearizer::new).
+    pub fn with_multipliers<'g>(
+        multipliers: &Multipliers<'g>,
+        leaf: &Leaf<'g>,
+        inputs: &[&str],
+    ) -> Result<Linearizer, AnalysisError> {
+        let options = CompileOptions::default().parameter_jacobian(!inputs.is_empty());
+        let motion = multipliers.compile_for(options)?;
+        Linearizer::of(motion, multipliers.equations(), leaf, multipliers.velocities(), inputs)
+    }
+
+    /// `conditions` on the velocities hold.
+    fn of<'g>(
+        motion: Motion,
+        equations: &Equations<'g>,
+        leaf: &Leaf<'g>,
+        conditions: &[Expr<'g>],
+        inputs: &[&str],
+    ) -> Result<Linearizer, AnalysisError> {
+        let (system, graph) = (equations.system(), equations.system().graph());
+        let names: Vec<String> = system.parameters().iter().map(|(symbol, _)| symbol.to_string()).collect();
+        let place = |&input: &&str| match names.iter().position(|name| name == input) {
+            Some(place) => Ok((input.to_owned(), place)),
+            None => Err(AnalysisError::UnknownComponent { name: input.to_owned(), known: names.clone() }),
+        };
+        let inputs = inputs.iter().map(place).collect::<Result<Vec<_>, _>>()?;
+        let pattern = motion.sparsity();
+        let x = system.frame().coordinates();
+        let cyclic = pattern.map(|pattern| cyclic_coordinates(pattern, x.len())).unwrap_or_default();
+
+        let state = system.state();
+        let functions: Vec<Expr<'g>> =
+            leaf.positions.iter().chain(&leaf.kept).chain(conditions).copied().collect();
+        let moving = [x, system.quasi_velocities()].concat();
+        let slopes = functions.iter().flat_map(|&f| graph.gradient(f, &moving));
+        let parameters: Vec<Expr<'g>> = system.parameters().iter().map(|&(symbol, _)| symbol).collect();
+        let accelerations = system.accelerations();
+        let time = Some(system.frame().time());
+        let of_state = Inputs { time, state: state.clone(), parameters: parameters.clone() };
+        let surface: Vec<Expr<'g>> = functions.iter().copied().chain(slopes).collect();
+        let b = leaf.whole.frame().b();
+        let is_large = system.large_tree().is_some();
+        let mass = match is_large {
+            true => Vec::new(),
+            false => equations.mass_matrix().to_rows().concat(),
+        };
+        let of_outputs = |by: &[Expr<'g>]| -> Vec<Expr<'g>> {
+            system.outputs().iter().flat_map(|&(_, h)| graph.gradient(h, by)).collect()
+        };
+        let symbols: Vec<Expr<'g>> = inputs.iter().map(|&(_, place)| parameters[place]).collect();
+        let parts = [
+            b.to_rows().concat(),
+            mass,
+            of_outputs(&state),
+            of_outputs(&accelerations),
+            of_outputs(&symbols),
+        ];
+        let with_accelerations = Inputs { state: [state, accelerations].concat(), ..of_state.clone() };
+        let evaluator = |inputs: &Inputs<'g>, outputs: &[Expr<'g>]| -> Result<Evaluator, AnalysisError> {
+            Ok(Evaluator::new(Program::new(graph, inputs, outputs)?, Backend::Interpreter))
+        };
+        let sizes = Sizes {
+            coordinates: x.len(),
+            velocities: system.quasi_velocities().len(),
+            whole: b.columns(),
+            mass: if is_large { 0 } else { system.quasi_velocities().len() },
+            positions: leaf.positions.len(),
+            kept: leaf.kept.len(),
+            conditions: conditions.len(),
+        };
+        let is_timed = conditions.iter().any(|g| g.depends_on(system.frame().time()));
+        Ok(Linearizer {
+            surface: evaluator(&of_state, &surface)?,
+            parts: evaluator(&with_accelerations, &parts.concat())?,
+            depends_on_time: is_timed || !is_autonomous(equations),
+            names_time: is_timed || names_time(equations),
+            outputs: system.outputs().iter().map(|(name, _)| name.clone()).collect(),
+            is_leaf_known: leaf.codimension() == 0
+                || rank_of_gradients(graph, &leaf.kept, x) >= leaf.codimension(),
+            sizes,
+            motion,
+            cyclic,
+            inputs,
+        })
+    }
+
+    /// Names of the components of the state.
+    pub fn names(&self) -> &[String] {
+        self.motion.names()
+    }
+
+    /// Where the quasi-velocities stand in the state.
+    pub fn quasi_velocities(&self) -> Range<usize> {
+        self.sizes.coordinates..self.sizes.coordinates + self.sizes.velocities
+    }
+
+    /// The names of the coordinates on which no rates depend but those of coordinates among them.
+    pub fn cyclic(&self) -> Vec<String> {
+        self.cyclic.iter().map(|&i| self.motion.names()[i].clone()).collect()
+    }
+
+    /// The names of the inputs.
+    pub fn inputs(&self) -> Vec<String> {
+        self.inputs.iter().map(|(name, _)| name.clone()).collect()
+    }
+
+    /// The names of the outputs.
+    pub fn outputs(&self) -> &[String] {
+        &self.outputs
+    }
+
+    /// Whether the rates depend on time explicitly.
+    pub fn depends_on_time(&self) -> bool {
+        self.depends_on_time
+    }
+
+    /// Gives the parameters other values, in the order of declaration.
+    ///
+    /// # Panics
+    /// If there are more than the equations have.
+    pub fn set_parameters(&mut self, values: &[f64]) {
+        let parameters = &mut self.motion.parameters_mut()[..values.len()];
+        if parameters != values {
+            parameters.copy_from_slice(values);
+            // A factor that was zero may be none now.
+            self.depends_on_time = self.names_time;
+        }
+    }
+
+    /// That there are equilibria that can be looked for.
+    ///
+    /// # Errors
+    /// [`AnalysisError::DependsOnTime`], [`AnalysisError::LeafUnknown`].
+    pub(super) fn check_searchable(&mut self, t: f64, start: &[f64]) -> Result<(), AnalysisError> {
+        if self.depends_on_time {
+            return Err(AnalysisError::DependsOnTime);
+        }
+        match self.is_leaf_known {
+            true => Ok(()),
+            false => Err(AnalysisError::LeafUnknown { residual: norm(&self.motion.rates(t, start)?) }),
+        }
+    }
+
+    /// The equilibrium or steady motion near a state, on the leaf of that state.
+    ///
+    /// # Errors
+    /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`] where Newton's method would have to know functions of
+    /// the coordinates that are not among those kept, and the state is not steady itself; otherwise as [`SteadyMotion::near`].
+    pub(super) fn find(
+        &mut self,
+        t: f64,
+        guess: &[f64],
+        options: &SteadyOptions,
+    ) -> Result<SteadyMotion, AnalysisError> {
+        if self.depends_on_time {
+            return Err(AnalysisError::DependsOnTime);
+        }
+        // Without all functions of the leaf no coordinate is moved.
+        let options = match self.is_leaf_known {
+            true => options.clone(),
+            false => options.clone().fixed(self.names()[..self.sizes.coordinates].to_vec()),
+        };
+        let residual = match self.find_on(t, guess, guess, &options) {
+            Err(AnalysisError::NoSteadyMotion { residual, .. }) if !self.is_leaf_known => residual,
+            Err(failure @ AnalysisError::NoSteadyMotion { .. }) => {
+                // From a start that moves fast the way may be shorter from the same place at rest.
+                let mut at_rest = guess.to_vec();
+                at_rest[self.quasi_velocities()].fill(0.0);
+                let is_free = !self.names()[self.quasi_velocities()].iter().any(|name| options.holds(name));
+                let again = is_free.then(|| self.find_on(t, guess, &at_rest, &options).ok()).flatten();
+                return again.ok_or(failure);
+            }
+            found => return found,
+        };
+        Err(AnalysisError::LeafUnknown { residual })
+    }
+
+    /// That near a guess, on the leaf of a state.
+    pub(super) fn find_on(
+        &mut self,
+        t: f64,
+        leaf: &[f64],
+        guess: &[f64],
+        options: &SteadyOptions,
+    ) -> Result<SteadyMotion, AnalysisError> {
+        let levels = self.levels(t, leaf)?;
+        let mut motion = self.motion.clone();
+        SteadyMotion::on_surface(&mut motion, t, guess, options, |y| self.surface_at(t, y, Some(&levels)))
+    }
+
+    /// The values of what is kept, behind those of the positions.
+    pub(super) fn levels(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, AnalysisError> {
+        Ok(self.surface_at(t, state, None)?.0)
+    }
+
+    /// The positions, what is kept less its `levels`, and the conditions on velocities, with their slopes.
+    pub(super) fn surface_at(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        levels: Option<&[f64]>,
+    ) -> Result<(Vec<f64>, Matrix<f64>), AnalysisError> {
+        let (moving, m) = (self.sizes.coordinates + self.sizes.velocities, self.sizes.positions);
+        let kept = m..m + self.sizes.kept;
+        let rows = kept.end + self.sizes.conditions;
+        let mut numbers = vec![0.0; rows * (moving + 1)];
+        let parameters = self.motion.parameters().to_vec();
+        let parameters = &parameters[..self.surface.program().parameters_len()];
+        self.surface.eval(t, y, parameters, &mut numbers);
+        if numbers.iter().any(|number| !number.is_finite()) {
+            return Err(self.surface.blame(t, y, parameters).into());
+        }
+        let (values, slopes) = numbers.split_at(rows);
+        let level = |a: usize| levels.filter(|_| kept.contains(&a)).map_or(0.0, |levels| levels[a]);
+        let values = values.iter().enumerate().map(|(a, value)| value - level(a)).collect();
+        let slope = |a: usize, j: usize| if j < moving { slopes[a * moving + j] } else { 0.0 };
+        Ok((values, Matrix::from_fn(rows, y.len(), slope)))
+    }
+
+    /// All derivatives at a state.
+    pub(super) fn evaluated(&mut self, t: f64, y: &[f64]) -> Result<Evaluated, AnalysisError> {
+        let (n, l, size) = (self.sizes.coordinates, self.sizes.velocities, y.len());
+        let rates = self.motion.rates(t, y)?;
+        let jacobian = first_approximation(&mut self.motion, t, y)?;
+        let mut by_parameters = vec![0.0; size * self.motion.parameters().len()];
+        if !self.inputs.is_empty() {
+            self.motion.parameter_jacobian(t, y, &mut by_parameters)?;
+        }
+        let places: Vec<usize> = self.inputs.iter().map(|&(_, place)| place).collect();
+        let by_inputs = Matrix::from_fn(size, places.len(), |i, j| by_parameters[i + places[j] * size]);
+        let (_, slopes) = self.surface_at(t, y, None)?;
+        let first = self.sizes.positions + self.sizes.kept;
+        let conditions = Matrix::from_fn(self.sizes.conditions, n + l, |a, j| slopes[(first + a, j)]);
+        let slopes = Matrix::from_fn(self.sizes.positions, n, |a, j| slopes[(a, j)]);
+
+        let state = [y, &rates[n..n + l]].concat();
+        let parameters = self.motion.parameters().to_vec();
+        let parameters = &parameters[..self.parts.program().parameters_len()];
+        let mut numbers = vec![0.0; self.parts.program().outputs_len()];
+        self.parts.eval(t, &state, parameters, &mut numbers);
+        if numbers.iter().any(|number| !number.is_finite()) {
+            return Err(self.parts.blame(t, &state, parameters).into());
+        }
+        let mut rest = numbers.as_slice();
+        let mut take = |rows: usize, columns: usize| {
+            let (own, others) = rest.split_at(rows * columns);
+            rest = others;
+            Matrix::from_fn(rows, columns, |i, j| own[i * columns + j])
+        };
+        let outputs = self.outputs.len();
+        let b = take(n, self.sizes.whole);
+        let mass = take(self.sizes.mass, self.sizes.mass);
+        let (by_state, by_accelerations) = (take(outputs, size), take(outputs, l));
+        let by_own_inputs = take(outputs, places.len());
+        let through = |own: &Matrix<f64>, of: &Matrix<f64>| {
+            let sum =
+                |i: usize, j: usize| (0..l).map(|s| by_accelerations[(i, s)] * of[(n + s, j)]).sum::<f64>();
+            Matrix::from_fn(own.rows(), own.columns(), |i, j| own[(i, j)] + sum(i, j))
+        };
+        Ok(Evaluated {
+            outputs: through(&by_state, &jacobian),
+            outputs_by_inputs: through(&by_own_inputs, &by_inputs),
+            mass: (self.sizes.mass == l).then_some(mass),
+            directions: Directions::new(&b, &slopes)?,
+            velocities: Velocities::new(&conditions, n, l)?,
+            jacobian,
+            by_inputs,
+        })
+    }
+
+    /// The dimension of the family of equilibria or steady motions on the leaf that a state is one of, as far as the first order
+    /// tells: that of the kernel of the slopes of the rates `kept`, by the components `free`.
+    pub(super) fn family(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        kept: &[usize],
+        free: &[usize],
+    ) -> Result<usize, AnalysisError> {
+        let jacobian = first_approximation(&mut self.motion, t, y)?;
+        let (_, normals) = self.surface_at(t, y, None)?;
+        let row = |i: usize, j: usize| match i.checked_sub(kept.len()) {
+            None => jacobian[(kept[i], free[j])],
+            Some(a) => normals[(a, free[j])],
+        };
+        let slopes = Matrix::from_fn(kept.len() + normals.rows(), free.len(), row);
+        let values = SingularValues::of(&slopes)?;
+        Ok(free.len() - values.rank(FAMILY * values.values.first().copied().unwrap_or(0.0)))
+    }
+}
+
+/// Singular values below this part of the largest are zeros.
+const FAMILY: f64 = 1e-8;

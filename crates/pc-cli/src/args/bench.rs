@@ -1,0 +1,22 @@
+//! Arguments of `pc bench`.
+
+use std::time::Duration;
+
+use clap::Args;
+
+use crate::args::options;
+use crate::args::options::{Format, ModelArguments};
+
+/// Arguments of `pc bench`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Seconds to be spent about, half of them on derivations; each is made once in any case
+    #[arg(long, value_name = "SECONDS", value_parser = options::seconds, default_value = "2")]
+    pub seconds: Duration,
+    /// How to print
+    #[arg(long, default_value = "text")]
+    pub format: Format,
+}

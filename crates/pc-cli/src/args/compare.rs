@@ -1,0 +1,94 @@
+//! Arguments of `pc compare`.
+
+use std::time::Duration;
+
+use clap::Args;
+
+use crate::args::checkpoint::CheckpointArguments;
+use crate::args::drawn::DrawnArguments;
+use crate::args::forms::{RunForm, run_form};
+use crate::args::options;
+use crate::args::options::{
+    Format, IntegrationArguments, ModelArguments, RunArguments, Setting, VelocityArguments,
+};
+
+/// Arguments of `pc compare`.
+#[derive(Clone, Debug, Args)]
+pub struct CompareArguments {
+    /// A file, `-` for standard input, or a built-in name
+    #[arg(value_name = "A")]
+    pub first: String,
+    /// Another model; A again if it is left out
+    #[arg(value_name = "B")]
+    pub second: Option<String>,
+    /// Form of the equations, one for both, or that of A and that of B; else that of each file, else poincare
+    #[arg(long, value_name = "FORM[,FORM]", value_delimiter = ',', value_parser = run_form)]
+    pub form: Vec<RunForm>,
+    /// Set a parameter in each model that has it (repeatable)
+    #[arg(long, value_name = "NAME=VALUE", value_parser = options::setting)]
+    pub set: Vec<Setting>,
+    /// End time; else that of A, else that of B
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
+    pub t_end: Option<f64>,
+    /// Number of times that are compared, evenly spaced, start and end included; else as for `pc run` of A
+    #[arg(long, value_name = "N", value_parser = options::samples)]
+    pub samples: Option<usize>,
+    /// Tolerances and method.
+    #[command(flatten)]
+    pub integration: IntegrationArguments,
+    /// The difference that is allowed, in parts of the largest value of its column
+    #[arg(long, value_name = "P", default_value = "1e-6", allow_hyphen_values = true, value_parser = options::not_negative)]
+    pub tolerance: f64,
+    /// The difference that is allowed besides, whatever the size of the values
+    #[arg(long, value_name = "D", default_value = "1e-9", allow_hyphen_values = true, value_parser = options::not_negative)]
+    pub absolute: f64,
+    /// Compare these columns only, separated by commas; else all that both have
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub columns: Vec<String>,
+    /// Compare an expression in columns and parameters of A with one in those of B, too (repeatable)
+    #[arg(long, value_name = "EXPR=EXPR", value_parser = options::definition)]
+    pub map: Vec<Setting>,
+    /// How to print
+    #[arg(long, default_value = "text")]
+    pub format: Format,
+    /// Memory limit of the expressions of the equations, and likewise of the rows of a motion, such as 500M or 8G
+    #[arg(long, value_name = "BYTES", value_parser = options::bytes, default_value = "4G")]
+    pub limit_memory: u64,
+    /// Time limit in seconds of all work on each model; none unless given
+    #[arg(long, value_name = "SECONDS", value_parser = options::seconds)]
+    pub limit_time: Option<Duration>,
+}
+
+impl CompareArguments {
+    /// The model of this name, its parameters as in the file.
+    pub fn model(&self, name: &str) -> ModelArguments {
+        ModelArguments {
+            model: name.to_owned(),
+            set: Vec::new(),
+            project_start: false,
+            keep: Vec::new(),
+            limit_memory: self.limit_memory,
+            limit_time: self.limit_time,
+        }
+    }
+
+    /// The corresponding arguments of `pc run`, of A or, with 1, of B.
+    pub fn as_run(&self, which: usize, t_end: Option<f64>) -> RunArguments {
+        RunArguments {
+            velocities: VelocityArguments::default(),
+            sensitivities: Vec::new(),
+            model: self.model(&self.first),
+            t_end,
+            samples: self.samples,
+            integration: self.integration.clone(),
+            form: self.form.get(which).or(self.form.first()).copied(),
+            project: Vec::new(),
+            outputs: None,
+            no_verify: false,
+            output: None,
+            plot: None,
+            drawn: DrawnArguments::default(),
+            checkpoints: CheckpointArguments::default(),
+        }
+    }
+}

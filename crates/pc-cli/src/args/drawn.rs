@@ -1,0 +1,49 @@
+//! What is drawn of a motion.
+
+use clap::Args;
+use pc_report::picture::Wanted;
+
+/// What is drawn of a motion.
+#[derive(Clone, Debug, Default, Args)]
+pub struct DrawnArguments {
+    /// With --plot: draw these columns over time, separated by commas, instead of all; drift(NAME) is the relative drift of NAME
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
+    pub columns: Vec<String>,
+    /// With --plot: draw column Y over column X, a path or a phase portrait; components of a vector, such as x and y, to the
+    /// same scale (repeatable)
+    #[arg(long, value_name = "X,Y", value_parser = pair, requires = "plot")]
+    pub xy: Vec<(String, String)>,
+    /// With --plot: draw these angles, separated by commas, from −π to π
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
+    pub wrap: Vec<String>,
+}
+
+impl DrawnArguments {
+    /// The same without the command line.
+    pub fn wanted(&self) -> Wanted {
+        let trimmed = |names: &[String]| names.iter().map(|name| name.trim().to_owned()).collect();
+        Wanted { columns: trimmed(&self.columns), pairs: self.xy.clone(), wrapped: trimmed(&self.wrap) }
+    }
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    match text.split_once(',').map(|(x, y)| (x.trim(), y.trim())) {
+        Some((x, y)) if !x.is_empty() && !y.is_empty() && !y.contains(',') => {
+            Ok((x.to_owned(), y.to_owned()))
+        }
+        _ => Err("write X,Y, two columns, as in `--xy x,y`".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_are_split_at_the_comma() {
+        assert_eq!(pair("x, y"), Ok(("x".to_owned(), "y".to_owned())));
+        for wrong in ["x", "x,", ",y", "x,y,z", ""] {
+            assert!(pair(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Arguments of `pc linearize` and `pc equilibria`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::args::options::{self, ModelArguments, Setting};
+use crate::args::sweep::{self, Vary};
+
+/// The state about which equations are linearized.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum At {
+    /// The equilibrium or steady motion near the start: all but the cyclic coordinates rest.
+    #[default]
+    Steady,
+    /// The equilibrium near the start with all quasi-velocities 0.
+    Rest,
+    /// The start, steady or not.
+    Start,
+}
+
+/// Which cyclic coordinates are components of the state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Cyclic {
+    /// Those that rest.
+    Keep,
+    /// None.
+    Drop,
+}
+
+/// How a table of matrices is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MatrixFormat {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+    /// A line for each number.
+    Csv,
+}
+
+/// Arguments of `pc linearize`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:\n  \
+                        pc linearize furuta-pendulum --start θ=0.1\n  \
+                        pc linearize cart-pole --format json\n  \
+                        pc linearize whipple-bicycle --start roll=0 --vary v0=0:10:101 -o bicycle.csv --plot bicycle.svg\n  \
+                        pc linearize heavy-top-euler --at start -o top.mat\n\
+                        Given are the matrices of δẏ = A δy + B δu and δh = C δy + D δu, u the [inputs] and h the [outputs] of the model, \
+                        the eigenvalues and modes of A, and M, G, K, F of M q̈ + G q̇ + K q = F u where that is defined. \
+                        Derivatives are exact. y are independent components of the states that satisfy the constraints; \
+                        cyclic coordinates are left out where they move. The page docs/linearization.md says what the files contain.\n\
+                        Exit codes: 4 where nothing is steady or defined, 5 where Newton's method found nothing, others as of `pc`.")]
+pub struct LinearizeArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Give a coordinate, quasi-velocity or first-order state another start value (repeatable)
+    #[arg(long, value_name = "NAME=VALUE", value_parser = options::setting)]
+    pub start: Vec<Setting>,
+    /// The state: the equilibrium or steady motion near the start, an equilibrium at rest near it, or the start as it is
+    #[arg(long, value_name = "STATE", default_value = "steady")]
+    pub at: At,
+    /// Components of the state, separated by commas, that keep their start values while a steady state is looked for
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub hold: Vec<String>,
+    /// Cyclic coordinates: keep those that rest, or drop all; else they are kept at an equilibrium and at the start, and dropped
+    /// of a motion and with --vary
+    #[arg(long, value_name = "WHICH")]
+    pub cyclic: Option<Cyclic>,
+    /// Give a parameter or start value N values evenly spaced, both ends included, and follow the eigenvalues: the root locus
+    #[arg(long, value_name = "NAME=FROM:TO:N", value_parser = sweep::vary)]
+    pub vary: Option<Vary>,
+    /// How to print
+    #[arg(long, value_name = "FORMAT", conflicts_with = "output")]
+    pub format: Option<MatrixFormat>,
+    /// Write the matrices, or with --vary the table of eigenvalues, to FILE.json, FILE.csv, FILE.npz or FILE.mat
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// With --vary: draw the real and imaginary parts of the eigenvalues to FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", requires = "vary")]
+    pub plot: Option<PathBuf>,
+}
+
+/// Arguments of `pc equilibria`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "Examples:\n  \
+                        pc equilibria furuta-pendulum\n  \
+                        pc equilibria double-spherical-pendulum --box α1=-4..4 --starts 100\n  \
+                        pc equilibria gravity-gradient --format json\n\
+                        Newton's method starts from points that fill the box evenly, the same each time. What is found are equilibria; \
+                        that there are no others is not proved. Angles are taken modulo 2π; cyclic coordinates stay at their start \
+                        values. Of a continuous family one member is listed.\n\
+                        Exit codes: 4 where the equations depend on time, 5 where none was found, others as of `pc`.")]
+pub struct EquilibriaArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Bounds of a coordinate or first-order state; else a turn about the start for angles, and 2 (1 + |start|) to both sides
+    /// for others, outside of which others may be found (repeatable)
+    #[arg(long = "box", value_name = "NAME=FROM..TO", value_parser = bounds)]
+    pub bounds: Vec<Bounds>,
+    /// Number of starts of Newton's method
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = starts)]
+    pub starts: usize,
+    /// How to print
+    #[arg(long, default_value = "text")]
+    pub format: MatrixFormat,
+    /// Write the list to FILE.json or FILE.csv instead
+    #[arg(short, long, value_name = "FILE", conflicts_with = "format")]
+    pub output: Option<PathBuf>,
+}
+
+/// `NAME=FROM..TO`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bounds {
+    /// The coordinate or first-order state.
+    pub name: String,
+    /// Lower bound.
+    pub low: f64,
+    /// Upper bound.
+    pub high: f64,
+}
+
+/// More starts than these take hours.
+const MOST_STARTS: usize = 1_000_000;
+
+fn starts(text: &str) -> Result<usize, String> {
+    let count = text.parse::<usize>().ok().filter(|count| (1..=MOST_STARTS).contains(count));
+    count.ok_or_else(|| format!("write a whole number from 1 to {MOST_STARTS}"))
+}
+
+fn bounds(text: &str) -> Result<Bounds, String> {
+    let usage = || "write NAME=FROM..TO, as in `--box x=-2..2`".to_owned();
+    let (name, range) = text.split_once('=').ok_or_else(usage)?;
+    let (low, high) = range.split_once("..").ok_or_else(usage)?;
+    let (low, high) = (options::finite(low.trim())?, options::finite(high.trim())?);
+    if low > high {
+        return Err("the first bound must be the lower one".to_owned());
+    }
+    match name.trim() {
+        "" => Err(usage()),
+        name => Ok(Bounds { name: name.to_owned(), low, high }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_are_read_or_refused() {
+        let x = |low, high| Bounds { name: "x".to_owned(), low, high };
+        assert_eq!(bounds("x=-2..2"), Ok(x(-2.0, 2.0)));
+        assert_eq!(bounds("x = -.5 .. 1e3"), Ok(x(-0.5, 1e3)));
+        for wrong in ["x", "x=1", "x=1:2", "=1..2", "x=2..1", "x=1..inf", "x=..2"] {
+            assert!(bounds(wrong).is_err(), "{wrong}");
+        }
+        assert!(starts("0").is_err() && starts("1e3").is_err() && starts("64") == Ok(64));
+    }
+}

@@ -1,0 +1,59 @@
+//! `pc bench`: how long the derivation of a model takes, and an evaluation of its equations.
+
+use std::time::Instant;
+
+use pc_mech::CompileOptions;
+use pc_model::Model;
+use pc_print::{visible, visible_json};
+
+use crate::args::bench::BenchArguments;
+use crate::args::input;
+use crate::args::options::Format;
+use crate::bench::derivation::Derivation;
+use crate::bench::kernels::Derived;
+use crate::bench::measure::interleave;
+use crate::bench::page::Figures;
+use crate::error::CliError;
+use crate::output::standard_output::print;
+use crate::report::notes::say_moved;
+
+/// Prints the times of derivations and evaluations.
+///
+/// # Errors
+/// [`CliError`] of the model; [`CliError::Write`].
+pub fn command(arguments: &BenchArguments) -> Result<(), CliError> {
+    let model = input::open(&arguments.model)?;
+    // Each derivation may take what one may; the time is that of all of them.
+    let fresh = || -> Model {
+        let mut model = model.clone();
+        model.limit(model.budget().limits().clone());
+        model
+    };
+    let graph = model.graph();
+    let assembly = model.assemble(&graph)?;
+    say_moved(&assembly);
+    let derived = Derived::new(&model, &assembly)?;
+    let mut variants = derived.variants()?;
+    assembly.within_limits()?;
+
+    let half = arguments.seconds / 2;
+    let start = Instant::now();
+    let mut derivation = Derivation::default();
+    while derivation.total.len() == 0 || start.elapsed() < half {
+        derivation.repeat(&fresh())?;
+    }
+    let times = interleave(derived.start(), &mut variants, half);
+    let figures = Figures {
+        title: model.title().to_owned(),
+        state: derived.start().len(),
+        nodes: graph.len(),
+        cost: derived.compile(CompileOptions::default())?.cost(),
+        derivation,
+        variants: &variants,
+        times,
+    };
+    print(|out| match arguments.format {
+        Format::Text => write!(out, "{}", visible(&figures.text())),
+        Format::Json => writeln!(out, "{}", visible_json(&figures.json())),
+    })
+}

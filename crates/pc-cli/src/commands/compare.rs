@@ -1,0 +1,92 @@
+//! `pc compare`: whether two models, or two forms of one, have the same motion.
+
+use pc_model::{Model, UnknownParameter, Variables};
+use pc_print::{visible, visible_json};
+
+use crate::args::compare::CompareArguments;
+use crate::args::forms::RunForm;
+use crate::args::input;
+use crate::args::options::{Format, Setting};
+use crate::commands::run::integrate;
+use crate::compare::comparison::Comparison;
+use crate::compare::error::CompareError;
+use crate::compare::page::{Pair, differences};
+use crate::error::CliError;
+use crate::motion::plan::Plan;
+use crate::motion::run::{Ending, Run};
+use crate::output::standard_output::print;
+
+/// Integrates both motions, and prints how far they are apart.
+///
+/// # Errors
+/// [`CompareError::Different`] where they are not the same; that a motion failed, once what was reached is compared.
+pub fn command(arguments: &CompareArguments) -> Result<(), CliError> {
+    let (first, second) = models(arguments)?;
+    let written = |model: &Model| model.document().simulation.t_end.as_ref().map(|t| t.value);
+    let t_end = arguments.t_end.or(written(&first)).or(written(&second));
+    let run_of_a = arguments.as_run(0, t_end);
+    let plan = Plan::new(&first, &run_of_a)?;
+    let mut run_of_b = arguments.as_run(1, t_end);
+    run_of_b.samples = Some(plan.samples);
+    let other = Plan::new(&second, &run_of_b)?;
+    if plan.t_start != other.t_start {
+        return Err(CompareError::Starts { first: plan.t_start, second: other.t_start }.into());
+    }
+    let forms = [Plan::form(&first, &run_of_a), Plan::form(&second, &run_of_b)];
+    if arguments.second.is_none() && forms[0] == forms[1] {
+        return Err(CompareError::OneMotion.into());
+    }
+    let a = integrate(&first, forms[0], || Ok(plan))?;
+    if is_stopped(&a) {
+        return a.outcome();
+    }
+    let b = integrate(&second, forms[1], || Ok(other))?;
+    if is_stopped(&b) {
+        return b.outcome();
+    }
+    let comparison = Comparison::new(&a, &b, arguments)?;
+    let name = |form: RunForm| Variables::from(form).name();
+    let pair = Pair { first: (&a, name(forms[0])), second: (&b, name(forms[1])) };
+    print(|out| match arguments.format {
+        Format::Text => write!(out, "{}", visible(&pair.text(&comparison))),
+        Format::Json => writeln!(out, "{}", visible_json(&pair.json(&comparison))),
+    })?;
+    let differences = differences(&comparison);
+    a.outcome()?;
+    b.outcome()?;
+    if differences.is_empty() { Ok(()) } else { Err(CompareError::Different { differences }.into()) }
+}
+
+/// Whether somebody, or a limit, put an end to a run.
+fn is_stopped(run: &Run) -> bool {
+    matches!(run.ending, Ending::Interrupted | Ending::Ended(_))
+}
+
+/// The two models, with their parameters set.
+fn models(arguments: &CompareArguments) -> Result<(Model, Model), CliError> {
+    if arguments.form.len() > 2 {
+        return Err(CompareError::Forms { count: arguments.form.len() }.into());
+    }
+    let mut first = input::open(&arguments.model(&arguments.first))?;
+    let mut second = match arguments.second.as_deref() {
+        None => first.clone(),
+        Some("-") if arguments.first == "-" => return Err(CompareError::StandardInput.into()),
+        Some(name) => input::open(&arguments.model(name))?,
+    };
+    let names =
+        |model: &Model| -> Vec<String> { model.parameters().map(|(name, _)| name.to_owned()).collect() };
+    let (of_first, of_second) = (names(&first), names(&second));
+    for Setting { name, .. } in &arguments.set {
+        if !of_first.contains(name) && !of_second.contains(name) {
+            let more = of_second.iter().filter(|name| !of_first.contains(name));
+            let known = of_first.iter().chain(more).cloned().collect();
+            return Err(UnknownParameter { name: name.clone(), known }.into());
+        }
+    }
+    let known = |names: &[String]| -> Vec<Setting> {
+        arguments.set.iter().filter(|setting| names.contains(&setting.name)).cloned().collect()
+    };
+    input::set(&mut first, &known(&of_first))?;
+    input::set(&mut second, &known(&of_second))?;
+    Ok((first, second))
+}

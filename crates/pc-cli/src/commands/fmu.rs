@@ -1,0 +1,63 @@
+//! `pc emit --fmu`: a model as a Functional Mock-up Unit.
+
+use std::io::Cursor;
+use std::io::Write;
+
+use pc_fmu::{FmiVersion, Fmu, FmuOptions, FmuSolver};
+
+use crate::args::forms::EmitForm;
+use crate::args::input;
+use crate::args::options::{EmitArguments, FmuMethod, FmuVersion};
+use crate::commands::emit::name;
+use crate::error::CliError;
+use crate::output::place::Place;
+use crate::report::notes::{choice, say_choice, say_dropped, say_moved};
+use crate::report::text::say;
+
+/// Writes the FMU of a model, whole.
+///
+/// # Errors
+/// [`CliError`].
+pub fn command(arguments: &EmitArguments, version: FmuVersion) -> Result<(), CliError> {
+    let path = &arguments.output;
+    if path.extension().is_none_or(|ending| ending != "fmu") {
+        let (option, path) = ("--output", path.clone());
+        return Err(CliError::UnknownExtension { option, path, expected: ".fmu" });
+    }
+    let place = Place::regular(path).map_err(|source| CliError::cannot_write(path, source))?;
+    let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == EmitForm::Hamel)?;
+    let graph = model.graph();
+    let assembly = model.assemble(&graph)?;
+    let version = match version {
+        FmuVersion::V2 => FmiVersion::V2,
+        FmuVersion::V3 => FmiVersion::V3,
+    };
+    let mut options = FmuOptions::new(version, name(model.document().source.name()));
+    if let Some(solver) = arguments.solver {
+        options = options.solver(match (solver, arguments.step) {
+            (FmuMethod::Dop853, _) => FmuSolver::Dop853,
+            (FmuMethod::Radau5, _) => FmuSolver::Radau5,
+            (FmuMethod::Rk4, step) => FmuSolver::RungeKutta4 { step: step.unwrap_or(f64::NAN) },
+        });
+    }
+    say_dropped(&assembly);
+    say_moved(&assembly);
+    let (_, form) = assembly.equations_of(arguments.form.into())?;
+    if let Some(remark) = choice(&assembly, &form.independent) {
+        say_choice(&remark);
+    }
+    let mut fmu = Fmu::new(&model, &assembly, arguments.form.into(), &options)?;
+    for note in fmu.notes() {
+        say(format_args!("note: {note}\n"));
+    }
+    if !arguments.sources_only {
+        fmu = fmu.compiled()?;
+    }
+    let mut archive = Cursor::new(Vec::new());
+    fmu.write(&mut archive).map_err(|source| CliError::cannot_write(path, source))?;
+    place
+        .write(|out| out.write_all(archive.get_ref()))
+        .map_err(|source| CliError::cannot_write(place.path(), source))?;
+    say(format_args!("{}\n", path.display()));
+    Ok(())
+}

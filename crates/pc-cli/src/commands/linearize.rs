@@ -1,0 +1,266 @@
+//! `pc linearize`: the motions near a state, to first order, and their eigenvalues over a parameter.
+
+use pc_analysis::{AnalysisError, CyclicCoordinates, Linearization, Linearizer, RootLocus, SteadyOptions};
+use pc_model::Model;
+use pc_print::{visible, visible_json};
+use serde_json::{Map, Value, json};
+
+use crate::args::input;
+use crate::args::linear::{At, Cyclic, LinearizeArguments, MatrixFormat};
+use crate::args::options::Setting;
+use crate::args::sweep::Vary;
+use crate::error::CliError;
+use crate::linear::arrays::{Array, of_linearization};
+use crate::linear::error::LinearError;
+use crate::linear::file::{Contents, Destination};
+use crate::linear::ground::{Ground, placed};
+use crate::linear::locus::Locus;
+use crate::linear::{json, text};
+use crate::output::csv::field;
+use crate::output::destination::Destination as Picture;
+use crate::output::standard_output::print;
+use crate::report::notes::{say_dropped, say_moved};
+use crate::report::text::{say, short};
+
+/// Does what `pc linearize` is asked to.
+///
+/// # Errors
+/// [`CliError`]
+pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
+    let destination = arguments.output.as_deref().map(Destination::of_arrays).transpose()?;
+    let picture = Picture::plot(arguments.plot.as_deref())?;
+    let mut model = input::open(&arguments.model)?;
+    start_at(&mut model, arguments)?;
+    let graph = model.graph();
+    let mut ground = Ground::new(&model, &graph)?;
+    say_dropped(&ground.assembly);
+    say_moved(&ground.assembly);
+    if let Some(vary) = &arguments.vary {
+        let locus = locus(&model, &mut ground, vary, arguments)?;
+        for (value, reason) in &locus.missing {
+            let reason = reason.lines().next().unwrap_or_default();
+            say(format_args!("note: nothing at {} = {}: {reason}\n", vary.name, short(*value, 6)));
+        }
+        if let Some(picture) = picture {
+            picture.write_plot(&locus.picture().drawing())?;
+        }
+        return match (&destination, arguments.format) {
+            (Some(destination), _) => locus.write(destination),
+            (None, None) if arguments.plot.is_some() => Ok(()),
+            (None, Some(MatrixFormat::Text) | None) => print(|out| write!(out, "{}", visible(&locus.text()))),
+            (None, Some(MatrixFormat::Csv)) => print(|out| write!(out, "{}", locus.csv())),
+            (None, Some(MatrixFormat::Json)) => print(|out| writeln!(out, "{}", visible_json(&locus.json()))),
+        };
+    }
+    let (t, start) = (ground.assembly.t_start, ground.start.clone());
+    let linear = linearization(&mut ground.linearizer, t, &start, arguments, CyclicChoice::OfState)
+        .map_err(|error| placed(&ground.assembly, error, true))?;
+    ground.assembly.within_limits()?;
+    let page = || text::page(model.title(), &linear, arguments.at != At::Start);
+    match (&destination, arguments.format) {
+        (Some(destination), _) => destination.write(&Contents {
+            json: &object(&model, arguments.at, &linear),
+            csv: &csv(&linear),
+            arrays: &of_linearization(&linear),
+            texts: &names(&linear),
+        }),
+        (None, Some(MatrixFormat::Text) | None) => print(|out| write!(out, "{}", visible(&page()))),
+        (None, Some(MatrixFormat::Csv)) => print(|out| write!(out, "{}", csv(&linear))),
+        (None, Some(MatrixFormat::Json)) => {
+            print(|out| writeln!(out, "{}", visible_json(&object(&model, arguments.at, &linear))))
+        }
+    }
+}
+
+/// Sets the start values that the command line gives.
+fn start_at(model: &mut Model, arguments: &LinearizeArguments) -> Result<(), CliError> {
+    for (i, Setting { name, value }) in arguments.start.iter().enumerate() {
+        let is_varied = arguments.vary.as_ref().is_some_and(|vary| vary.name == *name);
+        if is_varied || arguments.start[..i].iter().any(|known| known.name == *name) {
+            return Err(LinearError::Twice { name: name.clone() }.into());
+        }
+        let number = value.parse::<f64>().ok().filter(|value| value.is_finite());
+        let number =
+            number.ok_or_else(|| LinearError::BadStart { name: name.clone(), value: value.clone() })?;
+        model.set_start(name, number).map_err(LinearError::Start)?;
+    }
+    Ok(())
+}
+
+/// Which cyclic coordinates are kept if nothing is said of them.
+#[derive(Clone, Copy, PartialEq)]
+enum CyclicChoice {
+    /// All at an equilibrium, none of a motion.
+    OfState,
+    /// None: the number of components is the same for all values of a parameter.
+    None,
+}
+
+fn linearization(
+    linearizer: &mut Linearizer,
+    t: f64,
+    start: &[f64],
+    arguments: &LinearizeArguments,
+    choice: CyclicChoice,
+) -> Result<Linearization, AnalysisError> {
+    let mut guess = start.to_vec();
+    let mut held = arguments.hold.clone();
+    let options = |held: Vec<String>| SteadyOptions::default().fixed(held);
+    match arguments.at {
+        At::Start => return linearizer.at(t, start),
+        At::Steady => {}
+        At::Rest => {
+            let moving = linearizer.quasi_velocities();
+            guess[moving.clone()].fill(0.0);
+            held.extend(linearizer.names()[moving].iter().cloned());
+        }
+    }
+    let options = options(held);
+    let kept = CyclicCoordinates::KeptAtRest;
+    match (arguments.cyclic, choice) {
+        (Some(Cyclic::Keep), _) => linearizer.steady_with(t, &guess, &options, kept),
+        (Some(Cyclic::Drop), _) | (None, CyclicChoice::None) => linearizer.steady(t, &guess, &options),
+        (None, CyclicChoice::OfState) => {
+            let all = linearizer.steady_with(t, &guess, &options, kept)?;
+            if all.cyclic.is_empty() { Ok(all) } else { linearizer.steady(t, &guess, &options) }
+        }
+    }
+}
+
+/// The eigenvalues for each value.
+fn locus(
+    model: &Model,
+    ground: &mut Ground<'_>,
+    vary: &Vary,
+    arguments: &LinearizeArguments,
+) -> Result<Locus, CliError> {
+    let values = vary.values.in_order();
+    let is_set = arguments.model.set.iter().any(|set| set.name == vary.name);
+    if is_set {
+        return Err(LinearError::Twice { name: vary.name.clone() }.into());
+    }
+    let mut locus = Locus {
+        title: model.title().to_owned(),
+        name: vary.name.clone(),
+        components: Vec::new(),
+        locus: RootLocus::default(),
+        missing: Vec::new(),
+    };
+    let places = ground.places(model);
+    for &value in &values {
+        ground.assembly.within_limits()?;
+        ground.assembly.within_limits()?;
+        let model = varied(model, &vary.name, value)?;
+        let found = match &places {
+            Some(places) => ground.moved_to(&model, places).and_then(|start| {
+                let t = ground.assembly.t_start;
+                linearization(&mut ground.linearizer, t, &start, arguments, CyclicChoice::None)
+                    .map_err(|error| placed(&ground.assembly, error, true))
+            }),
+            None => {
+                let graph = model.graph();
+                Ground::new(&model, &graph).and_then(|mut own| {
+                    let (t, start) = (own.assembly.t_start, own.start.clone());
+                    linearization(&mut own.linearizer, t, &start, arguments, CyclicChoice::None)
+                        .map_err(|error| placed(&own.assembly, error, true))
+                })
+            }
+        };
+        let eigenvalues = match &found {
+            Ok(linear) => {
+                locus.components.clone_from(&linear.components);
+                Some(linear.spectrum.eigenvalues())
+            }
+            // A wrong name is wrong for all values.
+            Err(error) if error.exit_code() == CliError::USAGE => return found.map(|_| locus),
+            Err(error) => {
+                locus.missing.push((value, error.to_string()));
+                None
+            }
+        };
+        let pushed = locus.locus.push(value, eigenvalues);
+        pushed.map_err(|cause| LinearError::Branches { name: vary.name.clone(), value, cause })?;
+    }
+    match locus.missing.first() {
+        Some((_, first)) if locus.missing.len() == values.len() => {
+            Err(LinearError::NoneSteady { values: values.len(), first: first.clone() }.into())
+        }
+        _ => Ok(locus),
+    }
+}
+
+/// The model with another value of a parameter or of the start.
+fn varied(model: &Model, name: &str, value: f64) -> Result<Model, CliError> {
+    let mut varied = model.clone();
+    if varied.set(name, value).is_ok() || varied.set_start(name, value).is_ok() {
+        return Ok(varied);
+    }
+    let values = model.parameter_values();
+    let parameters = model.parameters().enumerate().filter(|&(place, _)| !values.is_table(place));
+    let known = parameters.map(|(_, (name, _))| name.to_owned()).chain(model.start_names()).collect();
+    Err(LinearError::Varied { name: name.to_owned(), known }.into())
+}
+
+/// One object.
+fn object(model: &Model, at: At, linear: &Linearization) -> Value {
+    let at = match at {
+        At::Steady => "steady",
+        At::Rest => "rest",
+        At::Start => "start",
+    };
+    let mut all = Map::new();
+    all.insert("model".to_owned(), json!(model.title()));
+    all.insert("parameters".to_owned(), json::map(model.parameters()));
+    all.insert("at".to_owned(), json!(at));
+    all.extend(json::members(linear));
+    Value::from(all)
+}
+
+/// The names of what the arrays are of, each list separated by commas.
+fn names(linear: &Linearization) -> Vec<(&'static str, String)> {
+    let state: Vec<&str> = linear.state.iter().map(|(name, _)| name.as_str()).collect();
+    let mut names = vec![
+        ("state_names", state.join(",")),
+        ("components", linear.components.join(",")),
+        ("inputs", linear.inputs.join(",")),
+        ("outputs", linear.outputs.join(",")),
+    ];
+    if let Ok(second) = &linear.second_order {
+        names.push(("coordinates", second.coordinates.join(",")));
+    }
+    names
+}
+
+/// A line for each number: its array, the names of its row and column, the number; the parts of complex ones in lines of their own.
+fn csv(linear: &Linearization) -> String {
+    let (y, u, h) = (&linear.components, &linear.inputs, &linear.outputs);
+    let numbers = |count: usize| (1..=count).map(|i| i.to_string()).collect::<Vec<_>>();
+    let states: Vec<String> = linear.state.iter().map(|(name, _)| name.clone()).collect();
+    let q = linear.second_order.as_ref().map(|second| second.coordinates.clone()).unwrap_or_default();
+    let of = |array: &Array| match array.name.as_str() {
+        "state" => (states.clone(), vec![String::new()]),
+        "A" => (y.clone(), y.clone()),
+        "B" => (y.clone(), u.clone()),
+        "C" => (h.clone(), y.clone()),
+        "D" => (h.clone(), u.clone()),
+        "modes" => (y.clone(), numbers(array.columns)),
+        "F" => (q.clone(), u.clone()),
+        "M" | "G" | "K" => (q.clone(), q.clone()),
+        _ => (numbers(array.rows), vec![String::new()]),
+    };
+    let mut text = "array,row,column,value\n".to_owned();
+    for array in of_linearization(linear) {
+        let (rows, columns) = of(&array);
+        let parts = match &array.imaginary {
+            None => vec![("", &array.real)],
+            Some(imaginary) => vec![".re", ".im"].into_iter().zip([&array.real, imaginary]).collect(),
+        };
+        for (part, values) in parts {
+            for (place, value) in values.iter().enumerate() {
+                let (row, column) = (&rows[place / array.columns], &columns[place % array.columns]);
+                text += &format!("{}{part},{},{},{value:.16e}\n", array.name, field(row), field(column));
+            }
+        }
+    }
+    text
+}

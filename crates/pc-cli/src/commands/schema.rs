@@ -1,0 +1,25 @@
+//! `pc schema`: the JSON Schema of the text format.
+
+use std::io::Write;
+
+use pc_model::document::SCHEMA;
+
+use crate::args::tools::SchemaArguments;
+use crate::error::CliError;
+use crate::output::place::{Place, file};
+use crate::output::standard_output::print;
+
+/// Writes the schema.
+///
+/// # Errors
+/// [`CliError::Place`]; [`CliError::Write`].
+pub fn command(arguments: &SchemaArguments) -> Result<(), CliError> {
+    let text = SCHEMA.as_bytes();
+    match file(arguments.output.as_deref()) {
+        None => print(|out| out.write_all(text)),
+        Some(path) => {
+            let place = Place::new(path).map_err(|source| CliError::no_place(path, source))?;
+            place.write(|out| out.write_all(text)).map_err(|source| CliError::cannot_write(path, source))
+        }
+    }
+}

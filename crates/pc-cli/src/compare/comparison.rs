@@ -1,0 +1,128 @@
+//! Two motions, compared column by column.
+
+use crate::args::compare::CompareArguments;
+use crate::compare::difference::{Allowance, Difference};
+use crate::compare::error::CompareError;
+use crate::compare::formula::Formula;
+use crate::motion::run::{Ending, Run};
+
+/// The column that nearly every two motions share.
+const ENERGY: &str = "energy";
+
+/// What two motions have in common, and what not.
+#[derive(Debug)]
+pub struct Comparison {
+    /// What is allowed.
+    pub allowance: Allowance,
+    /// How many times are compared, and the last of them.
+    pub rows: usize,
+    /// The last of these times.
+    pub until: f64,
+    /// For each column that is compared.
+    pub differences: Vec<Difference>,
+    /// Columns of the first alone.
+    pub only_first: Vec<String>,
+    /// Those of the second alone.
+    pub only_second: Vec<String>,
+    /// How the ends differ, in words.
+    pub ends: Option<String>,
+}
+
+impl Comparison {
+    /// Compares two runs at the times that both have.
+    ///
+    /// # Errors
+    /// [`CompareError`] where there is nothing to compare, or names are unknown.
+    pub fn new(first: &Run, second: &Run, arguments: &CompareArguments) -> Result<Comparison, CompareError> {
+        let allowance = Allowance { relative: arguments.tolerance, absolute: arguments.absolute };
+        let times: Vec<f64> = (first.table.column(0).zip(second.table.column(0)))
+            .take_while(|(a, b)| a == b)
+            .map(|(t, _)| t)
+            .collect();
+        let (names, others) = (&first.table.columns()[1..], &second.table.columns()[1..]);
+        let shared: Vec<String> = names.iter().filter(|name| others.contains(name)).cloned().collect();
+        let pairs = pairs(arguments)?;
+        if let Some(name) = arguments.columns.iter().find(|name| !shared.contains(name)) {
+            return Err(CompareError::NotShared { name: name.clone(), shared });
+        }
+        if arguments.columns.is_empty() && pairs.is_empty() && shared.iter().all(|name| name == ENERGY) {
+            return Err(CompareError::NothingShared { first: names.to_vec(), second: others.to_vec() });
+        }
+        let is_wanted = |name: &&String| arguments.columns.is_empty() || arguments.columns.contains(name);
+        let difference = |name: &str, a: Vec<f64>, b: Vec<f64>| {
+            let values: Vec<_> = times.iter().zip(a.iter().zip(&b)).map(|(&t, (&a, &b))| (t, a, b)).collect();
+            Difference::new(name.to_owned(), &values, allowance)
+        };
+        let mut differences = Vec::new();
+        for name in shared.iter().filter(is_wanted) {
+            let found = difference(name, column(first, name), column(second, name));
+            // The same motion follows from Lagrangians whose energies differ by a number, or by a factor.
+            let is_aside = name == ENERGY && arguments.columns.is_empty();
+            differences.push(if is_aside { found.aside() } else { found });
+        }
+        for (label, a, b) in &pairs {
+            differences.push(difference(label, a.column(first)?, b.column(second)?));
+        }
+        let without = |names: &[String], others: &[String]| -> Vec<String> {
+            names.iter().filter(|name| !others.contains(name)).cloned().collect()
+        };
+        Ok(Comparison {
+            allowance,
+            rows: times.len(),
+            until: times.last().copied().unwrap_or(first.plan.t_start),
+            differences,
+            only_first: without(names, others),
+            only_second: without(others, names),
+            ends: ends(first, second, allowance),
+        })
+    }
+
+    /// Whether nothing differs by more than is allowed.
+    pub fn is_same(&self) -> bool {
+        self.ends.is_none() && self.differences.iter().all(Difference::is_allowed)
+    }
+}
+
+/// The expressions that are compared, with what they are called.
+fn pairs(arguments: &CompareArguments) -> Result<Vec<(String, Formula, Formula)>, CompareError> {
+    let pair = |map: &crate::args::options::Setting| {
+        let label = format!("{} = {}", map.name, map.value);
+        Ok((label, Formula::new(&map.name)?, Formula::new(&map.value)?))
+    };
+    arguments.map.iter().map(pair).collect()
+}
+
+fn column(run: &Run, name: &str) -> Vec<f64> {
+    let place = run.table.columns().iter().position(|column| column == name);
+    place.map_or_else(Vec::new, |j| run.table.column(j).collect())
+}
+
+/// How the ends differ.
+fn ends(first: &Run, second: &Run, allowance: Allowance) -> Option<String> {
+    let (a, b) = (reached(first), reached(second));
+    let is_event = |run: &Run| matches!(run.ending, Ending::Event { .. });
+    let allowed = if is_event(first) && is_event(second) { allowance.at(a.abs().max(b.abs())) } else { 0.0 };
+    if is_event(first) == is_event(second) && (a - b).abs() <= allowed {
+        return None;
+    }
+    Some(format!("A {}, B {}", ending(first), ending(second)))
+}
+
+/// How a motion ended, in words.
+pub(super) fn ending(run: &Run) -> String {
+    let t = reached(run);
+    match &run.ending {
+        Ending::Event { name } => format!("is ended by the event {name} at t = {t}"),
+        Ending::Completed => format!("goes on to t = {t}"),
+        ending => format!("{} at t = {t}", ending.word()),
+    }
+}
+
+/// How far a motion went.
+pub(super) fn reached(run: &Run) -> f64 {
+    match (&run.ending, run.occurrences.last()) {
+        (Ending::Event { .. }, Some(&(_, t))) => t,
+        (Ending::Completed, _) => run.plan.t_end,
+        _ => run.statistics.current_time,
+    }
+}

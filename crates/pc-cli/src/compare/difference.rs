@@ -1,0 +1,115 @@
+//! The difference of two columns.
+
+/// The largest difference of two columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// What is compared.
+    pub name: String,
+    /// The largest difference; infinite where only one of the values is finite.
+    pub largest: f64,
+    /// When it is reached.
+    pub time: f64,
+    /// The largest finite value of both columns.
+    pub scale: f64,
+    /// What is allowed.
+    pub allowed: f64,
+    /// The first time at which it is more than that.
+    pub since: Option<f64>,
+    /// Whether motions that differ here are two.
+    pub counts: bool,
+}
+
+/// What is allowed: |a − b| ≤ `absolute` + `relative`·(the largest value of the column).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Allowance {
+    /// In parts of the largest value.
+    pub relative: f64,
+    /// Whatever the size of the values.
+    pub absolute: f64,
+}
+
+impl Allowance {
+    /// What is allowed of values as large as this.
+    pub fn at(self, scale: f64) -> f64 {
+        self.absolute + self.relative * scale
+    }
+}
+
+impl Difference {
+    /// That of the values (t, a, b).
+    pub fn new(name: String, values: &[(f64, f64, f64)], allowance: Allowance) -> Difference {
+        let finite = values.iter().flat_map(|&(_, a, b)| [a, b]).filter(|value| value.is_finite());
+        let scale = finite.fold(0.0f64, |scale, value| scale.max(value.abs()));
+        let allowed = allowance.at(scale);
+        let mut difference = Difference {
+            name,
+            largest: 0.0,
+            time: values.first().map_or(0.0, |v| v.0),
+            scale,
+            allowed,
+            since: None,
+            counts: true,
+        };
+        for &(t, a, b) in values {
+            let apart = apart(a, b);
+            if apart > difference.largest {
+                (difference.largest, difference.time) = (apart, t);
+            }
+            if apart > allowed && difference.since.is_none() {
+                difference.since = Some(t);
+            }
+        }
+        difference
+    }
+
+    /// The same, which says nothing of the motion.
+    #[must_use]
+    pub fn aside(self) -> Difference {
+        Difference { counts: false, ..self }
+    }
+
+    /// Whether it is allowed, or does not count.
+    pub fn is_allowed(&self) -> bool {
+        self.since.is_none() || !self.counts
+    }
+}
+
+/// |a − b|; two values that are not finite in the same way do not differ.
+fn apart(a: f64, b: f64) -> f64 {
+    if a == b || (a.is_nan() && b.is_nan()) {
+        return 0.0;
+    }
+    let apart = (a - b).abs();
+    if apart.is_nan() { f64::INFINITY } else { apart }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(values: &[(f64, f64, f64)], relative: f64, absolute: f64) -> Difference {
+        Difference::new("x".to_owned(), values, Allowance { relative, absolute })
+    }
+
+    #[test]
+    fn a_difference_counts_against_the_largest_value_of_its_column() {
+        let values = [(0.0, 100.0, 100.0), (1.0, 1.0, 1.5), (2.0, 1.0, 2.0)];
+        let found = of(&values, 0.01, 0.0);
+        assert_eq!((found.largest, found.time, found.scale, found.allowed), (1.0, 2.0, 100.0, 1.0));
+        assert!(found.is_allowed(), "1 is as much as is allowed");
+        assert_eq!(of(&values, 0.004, 0.0).since, Some(1.0), "0.5 is more than 0.4");
+        assert!(of(&values, 0.0, 1.0).is_allowed());
+        assert_eq!(of(&values, 0.0, 0.0).since, Some(1.0));
+    }
+
+    #[test]
+    fn what_is_not_finite_is_equal_to_itself_alone() {
+        assert!(of(&[(0.0, f64::NAN, f64::NAN), (1.0, f64::INFINITY, f64::INFINITY)], 0.0, 0.0).is_allowed());
+        for (a, b) in
+            [(f64::NAN, 1.0), (1.0, f64::NAN), (f64::INFINITY, -f64::INFINITY), (f64::INFINITY, 1.0)]
+        {
+            let found = of(&[(0.0, a, b)], 1.0, 1e300);
+            assert_eq!((found.largest, found.since), (f64::INFINITY, Some(0.0)), "{a} {b}");
+        }
+    }
+}

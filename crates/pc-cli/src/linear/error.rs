@@ -1,0 +1,180 @@
+//! What can go wrong with linearizations and equilibria.
+
+use pc_analysis::{AnalysisError, BranchCount};
+use pc_model::UnknownStart;
+
+use crate::exit_code;
+use crate::report::text::short;
+
+/// An error of `pc linearize` or `pc equilibria`.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LinearError {
+    /// `--start` of something that has no start value.
+    #[error("--start: {0}")]
+    Start(UnknownStart),
+    /// `--start` to something that is not a number.
+    #[error("--start {name}={value}: `{value}` is not a finite number")]
+    BadStart {
+        /// What is set.
+        name: String,
+        /// As written.
+        value: String,
+    },
+    /// Two values for one name.
+    #[error("`{name}` is given values twice; leave one out")]
+    Twice {
+        /// The name.
+        name: String,
+    },
+    /// `--vary` of something that is neither parameter nor start value.
+    #[error(
+        "--vary: `{name}` is neither a parameter nor a start value; there are {}",
+        known.join(", ")
+    )]
+    Varied {
+        /// As written.
+        name: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// A name that is no component of the state.
+    #[error("{option}: there is no component `{name}` of the state here; there are {}", known.join(", "))]
+    Component {
+        /// The option.
+        option: &'static str,
+        /// As written.
+        name: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// A box that says nothing, or contains nothing.
+    #[error("--box: {0}")]
+    Box(AnalysisError),
+    /// Nothing is steady.
+    #[error(
+        "the equations depend on time explicitly, so that no state is steady\n  help: {help}",
+        help = if *of_linearization { "--at start gives their Jacobian at the start" } else { "give what drives them a constant value" }
+    )]
+    DependsOnTime {
+        /// Whether a linearization was asked for.
+        of_linearization: bool,
+    },
+    /// A constraint that is not affine in the velocities.
+    #[error(
+        "this is not defined where a constraint is not affine in the velocities: no velocities are independent there"
+    )]
+    Nonlinear,
+    /// Newton's method did not converge.
+    #[error(
+        "no steady state was found near the start: the rates that should vanish have the norm {} where Newton's method \
+         ended, at {}\n  help: start nearer to one (--start NAME=VALUE), hold fewer components (--hold), or take the Jacobian \
+         of the start as it is (--at start)",
+        short(*residual, 3),
+        listed(state)
+    )]
+    NotSteady {
+        /// √Σ f_i²
+        residual: f64,
+        /// Where it ended.
+        state: Vec<(String, f64)>,
+    },
+    /// The start is not steady, and no other state is known to be reachable.
+    #[error(
+        "the start is not steady, as rates of norm {} show, and the functions of the coordinates that the frame keeps are not \
+         known, so that no other state can be reached from it\n  help: declare these functions under [integrals], or start at \
+         a steady state",
+        short(*residual, 3)
+    )]
+    LeafUnknown {
+        /// √Σ f_i²
+        residual: f64,
+    },
+    /// The rates have no derivatives where they vanish.
+    #[error(
+        "the rates vanish but have no derivatives at {}: the coordinates or the frame are singular there, or a force jumps\n  \
+         help: use others that are regular there, or start nearer to another steady state (--start NAME=VALUE)",
+        listed(state)
+    )]
+    NotSmooth {
+        /// The state.
+        state: Vec<(String, f64)>,
+    },
+    /// No value of a parameter has a steady state.
+    #[error("there is no steady state for any of the {values} values; for the first: {first}")]
+    NoneSteady {
+        /// The number of values.
+        values: usize,
+        /// What was wrong with the first.
+        first: String,
+    },
+    /// The state has more or fewer components for another value of a parameter.
+    #[error("at {name} = {}: {cause}: the constraints have another rank there\n  help: vary it over a smaller range", short(*value, 6))]
+    Branches {
+        /// The parameter.
+        name: String,
+        /// Its value.
+        value: f64,
+        /// How many.
+        cause: BranchCount,
+    },
+    /// The search found nothing.
+    #[error(
+        "no equilibrium was found from {starts} starts{}\n  help: widen the box (--box NAME=FROM..TO), or take more starts (--starts N)",
+        match converged { 0 => String::new(), n => format!("; {n} led to some outside the box") }
+    )]
+    NoEquilibrium {
+        /// The number of starts.
+        starts: usize,
+        /// How many converged.
+        converged: usize,
+    },
+    /// Any other error of the analysis.
+    #[error(transparent)]
+    Analysis(AnalysisError),
+}
+
+impl LinearError {
+    /// Of an error of the analysis that concerns no name of the command line.
+    pub(crate) fn of(error: AnalysisError, of_linearization: bool) -> LinearError {
+        match error {
+            AnalysisError::DependsOnTime => LinearError::DependsOnTime { of_linearization },
+            AnalysisError::NoSteadyMotion { residual, state, .. } => {
+                LinearError::NotSteady { residual, state }
+            }
+            AnalysisError::NotSmooth { state } => LinearError::NotSmooth { state },
+            AnalysisError::LeafUnknown { residual } => LinearError::LeafUnknown { residual },
+            AnalysisError::UnknownComponent { name, known } => {
+                let option = if of_linearization { "--hold" } else { "--box" };
+                LinearError::Component { option, name, known }
+            }
+            AnalysisError::CyclicBox { .. } | AnalysisError::EmptyBox { .. } => LinearError::Box(error),
+            other => LinearError::Analysis(other),
+        }
+    }
+
+    /// Exit code of the program.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            LinearError::Start(_)
+            | LinearError::BadStart { .. }
+            | LinearError::Twice { .. }
+            | LinearError::Varied { .. }
+            | LinearError::Component { .. }
+            | LinearError::Box(_) => exit_code::USAGE,
+            LinearError::DependsOnTime { .. }
+            | LinearError::Nonlinear
+            | LinearError::LeafUnknown { .. }
+            | LinearError::NotSmooth { .. }
+            | LinearError::Branches { .. }
+            | LinearError::Analysis(_) => exit_code::INCONSISTENT,
+            LinearError::NotSteady { .. }
+            | LinearError::NoneSteady { .. }
+            | LinearError::NoEquilibrium { .. } => exit_code::FAILED,
+        }
+    }
+}
+
+fn listed(state: &[(String, f64)]) -> String {
+    state.iter().map(|(name, value)| format!("{name} = {}", short(*value, 6))).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,121 @@
+//! From a model to what linearizes it.
+
+use std::convert::Infallible;
+
+use pc_analysis::{AnalysisError, Integrals, Leaf, Linearizer};
+use pc_mech::{Equations, Expr, Graph, MechError, Neighbourhood};
+use pc_model::{Assembly, Model};
+use pc_nonholo::NonholoError;
+use pc_print::integrals_of;
+
+use crate::error::CliError;
+use crate::linear::error::LinearError;
+
+/// A model with its equations in independent quasi-velocities, compiled to be linearized.
+pub(crate) struct Ground<'g> {
+    pub(crate) assembly: Assembly<'g>,
+    pub(crate) equations: Equations<'g>,
+    pub(crate) linearizer: Linearizer,
+    /// Its start in these.
+    pub(crate) start: Vec<f64>,
+}
+
+impl<'g> Ground<'g> {
+    /// # Errors
+    /// [`CliError`] at the place in the file that is to blame.
+    pub(crate) fn new(model: &Model, graph: &'g Graph) -> Result<Ground<'g>, CliError> {
+        let assembly = model.assemble(graph)?;
+        if assembly.constraints.nonlinear().is_some() {
+            return Err(LinearError::Nonlinear.into());
+        }
+        let equations = assembly.equations()?;
+        let mut leaf = Leaf::of(&assembly.system);
+        leaf.positions = assembly.held_positions().into_iter().map(|(_, f)| f).collect();
+        if leaf.codimension() > 0 {
+            leaf.kept = of_coordinates(&equations, &integrals(&assembly, &equations));
+        }
+        let inputs: Vec<&str> =
+            model.document().inputs.iter().map(|input| input.name.text.as_str()).collect();
+        let held = assembly
+            .constraints
+            .held()
+            .filter(|held| (0..held.constraints().len()).all(|constraint| held.is_holonomic(constraint)));
+        let linearizer = assembly.stage("the linearization", || {
+            let linearizer = match held {
+                Some(held) => Linearizer::with_multipliers(held, &leaf, &inputs),
+                None => Linearizer::new(&equations, &leaf, &inputs),
+            };
+            linearizer.map_err(|error| placed(&assembly, error, true))
+        })?;
+        let start = match held {
+            Some(_) => assembly.start.clone(),
+            None => assembly.start_of(&equations.system().state()),
+        };
+        Ok(Ground { assembly, equations, linearizer, start })
+    }
+
+    /// For each component of the state its place among the start values of the model; none where other values of the parameters
+    /// or the start may lead to other equations, or the start has to be solved for.
+    pub(crate) fn places(&self, model: &Model) -> Option<Vec<usize>> {
+        let is_fixed = self.assembly.constraints.redundant().is_empty();
+        if !is_fixed || model.derives_start() || model.projects_start() {
+            return None;
+        }
+        let names = model.start_names();
+        let state = self.linearizer.names().iter();
+        state.map(|x| names.iter().position(|name| name == x)).collect()
+    }
+
+    /// Gives the equations the values of a model; its start, at these places.
+    ///
+    /// # Errors
+    /// [`CliError::Model`] where a start value is not a number.
+    pub(crate) fn moved_to(&mut self, model: &Model, places: &[usize]) -> Result<Vec<f64>, CliError> {
+        let values = model.start()?;
+        let parameters: Vec<f64> = model.parameters().map(|(_, value)| value).collect();
+        self.linearizer.set_parameters(&parameters);
+        Ok(places.iter().map(|&place| values[place]).collect())
+    }
+
+    /// The integrals known or found.
+    pub(crate) fn integrals(&self) -> Integrals<'g> {
+        integrals(&self.assembly, &self.equations)
+    }
+}
+
+fn integrals<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Integrals<'g> {
+    let centre = assembly.system.parameters().iter().copied().chain(assembly.at_start()).collect();
+    integrals_of(assembly, equations, &Neighbourhood { centre }, true)
+}
+
+/// Those of the integrals that are functions of the coordinates alone.
+fn of_coordinates<'g>(equations: &Equations<'g>, integrals: &Integrals<'g>) -> Vec<Expr<'g>> {
+    let system = equations.system();
+    let others: Vec<Expr<'g>> = system
+        .quasi_velocities()
+        .iter()
+        .copied()
+        .chain(system.states().iter().map(|&(z, _)| z))
+        .chain([system.frame().time()])
+        .collect();
+    let conserved =
+        integrals.list().iter().filter(|integral| integral.is_conserved() && !integral.is_energy());
+    conserved.map(|integral| integral.value).filter(|f| !others.iter().any(|&y| f.depends_on(y))).collect()
+}
+
+/// An error of the analysis at the place in the file that is to blame for it, if one is.
+pub(crate) fn placed(assembly: &Assembly<'_>, error: AnalysisError, of_linearization: bool) -> CliError {
+    match error {
+        AnalysisError::Nonholo(error) => at(assembly, error),
+        AnalysisError::Mech(error) => at(assembly, error),
+        AnalysisError::Expr(error) => at(assembly, MechError::from(error)),
+        other => LinearError::of(other, of_linearization).into(),
+    }
+}
+
+fn at(assembly: &Assembly<'_>, error: impl Into<NonholoError>) -> CliError {
+    match assembly.placed::<Infallible>(Err(error)) {
+        Err(error) => error.into(),
+        Ok(never) => match never {},
+    }
+}

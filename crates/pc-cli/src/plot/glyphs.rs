@@ -1,0 +1,59 @@
+//! Outlines of the built-in font: pictures depend on no font of the system.
+
+use pc_report::picture::Anchor;
+use ttf_parser::{Face, GlyphId, OutlineBuilder};
+
+use crate::plot::error::PlotError;
+
+/// The built-in font.
+pub(super) struct Glyphs {
+    face: Face<'static>,
+}
+
+/// A character with its place on the line, in units of the font.
+pub(super) struct Placed {
+    pub(super) glyph: GlyphId,
+    pub(super) character: char,
+    pub(super) x: f64,
+}
+
+impl Glyphs {
+    pub(super) fn new() -> Result<Glyphs, PlotError> {
+        Face::parse(dejavu::sans::regular(), 0).map(|face| Glyphs { face }).map_err(|_| PlotError::Font)
+    }
+
+    /// Units of the font that are the height of a text.
+    pub(super) fn units(&self) -> f64 {
+        f64::from(self.face.units_per_em())
+    }
+
+    /// The characters of a text with their places relative to its anchor.
+    pub(super) fn placed(&self, text: &str, anchor: Anchor) -> Vec<Placed> {
+        let mut x = 0.0;
+        let mut placed = Vec::new();
+        for character in text.chars() {
+            // What the font does not have is its empty box.
+            let glyph = self.face.glyph_index(character).unwrap_or(GlyphId(0));
+            placed.push(Placed { glyph, character, x });
+            x += self.advance(glyph);
+        }
+        let shift = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => x / 2.0,
+            Anchor::End => x,
+        };
+        placed.iter_mut().for_each(|glyph| glyph.x -= shift);
+        placed
+    }
+
+    /// How far the next character is.
+    pub(super) fn advance(&self, glyph: GlyphId) -> f64 {
+        f64::from(self.face.glyph_hor_advance(glyph).unwrap_or(0))
+    }
+
+    /// Draws the outline, y up.
+    pub(super) fn outline(&self, glyph: GlyphId, builder: &mut impl OutlineBuilder) {
+        // A space has none.
+        let _ = self.face.outline_glyph(glyph, builder);
+    }
+}

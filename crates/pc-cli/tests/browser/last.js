@@ -1,0 +1,40 @@
+// After all else: what the page looks like here is told to the page around it.
+window.addEventListener("load", function () {
+  function box(element) { return element.getBoundingClientRect(); }
+  function look() {
+    document.querySelectorAll("details").forEach(function (d) { d.open = true; });
+    var root = document.documentElement, maths = Array.from(document.querySelectorAll("math"));
+    var flat = maths.filter(function (m) { return !(box(m).width > 2 && box(m).height > 2); });
+    // What is taller than a page is lost on paper.
+    var tall = maths.filter(function (m) { return box(m).height > 900; });
+    // A browser that does not know the elements writes their text on one line.
+    var fractions = Array.from(document.querySelectorAll("mfrac"));
+    var lying = fractions.filter(function (f) { return box(f.children[0]).bottom > box(f.children[1]).top + 1; });
+    var player = document.getElementById("player"), frames = null, painted = 0;
+    if (player && player.player) {
+      frames = FRAMES.map(function (n) { player.player.show(n); return player.player.frame(); });
+      var canvas = player.querySelector("canvas");
+      var pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+      for (var i = 3; i < pixels.length; i += 4) { if (pixels[i] > 0) { painted++; } }
+    }
+    var small = Array.from(document.querySelectorAll("svg")).filter(function (s) { return box(s).width < 100 || box(s).height < 50; });
+    parent.postMessage(JSON.stringify({
+      wrong: window.wrong,
+      width: window.innerWidth,
+      overflow: root.scrollWidth - root.clientWidth,
+      dark: window.matchMedia("(prefers-color-scheme: dark)").matches,
+      background: getComputedStyle(document.body).backgroundColor,
+      ink: getComputedStyle(document.body).color,
+      formulas: maths.length,
+      flat: flat.map(function (m) { return m.textContent.slice(0, 60); }),
+      tall: tall.map(function (m) { return m.textContent.slice(0, 60); }),
+      fractions: fractions.length,
+      lying: lying.map(function (f) { return f.textContent.slice(0, 60); }),
+      small: small.length,
+      requests: performance.getEntriesByType("resource").map(function (e) { return e.name; }),
+      frames: frames,
+      painted: painted
+    }), "*");
+  }
+  setTimeout(look, 200);
+});

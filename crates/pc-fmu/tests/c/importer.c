@@ -1,0 +1,235 @@
+/* An importer of an FMU, for tests. It is told what to do by its arguments:
+ *
+ *     importer cs|me END STEP [set REFERENCE VALUE]... [get REFERENCE]... [derivative UNKNOWN KNOWN]...
+ *
+ * It writes what is asked for at the start and after each communication step, a line each. In Model Exchange it makes steps of
+ * the classical Runge-Kutta method, a hundred between two lines, and bisects them at events. */
+#if VERSION == 2
+#include "fmi2.c"
+#define CALL(name) fmi2##name
+#define SET(c, r, v) fmi2SetReal(c, &(r), 1, &(v))
+#define GET(c, r, v) fmi2GetReal(c, &(r), 1, &(v))
+#define RATES fmi2GetDerivatives
+#define OKAY fmi2OK
+#else
+#include "fmi3.c"
+#define CALL(name) fmi3##name
+#define SET(c, r, v) fmi3SetFloat64(c, &(r), 1, &(v), 1)
+#define GET(c, r, v) fmi3GetFloat64(c, &(r), 1, &(v), 1)
+#define RATES fmi3GetContinuousStateDerivatives
+#define OKAY fmi3OK
+#endif
+
+enum { N = FMU_STATES, E = FMU_EVENTS };
+
+static void need(int status, const char *what)
+{
+    if (status != OKAY) {
+        fprintf(stderr, "%s: status %d\n", what, status);
+        exit(1);
+    }
+}
+
+#if VERSION == 2
+static void told(void *environment, const char *name, fmi2Status status, const char *category, const char *text, ...)
+{
+    va_list arguments;
+    (void)environment;
+    (void)category;
+    (void)status;
+    va_start(arguments, text);
+    fprintf(stderr, "%s: ", name);
+    vfprintf(stderr, text, arguments);
+    fprintf(stderr, "\n");
+    va_end(arguments);
+}
+#else
+static void told(void *environment, fmi3Status status, const char *category, const char *text)
+{
+    (void)environment;
+    (void)status;
+    (void)category;
+    fprintf(stderr, "%s\n", text);
+}
+#endif
+
+static void *make(int exchange)
+{
+#if VERSION == 2
+    static const fmi2CallbackFunctions callbacks = {told, NULL, NULL, NULL, NULL};
+    return fmi2Instantiate("it", exchange ? fmi2ModelExchange : fmi2CoSimulation, FMU_TOKEN, NULL, &callbacks, 0, 1);
+#else
+    if (exchange)
+        return fmi3InstantiateModelExchange("it", FMU_TOKEN, NULL, false, true, NULL, told);
+    return fmi3InstantiateCoSimulation("it", FMU_TOKEN, NULL, false, true, false, false, NULL, 0, NULL, told, NULL);
+#endif
+}
+
+static void initialize(void *c, double end)
+{
+#if VERSION == 2
+    need(fmi2SetupExperiment(c, 0, 0.0, FMU_T_START, 1, end), "setup");
+    need(fmi2EnterInitializationMode(c), "enter");
+#else
+    need(fmi3EnterInitializationMode(c, false, 0.0, FMU_T_START, true, end), "enter");
+#endif
+    need(CALL(ExitInitializationMode)(c), "initialization");
+}
+
+/* Event mode; whether the simulation ends. */
+static int event(void *c, double *y)
+{
+#if VERSION == 2
+    fmi2EventInfo info;
+    need(fmi2NewDiscreteStates(c, &info), "event");
+    const int end = info.terminateSimulation;
+#else
+    bool again, end, nominals, values, with_next;
+    double next;
+    need(fmi3UpdateDiscreteStates(c, &again, &end, &nominals, &values, &with_next, &next), "event");
+#endif
+    need(CALL(EnterContinuousTimeMode)(c), "continuous time");
+    need(CALL(GetContinuousStates)(c, y, N), "states");
+    return end;
+}
+
+static void put(void *c, double t, const double *y)
+{
+    need(CALL(SetTime)(c, t), "time");
+    need(CALL(SetContinuousStates)(c, y, N), "states");
+}
+
+static void rk4(void *c, double t, const double *y, double h, double *end)
+{
+    static const double part[4] = {0.0, 0.5, 0.5, 1.0};
+    double k[4][N], z[N];
+    for (int n = 0; n < 4; n++) {
+        for (int i = 0; i < N; i++)
+            z[i] = y[i] + (n > 0 ? part[n]*h*k[n - 1][i] : 0.0);
+        put(c, t + part[n]*h, z);
+        need(RATES(c, k[n], N), "rates");
+    }
+    for (int i = 0; i < N; i++)
+        end[i] = y[i] + h/6.0*(k[0][i] + 2.0*k[1][i] + 2.0*k[2][i] + k[3][i]);
+    put(c, t + h, end);
+}
+
+static int passed(void *c, const double *before)
+{
+    double after[E + 1];
+    need(CALL(GetEventIndicators)(c, after, E), "indicators");
+    for (int i = 0; i < E; i++)
+        if ((before[i] > 0.0) != (after[i] > 0.0))
+            return 1;
+    return 0;
+}
+
+/* Model Exchange from t to `to`; whether the simulation ends. */
+static int exchange_to(void *c, double t, double to, double *y)
+{
+    const double length = (to - t)/100.0;
+    while (t < to) {
+        double h = to - t < 1.5*length ? to - t : length, z[E + 1], end[N];
+        int found = 0;
+        need(CALL(GetEventIndicators)(c, z, E), "indicators");
+        rk4(c, t, y, h, end);
+        if (passed(c, z)) {
+            double without = 0.0, with = h;
+            for (int n = 0; n < 60; n++) {
+                const double middle = 0.5*(without + with);
+                rk4(c, t, y, middle, end);
+                *(passed(c, z) ? &with : &without) = middle;
+            }
+            rk4(c, t, y, with, end);
+            h = with;
+            found = 1;
+        }
+        t = h == to - t ? to : t + h;
+        memcpy(y, end, sizeof end);
+#if VERSION == 2
+        int mode, ends;
+        need(fmi2CompletedIntegratorStep(c, 1, &mode, &ends), "step");
+#else
+        bool mode, ends;
+        need(fmi3CompletedIntegratorStep(c, true, &mode, &ends), "step");
+#endif
+        if (found || mode) {
+            need(CALL(EnterEventMode)(c), "event mode");
+            if (event(c, y))
+                return 1;
+        }
+    }
+    return 0;
+}
+
+/* Co-Simulation; whether the simulation ends. */
+static int simulate(void *c, double t, double length)
+{
+#if VERSION == 2
+    int ends = 0;
+    const int status = fmi2DoStep(c, t, length, 1);
+    if (status == fmi2Discard)
+        need(fmi2GetBooleanStatus(c, fmi2Terminated, &ends), "status");
+    else
+        need(status, "step");
+    return ends;
+#else
+    bool needed, ends, early;
+    double last;
+    need(fmi3DoStep(c, t, length, true, &needed, &ends, &early, &last), "step");
+    return ends;
+#endif
+}
+
+static void write(void *c, int count, char **arguments)
+{
+    const unsigned of_time = 0;
+    double value;
+    need(GET(c, of_time, value), "time");
+    printf("%.17g", value);
+    for (int n = 4; n < count; n++) {
+        const unsigned first = (unsigned)strtoul(n + 1 < count ? arguments[n + 1] : "0", NULL, 10);
+        if (!strcmp(arguments[n], "get")) {
+            need(GET(c, first, value), "get");
+            printf(" %.17g", value);
+        } else if (!strcmp(arguments[n], "derivative")) {
+            const unsigned known = (unsigned)strtoul(arguments[n + 2], NULL, 10);
+            const double seed = 1.0;
+#if VERSION == 2
+            need(fmi2GetDirectionalDerivative(c, &first, 1, &known, 1, &seed, &value), "derivative");
+#else
+            need(fmi3GetDirectionalDerivative(c, &first, 1, &known, 1, &seed, 1, &value, 1), "derivative");
+#endif
+            printf(" %.17g", value);
+        }
+    }
+    printf("\n");
+}
+
+int main(int count, char **arguments)
+{
+    const int exchange = !strcmp(arguments[1], "me");
+    const double end = strtod(arguments[2], NULL), step = strtod(arguments[3], NULL);
+    double y[N];
+    void *c = make(exchange);
+    if (!c)
+        return 1;
+    for (int n = 4; n + 2 < count; n++)
+        if (!strcmp(arguments[n], "set")) {
+            const unsigned reference = (unsigned)strtoul(arguments[n + 1], NULL, 10);
+            const double value = strtod(arguments[n + 2], NULL);
+            need(SET(c, reference, value), "set");
+        }
+    initialize(c, end);
+    int ends = exchange && event(c, y);
+    write(c, count, arguments);
+    const int steps = (int)floor((end - FMU_T_START)/step + 0.5);
+    for (int n = 0; n < steps && !ends; n++) {
+        const double t = FMU_T_START + n*step, to = FMU_T_START + (n + 1)*step;
+        ends = exchange ? exchange_to(c, t, to, y) : simulate(c, t, to - t);
+        write(c, count, arguments);
+    }
+    CALL(Terminate)(c);
+    CALL(FreeInstance)(c);
+    return 0;
+}

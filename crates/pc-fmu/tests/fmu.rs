@@ -1,0 +1,341 @@
+//! FMUs of models: what they say of themselves, and what an importer of our own gets out of them, compiled by the system's C compiler.
+//! Validation by the schemas of FMI and simulation by FMPy: `cargo xtask fmu`.
+
+#![allow(clippy::unwrap_used)] // in what the tests share
+
+use std::fs;
+use std::process::Command;
+
+use pc_fmu::{FmiVersion, Fmu, FmuError, FmuOptions, FmuSolver};
+use pc_model::{Builtin, Document, Model, Source, Variables};
+
+const VERSIONS: [FmiVersion; 2] = [FmiVersion::V2, FmiVersion::V3];
+const KINDS: [&str; 2] = ["me", "cs"];
+
+fn model(name: &str) -> Model {
+    Model::new(Builtin::named(name).unwrap().document().unwrap())
+}
+
+fn written(text: &str) -> Model {
+    Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
+}
+
+fn export(model: &Model, options: &FmuOptions) -> Result<Fmu, FmuError> {
+    let graph = model.graph();
+    Fmu::new(model, &model.assemble(&graph)?, Variables::QuasiVelocities, options)
+}
+
+fn exported(model: &Model, version: FmiVersion) -> Fmu {
+    export(model, &FmuOptions::new(version, "it")).unwrap()
+}
+
+/// The attributes of the variable of this name, and its value reference.
+fn variable(fmu: &Fmu, name: &str, attribute: &str) -> Option<String> {
+    let document = roxmltree::Document::parse(fmu.model_description()).unwrap();
+    let found = document.descendants().find(|node| {
+        matches!(node.tag_name().name(), "ScalarVariable" | "Float64") && node.attribute("name") == Some(name)
+    });
+    let node = found.unwrap_or_else(|| panic!("no variable {name}"));
+    let real = node.children().find(|child| child.tag_name().name() == "Real");
+    node.attribute(attribute).or_else(|| real?.attribute(attribute)).map(str::to_owned)
+}
+
+fn reference(fmu: &Fmu, name: &str) -> String {
+    variable(fmu, name, "valueReference").unwrap()
+}
+
+/// The importer for an FMU, compiled with it.
+struct Importer {
+    place: tempfile::TempDir,
+}
+
+impl Importer {
+    fn new(fmu: &Fmu, version: FmiVersion) -> Importer {
+        let place = tempfile::tempdir().unwrap();
+        for (name, bytes) in fmu.files() {
+            if let Some(name) = name.strip_prefix("sources/") {
+                fs::write(place.path().join(name), bytes).unwrap();
+            }
+        }
+        fs::write(place.path().join("importer.c"), include_str!("c/importer.c")).unwrap();
+        let version = if version == FmiVersion::V2 { "-DVERSION=2" } else { "-DVERSION=3" };
+        let warnings = ["-Wall", "-Wextra", "-Werror", "-Wpedantic", "-Wshadow", "-Wno-unused-function"];
+        let output = Command::new("cc")
+            .args(["-std=c99", "-O1", "-ffp-contract=off", version, "-o", "importer"])
+            .args(warnings)
+            .args(["importer.c", "it_model.c", "-lm"])
+            .current_dir(place.path())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        Importer { place }
+    }
+
+    /// Its lines, or what it complains of.
+    fn run(&self, arguments: &[&str]) -> Result<Vec<Vec<f64>>, String> {
+        let output = Command::new(self.place.path().join("importer")).args(arguments).output().unwrap();
+        if !output.status.success() {
+            return Err(String::from_utf8_lossy(&output.stderr).into_owned());
+        }
+        let numbers = |line: &str| line.split(' ').map(|number| number.parse().unwrap()).collect();
+        Ok(String::from_utf8_lossy(&output.stdout).lines().map(numbers).collect())
+    }
+}
+
+/// Height and velocity of the bouncing ball: h = 1, g = 9.81, e = 0.8.
+fn ball(t: f64, h: f64) -> [f64; 2] {
+    let (g, e) = (9.81, 0.8);
+    let (mut landing, mut speed) = ((2.0 * h / g).sqrt(), (2.0 * g * h).sqrt());
+    if t < landing {
+        return [h - g * t * t / 2.0, -g * t];
+    }
+    loop {
+        speed *= e;
+        let flight = 2.0 * speed / g;
+        if t < landing + flight {
+            let s = t - landing;
+            return [speed * s - g * s * s / 2.0, speed - g * s];
+        }
+        landing += flight;
+    }
+}
+
+#[test]
+fn a_ball_bounces_in_both_kinds_and_versions() {
+    let model = model("bouncing-ball");
+    for version in VERSIONS {
+        let fmu = exported(&model, version);
+        assert_eq!(variable(&fmu, "h", "causality").as_deref(), Some("parameter"));
+        assert_eq!(variable(&fmu, "y", "initial").as_deref(), Some("calculated")); // it follows h
+        assert_eq!(variable(&fmu, "y'", "initial").as_deref(), Some("exact"));
+        let importer = Importer::new(&fmu, version);
+        let [y, v, h] = ["y", "y'", "h"].map(|name| reference(&fmu, name));
+        for kind in KINDS {
+            for height in ["1", "0.5"] {
+                let lines =
+                    importer.run(&[kind, "2", "0.1", "set", &h, height, "get", &y, "get", &v]).unwrap();
+                assert_eq!(lines.len(), 21);
+                for line in lines {
+                    let expected = ball(line[0], height.parse().unwrap());
+                    // Impacts are located to rounding, of times and heights near 1, six times amplified by speeds near 5.
+                    for (found, expected) in line[1..].iter().zip(expected) {
+                        assert!((found - expected).abs() < 1e-9, "{kind} {line:?} {expected:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_no_simulation_passes_is_an_error() {
+    let fmu = exported(&model("bouncing-ball"), FmiVersion::V3);
+    let importer = Importer::new(&fmu, FmiVersion::V3);
+    // The bounces accumulate at t₀ (1 + e)/(1 − e) = 4.0637.
+    for kind in KINDS {
+        let complaint = importer.run(&[kind, "5", "0.1"]).unwrap_err();
+        assert!(complaint.contains("the event bounce accumulates at t = 4.063"), "{kind}: {complaint}");
+    }
+}
+
+#[test]
+fn a_terminal_event_ends_a_simulation() {
+    let falls = written(
+        "[coordinates]\nz = 2.0\n[lagrangian]\nkinetic = \"z'^2/2\"\npotential = \"z\"\n\
+         [events.floor]\nwhen = \"z\"\ndirection = \"falling\"\nterminal = true\n[simulation]\nt_end = 3.0\n",
+    );
+    for version in VERSIONS {
+        let fmu = exported(&falls, version);
+        let importer = Importer::new(&fmu, version);
+        for kind in KINDS {
+            let lines = importer.run(&[kind, "3", "0.75", "get", &reference(&fmu, "z")]).unwrap();
+            let last = lines.last().unwrap();
+            // z = 2 − t²/2
+            assert!((last[0] - 2.0).abs() < 1e-12 && last[1].abs() < 1e-12, "{kind} {lines:?}");
+            assert_eq!(lines.len(), 4);
+        }
+    }
+}
+
+/// A cart with a pendulum, pushed by the input F.
+const CART: &str = r#"
+[parameters]
+M = 1.0
+m = 0.2
+l = 0.5
+J = "m*l^2/3"
+g = 9.81
+
+[inputs]
+F = 0.25
+
+[coordinates]
+x = 0.0
+"θ" = 0.1
+
+[lagrangian]
+kinetic = "(M + m)*x'^2/2 + m*l*x'*θ'*cos(θ) + (m*l^2 + J)*θ'^2/2"
+potential = "m*g*l*cos(θ)"
+
+[forces]
+x = "F - 0.1*x'"
+
+[outputs]
+tip = "x + 2*l*sin(θ)"
+push = "F*x'"
+jerk = "d(θ')"
+
+[simulation]
+t_end = 1.0
+"#;
+
+#[test]
+fn derivatives_along_directions_are_those_of_difference_quotients() {
+    let cart = written(CART);
+    for version in VERSIONS {
+        let fmu = exported(&cart, version);
+        let importer = Importer::new(&fmu, version);
+        // Where the motion is after 0.3, by both sides of each known.
+        for known in ["x'", "θ", "θ'", "F"] {
+            let set = reference(&fmu, known);
+            for unknown in ["der(x)", "der(x')", "der(θ')", "tip", "push", "jerk", "x"] {
+                let of = reference(&fmu, unknown);
+                let start: f64 = variable(&fmu, known, "start").unwrap().parse().unwrap();
+                let at = |value: f64| {
+                    let value = format!("{value:?}");
+                    let lines = importer.run(&[
+                        "cs",
+                        "1",
+                        "1",
+                        "set",
+                        &set,
+                        &value,
+                        "get",
+                        &of,
+                        "derivative",
+                        &of,
+                        &set,
+                    ]);
+                    (lines.as_ref().unwrap()[0][1], lines.unwrap()[0][2])
+                };
+                let h = 1e-5; // truncation h² and rounding ε/h are 1e-10
+                let quotient = (at(start + h).0 - at(start - h).0) / (2.0 * h);
+                let slope = at(start).1;
+                assert!(
+                    (slope - quotient).abs() < 1e-7 * (1.0 + slope.abs()),
+                    "∂{unknown}/∂{known}: {slope} {quotient}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn parameters_follow_and_inputs_act() {
+    let fmu = exported(&written(CART), FmiVersion::V2);
+    assert_eq!(variable(&fmu, "J", "causality").as_deref(), Some("calculatedParameter"));
+    assert_eq!(variable(&fmu, "F", "causality").as_deref(), Some("input"));
+    assert_eq!(variable(&fmu, "θ", "causality").as_deref(), Some("output"));
+    assert_eq!(variable(&fmu, "der(θ)", "derivative").as_deref(), Some("3")); // the index of θ, from 1
+    let importer = Importer::new(&fmu, FmiVersion::V2);
+    let [l, j, f] = ["l", "J", "F"].map(|name| reference(&fmu, name));
+    let lines = importer.run(&["cs", "1", "1", "set", &l, "3", "get", &j]).unwrap();
+    assert!((lines[0][1] - 0.6).abs() < 1e-15);
+    let complaint = importer.run(&["cs", "1", "1", "set", &j, "3"]).unwrap_err();
+    assert!(complaint.contains("the parameter J follows from others: it cannot be set"), "{complaint}");
+    // M + m moves as one mass where the pendulum hangs still: here it does not, so that the sign alone is looked at.
+    let x = reference(&fmu, "x");
+    let pushed = |force: &str| importer.run(&["cs", "1", "1", "set", &f, force, "get", &x]).unwrap()[1][1];
+    assert!(pushed("5") > 1.0 && pushed("-5") < -1.0);
+}
+
+#[test]
+fn co_simulation_stays_on_constraints_and_refuses_a_start_off_them() {
+    let pendulum = written(
+        "[coordinates]\nx = 0.6\ny = 0.0\nz = -0.8\n[quasi_velocities]\n\"y'\" = 1.5\n\
+         [constraints]\nrod = \"x^2 + y^2 + z^2 - 1\"\n\
+         [lagrangian]\nkinetic = \"(x'^2 + y'^2 + z'^2)/2\"\npotential = \"10*z\"\n\
+         [simulation]\nt_end = 5.0\nproject = [\"energy\"]\nindependent = [\"x'\", \"y'\"]\n",
+    );
+    let fmu = exported(&pendulum, FmiVersion::V3);
+    let projected = "In Co-Simulation each step is projected to rod, energy";
+    assert!(fmu.notes().iter().any(|note| note.contains(projected)), "{:?}", fmu.notes());
+    assert_eq!(variable(&fmu, "x", "initial").as_deref(), Some("exact"));
+    let importer = Importer::new(&fmu, FmiVersion::V3);
+    let [x, y, z, energy] = ["x", "y", "z", "energy"].map(|name| reference(&fmu, name));
+    let lines = importer.run(&["cs", "5", "0.1", "get", &x, "get", &y, "get", &z, "get", &energy]).unwrap();
+    for line in &lines {
+        // A projection ends within rounding, of numbers up to 10.
+        let length: f64 = line[1..4].iter().map(|x| x * x).sum();
+        assert!((length - 1.0).abs() < 1e-14 && (line[4] - (-8.0 + 1.125)).abs() < 1e-13, "{line:?}");
+    }
+    let complaint = importer.run(&["cs", "1", "1", "set", &x, "0.9"]).unwrap_err();
+    assert!(complaint.contains("the start is off the constraint rod: it is 0.45, not 0"), "{complaint}");
+}
+
+#[test]
+fn each_method_of_co_simulation_has_its_order() {
+    let oscillator = written(
+        "[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"x^2/2\"\n[simulation]\nt_end = 10.0\n",
+    );
+    // cos 10 by steps of 0.1, h⁴ t/120 = 1e-5 for the method of order 4; by the tolerance 1e-9 for the others.
+    let methods =
+        [(FmuSolver::Dop853, 1e-8), (FmuSolver::Radau5, 1e-8), (FmuSolver::RungeKutta4 { step: 0.1 }, 2e-5)];
+    for (solver, bound) in methods {
+        let options = FmuOptions::new(FmiVersion::V2, "it").solver(solver);
+        let fmu = export(&oscillator, &options).unwrap();
+        let importer = Importer::new(&fmu, FmiVersion::V2);
+        let lines = importer.run(&["cs", "10", "2.5", "get", &reference(&fmu, "x")]).unwrap();
+        let error = (lines.last().unwrap()[1] - 10.0f64.cos()).abs();
+        assert!(error < bound, "{solver:?}: {error:e}");
+    }
+    let step = FmuSolver::RungeKutta4 { step: -1.0 };
+    let refused = export(&oscillator, &FmuOptions::new(FmiVersion::V2, "it").solver(step));
+    assert!(matches!(refused, Err(FmuError::Step { .. })));
+}
+
+#[test]
+fn what_has_no_formula_is_refused() {
+    let wall = written(
+        "[coordinates]\nx = 0.6\nz = -0.8\n[constraints]\nrod = \"x^2 + z^2 - 1\"\n\
+         [lagrangian]\nkinetic = \"(x'^2 + z'^2)/2\"\npotential = \"z\"\n\
+         [events.wall]\nwhen = \"x\"\nreset = { \"x'\" = \"-x'\" }\n[simulation]\nt_end = 3.0\n",
+    );
+    let refused = export(&wall, &FmuOptions::new(FmiVersion::V2, "it")).unwrap_err();
+    assert!(matches!(&refused, FmuError::ResetUnderConstraints { event } if event == "wall"), "{refused}");
+}
+
+#[test]
+fn the_same_model_gives_the_same_bytes() {
+    let bytes = |version| {
+        let mut out = std::io::Cursor::new(Vec::new());
+        exported(&model("heavy-top-lagrange"), version).write(&mut out).unwrap();
+        out.into_inner()
+    };
+    for version in VERSIONS {
+        assert!(bytes(version) == bytes(version));
+    }
+}
+
+/// Each model of the program but those of many bodies, whose derivatives along a direction take minutes in a test.
+#[test]
+fn all_models_are_exported() {
+    for builtin in pc_model::BUILTIN {
+        let model = Model::new(builtin.document().unwrap());
+        let fmu = export(&model, &FmuOptions::new(FmiVersion::V3, "it"));
+        let fmu = fmu.unwrap_or_else(|error| panic!("{}: {error}", builtin.name));
+        assert_eq!(variable(&fmu, "energy", "causality").as_deref(), Some("output"), "{}", builtin.name);
+    }
+}
+
+/// The example of the documentation.
+#[test]
+fn the_example_of_the_page_is_exported() {
+    let page = include_str!("../../../docs/fmu.md");
+    let text = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let fmu = exported(&written(text), FmiVersion::V3);
+    for name in ["x", "θ", "x'", "θ'", "tip"] {
+        assert_eq!(variable(&fmu, name, "causality").as_deref(), Some("output"));
+    }
+    assert_eq!(variable(&fmu, "F", "causality").as_deref(), Some("input"));
+}

@@ -1,0 +1,73 @@
+//! Equations compiled once for many values of parameters and start.
+
+use std::sync::{Mutex, PoisonError};
+
+use pc_mech::VectorField;
+
+use crate::assembly::assembly::Assembly;
+use crate::flow::flow::Flow;
+use crate::flow::variables::Variables;
+use crate::model::model::Model;
+
+/// A start that a projection moves by no more than this, relative to the larger of 1 and its size, satisfies the
+/// constraints up to the rounding of the numbers it is written with; a tenth of what a model is refused for.
+const ON_CONSTRAINTS: f64 = 1e-9;
+
+/// The equations of a model compiled once, for models of which only numbers are different.
+#[derive(Debug)]
+pub struct Prototype {
+    flow: Mutex<Flow>,
+    /// For each component of the state its place among the start values; none where it starts at 0.
+    places: Vec<Option<usize>>,
+    /// Start values that are no components of the state, because constraints say that they vanish.
+    vanishing: Vec<usize>,
+}
+
+impl Prototype {
+    /// As [`of`](Prototype::of); none too where the model has no equations of motion.
+    pub fn new(model: &Model, variables: Variables) -> Option<Prototype> {
+        let graph = model.graph();
+        let assembly = model.assemble(&graph).ok()?;
+        let flow = Flow::new(model, &assembly, variables).ok()?;
+        Prototype::of(model, &assembly, variables, flow)
+    }
+
+    /// That of a flow of the model in these variables. None where the equations may depend on the start or on the values of
+    /// the parameters: momenta solved for velocities near the start, constraints left out because they follow from
+    /// others; or where the start has to be solved for.
+    pub fn of(model: &Model, assembly: &Assembly<'_>, variables: Variables, flow: Flow) -> Option<Prototype> {
+        let own =
+            variables == Variables::QuasiVelocities && !model.projects_start() && !model.derives_start();
+        if !own || !assembly.constraints.redundant().is_empty() {
+            return None;
+        }
+        let names = model.start_names();
+        let state = flow.motion.names();
+        let places = state.iter().map(|x| names.iter().position(|name| name == x)).collect();
+        let vanishing = (0..names.len()).filter(|&i| !state.contains(&names[i])).collect();
+        Some(Prototype { flow: Mutex::new(flow), places, vanishing })
+    }
+
+    /// The equations with the values of a model of the same text, at its start at time `t`; none if something about it has
+    /// to be looked at closer, by [`Flow::new`].
+    pub fn flow(&self, model: &Model, t: f64) -> Option<Flow> {
+        let values = model.start().ok()?;
+        let start: Vec<f64> =
+            self.places.iter().map(|place| place.map_or(0.0, |place| values[place])).collect();
+        let parameters: Vec<f64> = model.parameters().map(|(_, value)| value).collect();
+        let prototype = self.flow.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut flow = prototype.with_values(&parameters, start);
+        drop(prototype);
+        let start = flow.start.clone();
+        flow.motion.keep_from(t, &start).ok()?;
+        let mut nearest = flow.start.clone();
+        flow.motion.project(t, &mut nearest).ok()?;
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() <= ON_CONSTRAINTS * a.abs().max(1.0);
+        let on = self.vanishing.iter().all(|&place| values[place] == 0.0)
+            && flow.start.iter().zip(&nearest).all(near);
+        let mut rate = vec![0.0; nearest.len()];
+        flow.motion.rhs(t, &start, &mut rate).ok()?;
+        let finite = flow.row(t, &start).iter().chain(&rate).all(|value| value.is_finite());
+        (on && finite).then_some(flow)
+    }
+}

@@ -1,0 +1,112 @@
+"""Equations of motion in quasi-velocities: derived, printed, compiled and integrated.
+
+A model is a text with a frame, a Lagrangian and forces. Its Poincaré–Chetaev equations are derived from it:
+
+>>> import chetaev
+>>> model = chetaev.Model.from_text('''
+... [parameters]
+... g = 9.81
+... l = 2.0
+... [coordinates]
+... "θ" = 0.5
+... [lagrangian]
+... kinetic = "l^2*θ'^2/2"
+... potential = "-g*l*cos(θ)"
+... ''', name="pendulum")
+>>> system = model.system()
+>>> system.names
+('θ', "θ'")
+>>> motion = system.run(10.0)
+>>> motion["θ"].shape
+(201,)
+>>> motion.drift["energy"] < 1e-7
+True
+"""
+
+from chetaev._builder import Builder
+from chetaev._errors import (
+    ChetaevError,
+    DisagreementError,
+    EvaluationError,
+    IntegrationError,
+    ModelError,
+    UnknownNameError,
+)
+from chetaev._expressions import (
+    Expression,
+    abs_,
+    acos,
+    asin,
+    atan,
+    atan2,
+    cos,
+    cosh,
+    cot,
+    d,
+    exp,
+    log,
+    maximum,
+    minimum,
+    pi,
+    sign,
+    sin,
+    sinh,
+    sqrt,
+    step,
+    symbols,
+    t,
+    tan,
+    tanh,
+)
+from chetaev._model import Check, Equations, Model, Page, Theory
+from chetaev._motion import Motion, Occurrence
+from chetaev._sweep import Sweep
+from chetaev._system import Bracket, Event, Lyapunov, System
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Bracket",
+    "Builder",
+    "Check",
+    "ChetaevError",
+    "DisagreementError",
+    "Equations",
+    "EvaluationError",
+    "Event",
+    "Expression",
+    "IntegrationError",
+    "Lyapunov",
+    "Model",
+    "ModelError",
+    "Motion",
+    "Occurrence",
+    "Page",
+    "Sweep",
+    "System",
+    "Theory",
+    "UnknownNameError",
+    "abs_",
+    "acos",
+    "asin",
+    "atan",
+    "atan2",
+    "cos",
+    "cosh",
+    "cot",
+    "d",
+    "exp",
+    "log",
+    "maximum",
+    "minimum",
+    "pi",
+    "sign",
+    "sin",
+    "sinh",
+    "sqrt",
+    "step",
+    "symbols",
+    "t",
+    "tan",
+    "tanh",
+]

@@ -1,0 +1,288 @@
+"""A model put together call by call: it is written as a text, so that there is one meaning."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import numbers
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from chetaev._errors import ChetaevError
+from chetaev._expressions import Expression, expression
+
+if TYPE_CHECKING:
+    from chetaev._model import Model
+
+#: The sections, in the order in which they stand in the text.
+_SECTIONS = (
+    "model",
+    "parameters",
+    "inputs",
+    "definitions",
+    "coordinates",
+    "quasi_velocities",
+    "states",
+    "kinematics",
+    "algebra",
+    "algebra.brackets",
+    "constraints",
+    "lagrangian",
+    "bodies",
+    "gravity",
+    "forces",
+    "integrals",
+    "outputs",
+    "events",
+    "simulation",
+)
+
+
+def quoted(text: str) -> str:
+    """A string of TOML on one line."""
+    shown = []
+    for c in text:
+        if c in '"\\':
+            shown.append("\\" + c)
+        elif ord(c) < 32 or 127 <= ord(c) < 160:
+            shown.append(f"\\u{ord(c):04X}")
+        else:
+            shown.append(c)
+    return '"' + "".join(shown) + '"'
+
+
+def number(value: float) -> str:
+    """A finite number of TOML that reads back as the same."""
+    if not math.isfinite(value):
+        raise ChetaevError(f"{value} is not a finite number")
+    return repr(float(value))
+
+
+def formula(value: Any) -> str:
+    """An expression of TOML: of a number, a text, an expression of this package or of SymPy, or a function of names.
+
+    A function is called with its parameters as names of the model.
+    """
+    # Numbers of SymPy are real numbers of Python too, but may have more digits.
+    if hasattr(value, "free_symbols"):
+        return quoted(str(expression(value)))
+    if isinstance(value, numbers.Real) and not isinstance(value, (bool, numbers.Rational)):
+        return number(float(value))
+    if callable(value) and not isinstance(value, Expression):
+        names = list(inspect.signature(value).parameters)
+        value = value(*(Expression(name) for name in names))
+    return quoted(str(expression(value)))
+
+
+class Builder:
+    """A model in the making.
+
+    Expressions are texts in the language of models, numbers, expressions of this package, expressions of SymPy, or Python functions
+    of names of the model. All methods return the builder, so that calls can be chained.
+
+    Parameters
+    ----------
+    name : str
+        The name of the model.
+
+    Examples
+    --------
+    >>> from chetaev import Model, cos
+    >>> builder = Model.builder("pendulum")
+    >>> builder = builder.parameter("g", 9.81).parameter("l", 2.0).coordinate("θ", 0.5)
+    >>> builder = builder.lagrangian(
+    ...     kinetic=lambda l, θ: l**2 * θ.velocity**2 / 2,
+    ...     potential=lambda g, l, θ: -g * l * cos(θ),
+    ... )
+    >>> print(builder.text)
+    [model]
+    "name" = "pendulum"
+    <BLANKLINE>
+    [parameters]
+    "g" = 9.81
+    "l" = 2.0
+    <BLANKLINE>
+    [coordinates]
+    "θ" = 0.5
+    <BLANKLINE>
+    [lagrangian]
+    "kinetic" = "l^2*θ'^2/2"
+    "potential" = "-g*l*cos(θ)"
+    <BLANKLINE>
+    >>> builder.build().system().names
+    ('θ', "θ'")
+    """
+
+    def __init__(self, name: str = "model") -> None:
+        self._name = name
+        self._entries: dict[str, dict[tuple[str, ...], str]] = {section: {} for section in _SECTIONS}
+        self._put("model", ("name",), quoted(name))
+
+    def _put(self, section: str, keys: tuple[str, ...], value: str) -> Builder:
+        entries = self._entries[section]
+        if keys in entries:
+            raise ChetaevError(f"[{section}] {'.'.join(keys)} has been given already")
+        entries[keys] = value
+        return self
+
+    def describe(self, *, description: str | None = None, reference: str | None = None) -> Builder:
+        """Says what the model is and where it comes from."""
+        for key, value in (("description", description), ("reference", reference)):
+            if value is not None:
+                self._put("model", (key,), quoted(value))
+        return self
+
+    def parameter(self, name: str, value: Any) -> Builder:
+        """A parameter: a number, or an expression in parameters before it."""
+        return self._put("parameters", (name,), formula(value))
+
+    def input(
+        self,
+        name: str,
+        value: float | None = None,
+        *,
+        times: Sequence[float] | None = None,
+        values: Sequence[float] | None = None,
+        interpolation: str = "linear",
+    ) -> Builder:
+        """An input: a number that is constant until it is set, or a table of times and values."""
+        if times is None and values is None:
+            return self._put("inputs", (name,), number(0.0 if value is None else value))
+        if value is not None or times is None or values is None:
+            raise ChetaevError(f"the input `{name}` needs either a value, or times and values")
+        lists = [", ".join(number(float(x)) for x in column) for column in (times, values)]
+        self._put("inputs", (name, "times"), f"[{lists[0]}]")
+        self._put("inputs", (name, "values"), f"[{lists[1]}]")
+        return self._put("inputs", (name, "interpolation"), quoted(interpolation))
+
+    def define(self, name: str, value: Any) -> Builder:
+        """A name for an expression, to be used below."""
+        return self._put("definitions", (name,), formula(value))
+
+    def coordinate(self, name: str, start: Any = 0.0) -> Builder:
+        """A coordinate with its start value."""
+        return self._put("coordinates", (name,), formula(start))
+
+    def quasi_velocity(self, name: str, start: Any = 0.0, definition: Any = None) -> Builder:
+        """A quasi-velocity with its start value, and its definition by velocities (2) if it has one."""
+        if definition is None:
+            return self._put("quasi_velocities", (name,), formula(start))
+        self._put("quasi_velocities", (name, "is"), formula(definition))
+        return self._put("quasi_velocities", (name, "start"), formula(start))
+
+    def state(self, name: str, start: Any, rate: Any) -> Builder:
+        """A first-order state with its rate, such as that of a controller."""
+        self._put("states", (name, "start"), formula(start))
+        return self._put("states", (name, "rate"), formula(rate))
+
+    def kinematics(self, coordinate: str, velocity: Any) -> Builder:
+        """The velocity of a coordinate by quasi-velocities, ẋ = b η + b_0 (3)."""
+        return self._put("kinematics", (coordinate,), formula(velocity))
+
+    def algebra(self, name: str | None = None, brackets: Mapping[tuple[str, str], Any] | None = None) -> Builder:
+        """The brackets of the operators: those of a Lie algebra by its name, or each by itself."""
+        if name is not None:
+            self._put("algebra", ("name",), quoted(name))
+        for (r, s), value in (brackets or {}).items():
+            self._put("algebra.brackets", (f"{r},{s}",), formula(value))
+        return self
+
+    def constraint(self, name: str, value: Any, kind: str | None = None) -> Builder:
+        """A constraint: an expression that vanishes."""
+        if kind is None:
+            return self._put("constraints", (name,), formula(value))
+        self._put("constraints", (name, "expr"), formula(value))
+        return self._put("constraints", (name, "kind"), quoted(kind))
+
+    def lagrangian(
+        self, lagrangian: Any = None, *, kinetic: Any = None, potential: Any = None, dissipation: Any = None
+    ) -> Builder:
+        """The Lagrangian, or kinetic and potential energy; and Rayleigh's function of dissipation."""
+        given = {"lagrangian": lagrangian, "kinetic": kinetic, "potential": potential, "dissipation": dissipation}
+        for key, value in given.items():
+            if value is not None:
+                self._put("lagrangian", (key,), formula(value))
+        return self
+
+    def body(self, name: str, **entries: Any) -> Builder:
+        """A rigid body: ``mass``, ``position``, ``inertia``, ``rotation``, … as in ``[bodies.NAME]`` of a text."""
+        for key, value in entries.items():
+            if isinstance(value, (list, tuple)):
+                text = "[" + ", ".join(formula(entry) for entry in value) + "]"
+            elif key in ("joint", "parent"):
+                text = quoted(str(value))
+            else:
+                text = formula(value)
+            self._put("bodies", (name, key), text)
+        return self
+
+    def gravity(self, acceleration: Sequence[Any]) -> Builder:
+        """The acceleration of gravity, for all bodies."""
+        text = "[" + ", ".join(formula(entry) for entry in acceleration) + "]"
+        return self._put("gravity", ("acceleration",), text)
+
+    def force(self, on: str, value: Any) -> Builder:
+        """A generalised force on a quasi-velocity or on a coordinate."""
+        return self._put("forces", (on,), formula(value))
+
+    def integral(self, name: str, value: Any) -> Builder:
+        """An expression that should stay constant, watched along each motion."""
+        return self._put("integrals", (name,), formula(value))
+
+    def output(self, name: str, value: Any) -> Builder:
+        """A further column of motions."""
+        return self._put("outputs", (name,), formula(value))
+
+    def event(
+        self,
+        name: str,
+        when: Any,
+        *,
+        direction: str = "both",
+        terminal: bool = False,
+        reset: Mapping[str, Any] | None = None,
+    ) -> Builder:
+        """An event: the zero of an expression, which may end the motion or reset the state."""
+        self._put("events", (name, "when"), formula(when))
+        self._put("events", (name, "direction"), quoted(direction))
+        if terminal:
+            self._put("events", (name, "terminal"), "true")
+        for variable, value in (reset or {}).items():
+            self._put("events", (name, "reset", variable), formula(value))
+        return self
+
+    def simulation(self, **settings: Any) -> Builder:
+        """What a run takes where nothing else is said: ``t_end``, ``samples``, ``rtol``, ``method``, …"""
+        for key, value in settings.items():
+            if isinstance(value, str):
+                text = quoted(value)
+            elif isinstance(value, (list, tuple)):
+                text = "[" + ", ".join(quoted(str(entry)) for entry in value) + "]"
+            elif isinstance(value, int):
+                text = str(value) if key in ("samples", "samples_per_step") else number(value)
+            else:
+                text = number(value)
+            self._put("simulation", (key,), text)
+        return self
+
+    @property
+    def text(self) -> str:
+        """The model as text."""
+        sections = []
+        for section, entries in self._entries.items():
+            if entries:
+                lines = [f"{'.'.join(quoted(key) for key in keys)} = {value}" for keys, value in entries.items()]
+                sections.append("\n".join([f"[{section}]", *lines]) + "\n")
+        return "\n".join(sections)
+
+    def build(self) -> Model:
+        """The model.
+
+        Raises
+        ------
+        ModelError
+            With the place in :attr:`text`.
+        """
+        from chetaev._model import Model
+
+        return Model.from_text(self.text, name=self._name)

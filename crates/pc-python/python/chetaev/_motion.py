@@ -1,0 +1,243 @@
+"""Motions, as arrays by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from chetaev._errors import ChetaevError, UnknownNameError
+from chetaev._model import Page
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from chetaev import _native
+    from chetaev._system import System
+
+    Floats = npt.NDArray[np.float64]
+
+
+class Occurrence(NamedTuple):
+    """An event that occurred."""
+
+    #: The name of the event.
+    name: str
+    #: When.
+    t: float
+    #: The state before and after its reset.
+    before: Floats
+    after: Floats
+
+
+class Motion(Mapping[str, "Floats"]):
+    """A motion: arrays by the names of coordinates, quasi-velocities, first-order states, integrals and outputs.
+
+    It is made by :meth:`System.run`, and can be pickled.
+
+    Attributes
+    ----------
+    t : array
+        The times of the rows, N of them.
+    y : array
+        The states, n × N, as in results of :func:`scipy.integrate.solve_ivp`.
+    columns : tuple of str
+        The names, ``t`` first.
+    events : list of Occurrence
+        What occurred, in order.
+    ending : str
+        ``"completed"``, ``"event"`` or ``"failed"``.
+    terminal : str or None
+        The name of the event that ended it.
+    drift : dict
+        How far each integral, the energy among them, went from its value at the start.
+    residuals : dict
+        The largest residual of each constraint that is kept by projection.
+    statistics : dict
+        Steps, evaluations, …
+
+    Examples
+    --------
+    >>> motion = Model.builtin("heavy-top-lagrange").system().run(5.0, samples=3)
+    >>> motion.t
+    array([0. , 2.5, 5. ])
+    >>> list(motion)[:3]
+    ['t', 'γ1', 'γ2']
+    """
+
+    def __init__(self, system: System, plan: dict[str, Any], outcome: _native._Outcome) -> None:
+        self._origin = (system.model, system.form, system.settings())
+        self._system: System | None = None
+        self._kinds_of_columns = system.column_kinds
+        self._plan = plan
+        self.t: Floats = outcome["t"]
+        self.y: Floats = outcome["states"].T
+        self._values = outcome["values"]
+        self.columns: tuple[str, ...] = ("t", *outcome["columns"])
+        self.events: list[Occurrence] = [Occurrence(*event) for event in outcome["events"]]
+        self.ending: str = outcome["ending"]
+        self.terminal: str | None = outcome["event"]
+        self.residuals: dict[str, float] = outcome["residuals"]
+        self.statistics: dict[str, Any] = outcome["statistics"]
+        self._dense: _native.DenseCore | None = None
+
+    @property
+    def system(self) -> System:
+        """The system with the values that it had, derived once more when this is first asked for."""
+        if self._system is None:
+            model, form, settings = self._origin
+            self._system = model.system(form, **settings)
+        return self._system
+
+    def __getitem__(self, name: str) -> Floats:
+        if name == "t":
+            return self.t
+        try:
+            place = self.columns.index(name)
+        except ValueError:
+            raise UnknownNameError(f"there is no column `{name}`; there are {', '.join(self.columns)}") from None
+        column: Floats = self._values[:, place - 1]
+        return column
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.columns)
+
+    def __len__(self) -> int:
+        return len(self.columns)
+
+    def __repr__(self) -> str:
+        span = f"t = {self.t[0]:g} to {self.t[-1]:g}" if len(self.t) else "no row"
+        return f"<Motion {self._origin[0].title!r}: {len(self.t)} rows, {span}, {self.ending}>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        # What is dense is integrated again where it is wanted.
+        return {**self.__dict__, "_dense": None, "_system": None}
+
+    def _kinds(self) -> dict[str, tuple[str, ...]]:
+        """The names of the columns, by what they are."""
+        coordinates, velocities, states, conserved = self._kinds_of_columns
+        names = list(self.columns[1:])
+        found = {}
+        for kind, count in (
+            ("coordinates", coordinates),
+            ("quasi_velocities", velocities),
+            ("states", states),
+            ("conserved", conserved),
+        ):
+            found[kind] = tuple(names[:count])
+            del names[:count]
+        found["outputs"] = tuple(names)
+        return found
+
+    @property
+    def drift(self) -> dict[str, float]:
+        """How far each integral, the energy among them, went from its value at the start."""
+        if len(self.t) == 0:
+            return {}
+        return {name: float(abs(self[name] - self[name][0]).max()) for name in self._kinds()["conserved"]}
+
+    def dense(self, t: npt.ArrayLike) -> Floats:
+        """The state at any time of the motion: n numbers, or n × N for N times.
+
+        The motion is integrated once more when this is first asked for, with the polynomials of all steps kept. Between steps
+        states are off constraints by the error of a step.
+
+        Examples
+        --------
+        >>> motion = Model.builtin("heavy-top-lagrange").system().run(5.0)
+        >>> motion.dense(1.234).shape
+        (6,)
+        """
+        import numpy as np
+
+        if self._dense is None:
+            self._dense = self.system.dense(float(self.t[-1]), self._plan)
+        times = np.asarray(t, dtype=float)
+        states = self._dense.at(times.ravel().tolist())
+        return states[:, 0] if times.ndim == 0 else states.reshape(-1, *times.shape)
+
+    def sensitivity(self, name: str, parameter: str) -> Floats:
+        """∂(column)/∂(parameter), where :meth:`System.run` was asked for it."""
+        return self[f"∂{name}/∂{parameter}"]
+
+    def to_pandas(self) -> Any:
+        """A data frame with the times as index."""
+        import pandas as pd
+
+        index = pd.Index(self.t, name="t")
+        return pd.DataFrame(self._values, index=index, columns=list(self.columns[1:]))
+
+    def plot(self, names: Sequence[str] | None = None, *, ax: Any = None) -> Any:
+        """Columns over time, by matplotlib.
+
+        Parameters
+        ----------
+        names : sequence of str, optional
+            The columns; coordinates and quasi-velocities, each in a picture of its own, and the drift of the integrals unless given.
+        ax : optional
+            The axes to draw into; only with names.
+
+        Returns
+        -------
+        The figure.
+        """
+        import matplotlib.pyplot as plt
+
+        if names is not None or ax is not None:
+            chosen = names or self.columns[1:]
+            if ax is None:
+                _, ax = plt.subplots()
+            for name in chosen:
+                ax.plot(self.t, self[name], label=name)
+            ax.set_xlabel("t")
+            ax.legend(loc="best")
+            return ax.figure
+        kinds = self._kinds()
+        drawn = [(kind, kinds[kind]) for kind in ("coordinates", "quasi_velocities", "states", "outputs")]
+        drawn = [(kind, columns) for kind, columns in drawn if columns]
+        figure, axes = plt.subplots(
+            len(drawn) + 1, 1, sharex=True, squeeze=False, figsize=(7.0, 2.2 * (len(drawn) + 1))
+        )
+        for axis, (kind, columns) in zip(axes[:, 0], drawn):
+            for name in columns:
+                axis.plot(self.t, self[name], label=name, linewidth=1.0)
+            axis.set_ylabel(kind.replace("_", "-"))
+            axis.legend(loc="upper right", fontsize="small")
+        for name in kinds["conserved"]:
+            axes[-1, 0].plot(self.t, self[name] - self[name][0], label=name, linewidth=1.0)
+        axes[-1, 0].set_ylabel("drift")
+        axes[-1, 0].legend(loc="upper right", fontsize="small")
+        axes[-1, 0].set_xlabel("t")
+        figure.tight_layout()
+        return figure
+
+    def _recorded(self) -> dict[str, Any]:
+        """As the native part takes a motion."""
+        recorded: dict[str, Any] = {"t": self.t.tolist(), "events": [event.t for event in self.events]}
+        for kind, names in self._kinds().items():
+            recorded[kind] = [(name, self[name].tolist()) for name in names]
+        remark = None
+        if self.ending == "event":
+            remark = f"The event {self.terminal} ended the motion."
+        elif self.ending != "completed":
+            remark = f"The motion {self.ending}; what was reached is shown."
+        return {**recorded, "remark": remark}
+
+    def animate(self) -> Page:
+        """The motion to be watched in a browser or a notebook, where the model can be drawn.
+
+        Raises
+        ------
+        ChetaevError
+            Where the text has nothing to be drawn.
+        """
+        page = self.system.animation_page(self._recorded())
+        if page is None:
+            raise ChetaevError(
+                f"there is nothing to be drawn of {self.system.model.title}: add [[draw]] or bodies to its text"
+            )
+        return Page(page)
+
+    def report(self) -> Page:
+        """One page with all that is known of the model and this motion."""
+        return self.system.report(self)

@@ -1,0 +1,139 @@
+"""Many motions of one model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from chetaev import _native
+from chetaev._errors import ChetaevError, UnknownNameError
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from chetaev._system import System
+
+    Floats = npt.NDArray[np.float64]
+
+
+class Sweep(Mapping[str, "Floats"]):
+    """The members of a sweep: arrays by name, one entry, or one row, for each member.
+
+    A value that was varied has its name, that of a start value followed by ``(start)``. It is made by :meth:`System.sweep`.
+
+    Attributes
+    ----------
+    status : list of str
+        ``"completed"``, ``"event"``, ``"failed"``, ``"refused"`` or ``"panicked"``.
+    message : list of str
+        The event, or why there is no motion.
+    steps : array
+        Steps of each motion.
+    """
+
+    def __init__(self, varied: dict[str, Floats], columns: tuple[str, ...], swept: _native._Swept) -> None:
+        import numpy as np
+
+        self._varied = varied
+        self._columns = ("t", *columns)
+        self._values = swept["values"]
+        self.status: list[str] = swept["status"]
+        self.message: list[str] = swept["message"]
+        self.steps: npt.NDArray[np.int64] = np.array(swept["steps"], dtype=np.int64)
+
+    def __getitem__(self, name: str) -> Floats:
+        if name in self._varied:
+            return self._varied[name]
+        if name not in self._columns:
+            raise UnknownNameError(f"there is no column `{name}`; there are {', '.join(self)}")
+        column: Floats = self._values[:, :, self._columns.index(name)]
+        return column[:, 0] if column.shape[1] == 1 else column
+
+    def __iter__(self) -> Iterator[str]:
+        yield from self._varied
+        yield from self._columns
+
+    def __len__(self) -> int:
+        return len(self._varied) + len(self._columns)
+
+    @property
+    def members(self) -> int:
+        """How many there are."""
+        return len(self.status)
+
+    def to_pandas(self) -> Any:
+        """A data frame: a row for each member, or for each row of each member."""
+        import numpy as np
+        import pandas as pd
+
+        rows = self._values.shape[1]
+        member = np.repeat(np.arange(self.members), rows)
+        frame = {"member": member, "status": np.repeat(np.array(self.status, dtype=object), rows)}
+        frame.update({name: np.repeat(values, rows) for name, values in self._varied.items()})
+        flat = self._values.reshape(-1, len(self._columns))
+        frame.update({name: flat[:, j] for j, name in enumerate(self._columns)})
+        return pd.DataFrame(frame)
+
+    def __repr__(self) -> str:
+        completed = sum(status == "completed" for status in self.status)
+        return f"<Sweep of {self.members} members over {', '.join(self._varied)}: {completed} completed>"
+
+
+def swept(
+    system: System,
+    vary: Mapping[str, npt.ArrayLike] | None,
+    random: Mapping[str, tuple[str, float, float]] | None,
+    members: int | None,
+    seed: int,
+    t_end: float | None,
+    rows: int | None,
+    threads: int | None,
+    progress: bool,
+    settings: dict[str, Any],
+) -> Sweep:
+    """What :meth:`System.sweep` does."""
+    import numpy as np
+
+    if bool(vary) == bool(random):
+        raise ChetaevError("give values to vary, or distributions to draw from, and not both")
+    if vary:
+        if members is not None:
+            raise ChetaevError("`members` is the number of what is drawn; what is varied takes all combinations")
+        names = tuple(vary)
+        grids = np.meshgrid(*(np.asarray(values, dtype=float).ravel() for values in vary.values()), indexing="ij")
+        values = np.stack([grid.ravel() for grid in grids], axis=1)
+    else:
+        assert random is not None
+        if members is None:
+            raise ChetaevError("say how many members are to be drawn")
+        names = tuple(random)
+        laws = [(law, float(first), float(second)) for law, first, second in random.values()]
+        values = _native.draw(laws, seed, members)
+    parameters, starts = set(system.parameters), set(system.start)
+    targets = []
+    for name in names:
+        if name not in parameters | starts:
+            known = ", ".join([*system.parameters, *system.start])
+            raise UnknownNameError(f"there is no `{name}` to vary; there are {known}")
+        targets.append((name, name not in parameters))
+    times = system._times(t_end, rows or 2, None)
+    plan = system._plan(settings)
+    all_rows = rows is not None
+    called, bar = None, None
+    if progress:
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            raise ChetaevError("progress is shown by tqdm, which is not installed") from None
+        bar = tqdm(total=len(values), unit="member")
+        called = lambda done: bar.update(done - bar.n)  # noqa: E731
+    try:
+        found = system.ensemble(
+            targets, values.ravel().tolist(), (times if all_rows else times[-1:]).tolist(), plan, all_rows, threads, called
+        )
+    finally:
+        if bar is not None:
+            bar.close()
+    varied = {name + ("(start)" if is_start else ""): values[:, j] for j, (name, is_start) in enumerate(targets)}
+    return Sweep(varied, system.columns, found)

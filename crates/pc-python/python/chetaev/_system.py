@@ -1,0 +1,459 @@
+"""Equations of motion, compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from chetaev import _native
+from chetaev._builder import formula, number, quoted
+from chetaev._errors import ChetaevError, IntegrationError
+from chetaev._model import Model, Page, changes
+from chetaev._values import Values
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from chetaev._motion import Motion
+    from chetaev._sweep import Sweep
+
+    Floats = npt.NDArray[np.float64]
+
+#: Rows of a motion if nobody says how many.
+SAMPLES = 201
+
+
+@dataclass(frozen=True)
+class Event:
+    """An event of a run, beside those of the text.
+
+    Parameters
+    ----------
+    when : expression
+        It occurs where this vanishes.
+    direction : str
+        ``"rising"``, ``"falling"`` or ``"both"``.
+    terminal : bool
+        Whether it ends the motion.
+    reset : mapping
+        New values of coordinates and quasi-velocities.
+    """
+
+    when: Any
+    direction: str = "both"
+    terminal: bool = False
+    reset: Mapping[str, Any] = field(default_factory=dict)
+
+    def text(self, name: str) -> str:
+        """The section of a text."""
+        lines = [
+            f"[events.{quoted(name)}]",
+            f"when = {formula(self.when)}",
+            f"direction = {quoted(self.direction)}",
+            f"terminal = {'true' if self.terminal else 'false'}",
+        ]
+        lines += [f"reset.{quoted(variable)} = {formula(value)}" for variable, value in self.reset.items()]
+        return "\n".join(lines) + "\n"
+
+
+class Lyapunov(NamedTuple):
+    """Lyapunov exponents of a motion."""
+
+    #: The largest exponents, in 1/time.
+    exponents: Floats
+    #: Their means after each interval: a row for each.
+    history: Floats
+
+
+class Bracket:
+    """The Poisson bracket (f, g) (12) of two functions of the state, a function of time and state."""
+
+    __slots__ = ("_function", "_arguments")
+
+    def __init__(self, system: System, f: str, g: str) -> None:
+        self._arguments = (system, f, g)
+        self._function = system.poisson_bracket(f, g)
+
+    def __call__(self, t: float, y: npt.ArrayLike) -> float:
+        import numpy as np
+
+        return self._function.at(float(t), np.asarray(y, dtype=float).tolist())
+
+    def __reduce__(self) -> tuple[type[Bracket], tuple[System, str, str]]:
+        return Bracket, self._arguments
+
+    def __repr__(self) -> str:
+        return f"<Bracket ({self._arguments[1]}, {self._arguments[2]})>"
+
+
+class System(_native.SystemCore):
+    """ẏ = f(t, y) of a model, compiled, with values of parameters and start that can be set.
+
+    ``system(t, y)`` is ẏ, and ``system.jac(t, y)`` its Jacobian, as :func:`scipy.integrate.solve_ivp` takes them. Where ``y`` is an array
+    of n × N numbers, a state in each column, so are the results, computed without the lock of the interpreter; ``t`` is a
+    number then, or N of them. Any number of threads may use a system at once. It can be pickled.
+
+    It is made by :meth:`Model.system`.
+
+    Examples
+    --------
+    >>> system = Model.builtin("heavy-top-lagrange").system()
+    >>> system(0.0, system.y0).shape
+    (6,)
+    >>> from scipy.integrate import solve_ivp
+    >>> solution = solve_ivp(system, (0.0, 1.0), system.y0, jac=system.jac, method="Radau", rtol=1e-8)
+    >>> motion = system.run(1.0, samples=2)
+    >>> bool(abs(solution.y[:, -1] - motion.y[:, -1]).max() < 1e-5)
+    True
+    """
+
+    _model: Model
+    _form: str
+    _settings: dict[str, Any]
+    _companion: System | None
+
+    def __new__(cls, model: Model, form: str = "poincare", **settings: Any) -> System:
+        settings = {**settings}
+        settings["parameters"] = dict(settings.get("parameters") or {})
+        settings["start"] = dict(settings.get("start") or {})
+        self = super().__new__(cls, model._core.changed(changes(**settings)), form)
+        assert isinstance(self, System)
+        self._model = model
+        self._form = form
+        self._settings = settings
+        self._companion = None
+        return self
+
+    def __reduce__(self) -> tuple[Callable[..., System], tuple[Model, str, dict[str, Any]]]:
+        return _restored, (self._model, self._form, self.settings())
+
+    def __repr__(self) -> str:
+        return f"<System {self._model.title!r}, {self._form}: {', '.join(self.names)}>"
+
+    @property
+    def model(self) -> Model:
+        """The model, with the values of its text."""
+        return self._model
+
+    @property
+    def form(self) -> str:
+        """The form of the equations."""
+        return self._form
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the components of a state."""
+        return tuple(self.state_names)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The names of the columns of a motion, without ``t``."""
+        return tuple(self.column_names)
+
+    @property
+    def y0(self) -> Floats:
+        """The state at the start."""
+        import numpy as np
+
+        return np.array(self.start_state())
+
+    @property
+    def t0(self) -> float:
+        """The time at the start."""
+        return self.t_start
+
+    @property
+    def parameters(self) -> Values:
+        """The parameters, then the inputs, to be read and set.
+
+        Examples
+        --------
+        >>> system = Model.builtin("heavy-top-lagrange").system()
+        >>> system.parameters["mg"] = 2.0
+        >>> system.parameters.update({"I1": 1.5, "I3": 0.75})
+        """
+        return Values(self, "parameters")
+
+    @property
+    def start(self) -> Values:
+        """The start values, to be read and set."""
+        return Values(self, "start")
+
+    def settings(self) -> dict[str, Any]:
+        """What :meth:`Model.system` was given, with the values that have been set since."""
+        values = {kind: dict(self._settings[kind]) for kind in ("parameters", "start")}
+        return {**self._settings, **values}
+
+    def _set(
+        self, *, parameters: Mapping[str, float] | None = None, start: Mapping[str, float] | None = None
+    ) -> None:
+        parameters = {name: float(value) for name, value in (parameters or {}).items()}
+        start = {name: float(value) for name, value in (start or {}).items()}
+        self.update(list(parameters.items()), list(start.items()))
+        self._settings["parameters"].update(parameters)
+        self._settings["start"].update(start)
+
+    def observe(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
+        """All columns of a motion at a state, or at each of an array of them.
+
+        Examples
+        --------
+        >>> system = Model.builtin("heavy-top-lagrange").system()
+        >>> sorted(system.observe(0.0, system.y0))[:3]
+        ['area', 'energy', 'norm']
+        """
+        return dict(zip(self.column_names, self.row(t, y)))
+
+    def mass_matrix(self, t: float, y: npt.ArrayLike) -> Floats:
+        """The mass matrix M = ∂²L/∂η∂η of the quasi-velocities of a state."""
+        import numpy as np
+
+        size, entries = self.mass_entries(float(t), np.asarray(y, dtype=float).tolist())
+        return np.array(entries).reshape(size, size)
+
+    def reactions(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
+        """The reaction of each constraint, by its name.
+
+        Together they add to the force Q_s the sum of each times the derivative of its constraint by η_s.
+        """
+        if not self._model.constraints:
+            return {}
+        system = self
+        if not self._settings.get("reactions"):
+            if self._companion is None:
+                settings = {**self.settings(), "reactions": True}
+                self._companion = System(self._model, self._form, **settings)
+            system = self._companion
+            wanted = (self._settings["parameters"], self._settings["start"])
+            if (system._settings["parameters"], system._settings["start"]) != wanted:
+                system._set(parameters=wanted[0], start=wanted[1])
+        columns = system.observe(t, y)
+        return {name: columns[f"λ_{name}"] for name in self._model.constraints if f"λ_{name}" in columns}
+
+    def bracket(self, f: object, g: object) -> Bracket:
+        """The Poisson bracket (f, g) (12) of two expressions of the model.
+
+        The momenta are y_s = ∂L/∂η_s. Under nonholonomic constraints it is the almost-Poisson bracket of the independent
+        momenta.
+
+        Examples
+        --------
+        >>> system = Model.builtin("heavy-top-lagrange").system()
+        >>> bracket = system.bracket("γ1", "I2*ω2")  # the momentum of ω2
+        >>> bracket(0.0, system.y0) == -system.start["γ3"]
+        True
+        """
+        return Bracket(self, str(f), str(g))
+
+    def _plan(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """The settings of an integration: those given, else those of the text, else the defaults."""
+        written = self._model.simulation
+        plan: dict[str, Any] = {"method": "adams", "rtol": 1e-9, "atol": 1e-12}
+        for name in ("method", "rtol", "atol", "max_step", "samples_per_step", "accumulation"):
+            value = given.get(name)
+            plan[name] = plan.get(name) if value is None and written[name] is None else (
+                written[name] if value is None else value
+            )
+        plan["limit_time"] = given.get("limit_time")
+        return plan
+
+    def _times(self, t_end: float | None, samples: int | None, times: npt.ArrayLike | None) -> Floats:
+        import numpy as np
+
+        if times is not None:
+            if t_end is not None or samples is not None:
+                raise ValueError("give either times, or t_end and samples")
+            return np.asarray(times, dtype=float)
+        end = self._model.simulation["t_end"] if t_end is None else float(t_end)
+        if end is None:
+            raise ValueError("the text says no end of time: give t_end")
+        if end == self.t0:
+            raise ValueError(f"the end t = {end} is the start")
+        count = samples or self._model.simulation["samples"] or SAMPLES
+        if count < 2:
+            raise ValueError("a motion has at least 2 samples, its start and its end")
+        # As `pc run` spaces them, to the last bit.
+        spaced = self.t0 + (end - self.t0) * (np.arange(count) / (count - 1))
+        spaced[-1] = end
+        return spaced
+
+    def run(
+        self,
+        t_end: float | None = None,
+        *,
+        samples: int | None = None,
+        times: npt.ArrayLike | None = None,
+        method: str | None = None,
+        rtol: float | None = None,
+        atol: float | None = None,
+        max_step: float | None = None,
+        events: Mapping[str, object] | None = None,
+        samples_per_step: int | None = None,
+        accumulation: float | None = None,
+        sensitivities: Sequence[str] = (),
+        limit_time: float | None = None,
+    ) -> Motion:
+        """Integrates the motion from the start.
+
+        What is not given is that of the text, else the default of ``pc run``: the numbers are those of that program, bit by bit.
+        Ctrl-C ends it.
+
+        Parameters
+        ----------
+        t_end : float, optional
+            The end of time.
+        samples : int, optional
+            Number of rows, evenly spaced, start and end included.
+        times : array, optional
+            The times of the rows instead.
+        method : str, optional
+            ``"adams"``, ``"bdf"``, ``"dop853"``, ``"taylor"`` or ``"auto"``.
+        rtol, atol : float, optional
+            Relative and absolute tolerance of a step.
+        max_step : float, optional
+            The largest length of a step.
+        events : mapping, optional
+            Events beside those of the text: names with expressions that vanish, or with an :class:`Event`. The model is
+            derived once more.
+        samples_per_step, accumulation : optional
+            How events are looked for, as in ``[simulation]``.
+        sensitivities : sequence of str
+            Parameters by which the motion is differentiated: columns ``∂x/∂p``.
+        limit_time : float, optional
+            Seconds after which it ends with an error.
+
+        Returns
+        -------
+        Motion
+
+        Raises
+        ------
+        IntegrationError
+            Where the integration cannot go on; its ``motion`` is what was reached.
+
+        Examples
+        --------
+        >>> system = Model.builtin("heavy-top-lagrange").system()
+        >>> motion = system.run(5.0, samples=11)
+        >>> motion["ω3"].shape
+        (11,)
+        """
+        from chetaev._motion import Motion
+
+        if events:
+            text = self._model.text.rstrip("\n") + "\n\n"
+            for name, event in events.items():
+                text += (event if isinstance(event, Event) else Event(event)).text(name) + "\n"
+            watched = System(Model(text, self._model.name), self._form, **self.settings())
+            return watched.run(
+                t_end,
+                samples=samples,
+                times=times,
+                method=method,
+                rtol=rtol,
+                atol=atol,
+                max_step=max_step,
+                samples_per_step=samples_per_step,
+                accumulation=accumulation,
+                sensitivities=sensitivities,
+                limit_time=limit_time,
+            )
+        at = self._times(t_end, samples, times)
+        plan = self._plan(
+            {
+                "method": method,
+                "rtol": rtol,
+                "atol": atol,
+                "max_step": max_step,
+                "samples_per_step": samples_per_step,
+                "accumulation": accumulation,
+                "limit_time": limit_time,
+            }
+        )
+        outcome = self.integrate(at.tolist(), plan, list(sensitivities))
+        motion = Motion(self, plan, outcome)
+        if outcome["error"] is not None:
+            raise IntegrationError(outcome["error"], motion)
+        return motion
+
+    def sweep(
+        self,
+        vary: Mapping[str, npt.ArrayLike] | None = None,
+        random: Mapping[str, tuple[str, float, float]] | None = None,
+        *,
+        members: int | None = None,
+        seed: int = 0,
+        t_end: float | None = None,
+        rows: int | None = None,
+        threads: int | None = None,
+        progress: bool = False,
+        **settings: Any,
+    ) -> Sweep:
+        """Integrates many motions, over parameters and start values, on all cores.
+
+        The result does not depend on the number of threads. Ctrl-C ends it.
+
+        Parameters
+        ----------
+        vary : mapping, optional
+            Names with the values that they take, in all combinations, the last name changing fastest.
+        random : mapping, optional
+            Names with distributions instead: ``("normal", mean, deviation)``, ``("uniform", from, to)`` or
+            ``("lognormal", mean, deviation)``, the numbers of ``pc sweep --random`` with the same seed.
+        members : int, optional
+            How many are drawn.
+        seed : int
+            The seed of what is drawn.
+        t_end : float, optional
+            The end of time, else that of the text.
+        rows : int, optional
+            Rows of each motion, evenly spaced; the last one alone unless given.
+        threads : int, optional
+            Threads, as many as cores unless given.
+        progress : bool
+            Whether to show progress, by tqdm where it is installed.
+        **settings
+            ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`.
+
+        Examples
+        --------
+        >>> system = Model.builtin("heavy-top-lagrange").system()
+        >>> sweep = system.sweep({"mg": [0.5, 1.0, 2.0]}, t_end=1.0)
+        >>> sweep["ω3"].shape
+        (3,)
+        """
+        from chetaev._sweep import swept
+
+        return swept(self, vary, random, members, seed, t_end, rows, threads, progress, settings)
+
+    def lyapunov(
+        self, count: int = 1, *, interval: float, intervals: int, transient: int = 0, **settings: Any
+    ) -> Lyapunov:
+        """The largest Lyapunov exponents of the motion from the start.
+
+        Parameters
+        ----------
+        count : int
+            How many.
+        interval : float
+            The time after which tangent vectors are made orthonormal again.
+        intervals, transient : int
+            How many intervals are counted, and how many before them are not.
+        **settings
+            ``method``, ``rtol``, ``atol`` as for :meth:`run`.
+        """
+        import numpy as np
+
+        plan = self._plan(settings)
+        exponents, history = self.exponents(count, float(interval), (intervals, transient), plan)
+        return Lyapunov(np.array(exponents), np.array(history).reshape(-1, count))
+
+    def report(self, motion: Motion | None = None) -> Page:
+        """One page with all that is known of the model, and with a motion where one is given."""
+        return Page(self.report_page(None if motion is None else motion._recorded()), height=800)
+
+
+def _restored(model: Model, form: str, settings: dict[str, Any]) -> System:
+    return System(model, form, **settings)

@@ -1,0 +1,39 @@
+//! The native part of the Python package `chetaev`: models, their equations printed, systems evaluated and integrated.
+//!
+//! It converts and delegates; what it returns is shaped by the package in `python/`, which says what users are told. Read
+//! `error`, the exceptions; `task`, work that Ctrl-C ends; `model`, a model and what is printed of it; `system`, its
+//! compiled equations, with `evaluation` of states and of arrays of them, and `quantities` beside the rates, of `mechanics`; then
+//! `motion`, `dense`, `sweep` and `lyapunov`, integrations, all by the settings in `plan`, and `animation`, pages of them.
+
+#![expect(clippy::needless_pass_by_value, reason = "what Python gives is converted into values of our own")]
+
+mod animation;
+mod dense;
+mod error;
+mod evaluation;
+mod lyapunov;
+mod mechanics;
+mod model;
+mod motion;
+mod plan;
+mod quantities;
+mod sweep;
+mod system;
+mod task;
+
+use pyo3::prelude::*;
+
+/// The native part of the package.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::dense::DenseCore;
+    #[pymodule_export]
+    use crate::model::{ModelCore, builtin_names};
+    #[pymodule_export]
+    use crate::quantities::Function;
+    #[pymodule_export]
+    use crate::sweep::draw;
+    #[pymodule_export]
+    use crate::system::SystemCore;
+}

@@ -1,0 +1,37 @@
+//! Lyapunov exponents of a motion.
+
+use pc_model::deep;
+use pc_solve::{LyapunovOptions, lyapunov_exponents};
+use pyo3::prelude::*;
+
+use crate::model::renewed;
+use crate::plan::Plan;
+use crate::system::SystemCore;
+use crate::task::attended;
+
+#[pymethods]
+impl SystemCore {
+    /// The largest exponents, and their means after each interval, one after the other.
+    fn exponents(
+        &self,
+        py: Python<'_>,
+        count: usize,
+        interval: f64,
+        intervals: (u32, u32),
+        plan: Plan,
+    ) -> PyResult<(Vec<f64>, Vec<f64>)> {
+        let (mut model, mut flow) = self.now();
+        let cancel = renewed(&mut model);
+        let options = plan.options(&cancel)?;
+        let t_start = self.inventory.t_start;
+        let (intervals, transient) = intervals;
+        let work = move || {
+            deep(|| {
+                let wanted = LyapunovOptions::new(count, interval, intervals).transient(transient);
+                let found = lyapunov_exponents(&mut flow.motion, t_start, &flow.start, &options, &wanted)?;
+                Ok((found.exponents, found.history))
+            })
+        };
+        attended(py, &cancel, |_| Ok(()), work)
+    }
+}

@@ -1,0 +1,349 @@
+//! A model, and what is printed of it.
+
+use std::time::Duration;
+
+use pc_expr::{Cancel, Limits};
+use pc_mech::{EmitOptions, Language};
+use pc_model::document::{EquationForm, Method};
+use pc_model::{Assembly, Builtin, Document, Model, Variables, deep};
+use pc_print::{Form, Layout, Page, TheoryOptions, displayed_equations, page, theory};
+use pc_report::Check;
+use pc_verify::{Options, VerifyError, verify};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::Error;
+use crate::task::attended;
+
+/// A model with the values of its parameters and start, and the settings of its derivation; it never changes.
+#[pyclass(frozen, module = "chetaev._native")]
+pub(crate) struct ModelCore {
+    pub(crate) model: Model,
+}
+
+/// What a model is changed by before it is derived.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Changes {
+    parameters: Vec<(String, f64)>,
+    start: Vec<(String, f64)>,
+    project_start: bool,
+    hold: Vec<String>,
+    project: Vec<String>,
+    velocities: Vec<(String, String)>,
+    independent: Vec<String>,
+    reactions: bool,
+    limit_memory: Option<u64>,
+    limit_time: Option<f64>,
+}
+
+/// The form of this name.
+pub(crate) fn form(name: &str) -> Result<Form, Error> {
+    const FORMS: [Form; 8] = [
+        Form::Poincare,
+        Form::Canonical,
+        Form::Lagrange,
+        Form::Voronets,
+        Form::Reduced,
+        Form::LiePoisson,
+        Form::Orthonormal,
+        Form::Hamel,
+    ];
+    FORMS.into_iter().find(|form| form.name() == name).ok_or_else(|| Error::Choice {
+        what: "the form",
+        given: name.to_owned(),
+        known: FORMS.map(Form::name).to_vec(),
+    })
+}
+
+/// The variables of a form whose equations can be evaluated.
+pub(crate) fn variables(name: &str) -> Result<Variables, Error> {
+    form(name)?.variables().ok_or(Error::Unsupported {
+        what: "a system in this form",
+        why: "its equations are for print; use poincare, canonical, reduced, lie-poisson, orthonormal or hamel",
+    })
+}
+
+fn form_of(form: EquationForm) -> &'static str {
+    match form {
+        EquationForm::Poincare => "poincare",
+        EquationForm::Canonical => "canonical",
+        EquationForm::Reduced => "reduced",
+        EquationForm::LiePoisson => "lie-poisson",
+        EquationForm::Orthonormal => "orthonormal",
+        EquationForm::Hamel => "hamel",
+    }
+}
+
+fn method_of(method: Method) -> &'static str {
+    match method {
+        Method::Adams => "adams",
+        Method::Bdf => "bdf",
+        Method::Dop853 => "dop853",
+        Method::Taylor => "taylor",
+        Method::Auto => "auto",
+    }
+}
+
+/// The limits of a model for work that begins now, and the handle that ends it.
+pub(crate) fn renewed(model: &mut Model) -> Cancel {
+    let cancel = Cancel::default();
+    model.limit(Limits { cancel: cancel.clone(), ..model.budget().limits().clone() });
+    cancel
+}
+
+impl ModelCore {
+    /// Does work on the model that may take long.
+    fn attend<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Model) -> Result<T, Error> + Send + 'static,
+    ) -> PyResult<T> {
+        let mut model = self.model.clone();
+        let cancel = renewed(&mut model);
+        attended(py, &cancel, |_| Ok(()), move || deep(|| work(&model)))
+    }
+
+    /// The same on the assembled model.
+    fn assembled<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Model, &Assembly<'_>) -> Result<T, Error> + Send + 'static,
+    ) -> PyResult<T> {
+        self.attend(py, |model| {
+            let graph = model.graph();
+            let assembly = model.assemble(&graph)?;
+            let result = work(model, &assembly)?;
+            assembly.within_limits()?;
+            Ok(result)
+        })
+    }
+}
+
+#[pymethods]
+impl ModelCore {
+    #[new]
+    fn new(name: String, text: &[u8]) -> Result<ModelCore, Error> {
+        Ok(ModelCore { model: Model::new(Document::from_bytes(&name, text)?) })
+    }
+
+    /// The model that comes with the package, None where there is none of this name.
+    #[staticmethod]
+    fn builtin(name: &str) -> Result<Option<ModelCore>, Error> {
+        let Some(builtin) = Builtin::named(name) else { return Ok(None) };
+        Ok(Some(ModelCore { model: Model::new(builtin.document()?) }))
+    }
+
+    /// The same model with other values and settings.
+    fn changed(&self, changes: Changes) -> Result<ModelCore, Error> {
+        let mut model = self.model.clone();
+        let limits = Limits::default();
+        model.limit(Limits {
+            memory: changes.limit_memory.unwrap_or(limits.memory),
+            time: match changes.limit_time {
+                None => None,
+                Some(seconds) => Some(Duration::try_from_secs_f64(seconds).map_err(|_| {
+                    Error::NotFinite { what: "the limit of time".to_owned(), value: seconds }
+                })?),
+            },
+            ..limits
+        });
+        for (name, value) in &changes.parameters {
+            model.set(name, finite(name, *value)?)?;
+        }
+        for (name, value) in &changes.start {
+            model.set_start(name, finite(name, *value)?)?;
+        }
+        model.project_start(changes.project_start);
+        for name in &changes.hold {
+            model.hold_start(name)?;
+        }
+        for name in &changes.project {
+            model.keep(name)?;
+        }
+        if !changes.velocities.is_empty() {
+            model.give_no_quasi_velocities();
+        }
+        for (name, definition) in &changes.velocities {
+            model.give_quasi_velocity(name, definition)?;
+        }
+        if !changes.independent.is_empty() {
+            model.choose_independent(changes.independent);
+        }
+        model.observe_reactions(changes.reactions);
+        Ok(ModelCore { model })
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        self.model.document().source.name()
+    }
+
+    #[getter]
+    fn text(&self) -> &str {
+        self.model.document().source.text()
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        self.model.title()
+    }
+
+    /// Names and values of the parameters, then of the inputs.
+    fn parameters(&self) -> Vec<(String, f64)> {
+        self.model.parameters().map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+
+    /// Names of the inputs.
+    fn inputs(&self) -> Vec<&str> {
+        self.model.document().inputs.iter().map(|input| input.name.text.as_str()).collect()
+    }
+
+    /// Names of the constraints.
+    fn constraints(&self) -> Vec<&str> {
+        self.model.document().constraints.iter().map(|constraint| constraint.name.text.as_str()).collect()
+    }
+
+    /// Names and values of the start.
+    fn start(&self) -> Result<Vec<(String, f64)>, Error> {
+        Ok(self.model.start_names().into_iter().zip(self.model.start()?).collect())
+    }
+
+    /// What the text says of a run.
+    fn simulation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let simulation = &self.model.document().simulation;
+        let number = |located: &Option<_>| {
+            located.as_ref().map(|located: &pc_model::document::Located<f64>| located.value)
+        };
+        let settings = PyDict::new(py);
+        settings.set_item("t_start", number(&simulation.t_start))?;
+        settings.set_item("t_end", number(&simulation.t_end))?;
+        settings.set_item("samples", simulation.samples.as_ref().map(|samples| samples.value))?;
+        settings.set_item("rtol", number(&simulation.rtol))?;
+        settings.set_item("atol", number(&simulation.atol))?;
+        settings.set_item("max_step", number(&simulation.max_step))?;
+        settings.set_item("accumulation", number(&simulation.accumulation))?;
+        settings.set_item("samples_per_step", simulation.samples_per_step.as_ref().map(|n| n.value))?;
+        settings.set_item("method", simulation.method.as_ref().map(|method| method_of(method.value)))?;
+        settings.set_item("form", simulation.form.as_ref().map(|form| form_of(form.value)))?;
+        Ok(settings)
+    }
+
+    /// What is said of the model before it is run: as text, and as JSON.
+    fn check(&self, py: Python<'_>) -> PyResult<(String, String)> {
+        self.assembled(py, |model, assembly| {
+            let equations = assembly.equations()?;
+            let second = match verify(model, &Options::default()) {
+                Err(error @ VerifyError::Disagreement(_)) => return Err(error.into()),
+                outcome => outcome,
+            };
+            assembly.within_limits()?;
+            let check = Check::new(model, assembly, &equations)?.compared(second);
+            Ok((check.text(), check.json().to_string()))
+        })
+    }
+
+    /// The equations as text, LaTeX or JSON.
+    fn printed(
+        &self,
+        py: Python<'_>,
+        form: &str,
+        language: &str,
+        width: usize,
+        inline: bool,
+    ) -> PyResult<String> {
+        let (form, language) = (self::form(form)?, self::language(language)?);
+        let layout = Layout { width, inline, ..Layout::default() };
+        self.assembled(py, move |model, assembly| Ok(page(form, language, &layout, model.title(), assembly)?))
+    }
+
+    /// The name of the form; headings, each with a `math` element or plain text and with notes.
+    #[expect(clippy::type_complexity, reason = "a tuple for Python")]
+    fn displayed(
+        &self,
+        py: Python<'_>,
+        form: &str,
+        inline: bool,
+    ) -> PyResult<(String, Option<String>, Vec<(String, Option<String>, Vec<String>)>)> {
+        let form = self::form(form)?;
+        let layout = Layout { inline, ..Layout::default() };
+        self.assembled(py, move |model, assembly| {
+            let shown = displayed_equations(form, &layout, model.title(), assembly)?;
+            let parts = shown.parts.into_iter();
+            let parts = parts
+                .map(|part| (part.title.to_owned(), part.display.map(|display| display.mathml), part.notes));
+            Ok((shown.name, shown.plain.map(|display| display.mathml), parts.collect()))
+        })
+    }
+
+    /// Brackets, integrals, steady motions: as text, LaTeX or JSON.
+    fn theory(
+        &self,
+        py: Python<'_>,
+        language: &str,
+        degree: u32,
+        functions: Vec<String>,
+    ) -> PyResult<String> {
+        let language = self::language(language)?;
+        let options = TheoryOptions { degree, functions };
+        self.assembled(py, move |model, assembly| Ok(theory(model, assembly, language, &options)?))
+    }
+
+    /// Source of the equations: names of files with their texts.
+    fn source(
+        &self,
+        py: Python<'_>,
+        form: &str,
+        language: &str,
+        name: String,
+        jacobian: bool,
+    ) -> PyResult<Vec<(String, String)>> {
+        let variables = variables(form)?;
+        let language = match language {
+            "c" => Language::C,
+            "rust" => Language::Rust,
+            other => {
+                let known = vec!["c", "rust"];
+                return Err(Error::Choice { what: "the language", given: other.to_owned(), known }.into());
+            }
+        };
+        if variables.has_momenta() {
+            let why = "it is written of equations in velocities; use the form poincare";
+            return Err(Error::Unsupported { what: "the source", why }.into());
+        }
+        self.assembled(py, move |model, assembly| {
+            let (equations, form) = assembly.equations_of(variables)?;
+            let mut options = EmitOptions::new(language, &name).title(model.title()).jacobian(jacobian);
+            // A motion with the inputs of the start would be another.
+            let steady = equations.system().signals().is_empty();
+            if let Some(t_end) = model.document().simulation.t_end.as_ref().filter(|_| steady) {
+                options = options.start(assembly.t_start, &assembly.start_in(&form)?, t_end.value);
+            }
+            let files = assembly.placed(equations.emit(&options))?;
+            Ok(files.into_iter().map(|file| (file.name, file.text)).collect())
+        })
+    }
+}
+
+/// The names of the models that come with the package.
+#[pyfunction]
+pub(crate) fn builtin_names() -> Vec<&'static str> {
+    Builtin::all().map(|builtin| builtin.name).collect()
+}
+
+fn language(name: &str) -> Result<Page, Error> {
+    match name {
+        "text" => Ok(Page::Text),
+        "latex" => Ok(Page::Latex),
+        "json" => Ok(Page::Json),
+        other => {
+            let known = vec!["text", "latex", "json"];
+            Err(Error::Choice { what: "the language", given: other.to_owned(), known })
+        }
+    }
+}
+
+/// A number that a model may have.
+pub(crate) fn finite(name: &str, value: f64) -> Result<f64, Error> {
+    if value.is_finite() { Ok(value) } else { Err(Error::NotFinite { what: format!("`{name}`"), value }) }
+}

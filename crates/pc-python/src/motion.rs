@@ -1,0 +1,206 @@
+//! A motion, integrated.
+
+use std::ops::ControlFlow;
+
+use numpy::PyArray1;
+use numpy::prelude::*;
+use pc_expr::Events;
+use pc_model::{Flow, Model, Variables, deep};
+use pc_solve::{
+    Ending, Occurrence, Options, Sensitivities, Solution, Solve, SolveError, Statistics, Trajectory,
+    solve_with_sensitivities_and_events,
+};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::{Error, chain};
+use crate::model::renewed;
+use crate::plan::Plan;
+use crate::system::{SystemCore, derived};
+use crate::task::attended;
+
+/// What came of an integration, as far as it was computed.
+pub(crate) struct Outcome {
+    trajectory: Trajectory,
+    occurrences: Vec<Occurrence>,
+    ending: &'static str,
+    error: Option<String>,
+    /// The name of the terminal event that ended it.
+    event: Option<String>,
+    columns: Vec<String>,
+    /// One row after the other.
+    values: Vec<f64>,
+    residuals: Vec<(String, f64)>,
+}
+
+/// The motion of a flow as far as it can be computed, and why not further.
+pub(crate) fn follow(
+    flow: &mut Flow,
+    t_start: f64,
+    times: &[f64],
+    options: &Options,
+    step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+) -> (Solution, Option<SolveError>) {
+    let solve = Solve::new(&mut flow.motion, t_start, &flow.start).method(options).events(&mut flow.events);
+    match solve.run_observed(times, step) {
+        Ok(solution) => (solution, None),
+        Err(failure) => (failure.reached, Some(failure.error)),
+    }
+}
+
+/// The numbers of parameters.
+fn places(model: &Model, names: &[String]) -> Result<Vec<usize>, Error> {
+    let known: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
+    let place = |name: &String| {
+        known
+            .iter()
+            .position(|known| known == name)
+            .ok_or_else(|| pc_model::UnknownParameter { name: name.clone(), known: known.clone() }.into())
+    };
+    names.iter().map(place).collect()
+}
+
+/// The motion, with its derivatives by parameters beside it.
+fn integrated(
+    mut model: Model,
+    mut flow: Flow,
+    variables: Variables,
+    (t_start, times): (f64, &[f64]),
+    options: &Options,
+    by: &[String],
+) -> Result<Outcome, Error> {
+    let parameters = places(&model, by)?;
+    let mut wanted = Sensitivities::new();
+    if !parameters.is_empty() {
+        model.differentiate_by_parameters(true);
+        flow = derived(&model, variables)?;
+        for &j in &parameters {
+            wanted = wanted.by_parameter_from(j, Flow::start_by_parameter(&model, variables, j)?);
+        }
+    }
+    let mut matrices: Vec<Vec<f64>> = Vec::new();
+    let (solution, error) = match parameters.is_empty() {
+        true => follow(&mut flow, t_start, times, options, |_, _| ControlFlow::Continue(())),
+        false => {
+            let (motion, start, events) = (&mut flow.motion, &flow.start, &mut flow.events);
+            let go_on = |_: f64, _: &[f64]| ControlFlow::Continue(());
+            let solved = solve_with_sensitivities_and_events(
+                motion,
+                (t_start, start),
+                times,
+                options,
+                &wanted,
+                events,
+                go_on,
+            );
+            let (reached, error) = match solved {
+                Ok(reached) => (reached, None),
+                Err(failure) => (failure.reached, Some(failure.error)),
+            };
+            matrices = reached.trajectory.iter().map(|(_, _, matrix)| matrix.to_vec()).collect();
+            let trajectory = reached.trajectory.motion().clone();
+            (Solution { trajectory, occurrences: reached.occurrences, ending: reached.ending }, error)
+        }
+    };
+    // What is not valid has not begun.
+    let error = match error {
+        Some(error @ SolveError::Input(_)) => return Err(error.into()),
+        error => error,
+    };
+    let Solution { trajectory, occurrences, ending } = solution;
+    let observables = flow.motion.observable_names().to_vec();
+    let mut columns: Vec<String> = flow.names.iter().chain(&observables).cloned().collect();
+    for name in by {
+        columns.extend(flow.names.iter().map(|x| format!("∂{x}/∂{name}")));
+    }
+    let mut values = Vec::with_capacity(columns.len() * trajectory.len());
+    let mut residuals: Vec<(String, f64)> =
+        flow.constraint_names().into_iter().map(|name| (name, 0.0)).collect();
+    for (i, (t, y)) in trajectory.iter().enumerate() {
+        values.extend(flow.row(t, y));
+        if let Some(matrix) = matrices.get(i) {
+            for (column, &j) in matrix.chunks_exact(y.len()).zip(&parameters) {
+                values.extend(flow.derivative(t, y, column, j));
+            }
+        }
+        for ((_, worst), residual) in residuals.iter_mut().zip(flow.constraint_residuals(t, y)) {
+            // f64::max would lose a NaN
+            if residual.abs() > *worst || residual.is_nan() {
+                *worst = residual.abs();
+            }
+        }
+    }
+    let event = match ending {
+        Some(Ending::Event { event }) => flow.events.events().get(event).map(|event| event.name().to_owned()),
+        _ => None,
+    };
+    let ending = match (&error, ending) {
+        (Some(_), _) => "failed",
+        (None, Some(Ending::Event { .. })) => "event",
+        (None, Some(Ending::Completed)) => "completed",
+        (None, _) => "stopped",
+    };
+    let error = error.map(|error| chain(&error));
+    Ok(Outcome { trajectory, occurrences, ending, error, event, columns, values, residuals })
+}
+
+fn statistics<'py>(py: Python<'py>, done: &Statistics) -> PyResult<Bound<'py, PyDict>> {
+    let entries = PyDict::new(py);
+    entries.set_item("steps", done.steps)?;
+    entries.set_item("rhs_evaluations", done.rhs_evaluations)?;
+    entries.set_item("jacobian_evaluations", done.jacobian_evaluations)?;
+    entries.set_item("error_test_failures", done.error_test_failures)?;
+    entries.set_item("nonlinear_iterations", done.nonlinear_iterations)?;
+    entries.set_item("nonlinear_failures", done.nonlinear_failures)?;
+    entries.set_item("last_order", done.last_order)?;
+    entries.set_item("last_step", done.last_step)?;
+    Ok(entries)
+}
+
+impl Outcome {
+    fn into_dict<'py>(self, py: Python<'py>, events: &[String]) -> PyResult<Bound<'py, PyDict>> {
+        let (rows, width) = (self.trajectory.len(), self.columns.len());
+        let result = PyDict::new(py);
+        result.set_item("t", PyArray1::from_slice(py, self.trajectory.times()))?;
+        let states = PyArray1::from_slice(py, self.trajectory.states());
+        result.set_item("states", states.reshape([rows, self.trajectory.dim()])?)?;
+        result.set_item("values", PyArray1::from_vec(py, self.values).reshape([rows, width])?)?;
+        result.set_item("columns", self.columns)?;
+        let occurrences = self.occurrences.into_iter().map(|occurrence| {
+            let Occurrence { event, time, state_before, state_after } = occurrence;
+            let name = events.get(event).cloned().unwrap_or_default();
+            (name, time, PyArray1::from_vec(py, state_before), PyArray1::from_vec(py, state_after))
+        });
+        result.set_item("events", occurrences.collect::<Vec<_>>())?;
+        result.set_item("ending", self.ending)?;
+        result.set_item("event", self.event)?;
+        result.set_item("error", self.error)?;
+        result.set_item(
+            "residuals",
+            self.residuals.into_iter().collect::<std::collections::BTreeMap<_, _>>(),
+        )?;
+        result.set_item("statistics", statistics(py, self.trajectory.statistics())?)?;
+        Ok(result)
+    }
+}
+
+#[pymethods]
+impl SystemCore {
+    /// The motion at these times, and what is said of it.
+    fn integrate<'py>(
+        &self,
+        py: Python<'py>,
+        times: Vec<f64>,
+        plan: Plan,
+        sensitivities: Vec<String>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (mut model, flow) = self.now();
+        let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
+        let cancel = renewed(&mut model);
+        let (variables, t_start) = (self.variables, self.inventory.t_start);
+        let options = plan.options(&cancel)?;
+        let work =
+            move || deep(|| integrated(model, flow, variables, (t_start, &times), &options, &sensitivities));
+        attended(py, &cancel, |_| Ok(()), work)?.into_dict(py, &events)
+    }
+}

@@ -1,0 +1,218 @@
+//! Equations of motion, compiled, with the values of parameters and start.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+
+use pc_expr::Events;
+use pc_model::{Flow, Model, Prototype, Variables, deep};
+use pyo3::prelude::*;
+
+use crate::error::Error;
+use crate::mechanics::MassMatrix;
+use crate::model::{ModelCore, finite, renewed, variables};
+use crate::task::attended;
+
+/// ẏ = f(t, y) of a model. Any number of threads may use it.
+#[pyclass(frozen, subclass, module = "chetaev._native")]
+pub(crate) struct SystemCore {
+    pub(crate) variables: Variables,
+    /// What other values make no difference to; none where they may.
+    pub(crate) prototype: Option<Arc<Prototype>>,
+    pub(crate) inventory: Inventory,
+    state: Mutex<State>,
+    /// Held while values are set, which may take a derivation. Nobody waits for it, perhaps with the interpreter's lock in hand.
+    setting: Mutex<()>,
+    /// Flows for calls that take long, with the version of the values that they have.
+    spare: Mutex<Vec<(u64, Flow)>>,
+    pub(crate) mass: Mutex<Option<MassMatrix>>,
+}
+
+/// What never changes.
+pub(crate) struct Inventory {
+    pub(crate) names: Vec<String>,
+    pub(crate) t_start: f64,
+    pub(crate) coordinates: usize,
+    pub(crate) states: usize,
+    pub(crate) conserved: usize,
+    /// Of a row of a motion: coordinates, quasi-velocities, first-order states, then observables.
+    pub(crate) columns: Vec<String>,
+    pub(crate) shown: usize,
+}
+
+/// What changes with the values.
+pub(crate) struct State {
+    pub(crate) model: Model,
+    pub(crate) flow: Flow,
+    version: u64,
+}
+
+impl SystemCore {
+    /// Held while a state is evaluated, and never while Python may run.
+    pub(crate) fn state(&self) -> MutexGuard<'_, State> {
+        // What a panic leaves behind is room that is written before it is read.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A flow with the values as they are now, to be returned by [`put_back`](SystemCore::put_back).
+    pub(crate) fn take(&self) -> (u64, Flow) {
+        let state = self.state();
+        let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
+        spare.retain(|(version, _)| *version == state.version);
+        spare.pop().unwrap_or_else(|| (state.version, state.flow.clone()))
+    }
+
+    pub(crate) fn put_back(&self, flow: (u64, Flow)) {
+        self.spare.lock().unwrap_or_else(PoisonError::into_inner).push(flow);
+    }
+
+    /// The model with the values as they are now, and its flow.
+    pub(crate) fn now(&self) -> (Model, Flow) {
+        let state = self.state();
+        (state.model.clone(), state.flow.clone())
+    }
+
+    /// Does work that derives from the model with the values as they are now.
+    pub(crate) fn derive<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Model) -> Result<T, Error> + Send + 'static,
+    ) -> PyResult<T> {
+        let (mut model, _) = self.now();
+        let cancel = renewed(&mut model);
+        attended(py, &cancel, |_| Ok(()), move || deep(|| work(&model)))
+    }
+
+    pub(crate) fn dim(&self) -> usize {
+        self.inventory.names.len()
+    }
+}
+
+/// The flow of a model, derived anew.
+pub(crate) fn derived(model: &Model, variables: Variables) -> Result<Flow, Error> {
+    let graph = model.graph();
+    Ok(Flow::new(model, &model.assemble(&graph)?, variables)?)
+}
+
+#[pymethods]
+impl SystemCore {
+    #[new]
+    fn new(py: Python<'_>, model: &ModelCore, form: &str) -> PyResult<SystemCore> {
+        let variables = variables(form)?;
+        let mut model = model.model.clone();
+        let cancel = renewed(&mut model);
+        let derive = move || {
+            deep(|| {
+                let graph = model.graph();
+                let assembly = model.assemble(&graph)?;
+                let flow = Flow::new(&model, &assembly, variables)?;
+                let prototype = Prototype::of(&model, &assembly, variables, flow.clone());
+                let t_start = assembly.t_start;
+                drop(assembly);
+                drop(graph);
+                Ok((model, flow, prototype, t_start))
+            })
+        };
+        let (model, flow, prototype, t_start) = attended(py, &cancel, |_| Ok(()), derive)?;
+        let motion = &flow.motion;
+        let inventory = Inventory {
+            names: motion.names().to_vec(),
+            t_start,
+            coordinates: motion.coordinates(),
+            states: motion.states(),
+            conserved: motion.conserved_len(),
+            columns: flow.names.iter().chain(motion.observable_names()).cloned().collect(),
+            shown: flow.names.len(),
+        };
+        let state = State { version: 0, model, flow };
+        Ok(SystemCore {
+            variables,
+            prototype: prototype.map(Arc::new),
+            inventory,
+            state: Mutex::new(state),
+            setting: Mutex::new(()),
+            spare: Mutex::new(Vec::new()),
+            mass: Mutex::new(None),
+        })
+    }
+
+    /// Names of the components of a state.
+    #[getter]
+    fn state_names(&self) -> Vec<String> {
+        self.inventory.names.clone()
+    }
+
+    /// Names of the columns of a motion, without t.
+    #[getter]
+    fn column_names(&self) -> Vec<String> {
+        self.inventory.columns.clone()
+    }
+
+    /// Numbers of coordinates, quasi-velocities, first-order states and conserved quantities among the columns.
+    #[getter]
+    fn column_kinds(&self) -> (usize, usize, usize, usize) {
+        let Inventory { coordinates, states, shown, conserved, .. } = self.inventory;
+        (coordinates, shown - coordinates - states, states, conserved)
+    }
+
+    /// Names of the constraints that are kept by projection.
+    #[getter]
+    fn constraint_names(&self) -> Vec<String> {
+        self.state().flow.constraint_names()
+    }
+
+    /// Names of the events.
+    #[getter]
+    fn event_names(&self) -> Vec<String> {
+        self.state().flow.events.events().iter().map(|event| event.name().to_owned()).collect()
+    }
+
+    /// The time at the start.
+    #[getter]
+    fn t_start(&self) -> f64 {
+        self.inventory.t_start
+    }
+
+    /// The state at the start.
+    fn start_state(&self) -> Vec<f64> {
+        self.state().flow.start.clone()
+    }
+
+    /// The model with the values as they are now.
+    fn model_now(&self) -> ModelCore {
+        ModelCore { model: self.state().model.clone() }
+    }
+
+    /// Gives parameters and start other values, all or none.
+    fn update(
+        &self,
+        py: Python<'_>,
+        parameters: Vec<(String, f64)>,
+        start: Vec<(String, f64)>,
+    ) -> PyResult<()> {
+        let _alone = match self.setting.try_lock() {
+            Err(TryLockError::WouldBlock) => return Err(Error::Busy.into()),
+            Err(TryLockError::Poisoned(held)) => held.into_inner(),
+            Ok(held) => held,
+        };
+        let mut model = self.state().model.clone();
+        for (name, value) in &parameters {
+            model.set(name, finite(name, *value)?).map_err(Error::from)?;
+        }
+        for (name, value) in &start {
+            model.set_start(name, finite(name, *value)?).map_err(Error::from)?;
+        }
+        let cancel = renewed(&mut model);
+        let (variables, t_start) = (self.variables, self.inventory.t_start);
+        let flow = match self.prototype.as_ref().and_then(|prototype| prototype.flow(&model, t_start)) {
+            Some(flow) => flow,
+            None => {
+                let model = model.clone();
+                attended(py, &cancel, |_| Ok(()), move || deep(|| derived(&model, variables)))?
+            }
+        };
+        let mut state = self.state();
+        state.model = model;
+        state.flow = flow;
+        state.version += 1;
+        Ok(())
+    }
+}

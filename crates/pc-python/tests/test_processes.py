@@ -1,0 +1,147 @@
+"""Pickles, processes, threads, signals and memory."""
+
+import concurrent.futures
+import gc
+import multiprocessing
+import os
+import pickle
+import signal
+import threading
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from conftest import regular_states
+
+import chetaev
+
+
+def test_all_can_be_pickled() -> None:
+    model = chetaev.Model.builtin("heavy-top-lagrange")
+    assert pickle.loads(pickle.dumps(model)) == model
+    system = model.system("canonical", parameters={"mg": 1.5})
+    system.start["ω3"] = 2.5
+    again = pickle.loads(pickle.dumps(system))
+    assert dict(again.parameters) == dict(system.parameters) and (again.y0 == system.y0).all()
+    assert (again(0.0, again.y0) == system(0.0, system.y0)).all()
+    motion = system.run(1.0, samples=3)
+    system.parameters["mg"] = 1.0
+    copy = pickle.loads(pickle.dumps(motion))
+    assert all((copy[name] == motion[name]).all() for name in motion)
+    assert copy.system.parameters["mg"] == 1.5
+    assert np.abs(copy.dense(copy.t) - motion.y).max() < 1e-8
+    sweep = pickle.loads(pickle.dumps(system.sweep({"mg": [1.0, 2.0]}, t_end=0.5)))
+    assert sweep.status == ["completed"] * 2
+    bracket = pickle.loads(pickle.dumps(model.system().bracket("γ1", "ω2")))
+    assert bracket(0.0, model.system().y0) == model.system().bracket("γ1", "ω2")(0.0, model.system().y0)
+
+
+def last(system: chetaev.System) -> float:
+    return float(system.run(1.0)["γ3"][-1])
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+@pytest.mark.filterwarnings("ignore:This process:DeprecationWarning")
+def test_processes(method: str) -> None:
+    system = chetaev.Model.builtin("heavy-top-lagrange").system()
+    expected = last(system)
+    with multiprocessing.get_context(method).Pool(2) as pool:
+        assert pool.map(last, [system] * 4) == [expected] * 4
+
+
+def test_eight_threads_at_once() -> None:
+    system = chetaev.Model.builtin("heavy-top-lagrange").system()
+    states = regular_states(system, 4000)
+    expected = system(0.0, states)
+
+    def work(seed: int) -> bool:
+        good = True
+        for k in np.random.default_rng(seed).integers(0, 4000, size=200):
+            good &= bool((system(0.0, states[:, k]) == expected[:, k]).all())
+            if k % 20 == 0:
+                good &= bool((system(0.0, states) == expected).all())
+        return good and bool(system.run(0.2)["γ3"][-1] == first)
+
+    first = system.run(0.2)["γ3"][-1]
+    with concurrent.futures.ThreadPoolExecutor(8) as pool:
+        assert all(pool.map(work, range(8)))
+
+
+def test_other_threads_go_on_while_arrays_are_computed() -> None:
+    system = chetaev.Model.builtin("heavy-top-lagrange").system()
+    states = regular_states(system, 500_000)
+    ended = threading.Event()
+    ticks = []
+
+    def tick() -> None:
+        while not ended.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(1e-3)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    began = time.perf_counter()
+    for _ in range(3):
+        system(0.0, states)
+    finished = time.perf_counter()
+    ended.set()
+    thread.join()
+    # A thread that waited for the lock would tick between the calls only.
+    assert sum(began < at < finished for at in ticks) > 5
+
+
+def interrupted_after(work: Callable[[], object]) -> float:
+    """How long work goes on after Ctrl-C."""
+    sent = []
+
+    def interrupt() -> None:
+        time.sleep(0.3)
+        sent.append(time.perf_counter())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    thread = threading.Thread(target=interrupt)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    ended = time.perf_counter()
+    thread.join()
+    return ended - sent[0]
+
+
+def test_ctrl_c_ends_all_work() -> None:
+    system = chetaev.Model.builtin("heavy-top-lagrange").system()
+    longest = {"t_end": 1e7, "rtol": 1e-12}
+    for work in (
+        lambda: system.run(samples=2, **longest),
+        lambda: system.sweep({"mg": np.linspace(0.5, 1.0, 100)}, t_end=1e6),
+        lambda: system.lyapunov(3, interval=1e5, intervals=100),
+    ):
+        # A tenth of a second, and as much for a machine that others use.
+        assert interrupted_after(work) < 0.2
+    assert system.run(1.0).ending == "completed"
+
+
+def resident() -> int:
+    """Bytes of memory of this process."""
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="no /proc here")
+def test_models_leave_no_memory_behind() -> None:
+    text = chetaev.Model.builtin("chaplygin-sleigh").text
+    count = int(os.environ.get("CHETAEV_MODELS", "300"))
+
+    def make(times: int) -> None:
+        for k in range(times):
+            system = chetaev.Model.from_text(text, name=f"sleigh-{k}").system()
+            system(0.0, system.y0)
+        gc.collect()
+
+    make(count // 3)
+    before = resident()
+    make(count)
+    grown = resident() - before
+    # Allocators keep some; a model that stayed would take hundreds of kilobytes.
+    assert grown < 8_000_000 + 1000 * count, grown

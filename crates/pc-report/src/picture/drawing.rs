@@ -1,0 +1,136 @@
+//! What is drawn: lines, texts and areas.
+
+/// A drawing in points, x to the right and y down, in the order in which it is painted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawing {
+    /// Its width.
+    pub width: f64,
+    /// Its height.
+    pub height: f64,
+    /// What is painted.
+    pub shapes: Vec<Shape>,
+}
+
+/// Something that is painted.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A line through points.
+    Line {
+        /// The points.
+        points: Vec<[f64; 2]>,
+        /// Its colour and width.
+        ink: Ink,
+    },
+    /// A rectangle that is filled.
+    Area {
+        /// Its upper left corner.
+        from: [f64; 2],
+        /// Its lower right corner.
+        to: [f64; 2],
+        /// Its colour.
+        ink: Ink,
+    },
+    /// A line of text.
+    Text {
+        /// Where it begins, has its middle, or ends, on its base line.
+        at: [f64; 2],
+        /// Which of these.
+        anchor: Anchor,
+        /// Height of the font.
+        size: f64,
+        /// Its colour.
+        ink: Ink,
+        /// The text.
+        text: String,
+    },
+}
+
+/// Which place of a text is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// Where it begins.
+    Start,
+    /// Its middle.
+    Middle,
+    /// Where it ends.
+    End,
+}
+
+/// Colour and width by purpose: a page has its own colours for each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ink {
+    /// Of words that matter.
+    Text,
+    /// Of numbers beside axes.
+    Soft,
+    /// Of axes.
+    Axis,
+    /// Of lines through round numbers.
+    Grid,
+    /// Of the time of an event.
+    Event,
+    /// Of a curve of this number.
+    Curve(usize),
+    /// Of this red, green and blue.
+    Mixed([u8; 3]),
+}
+
+/// Colours that colour-blind readers tell apart [Okabe, Ito 2008].
+const COLOURS: [[u8; 3]; 8] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [230, 159, 0],
+    [86, 180, 233],
+    [110, 90, 60],
+    [120, 120, 120],
+];
+
+impl Ink {
+    /// The number of curves that are told apart.
+    pub(crate) const CURVES: usize = COLOURS.len();
+
+    /// Red, green and blue on white.
+    pub fn colour(self) -> [u8; 3] {
+        match self {
+            Ink::Text => [29, 36, 48],
+            Ink::Soft | Ink::Axis => [91, 100, 114],
+            Ink::Grid => [228, 231, 236],
+            Ink::Event => [140, 148, 160],
+            Ink::Curve(i) => COLOURS[i % COLOURS.len()],
+            Ink::Mixed(colour) => colour,
+        }
+    }
+
+    /// Width of a line.
+    pub fn width(self) -> f64 {
+        if let Ink::Curve(_) = self { 1.5 } else { 1.0 }
+    }
+
+    /// Lengths of a dash and of the gap behind it, of a line that is not solid.
+    pub fn dash(self) -> Option<[f64; 2]> {
+        (self == Ink::Event).then_some([2.0, 3.0])
+    }
+}
+
+impl Drawing {
+    pub(super) fn line(&mut self, points: Vec<[f64; 2]>, ink: Ink) {
+        self.shapes.push(Shape::Line { points, ink });
+    }
+
+    pub(super) fn area(&mut self, from: [f64; 2], to: [f64; 2], ink: Ink) {
+        self.shapes.push(Shape::Area { from, to, ink });
+    }
+
+    pub(super) fn text(
+        &mut self,
+        at: [f64; 2],
+        anchor: Anchor,
+        size: f64,
+        ink: Ink,
+        text: impl Into<String>,
+    ) {
+        self.shapes.push(Shape::Text { at, anchor, size, ink, text: text.into() });
+    }
+}

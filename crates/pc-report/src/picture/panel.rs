@@ -1,0 +1,86 @@
+//! What stands on common axes.
+
+/// Curves, bars or cells on common axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// What is shown.
+    pub title: String,
+    /// What is along the axis to the right, and its scale.
+    pub across: (String, Scale),
+    /// What is along the axis up, if one name stands for all, and its scale.
+    pub up: (String, Scale),
+    /// The range to the right, where it is not that of the contents.
+    pub span: Option<(f64, f64)>,
+    /// Whether a length to the right is as long as the same length up.
+    pub equal: bool,
+    /// Values to the right at which events occurred.
+    pub events: Vec<f64>,
+    /// What is drawn.
+    pub content: Content,
+}
+
+/// How values are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// As they are.
+    Linear,
+    /// Values are decimal logarithms.
+    Decades,
+    /// Values are angles from −π to π.
+    Angles,
+}
+
+/// What is drawn on axes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Content {
+    /// Curves, each with its name.
+    Curves(Vec<Curve>),
+    /// From, to and height of each bar.
+    Bars(Vec<[f64; 3]>),
+    /// A colour for each value: column by column the values of rows.
+    Cells {
+        /// Middles of the columns.
+        columns: Vec<f64>,
+        /// Middles of the rows.
+        rows: Vec<f64>,
+        /// The values.
+        values: Vec<f64>,
+    },
+}
+
+/// A curve; it is broken where a value is not finite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Its name.
+    pub name: String,
+    /// Its points.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Panel {
+    /// Curves over something.
+    pub fn over(across: &str, title: impl Into<String>, scale: Scale, curves: Vec<Curve>) -> Panel {
+        Panel {
+            title: title.into(),
+            across: (across.to_owned(), Scale::Linear),
+            up: (String::new(), scale),
+            span: None,
+            equal: false,
+            events: Vec::new(),
+            content: Content::Curves(curves),
+        }
+    }
+
+    /// The names of its curves.
+    pub(crate) fn names(&self) -> Vec<&str> {
+        match &self.content {
+            Content::Curves(curves) => curves.iter().map(|curve| curve.name.as_str()).collect(),
+            Content::Bars(_) | Content::Cells { .. } => Vec::new(),
+        }
+    }
+
+    /// Whether its two axes are alike: neither is time.
+    pub(crate) fn is_portrait(&self) -> bool {
+        !self.up.0.is_empty()
+    }
+}

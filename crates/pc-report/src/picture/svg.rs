@@ -1,0 +1,136 @@
+//! Drawings as SVG: on a page, in its colours; or in a file of their own.
+
+use std::fmt::Write as _;
+
+use crate::page::html::text;
+use crate::picture::drawing::{Anchor, Drawing, Ink, Shape};
+
+/// Viewers read it as a list.
+const FONT: &str = "DejaVu Sans, Verdana, sans-serif";
+
+impl Drawing {
+    /// A file of its own, on white.
+    pub fn svg(&self) -> String {
+        let Drawing { width, height, .. } = self;
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+             font-family=\"{FONT}\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
+        );
+        for shape in &self.shapes {
+            match shape {
+                Shape::Line { points, ink } => {
+                    let dash = ink.dash().map_or_else(String::new, |[dash, gap]| {
+                        format!(" stroke-dasharray=\"{dash} {gap}\"")
+                    });
+                    let (colour, width) = (hexadecimal(*ink), ink.width());
+                    let d = path(points, 2);
+                    put(
+                        &mut svg,
+                        format_args!(
+                            "<path d=\"{d}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+                             stroke-linejoin=\"round\"{dash}/>\n"
+                        ),
+                    );
+                }
+                Shape::Area { from, to, ink } => put(
+                    &mut svg,
+                    format_args!(
+                        "<rect x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" fill=\"{}\"/>\n",
+                        from[0],
+                        from[1],
+                        to[0] - from[0],
+                        to[1] - from[1],
+                        hexadecimal(*ink)
+                    ),
+                ),
+                Shape::Text { at: [x, y], anchor, size, ink, text: words } => put(
+                    &mut svg,
+                    format_args!(
+                        "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" fill=\"{}\"{}>{}</text>\n",
+                        hexadecimal(*ink),
+                        placed(*anchor),
+                        text(words)
+                    ),
+                ),
+            }
+        }
+        svg + "</svg>\n"
+    }
+
+    /// An element of a page, in its colours, with a title and a description of these ids.
+    pub(crate) fn inline(&self, id: &str, title: &str, description: &str) -> String {
+        let Drawing { width, height, .. } = self;
+        let mut svg = format!(
+            "<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-labelledby=\"{id}-t {id}-d\">\
+             <title id=\"{id}-t\">{}</title><desc id=\"{id}-d\">{}</desc>\n",
+            text(title),
+            text(description)
+        );
+        for shape in &self.shapes {
+            match shape {
+                Shape::Line { points, ink } => {
+                    put(
+                        &mut svg,
+                        format_args!("<path class=\"{}\" d=\"{}\"/>\n", class(*ink), path(points, 1)),
+                    );
+                }
+                Shape::Area { from, to, ink } => put(
+                    &mut svg,
+                    format_args!(
+                        "<path fill=\"{}\" d=\"M{:.1} {:.1}H{:.1}V{:.1}H{:.1}Z\"/>\n",
+                        hexadecimal(*ink),
+                        from[0],
+                        from[1],
+                        to[0],
+                        to[1],
+                        from[0]
+                    ),
+                ),
+                Shape::Text { at: [x, y], anchor, text: words, .. } => put(
+                    &mut svg,
+                    format_args!(
+                        "<text x=\"{x:.1}\" y=\"{y:.1}\"{}>{}</text>\n",
+                        placed(*anchor),
+                        text(words)
+                    ),
+                ),
+            }
+        }
+        svg + "</svg>"
+    }
+}
+
+fn class(ink: Ink) -> String {
+    match ink {
+        Ink::Text | Ink::Soft | Ink::Axis | Ink::Mixed(_) => "axis".to_owned(),
+        Ink::Grid => "grid".to_owned(),
+        Ink::Event => "event".to_owned(),
+        Ink::Curve(i) => format!("curve s{}", i % Ink::CURVES),
+    }
+}
+
+fn placed(anchor: Anchor) -> &'static str {
+    match anchor {
+        Anchor::Start => "",
+        Anchor::Middle => " text-anchor=\"middle\"",
+        Anchor::End => " text-anchor=\"end\"",
+    }
+}
+
+fn hexadecimal(ink: Ink) -> String {
+    let [red, green, blue] = ink.colour();
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+fn path(points: &[[f64; 2]], digits: usize) -> String {
+    let mut path = String::new();
+    for (i, [x, y]) in points.iter().enumerate() {
+        put(&mut path, format_args!("{}{x:.digits$} {y:.digits$}", if i == 0 { "M" } else { "L" }));
+    }
+    path
+}
+
+/// Adds to a picture.
+pub(super) fn put(svg: &mut String, element: std::fmt::Arguments<'_>) {
+    let _ = svg.write_fmt(element); // writing to a string cannot fail
+}

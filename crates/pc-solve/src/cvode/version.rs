@@ -1,0 +1,24 @@
+//! The version of the library.
+
+use std::ffi::CStr;
+
+use sundials_sys as sys;
+
+/// The version of SUNDIALS that was built in.
+pub fn sundials_version() -> String {
+    CStr::from_bytes_until_nul(sys::SUNDIALS_VERSION)
+        .map_or_else(|_| String::new(), |version| version.to_string_lossy().into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The major version for which the bindings are written.
+    #[test]
+    fn the_version_is_that_of_the_bindings() {
+        let version = sundials_version();
+        assert_eq!(version.split('.').count(), 3, "{version}");
+        assert!(version.starts_with("7."), "{version}");
+    }
+}

@@ -1,0 +1,111 @@
+//! f on a tape, and the sums over its stages.
+
+use pc_expr::{Binary, LaneTape, LaneValue, Program};
+
+/// What f is computed from beside the state: the numbers of a member.
+pub(super) struct Field<'a> {
+    pub(super) program: &'a Program,
+    /// Number of the pivots that are watched, and what is small against the sizes.
+    pub(super) pivots: usize,
+    pub(super) vanishing: f64,
+    pub(super) parameters: Vec<LaneValue>,
+    /// The smallest of the pivots that do not change, and the largest of such sizes.
+    pub(super) fixed: [LaneValue; 2],
+}
+
+/// The rows of a frame that a member's numbers take, after its state.
+pub(super) const FIXED: usize = 2;
+
+/// Whether all is well so far: a mask, and a sum that is 0 as long as all that was looked at is finite.
+#[derive(Clone, Copy)]
+pub(super) struct Health {
+    regular: LaneValue,
+    finite: LaneValue,
+}
+
+impl<'a> Field<'a> {
+    /// Reads the numbers of a member from the next rows.
+    pub(super) fn new(tape: &mut LaneTape, program: &'a Program, pivots: usize, vanishing: f64) -> Self {
+        let parameters = tape.inputs(program.parameters_len());
+        let fixed = [tape.input(), tape.input()];
+        Field { program, pivots, vanishing, parameters, fixed }
+    }
+
+    /// f at a state; whether that is regular is noted.
+    pub(super) fn rates(
+        &self,
+        tape: &mut LaneTape,
+        state: &[LaneValue],
+        health: &mut Health,
+    ) -> Vec<LaneValue> {
+        let t = tape.constant(0.0); // which is not read
+        let mut outputs = tape.inline(self.program, t, state, &self.parameters);
+        let watched = outputs.split_off(state.len());
+        if self.pivots > 0 {
+            let (pivots, sizes) = watched.split_at(self.pivots);
+            let [mut smallest, mut largest] = self.fixed;
+            for &size in sizes {
+                let size = tape.size(size);
+                largest = tape.binary(Binary::Greater, largest, size);
+            }
+            for &pivot in pivots {
+                let pivot = tape.size(pivot);
+                smallest = tape.binary(Binary::Lesser, smallest, pivot);
+            }
+            let vanishing = tape.constant(self.vanishing);
+            let least = tape.multiply(vanishing, largest);
+            let regular = tape.binary(Binary::Less, least, smallest);
+            health.regular = tape.binary(Binary::And, health.regular, regular);
+        }
+        outputs
+    }
+}
+
+impl Health {
+    pub(super) fn new(tape: &mut LaneTape) -> Health {
+        Health { regular: tape.bits(u64::MAX), finite: tape.constant(0.0) }
+    }
+
+    /// Notes whether these are finite.
+    pub(super) fn look(&mut self, tape: &mut LaneTape, values: &[LaneValue]) {
+        let zero = tape.constant(0.0);
+        for &value in values {
+            self.finite = tape.multiply_add(value, zero, self.finite);
+        }
+    }
+
+    /// The mask of the lanes in which all is well.
+    pub(super) fn mask(self, tape: &mut LaneTape) -> LaneValue {
+        let zero = tape.constant(0.0);
+        let finite = tape.binary(Binary::LessOrEqual, self.finite, zero);
+        tape.binary(Binary::And, finite, self.regular)
+    }
+}
+
+/// Σ aⱼ kⱼ, component after component, so that one does not wait for the one before.
+pub(super) fn sum(tape: &mut LaneTape, a: &[f64], k: &[&[LaneValue]]) -> Vec<LaneValue> {
+    let mut sums = Vec::new();
+    for (j, (&a, k)) in a.iter().zip(k).enumerate() {
+        let a = tape.constant(a);
+        for (i, &k) in k.iter().enumerate() {
+            if j == 0 {
+                sums.push(tape.multiply(k, a));
+            } else {
+                sums[i] = tape.multiply_add(k, a, sums[i]);
+            }
+        }
+    }
+    sums
+}
+
+/// y + h Σ aⱼ kⱼ
+pub(super) fn advanced(
+    tape: &mut LaneTape,
+    y: &[LaneValue],
+    h: LaneValue,
+    a: &[f64],
+    k: &[&[LaneValue]],
+) -> Vec<LaneValue> {
+    let sums = sum(tape, a, k);
+    y.iter().zip(sums).map(|(&y, sum)| tape.multiply_add(sum, h, y)).collect()
+}

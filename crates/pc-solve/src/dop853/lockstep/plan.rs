@@ -1,0 +1,71 @@
+//! What all members have in common.
+
+use pc_expr::Deadline;
+
+use crate::settings::method::Method;
+use crate::settings::options::Options;
+use crate::settings::tolerance::Tolerance;
+
+/// Times, tolerances and limits that lanes can keep.
+#[derive(Debug, Clone)]
+pub(crate) struct Plan {
+    pub(crate) start: f64,
+    pub(crate) times: Vec<f64>,
+    /// 1 or −1.
+    pub(crate) direction: f64,
+    pub(crate) relative: f64,
+    pub(crate) absolute: Tolerance,
+    pub(crate) longest: Option<f64>,
+    /// The length of the first step, if it is given.
+    pub(crate) first: Option<f64>,
+    pub(crate) max_steps: u64,
+    pub(crate) deadline: Option<Deadline>,
+}
+
+impl Plan {
+    /// None where the input is not valid, about which each member is told alone, or where more is asked for: another method, inequalities, a least
+    /// length, a stop time.
+    pub(crate) fn new(start: f64, times: &[f64], options: &Options) -> Option<Plan> {
+        let more = options.method != Method::Dop853
+            || !options.inequalities.is_empty()
+            || options.min_step.is_some()
+            || options.stop_time.is_some();
+        let &end = times.last()?;
+        let finite = start.is_finite() && times.iter().all(|t| t.is_finite());
+        if more || !finite || end == start {
+            return None;
+        }
+        let direction = 1.0_f64.copysign(end - start);
+        let ahead = (times[0] - start) * direction >= 0.0;
+        let monotonic = times.windows(2).all(|pair| (pair[1] - pair[0]) * direction > 0.0);
+        (ahead && monotonic)
+            .then(|| Plan {
+                start,
+                times: times.to_vec(),
+                direction,
+                relative: options.relative_tolerance,
+                absolute: options.absolute_tolerance.clone(),
+                longest: options.max_step,
+                first: options.initial_step,
+                max_steps: options.max_steps,
+                deadline: options.deadline.clone(),
+            })
+            // What remains is checked with the length of a state.
+            .filter(|_| match &options.absolute_tolerance {
+                Tolerance::Scalar(_) => options.validate(1).is_ok(),
+                Tolerance::Vector(tolerances) => options.validate(tolerances.len()).is_ok(),
+            })
+    }
+
+    /// The absolute tolerance of each component; none unless there are as many.
+    pub(super) fn absolute(&self, dim: usize) -> Option<Vec<f64>> {
+        match &self.absolute {
+            Tolerance::Scalar(tolerance) => Some(vec![*tolerance; dim]),
+            Tolerance::Vector(tolerances) => (tolerances.len() == dim).then(|| tolerances.clone()),
+        }
+    }
+
+    pub(super) fn end(&self) -> f64 {
+        self.times.last().copied().unwrap_or(self.start)
+    }
+}

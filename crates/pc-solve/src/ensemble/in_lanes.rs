@@ -1,0 +1,256 @@
+//! Members of an ensemble beside each other, in the lanes of vectors.
+
+use std::collections::VecDeque;
+use std::ops::{ControlFlow, Range};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pc_expr::LaneField;
+
+use crate::dop853::lockstep::block::{Block, Members};
+use crate::dop853::lockstep::kernels::Kernels;
+use crate::dop853::lockstep::plan::Plan;
+use crate::ensemble::ensemble::{Ensemble, EnsembleError, Panicked, caught};
+use crate::ensemble::ordered::Queue;
+use crate::ensemble::stop::Stop;
+use crate::integration::integration::Ending;
+use crate::integration::trajectory::Trajectory;
+use crate::settings::options::Options;
+
+/// Members are handed out in groups of up to so many: a group takes longer than handing it out.
+const GROUP: u64 = 64;
+
+/// Kernels of so many different programs are kept.
+const KEPT: usize = 8;
+
+impl Ensemble<'_> {
+    /// Integrates members beside each other, as far as that can be, and gives what comes of each to `consume` in their order.
+    ///
+    /// `begin` gives what is known of a member and, if it can be in a lane, its [field](pc_expr::VectorField::lanes) and its state at
+    /// t₀ of (t₀, times, options). What `in_lane` makes of its complete motion is its result. A member that is in no lane, and one
+    /// that does not come to its end there, is integrated by `alone`, which should look at [`Stop`] now and then. All are called
+    /// on the thread that integrates.
+    ///
+    /// Lanes are used by [`Method::Dop853`](crate::Method::Dop853), for fields that do not read time, without inequalities, a
+    /// least length of steps and a stop time. Whatever else they may need — events, projections, breaks — is for `begin` to see.
+    /// In a lane the method is that of [`Dop853`](crate::Dop853), whose steps and errors are computed with fused multiply-adds,
+    /// so that the last digits differ, and stiffness is not looked for. Each lane does just the operations that it would do alone: results
+    /// do not depend on the number of threads, on that of lanes, or on the other members.
+    ///
+    /// # Errors
+    /// [`EnsembleError`] if threads cannot be started. A panic is the result of its member.
+    pub fn map_in_lanes<C, T: Send>(
+        &self,
+        members: Range<u64>,
+        (t0, times, options): (f64, &[f64], &Options),
+        begin: impl Fn(u64) -> (C, Option<(LaneField, Vec<f64>)>) + Sync,
+        in_lane: impl Fn(u64, C, Trajectory) -> T + Sync,
+        alone: impl Fn(u64, C, &Stop<'_>) -> T + Sync,
+        mut consume: impl FnMut(u64, Result<T, Panicked>) -> ControlFlow<()>,
+    ) -> Result<Ending, EnsembleError> {
+        let Some(plan) = Plan::new(t0, times, options) else {
+            return self.map(members, |member, stop| alone(member, begin(member).0, stop), consume);
+        };
+        let count = members.end.saturating_sub(members.start);
+        let window = self.items_in_window();
+        // Several groups for each thread, all of which fit in the window.
+        let room = window.min(count / 2) / self.workers() as u64;
+        let size = (room / 2).clamp(1, GROUP);
+        let groups = 0..count.div_ceil(size);
+        let of_group =
+            |group: u64| members.start + group * size..(members.start + (group + 1) * size).min(members.end);
+        let shared = Mutex::new(VecDeque::new());
+        let worker = |queue: &Queue<'_, Group<T>>, stop: &Stop<'_>| {
+            let mut supply = Supply {
+                queue,
+                stop,
+                plan: &plan,
+                shared: &shared,
+                kernels: None,
+                of_group: &of_group,
+                begin: &begin,
+                in_lane: &in_lane,
+                alone: &alone,
+                open: VecDeque::new(),
+                held: None,
+            };
+            while let Some(kernels) = supply.prepare() {
+                Block::new(&plan, &kernels, self.lanes).run(&mut supply);
+            }
+            supply.give_up();
+        };
+        let mut consume_group = |group: u64, results: Group<T>| {
+            for (member, result) in of_group(group).zip(results) {
+                // None where all was stopped.
+                let Some(result) = result else { return ControlFlow::Break(()) };
+                consume(member, result)?;
+            }
+            ControlFlow::Continue(())
+        };
+        self.of_items(groups, (window / size).max(1), worker, &mut consume_group)
+    }
+}
+
+/// The kernels of a field; none where there can be none.
+type Made = (LaneField, Option<Arc<Kernels>>);
+
+/// The results of a group, as far as there are any.
+type Group<T> = Vec<Option<Result<T, Panicked>>>;
+
+/// A group on the way.
+struct Open<T> {
+    number: u64,
+    members: Range<u64>,
+    /// The next to begin.
+    next: u64,
+    results: Group<T>,
+    missing: usize,
+}
+
+/// Members for the lanes of a thread.
+struct Supply<'a, 'q, 's, C, T, G, B, L, A> {
+    queue: &'a Queue<'q, Group<T>>,
+    stop: &'a Stop<'s>,
+    plan: &'a Plan,
+    /// Kernels that any thread has made.
+    shared: &'a Mutex<VecDeque<Made>>,
+    kernels: Option<Arc<Kernels>>,
+    of_group: &'a G,
+    begin: &'a B,
+    in_lane: &'a L,
+    alone: &'a A,
+    /// Groups on the way, of which the last has members to begin.
+    open: VecDeque<Open<T>>,
+    /// A member that was begun and waits for a lane of another program.
+    held: Option<Begun<C>>,
+}
+
+/// A member that was begun.
+type Begun<C> = (u64, C, LaneField, Vec<f64>);
+
+impl<C, T, G, B, L, A> Supply<'_, '_, '_, C, T, G, B, L, A>
+where
+    G: Fn(u64) -> Range<u64>,
+    B: Fn(u64) -> (C, Option<(LaneField, Vec<f64>)>),
+    L: Fn(u64, C, Trajectory) -> T,
+    A: Fn(u64, C, &Stop<'_>) -> T,
+{
+    /// The kernels for the next member in a lane; none if there is no member left.
+    fn prepare(&mut self) -> Option<Arc<Kernels>> {
+        while let Some((member, known, field, start)) = self.held.take().or_else(|| self.first(true)) {
+            match self.kernels_of(&field) {
+                Some(kernels) => {
+                    self.kernels = Some(Arc::clone(&kernels));
+                    self.held = Some((member, known, field, start));
+                    return Some(kernels);
+                }
+                None => self.do_alone(member, known),
+            }
+        }
+        None
+    }
+
+    /// The next member that can be in a lane, of any program.
+    fn first(&mut self, is_idle: bool) -> Option<Begun<C>> {
+        while !self.stop.requested() {
+            let member = self.next_member(is_idle)?;
+            match caught(|| (self.begin)(member)) {
+                Ok((known, Some((field, start)))) => return Some((member, known, field, start)),
+                Ok((known, None)) => self.do_alone(member, known),
+                Err(message) => self.store(member, Err(Panicked { message })),
+            }
+        }
+        None
+    }
+
+    /// The next member of the groups on the way, or of a new one, for which to wait if nothing else is to be done.
+    fn next_member(&mut self, is_idle: bool) -> Option<u64> {
+        let has_more = |open: &Open<T>| open.next < open.members.end;
+        if !self.open.back().is_some_and(has_more) {
+            let number = if is_idle { self.queue.begin() } else { self.queue.begin_if_room() }?;
+            let members = (self.of_group)(number);
+            let missing = (members.end - members.start) as usize;
+            let results = (0..missing).map(|_| None).collect();
+            self.open.push_back(Open { number, next: members.start, members, results, missing });
+        }
+        let open = self.open.back_mut()?;
+        open.next += 1;
+        Some(open.next - 1)
+    }
+
+    fn kernels_of(&mut self, field: &LaneField) -> Option<Arc<Kernels>> {
+        if let Some(kernels) = self.kernels.as_ref().filter(|kernels| kernels.are_of(field)) {
+            return Some(Arc::clone(kernels));
+        }
+        // While one thread makes them, the others wait for them.
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = shared.iter().find(|(of, _)| Kernels::same_program(of, field));
+        if let Some((_, kernels)) = known {
+            return kernels.clone();
+        }
+        let kernels = Kernels::new(field, self.plan, None).map(Arc::new);
+        shared.truncate(KEPT - 1);
+        shared.push_front((field.clone(), kernels.clone()));
+        kernels
+    }
+
+    fn do_alone(&mut self, member: u64, known: C) {
+        let result = caught(|| (self.alone)(member, known, self.stop));
+        self.store(member, result.map_err(|message| Panicked { message }));
+    }
+
+    /// Keeps the result of a member, and gives back the group whose last it is.
+    fn store(&mut self, member: u64, result: Result<T, Panicked>) {
+        let Some(place) = self.open.iter().position(|open| open.members.contains(&member)) else { return };
+        let open = &mut self.open[place];
+        open.results[(member - open.members.start) as usize] = Some(result);
+        open.missing -= 1;
+        if open.missing == 0
+            && let Some(open) = self.open.remove(place)
+        {
+            self.queue.finish(open.number, open.results);
+        }
+    }
+
+    /// Gives back what is there of the groups on the way.
+    fn give_up(&mut self) {
+        for open in self.open.drain(..) {
+            self.queue.finish(open.number, open.results);
+        }
+    }
+}
+
+impl<C, T, G, B, L, A> Members for Supply<'_, '_, '_, C, T, G, B, L, A>
+where
+    G: Fn(u64) -> Range<u64>,
+    B: Fn(u64) -> (C, Option<(LaneField, Vec<f64>)>),
+    L: Fn(u64, C, Trajectory) -> T,
+    A: Fn(u64, C, &Stop<'_>) -> T,
+{
+    type Name = (u64, C);
+
+    fn next(&mut self, is_idle: bool) -> Option<((u64, C), LaneField, Vec<f64>)> {
+        let (member, known, field, start) = match self.held.take() {
+            Some(begun) => begun,
+            None => self.first(is_idle)?,
+        };
+        if self.kernels.as_ref().is_some_and(|kernels| kernels.are_of(&field)) {
+            return Some(((member, known), field, start));
+        }
+        self.held = Some((member, known, field, start));
+        None
+    }
+
+    fn end(&mut self, (member, known): (u64, C), motion: Option<Trajectory>) {
+        match motion {
+            None => self.do_alone(member, known),
+            Some(motion) => {
+                let result = caught(|| (self.in_lane)(member, known, motion));
+                self.store(member, result.map_err(|message| Panicked { message }));
+            }
+        }
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stop.requested()
+    }
+}
