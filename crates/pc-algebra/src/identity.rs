@@ -1,8 +1,9 @@
 //! Verdicts on identities that the graph does not settle: proved, open, disproved.
 //!
 //! `identity` is the verdict; `sample` evaluates at pseudo-random points near a state, and `running_error`
-//! distinguishes a small number from the rounding error of zero.
+//! distinguishes a small number from the rounding error of zero; `jump` finds points at which an expression jumps.
 
 pub(crate) mod identity;
+pub(crate) mod jump;
 pub(crate) mod running_error;
 pub(crate) mod sample;

@@ -99,6 +99,7 @@ pub use group::group::{
     RotationMatrices, Side, UnitQuaternions,
 };
 pub use identity::identity::Identity;
+pub use identity::jump::Jump;
 pub use identity::sample::Neighbourhood;
 pub use lie_algebra::catalogue::{CATALOGUE, Entry};
 pub use lie_algebra::lie_algebra::LieAlgebra;

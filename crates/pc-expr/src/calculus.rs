@@ -4,8 +4,10 @@
 //! symbols. `collect` rebuilds an expression as a polynomial, by its `powers` of each symbol, whose coefficients have
 //! forgotten what they do not depend on: that is `independence`, where `numbers` finds the same values; `polynomial` writes
 //! it out. `potential` finds a function by its gradient; `root_powers` lets powers of roots be recognised; `typeset`
-//! rewrites expressions to be read, by their `columns`; `multiplied_out` opens brackets where sines and cosines merge.
+//! rewrites expressions to be read, by their `columns`; `multiplied_out` opens brackets where sines and cosines merge; `breaks`
+//! are the surfaces on which an expression may jump.
 
+pub(crate) mod breaks;
 pub(crate) mod collect;
 mod columns;
 pub(crate) mod derivative;

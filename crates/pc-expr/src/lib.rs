@@ -45,6 +45,7 @@ mod random;
 mod taylor;
 mod time_profile;
 
+pub use calculus::breaks::Break;
 pub use calculus::polynomial::Polynomial;
 pub use calculus::substitution::Substitution;
 pub use codegen::chain::{Chain, ChainLayout};

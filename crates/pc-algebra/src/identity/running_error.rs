@@ -24,6 +24,11 @@ pub(crate) struct Weighed {
 }
 
 impl Weighed {
+    /// A number that has been rounded.
+    pub(crate) fn rounded(value: f64) -> Weighed {
+        Weighed { value, weight: value.abs() }
+    }
+
     /// |a|, or the weight where that is larger.
     pub(crate) fn size(self) -> f64 {
         self.value.abs().max(self.weight)
@@ -89,7 +94,7 @@ impl Scalar for Weighed {
         match value {
             Number::Rational { .. } => Weighed::from_f64(value.to_f64()),
             Number::Real(value) if (LEAST..MOST).contains(&value.abs()) => Weighed { value, weight: 1.0 },
-            Number::Real(value) => Weighed { value, weight: value.abs() },
+            Number::Real(value) => Weighed::rounded(value),
         }
     }
 

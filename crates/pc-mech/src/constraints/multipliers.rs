@@ -75,7 +75,7 @@ impl<'g> System<'g> {
     /// [`ConstraintError::TooMany`] if no velocity is left free; [`FrameError::OfState`](crate::FrameError::OfState)
     /// for one on first-order states; [`ConstraintError::Dependent`] for one that follows from those before it, or
     /// contradicts them; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) if the constraints leave
-    /// velocities without inertia.
+    /// velocities without inertia; [`ConstraintError::Jumps`] for one that is another one where the motion passes.
     pub fn with_multipliers(&self, constraints: &[Constraint<'g>]) -> Result<Multipliers<'g>, MechError> {
         let graph = self.graph();
         let (k, m) = (self.quasi_velocities.len(), constraints.len());
@@ -87,6 +87,7 @@ impl<'g> System<'g> {
         for constraint in constraints {
             self.check_no_state("a constraint", &[constraint.expression])?;
             let velocity = constraint.velocity(self);
+            self.check_continuous_constraint(&constraint.name, velocity)?;
             rows.push(match constraint.nonlinear {
                 true => graph.gradient(velocity, &self.quasi_velocities),
                 false => constraint.coefficients(self)?.0,

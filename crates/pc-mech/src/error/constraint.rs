@@ -1,6 +1,6 @@
 //! Errors of constraints, everywhere or at a state.
 
-use crate::error::lists::{listed, quoted};
+use crate::error::lists::{at, listed, quoted};
 
 /// An error of constraints.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -53,6 +53,14 @@ pub enum ConstraintError {
         t: f64,
         /// Names and values of the state.
         state: Vec<(String, f64)>,
+    },
+    /// A constraint that is another one where the motion passes, so that velocities jump.
+    #[error("the constraint `{constraint}` on velocities jumps at {}: velocities jump there", at(place))]
+    Jumps {
+        /// Its name.
+        constraint: String,
+        /// Names and values of a place.
+        place: Vec<(String, f64)>,
     },
     /// Quasi-velocities that were chosen as independent but do not determine the others.
     #[error("{} cannot be the independent quasi-velocities: {why}", quoted(chosen))]

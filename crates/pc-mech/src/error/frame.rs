@@ -1,5 +1,7 @@
 //! Errors of a frame, ẋ = b η + b_0 (3), and of the definitions of its quasi-velocities.
 
+use crate::error::lists::at;
+
 /// An error of a frame.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -9,6 +11,14 @@ pub enum FrameError {
     OfVelocities {
         /// The quasi-velocity, or velocity of a coordinate.
         velocity: String,
+    },
+    /// b or b_0 jumps, so that a quasi-velocity or a velocity does.
+    #[error("the frame jumps by {size:.3} at {}: velocities or quasi-velocities jump there", at(place))]
+    Jumps {
+        /// By how much an entry jumps.
+        size: f64,
+        /// Names and values of a place.
+        place: Vec<(String, f64)>,
     },
     /// A part of the frame that depends on a first-order state.
     #[error("{what} depends on the first-order state `{state}`, which is not part of the frame")]

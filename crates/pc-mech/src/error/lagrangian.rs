@@ -1,6 +1,6 @@
 //! Errors of a Lagrangian, for the requested form of the equations.
 
-use crate::error::lists::quoted;
+use crate::error::lists::{at, quoted};
 
 /// An error of a Lagrangian.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -41,6 +41,27 @@ pub enum LagrangianError {
         coordinates: usize,
         /// Number k of quasi-velocities.
         quasi_velocities: usize,
+    },
+    /// L jumps where the motion passes, so that its force there is an impulse.
+    #[error("the Lagrangian jumps by {size:.3} at {}: its force there is an impulse", at(place))]
+    Jumps {
+        /// By how much.
+        size: f64,
+        /// Names and values of a place.
+        place: Vec<(String, f64)>,
+    },
+    /// A momentum ∂L/∂η jumps, so that its rate is an impulse.
+    #[error(
+        "the momentum of `{quasi_velocity}`, the derivative of the Lagrangian, jumps by {size:.3} at {}: its rate there is an impulse",
+        at(place)
+    )]
+    MomentumJumps {
+        /// The quasi-velocity.
+        quasi_velocity: String,
+        /// By how much.
+        size: f64,
+        /// Names and values of a place.
+        place: Vec<(String, f64)>,
     },
     /// A frame or a kinetic energy that contains an input whose rate is not known.
     #[error("velocities or momenta depend on the input `{input}`, whose rate is not known")]

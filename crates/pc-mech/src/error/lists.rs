@@ -9,3 +9,9 @@ pub(super) fn quoted(names: &[String]) -> String {
 pub(super) fn listed(values: &[(String, f64)]) -> String {
     values.iter().map(|(name, value)| format!(", {name} = {}", readable(*value))).collect()
 }
+
+/// A place, without time.
+pub(super) fn at(place: &[(String, f64)]) -> String {
+    let pair = |(name, value): &(String, f64)| format!("{name} = {}", readable(*value));
+    place.iter().map(pair).collect::<Vec<_>>().join(", ")
+}

@@ -30,7 +30,8 @@ impl<'g> SystemBuilder<'g> {
     /// [`LagrangianError::Missing`]; [`ShapeError`](crate::ShapeError) for parts that do not fit together;
     /// [`MechError::Algebra`] for velocities that are not affine in η, a frame that is not closed, or brackets that are
     /// needed, contradict it, or violate Jacobi's identity; [`FrameError::OfVelocities`] for a frame that contains
-    /// velocities; [`LagrangianError::SignalInMomentum`]; [`FrameError::OfState`] for a frame or a body placed by
+    /// velocities; [`LagrangianError::SignalInMomentum`]; [`LagrangianError::Jumps`], [`LagrangianError::MomentumJumps`] and
+    /// [`FrameError::Jumps`] for what an impulse would follow from; [`FrameError::OfState`] for a frame or a body placed by
     /// first-order states; [`BodyError::OfVelocities`](crate::BodyError::OfVelocities) and
     /// [`BodyError::AngularVelocityNotAffine`](crate::BodyError::AngularVelocityNotAffine) of bodies;
     /// [`MatrixError::NotSkew`](crate::MatrixError::NotSkew) and
@@ -57,6 +58,7 @@ impl<'g> SystemBuilder<'g> {
             (0..eta.len()).map(|s| graph.sum(forces.iter().map(|force| force[s]))).collect();
         graph.check(&[lagrangian])?;
         self.check_signals(&frame, &eta, lagrangian)?;
+        self.check_continuous(&frame, &eta, lagrangian)?;
         graph.check(&forces)?;
         graph.check(&self.states.iter().map(|&(_, rate)| rate).collect::<Vec<_>>())?;
         graph.check(&frame.b().nonzero_entries())?;
@@ -99,8 +101,7 @@ impl<'g> SystemBuilder<'g> {
 
     /// c_rs^m (5), those given or those of the frame.
     fn structure_of(&self, frame: &Frame<'g>) -> Result<StructureCoefficients<'g>, MechError> {
-        let mut near = self.near.clone();
-        near.centre.extend(self.parameters.iter().copied());
+        let near = self.near_parameters();
         match &self.structure {
             None if frame.coordinates().is_empty() && frame.operators() > 0 => {
                 Err(AlgebraError::AlgebraNeeded.into())

@@ -17,6 +17,7 @@ impl MeaningError {
             | MeaningError::NotClosed { .. }
             | MeaningError::Contradiction { .. }
             | MeaningError::Degenerate { .. }
+            | MeaningError::Jumps { .. }
             | MeaningError::ZeroAxis
             | MeaningError::NotARotation { .. }
             | MeaningError::NotARotationAtTheStart { .. }
@@ -127,6 +128,9 @@ impl MeaningError {
             }
             MeaningError::Contradiction { .. } => "check the bracket, or leave [algebra] out to have it computed".into(),
             MeaningError::Degenerate { .. } => "every quasi-velocity needs kinetic energy of its own".into(),
+            MeaningError::Jumps { .. } => {
+                "write an impulse as an event with a reset, or a steep but continuous function such as tanh".into()
+            }
             MeaningError::ZeroAxis => "give it a direction, such as `[0, 0, 1]`".into(),
             MeaningError::NotARotation { .. } => {
                 "its rows are orthogonal unit vectors; angles about axes are given by `turns`".into()

@@ -332,6 +332,12 @@ pub enum MeaningError {
         /// The quasi-velocities without an equation.
         undetermined: Vec<String>,
     },
+    /// An energy, a frame or a constraint that jumps.
+    #[error("{message}")]
+    Jumps {
+        /// What jumps, and where.
+        message: String,
+    },
     /// An axis without direction.
     #[error("the axis has length 0")]
     ZeroAxis,

@@ -1,6 +1,6 @@
 //! Errors of the derivation, located at the entry of the file that causes them.
 
-use pc_mech::{AlgebraError, ConstraintError, ExprError, Graph, IntegralError, LagrangianError, MechError};
+use pc_mech::{AlgebraError, ConstraintError, ExprError, FrameError, Graph, IntegralError, LagrangianError, MechError};
 use pc_nonholo::NonholoError;
 
 use crate::deep::deep;
@@ -66,6 +66,9 @@ impl Document {
                     last,
                     "choose as many as the constraints leave free: quasi-velocities of the model, velocities x' for lagrange and voronets",
                 ),
+                ConstraintError::Jumps { ref constraint, .. } => {
+                    self.constraint_fault(constraint, MeaningError::Jumps { message: message.clone() })
+                }
                 other => self.derivation_error(other.into()),
             },
             NonholoError::Mech(error) => self.derivation_error(error),
@@ -96,6 +99,12 @@ impl Document {
             MechError::Lagrangian(LagrangianError::Degenerate { rank, size, quasi_velocities }) => {
                 let fault = MeaningError::Degenerate { rank, size, undetermined: quasi_velocities };
                 self.error(&self.energy_place(), fault)
+            }
+            MechError::Lagrangian(LagrangianError::Jumps { .. } | LagrangianError::MomentumJumps { .. }) => {
+                self.error(&self.energy_place(), MeaningError::Jumps { message: error.to_string() })
+            }
+            MechError::Frame(FrameError::Jumps { .. }) => {
+                self.error(&self.operator_place(1), MeaningError::Jumps { message: error.to_string() })
             }
             error if error.is_of_dependent_coordinates() => {
                 let help = "its forms are poincare and canonical, in the quasi-velocities of the model";
