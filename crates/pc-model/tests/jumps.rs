@@ -2,13 +2,18 @@
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../../tests/src/verified.rs"]
+mod verified;
+
 use pc_mech::{Graph, VectorField};
-use pc_model::{Category, Document, Model, Source};
+use pc_model::{Category, Document, Source};
+
+use verified::derived_twice;
 
 /// The rates of a model at its start, or the message.
 fn rates(text: &str) -> Result<Vec<f64>, String> {
     let document = Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}"));
-    let model = Model::new(document);
+    let model = derived_twice(document);
     let graph = Graph::new();
     let told = |error: pc_model::ModelError| {
         assert_eq!(error.category(), Category::Inconsistent);

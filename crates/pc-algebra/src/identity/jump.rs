@@ -81,7 +81,7 @@ fn reach<'g>(
         let size = size(point, moving);
         if f.abs() <= ARRIVED * size * steepness.sqrt() {
             let beside = BESIDE * size / steepness.sqrt();
-            let mut sign = |distance: f64| {
+            let sign = |distance: f64| {
                 let mut there = point.to_vec();
                 shift(&mut there, moving, slopes, distance);
                 graph.evaluate(&surface[..1], &there).ok().map(|f| f[0].signum())

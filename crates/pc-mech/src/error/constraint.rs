@@ -55,7 +55,7 @@ pub enum ConstraintError {
         state: Vec<(String, f64)>,
     },
     /// A constraint that is another one where the motion passes, so that velocities jump.
-    #[error("the constraint `{constraint}` on velocities jumps at {}: velocities jump there", at(place))]
+    #[error("the condition of `{constraint}` on velocities jumps at {}: velocities jump there", at(place))]
     Jumps {
         /// Its name.
         constraint: String,

@@ -1,6 +1,6 @@
 //! Errors of a frame, ẋ = b η + b_0 (3), and of the definitions of its quasi-velocities.
 
-use crate::error::lists::at;
+use crate::error::lists::{approximately, at};
 
 /// An error of a frame.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -13,7 +13,7 @@ pub enum FrameError {
         velocity: String,
     },
     /// b or b_0 jumps, so that a quasi-velocity or a velocity does.
-    #[error("the frame jumps by {size:.3} at {}: velocities or quasi-velocities jump there", at(place))]
+    #[error("the frame jumps by {} at {}: velocities or quasi-velocities jump there", approximately(*size), at(place))]
     Jumps {
         /// By how much an entry jumps.
         size: f64,

@@ -1,6 +1,6 @@
 //! Errors of a Lagrangian, for the requested form of the equations.
 
-use crate::error::lists::{at, quoted};
+use crate::error::lists::{approximately, at, quoted};
 
 /// An error of a Lagrangian.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -43,7 +43,7 @@ pub enum LagrangianError {
         quasi_velocities: usize,
     },
     /// L jumps where the motion passes, so that its force there is an impulse.
-    #[error("the Lagrangian jumps by {size:.3} at {}: its force there is an impulse", at(place))]
+    #[error("the Lagrangian jumps by {} at {}: its force there is an impulse", approximately(*size), at(place))]
     Jumps {
         /// By how much.
         size: f64,
@@ -52,7 +52,8 @@ pub enum LagrangianError {
     },
     /// A momentum ∂L/∂η jumps, so that its rate is an impulse.
     #[error(
-        "the momentum of `{quasi_velocity}`, the derivative of the Lagrangian, jumps by {size:.3} at {}: its rate there is an impulse",
+        "the momentum of `{quasi_velocity}`, the derivative of the Lagrangian, jumps by {} at {}: its rate there is an impulse",
+        approximately(*size),
         at(place)
     )]
     MomentumJumps {

@@ -35,7 +35,8 @@ impl<'g> SystemBuilder<'g> {
         let all = [&placed, eta, &states, &self.signals].concat();
         let entries = frame.b().nonzero_entries();
         let entries = entries.iter().chain(frame.b0());
-        if let Some(Jump { at, size }) = entries.filter_map(|&entry| near.jump(graph, entry, &placed)).next() {
+        if let Some(Jump { at, size }) = entries.filter_map(|&entry| near.jump(graph, entry, &placed)).next()
+        {
             return Err(FrameError::Jumps { size, place: at }.into());
         }
         if !graph.applies(lagrangian, &all, |function| !function.is_smooth()) {

@@ -1,6 +1,8 @@
 //! Errors of the derivation, located at the entry of the file that causes them.
 
-use pc_mech::{AlgebraError, ConstraintError, ExprError, FrameError, Graph, IntegralError, LagrangianError, MechError};
+use pc_mech::{
+    AlgebraError, ConstraintError, ExprError, FrameError, Graph, IntegralError, LagrangianError, MechError,
+};
 use pc_nonholo::NonholoError;
 
 use crate::deep::deep;
