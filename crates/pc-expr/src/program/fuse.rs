@@ -123,7 +123,7 @@ impl Program {
         uses
     }
 
-    /// The program with another code of the same numbering, less the instructions marked.
+    /// The program with the given code, numbered as before, without the marked instructions.
     fn without(&self, code: &[Instruction], marked: &[bool]) -> Program {
         let first = self.first_result();
         let mut places = Vec::with_capacity(code.len());
