@@ -1,4 +1,4 @@
-//! Digits of exponentials and logarithms where formulas change or are close to singular.
+//! Digits of exponentials and logarithms where formulas change or are nearly singular.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 

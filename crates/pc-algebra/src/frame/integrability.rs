@@ -93,8 +93,8 @@ impl<'g> Frame<'g> {
     }
 }
 
-/// Distance of y from the span of the columns of b, relative to the `size` of the terms of y. Columns, y and then rows are
-/// brought to size one before, so that it depends on no unit.
+/// Distance of y from the span of the columns of b, relative to the `size` of the terms of y. Columns, y and
+/// then rows are first scaled to size one, which makes it independent of units.
 fn scaled_distance(mut b: DMatrix<f64>, y: &DVector<f64>, size: &DVector<f64>) -> f64 {
     let largest = size.amax();
     if largest == 0.0 {

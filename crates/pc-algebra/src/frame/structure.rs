@@ -51,7 +51,8 @@ impl<'g> StructureCoefficients<'g> {
         StructureCoefficients { operators, nonzero }
     }
 
-    /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for the `pairs` r < s, r from 0; the others commute.
+    /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for the `pairs` r < s, r from 0; other pairs
+    /// commute.
     pub(crate) fn from_pairs<E>(
         operators: usize,
         pairs: impl IntoIterator<Item = (usize, usize)>,
@@ -129,7 +130,7 @@ impl<'g> StructureCoefficients<'g> {
         c
     }
 
-    /// The c_rs^m that are not 0, (s, r, m) as well as (r, s, m), in order.
+    /// The c_rs^m that are not 0, in order, both as (r, s, m) and as (s, r, m).
     pub(crate) fn both_ways(&self) -> Vec<(usize, usize, usize, Expr<'g>)> {
         let mut all: Vec<_> =
             self.nonzero.iter().flat_map(|&(r, s, m, c)| [(r, s, m, c), (s, r, m, -c)]).collect();

@@ -29,7 +29,7 @@ pub(crate) fn block_triangular(entries: &[Vec<usize>]) -> Option<Vec<(Vec<usize>
     Some(components.into_iter().map(block).collect())
 }
 
-/// Finds a column for the row, if need be by giving others to the rows that have them.
+/// Finds a column for the row, if necessary by moving other rows to other columns.
 fn is_matched(row: usize, entries: &[Vec<usize>], tried: &mut [bool], row_of: &mut [Option<usize>]) -> bool {
     for &column in &entries[row] {
         if tried[column] {
@@ -64,9 +64,9 @@ fn components(next: &[Vec<usize>]) -> Vec<Vec<usize>> {
 
 struct Search<'a> {
     next: &'a [Vec<usize>],
-    /// When each node was met.
+    /// The order in which nodes are reached.
     number: Vec<Option<usize>>,
-    /// The first node of the path that it reaches.
+    /// The lowest node of the path that each one reaches.
     low: Vec<usize>,
     path: Vec<usize>,
     found: Vec<Vec<usize>>,
@@ -89,7 +89,7 @@ impl Search<'_> {
             }
         }
         if self.low[node] == number {
-            let start = self.path.iter().rposition(|&other| other == node).unwrap_or(0); // it is on the path
+            let start = self.path.iter().rposition(|&other| other == node).unwrap_or(0); // the node is on the path
             self.found.push(self.path.split_off(start));
         }
     }
