@@ -38,7 +38,7 @@ pub struct ForcedMotion<F> {
     force: F,
     /// The quasi-velocities on which the forces act.
     names: Vec<String>,
-    /// Number of parameters, which the forces follow.
+    /// The number of parameters; the forces follow them.
     parameters: usize,
     /// q
     values: Vec<f64>,
@@ -101,7 +101,7 @@ impl Multipliers<'_> {
     }
 }
 
-/// The options with ∂f/∂q where a Jacobian needs it.
+/// The options with ∂f/∂q if a Jacobian needs it.
 fn derived(options: CompileOptions) -> CompileOptions {
     options.parameter_jacobian(options.parameter_jacobian || options.jacobian || options.jvp)
 }
@@ -312,7 +312,7 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
         self.motion.has_jacobian().then_some(&self.pattern)
     }
 
-    /// The pattern is full, so that both storages are one.
+    /// The pattern is full, so both storages are the same.
     fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         self.jacobian(t, y, values)
     }

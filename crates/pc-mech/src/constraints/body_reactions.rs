@@ -42,7 +42,7 @@ impl<'g> BodyReaction<'g> {
 }
 
 impl<'g> System<'g> {
-    /// The bodies it was built of, in this order, with their velocities.
+    /// The bodies of which it was built, in order, with their velocities.
     pub fn bodies(&self) -> &[BodyVelocity<'g>] {
         &self.bodies.list
     }
@@ -102,7 +102,8 @@ impl<'g> Multipliers<'g> {
     }
 }
 
-/// The derivatives by η of what moves, in blocks: ṙ and ω of the bodies, in their order, then what L has beside them.
+/// The derivatives of velocities by η, in blocks: ṙ and ω of the bodies, in their order, then the other
+/// velocities in L.
 struct Velocities<'a, 'g> {
     system: &'a System<'g>,
     blocks: Vec<Vec<Vec<Expr<'g>>>>,

@@ -10,7 +10,7 @@ use crate::error::{ConstraintError, MechError, shape};
 use crate::numeric::least_squares::LeastSquares;
 use crate::system::system::System;
 
-/// The least singular value against the largest of a matrix that is well solved with.
+/// The least singular value of a well-conditioned matrix, relative to the largest.
 const WELL: f64 = 1e-3;
 
 impl<'g> Multipliers<'g> {
@@ -75,7 +75,7 @@ impl<'g> Multipliers<'g> {
         Ok(dependent.iter().enumerate().map(|(d, &s)| (eta[s], solution(d))).collect())
     }
 
-    /// The quasi-velocities that are not solved for.
+    /// The quasi-velocities that remain.
     fn free(&self, solved: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
         let eta = self.equations().system().quasi_velocities().iter().copied();
         eta.filter(|eta| solved.iter().all(|(known, _)| known != eta)).collect()

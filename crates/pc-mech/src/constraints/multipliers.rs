@@ -1,4 +1,4 @@
-//! Constraints held by multipliers, in whatever coordinates.
+//! Constraints with multipliers, in any coordinates.
 
 use pc_algebra::{Matrix, Quadratic, quadratic};
 use pc_expr::Expr;
@@ -57,11 +57,11 @@ pub struct Multipliers<'g> {
     pub(crate) right: Vec<Expr<'g>>,
     /// The symbols λ, length m.
     pub(crate) reactions: Vec<Expr<'g>>,
-    /// Constraints that follow from these, looked at on the way.
+    /// Constraints that follow from these, checked along the way.
     pub(super) followers: Vec<Constraint<'g>>,
-    /// How many of the constraints are independent, the first ones almost everywhere.
+    /// The number of independent constraints, which come first almost everywhere.
     pub(super) rank: usize,
-    /// The indices of the quasi-velocities that are to depend on the others where they can.
+    /// The indices of the quasi-velocities that depend on the others, wherever these determine them.
     pub(crate) dependent: Option<Vec<usize>>,
     /// Whether the reactions are observed.
     pub(super) observed: bool,
@@ -235,8 +235,8 @@ impl<'g> Multipliers<'g> {
         Ok(motion.on_surface(names, whole.surface(&first_order)?))
     }
 
-    /// The same with the constraints to spare after those held: the followers that are independent of these where they do not
-    /// hold.
+    /// The same equations with spare constraints after the others: followers that are independent of these
+    /// off the constraints.
     fn with_spare(&self) -> Multipliers<'g> {
         let (system, mut whole) = (&self.equations.system, self.clone());
         let graph = system.graph();
@@ -280,8 +280,8 @@ impl<'g> Multipliers<'g> {
         LegendreTransform::solving(system, &momenta, &equations, Some(&nearby))
     }
 
-    /// M η = y − p_0 of a quadratic L, p(η) = y of any other: what the equations with multipliers say of momenta of which the
-    /// constraints hold.
+    /// M η = y − p_0 for a quadratic L, p(η) = y for any other: the equations with multipliers for momenta
+    /// that satisfy the constraints.
     fn free_legendre_equations(&self, momenta: &[Expr<'g>], guess: &[f64]) -> FirstOrder<'g> {
         let (system, graph, eta) = (&self.equations.system, self.graph(), self.quasi_velocities());
         let (mass, right, implicit) = match quadratic(graph, system.lagrangian, eta) {
@@ -310,7 +310,7 @@ impl<'g> Multipliers<'g> {
         }
     }
 
-    /// The equations with w = (η, μ); nothing changes by them.
+    /// The equations with w = (η, μ), without rates.
     fn legendre_equations(&self, momenta: &[Expr<'g>], guess: &[f64]) -> Result<FirstOrder<'g>, MechError> {
         let (system, graph, eta) = (&self.equations.system, self.graph(), self.quasi_velocities());
         let (k, m) = (eta.len(), self.reactions.len());
@@ -366,7 +366,7 @@ impl<'g> Multipliers<'g> {
         &self.equations.system.quasi_velocities
     }
 
-    /// f(t, x) of the constraints that have a position, then g(t, x, η) of all.
+    /// f(t, x) of the constraints on positions, then g(t, x, η) of all.
     pub(crate) fn conditions(&self) -> Vec<Expr<'g>> {
         let positions = (0..self.constraints.len()).filter(|&a| self.is_holonomic(a));
         positions.map(|a| self.constraints[a].expression).chain(self.velocities.iter().copied()).collect()

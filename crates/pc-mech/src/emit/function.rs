@@ -1,4 +1,4 @@
-//! Functions that are written beside those of the equations.
+//! Functions that are written in addition to those of the equations.
 
 use pc_expr::Expr;
 

@@ -195,7 +195,7 @@ pub struct Signals {
     list: Vec<Signal>,
     /// The times of all tables, in ascending order.
     breaks: Arc<[f64]>,
-    /// Between which of them the evaluations are; none until an integrator says it.
+    /// The interval between breaks in which evaluations take place; `None` until an integrator enters one.
     between: Option<(f64, f64)>,
 }
 

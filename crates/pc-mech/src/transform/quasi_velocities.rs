@@ -113,7 +113,7 @@ impl<'g> System<'g> {
         Ok(self.frame.changed_by(&matrix, &drift)?)
     }
 
-    /// This system in the quasi-velocities of a change, which are called `symbols`, with the frame it leads to.
+    /// This system in the quasi-velocities of a change, called `symbols`, with the resulting frame.
     pub(crate) fn changed(
         &self,
         symbols: Vec<Expr<'g>>,

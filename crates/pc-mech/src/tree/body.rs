@@ -11,7 +11,7 @@ use crate::tree::spatial::{Vector, ZERO};
 #[derive(Clone, Debug)]
 pub struct TreeBody<'g> {
     pub(crate) name: String,
-    /// None is the world.
+    /// `None` is the world.
     pub(crate) parent: Option<String>,
     pub(crate) joint: Joint<'g>,
     pub(crate) mass: Expr<'g>,

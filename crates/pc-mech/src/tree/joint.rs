@@ -1,11 +1,11 @@
-//! How a body moves against another.
+//! How a body moves relative to its parent.
 
 use pc_algebra::Matrix;
 use pc_expr::Expr;
 
 use crate::tree::spatial::{Tensor, Vector, ZERO, entries_of, unit};
 
-/// A joint: how a body moves against its parent.
+/// A joint: how a body moves relative to its parent.
 ///
 /// It stands at a point of the parent, with axes of its own. The origin of the body is the point of the joint, and the axes of
 /// the body are those of the joint where all coordinates of the joint vanish.
@@ -28,7 +28,7 @@ pub struct Joint<'g> {
     pub(crate) place: Vector<'g>,
     /// From the axes of the joint to those of the parent.
     pub(crate) rotation: Tensor<'g>,
-    /// Coordinates and quasi-velocities, where they are not those of the rule.
+    /// Names of coordinates and quasi-velocities, if they differ from the default ones.
     pub(crate) names: Option<(Vec<String>, Vec<String>)>,
 }
 

@@ -27,7 +27,7 @@ impl<'g> BodyVelocity<'g> {
     }
 }
 
-/// The bodies of a system, and what its Lagrangian has beside them.
+/// The bodies of a system, and the other terms of its Lagrangian.
 #[derive(Clone, Debug)]
 pub(crate) struct Bodies<'g> {
     pub(crate) list: Vec<BodyVelocity<'g>>,
