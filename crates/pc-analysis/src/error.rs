@@ -1,4 +1,4 @@
-//! Errors of questions about motions.
+//! Errors of the analysis of motions.
 
 use pc_expr::{Expr, ExprError, Failure, Graph, readable};
 use pc_mech::{MechError, ShapeError};
@@ -140,7 +140,7 @@ pub enum AnalysisError {
 }
 
 impl From<Failure> for AnalysisError {
-    /// What a [`Motion`](pc_mech::Motion) failed with; of other vector fields their words.
+    /// The error of a [`Motion`](pc_mech::Motion); of other vector fields the text of their error.
     fn from(failure: Failure) -> AnalysisError {
         MechError::from(failure).into()
     }

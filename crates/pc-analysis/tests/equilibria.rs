@@ -72,7 +72,7 @@ fn a_bead_leaves_the_bottom_by_a_pitchfork() {
     }
 }
 
-/// A box keeps what is in it; angles are counted from its lower bound.
+/// A box bounds the results; angles are counted from its lower bound.
 #[test]
 fn a_box_keeps_what_is_in_it() {
     let graph = Graph::new();
@@ -117,7 +117,7 @@ fn all_nine_of_four_wells_are_found_again_and_again() {
     assert_eq!(places(&found), places(&all()));
 }
 
-/// The bottom of a wine bottle is a circle, of which one member is listed; its top is one alone.
+/// The bottom of a wine bottle is a circle, of which one member is listed; its top is isolated.
 #[test]
 fn families_are_recognised() {
     let graph = Graph::new();
@@ -129,7 +129,7 @@ fn families_are_recognised() {
     assert!((x.hypot(y) - 1.0).abs() < EXACT && found[1].state[0].abs() < EXACT);
 }
 
-/// A force that falls off with distance vanishes nowhere, though Newton's method goes to where it is small.
+/// A force that decays with distance vanishes nowhere, although Newton's method goes to where it is small.
 #[test]
 fn nothing_is_found_at_infinity() {
     let graph = Graph::new();
@@ -142,7 +142,7 @@ fn nothing_is_found_at_infinity() {
     assert!(matches!(&found[..], [middle] if middle.state[0].abs() < EXACT), "{found:?}");
 }
 
-/// A cyclic coordinate stands anywhere, and has no box.
+/// A cyclic coordinate has any value at an equilibrium, and no box.
 #[test]
 fn cyclic_coordinates_stand_anywhere() {
     let graph = Graph::new();

@@ -28,7 +28,7 @@ fn pendulum(graph: &Graph, damping: f64) -> System<'_> {
         .unwrap()
 }
 
-/// Below and above, each once, though there are turns.
+/// Below and above, each once, regardless of full turns.
 #[test]
 fn a_pendulum_hangs_or_stands() {
     let graph = Graph::new();

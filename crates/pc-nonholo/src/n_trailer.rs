@@ -46,7 +46,7 @@ pub struct NTrailer<'g> {
     trailers: Vec<(Expr<'g>, Wagon<'g>)>,
 }
 
-/// How an axle moves: v_i, u_i and θ̇_i.
+/// The motion of an axle: v_i, u_i and θ̇_i.
 #[derive(Clone, Copy)]
 struct Axle<'g> {
     ahead: Expr<'g>,

@@ -4,7 +4,7 @@ use pc_mech::{Equations, Expr, Number, System};
 
 use crate::integrals::rates::Rates;
 
-/// A function that may keep its value.
+/// A function that may be an integral.
 #[derive(Clone, Debug)]
 pub struct Integral<'g> {
     /// Its name: as declared, or `energy`, `momentum 1`, `Casimir 1`, `found 1`.
@@ -63,7 +63,7 @@ pub enum ConservationVerdict<'g> {
     },
 }
 
-/// The functions that the motion keeps, or may keep.
+/// The functions that are integrals, or may be.
 #[derive(Clone, Debug)]
 pub struct Integrals<'g> {
     pub(super) list: Vec<Integral<'g>>,

@@ -61,7 +61,7 @@ pub enum CyclicCoordinates {
     KeptAtRest,
 }
 
-/// The part of |∂f/∂y| (1 + |y|) up to which a rate counts as zero.
+/// A rate counts as zero up to this part of |∂f/∂y| (1 + |y|).
 const AT_REST: f64 = 1e-12;
 
 impl Linearizer {
@@ -116,7 +116,7 @@ impl Linearizer {
         self.put_together(t, state, &[], is_steady)
     }
 
-    /// The cyclic coordinates that move, and those on whose rates these act.
+    /// The cyclic coordinates that move, and those on whose rates they act.
     fn moving(&mut self, t: f64, state: &[f64]) -> Result<Vec<usize>, AnalysisError> {
         let rates = self.motion.rates(t, state)?;
         let jacobian = first_approximation(&mut self.motion, t, state)?;
@@ -134,7 +134,7 @@ impl Linearizer {
         }
     }
 
-    /// The cyclic coordinates on whose rates some of these act.
+    /// The cyclic coordinates on whose rates these act.
     fn acted_on(&self, by: &[usize]) -> Vec<usize> {
         let pattern = self.motion.sparsity();
         let acts_on = |i: usize| by.iter().any(|&j| pattern.is_none_or(|all| all.column(j).contains(&i)));
@@ -195,7 +195,7 @@ impl Linearizer {
         })
     }
 
-    /// In the coordinates that are not cyclic, and as many cyclic ones as it takes.
+    /// In the coordinates that are not cyclic, and as many cyclic ones as needed.
     fn second_order(
         &self,
         evaluated: &Evaluated,
@@ -227,7 +227,7 @@ impl Linearizer {
 }
 
 impl Evaluated {
-    /// The reduced state with these coordinates of n, of a state of `all` components.
+    /// The reduced state with these of the n coordinates, for a state of `all` components.
     fn reduced(&self, coordinates: &[usize], n: usize, all: usize) -> Result<Reduced, AnalysisError> {
         let chart = self.directions.chart(coordinates)?;
         let Velocities { independent, of_independent, of_coordinates } = &self.velocities;

@@ -17,13 +17,14 @@ impl<'g> InvariantMeasure<'g> {
         self.density_to(Number::ONE)
     }
 
-    /// That of growths ψ̇_i/ψ_i c_i, a column each, which cancel the last column.
+    /// The measure of a relation between growths ψ̇_i/ψ_i, a column each, and the divergence in the last
+    /// column.
     pub(crate) fn of_relation(
         graph: &'g Graph,
         factors: &[Expr<'g>],
         columns: &[Vec<Expr<'g>>],
     ) -> Option<InvariantMeasure<'g>> {
-        // A relation in which the last column stands gives the powers.
+        // A relation that contains the last column gives the powers.
         let last = factors.len();
         let relation = graph.linear_relations(columns).into_iter().find(|c| !c[last].is_zero())?;
         let scale = relation[last].recip();
@@ -163,8 +164,8 @@ pub(crate) fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, Analy
     Ok(candidates)
 }
 
-/// The determinants of the blocks into which rows and columns of a matrix fall by its zeros, up to signs; none for blocks
-/// that are not square, and of which they are no short expressions.
+/// The determinants of the blocks into which the zeros of a matrix divide its rows and columns, up to signs;
+/// `None` for blocks that are not square or whose determinant is not a short expression.
 pub(crate) fn determinants_of_blocks<'g>(
     graph: &'g Graph,
     matrix: &Matrix<Expr<'g>>,
@@ -184,7 +185,7 @@ pub(crate) fn determinants_of_blocks<'g>(
             }
         }
         if rows.is_empty() {
-            determinants.push(None); // a row of zeros: no determinant is a factor of a density
+            determinants.push(None); // a row of zeros: no determinant
             break;
         }
         open.retain(|i| !rows.contains(i));

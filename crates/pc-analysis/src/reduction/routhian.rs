@@ -89,7 +89,7 @@ impl<'g> Routhian<'g> {
         let routhian = short(routhian);
         let rates: Vec<Expr<'g>> = rates.into_iter().map(short).collect();
         if cyclic.iter().any(|&i| routhian.depends_on(x[i])) {
-            return Ok(None); // what cancels is still written
+            return Ok(None); // terms that cancel are still written
         }
 
         let x_dot = frame.velocities(system.quasi_velocities());
@@ -122,7 +122,7 @@ impl<'g> Routhian<'g> {
     }
 }
 
-/// The velocities for which affine functions of them have the values `symbols`, if they determine them.
+/// The velocities for which affine functions have the values `symbols`, if these determine them.
 fn solved<'g>(
     graph: &'g pc_mech::Graph,
     functions: &[Expr<'g>],

@@ -193,13 +193,13 @@ pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Mat
     Ok(Matrix::from_fn(n, n, |i, j| entries[i + j * n]))
 }
 
-/// So near, relative to 1 + |y|, derivatives are as at the state, but for this part of what they are there or somewhat farther,
-/// unless rates have none there: Newton's method ends some roundings beside a pole of the coordinates.
+/// A distance, relative to 1 + |y|, within which derivatives change at most by this part of their size,
+/// unless rates have none at the state: Newton's method ends some roundings beside a pole of the coordinates.
 const BESIDE: f64 = 1e-7;
 const FARTHER: f64 = 1e-2;
 const AS_THERE: f64 = 1e-3;
 
-/// That the slopes of the rates change continuously at the state.
+/// Checks that the slopes of the rates are continuous at the state.
 fn check_smooth(
     motion: &mut Motion,
     t: f64,
@@ -207,7 +207,7 @@ fn check_smooth(
     kept: &[usize],
     slopes: &Matrix<f64>,
 ) -> Result<(), AnalysisError> {
-    // All components to one side, no two by as much.
+    // All components shifted to one side, each by a different amount.
     let mut at = |distance: f64| {
         let step = |i: usize| distance * (1.0 + norm(state)) * (1.0 + 0.3 * (1.0 + i as f64).sqrt().fract());
         let there: Vec<f64> = state.iter().enumerate().map(|(i, y)| y + step(i)).collect();
@@ -227,7 +227,7 @@ fn check_smooth(
     Err(AnalysisError::NotSmooth { state })
 }
 
-/// Where the components with those names stand.
+/// The indices of the components with these names.
 fn components(motion: &Motion, names: &[String]) -> Result<Vec<usize>, AnalysisError> {
     let find = |name: &String| motion.names().iter().position(|known| known == name);
     names
@@ -241,7 +241,7 @@ fn components(motion: &Motion, names: &[String]) -> Result<Vec<usize>, AnalysisE
         .collect()
 }
 
-/// The cyclic coordinates, those named or all.
+/// The cyclic coordinates: the named ones, or all.
 fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>, AnalysisError> {
     let pattern =
         motion.sparsity().ok_or(MechError::Evaluation(EvaluationError::NotCompiled { what: "Jacobian" }))?;

@@ -100,7 +100,8 @@ impl<'g> ConstraintClassification<'g> {
     }
 }
 
-/// The kind of each constraint, of the affine ones as if there were no others, and the number of integrable combinations.
+/// The kind of each constraint, for the affine ones as if there were no others, and the number of integrable
+/// combinations.
 fn kinds<'g>(
     multipliers: &Multipliers<'g>,
     at: &[(Expr<'g>, f64)],

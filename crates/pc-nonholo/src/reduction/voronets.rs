@@ -157,7 +157,7 @@ impl<'g> Voronets<'g> {
             graph.sum(rates.map(|(j, rate)| rate * graph.dot(self.structure(j, i), momenta.iter().copied())))
         };
         let lost: Vec<Expr<'g>> = (1..=free.len()).map(lost).collect();
-        let flat = system.structure().restricted(free.len()); // those of velocities: none
+        let flat = system.structure().restricted(free.len()); // those of velocities vanish
         Ok(self.multipliers.eliminated(&self.solved, flat)?.with_added_forces(&lost)?)
     }
 
