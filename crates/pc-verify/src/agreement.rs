@@ -77,13 +77,13 @@ impl Agreement {
     }
 }
 
-/// Why a state gave no comparison.
+/// The reason why a state gives no comparison.
 pub(crate) enum Passed {
     /// It is not regular.
     Irregular(Irregular),
     /// The derivations differ.
     Error(VerifyError),
-    /// They do, by what rounding makes of the first there.
+    /// The derivations differ, within the rounding of the first at that state.
     Noise(Box<Disagreement>),
 }
 

@@ -1,6 +1,6 @@
-//! Structure coefficients that are constants, and those of algebras with names.
+//! Structure coefficients that are constant, and those of named algebras.
 
-/// c_rs^m with r, s = 0..k and m = 1..k, which stands at m − 1.
+/// c_rs^m with r, s = 0..k and m = 1..k, stored at m − 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Constants {
     pub(crate) k: usize,
@@ -30,7 +30,7 @@ impl Constants {
         constants
     }
 
-    /// Those of an algebra with a name, as `pc models --algebras` lists them.
+    /// The constants of a named algebra, as listed by `pc models --algebras`.
     pub(crate) fn named(name: &str) -> Option<Constants> {
         let cyclic = [(1, 2, 3, 1.0), (2, 3, 1, 1.0), (3, 1, 2, 1.0)];
         Some(match name {

@@ -1,4 +1,4 @@
-//! Why there is no agreement.
+//! The reasons why no agreement is found.
 
 use std::fmt;
 
@@ -103,7 +103,7 @@ pub enum Unable {
     },
 }
 
-/// Why a state is passed over.
+/// The reason why a state is passed over.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Irregular {
     /// The model cannot be evaluated anywhere.

@@ -193,8 +193,9 @@ pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Mat
     Ok(Matrix::from_fn(n, n, |i, j| entries[i + j * n]))
 }
 
-/// A distance, relative to 1 + |y|, within which derivatives change at most by this part of their size,
-/// unless rates have none at the state: Newton's method ends some roundings beside a pole of the coordinates.
+/// At the distance `BESIDE`, relative to 1 + |y|, derivatives differ by at most `AS_THERE` of their size
+/// there or at `FARTHER`, unless rates have none at the state: Newton's method ends some roundings beside a
+/// pole of the coordinates.
 const BESIDE: f64 = 1e-7;
 const FARTHER: f64 = 1e-2;
 const AS_THERE: f64 = 1e-3;
