@@ -88,7 +88,7 @@ const KINDS: &[(&str, Keys)] = &[
     ("text", Keys(&["kind", "at", "text"])),
 ];
 
-/// What an entry of a kind may say.
+/// The entries allowed for a kind.
 #[derive(Clone, Copy)]
 struct Keys(&'static [&'static str]);
 
@@ -145,7 +145,7 @@ fn entry(item: &Item<'_>) -> Result<Draw, ModelError> {
     Ok(Draw { place: table.place.clone(), shape })
 }
 
-/// How many corners a line may have.
+/// The possible numbers of corners of a line.
 const LINES: &[usize] = &{
     let mut lengths = [0; 63];
     let mut i = 0;

@@ -38,7 +38,7 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// The expression that is the whole of a text.
+    /// The expression that a whole text consists of.
     ///
     /// # Errors
     /// [`ModelError`] if it is none.
@@ -51,7 +51,7 @@ impl Expression {
         Ok(Expression { text: text.to_owned(), ast, entry: String::new(), map: TextMap::verbatim(text) })
     }
 
-    /// An expression that is not written, but follows from what stands at a place.
+    /// An expression that is not written, but implied by the text at a place.
     pub(super) fn following(source: &Source, text: String, place: &Place) -> Result<Expression, ModelError> {
         let ast = parse(&text).map_err(|error| source.error(place, error))?;
         let map = TextMap::standing_for(place.span.clone(), text.len());

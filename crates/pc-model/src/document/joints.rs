@@ -131,7 +131,7 @@ impl JointKind {
         ends.iter().map(|end| format!("{name}{end}")).collect()
     }
 
-    /// The names of its quasi-velocities, where its coordinates have these names.
+    /// The names of its quasi-velocities, for coordinates of these names.
     pub(crate) fn quasi_velocities(self, name: &str, coordinates: &[String]) -> Vec<String> {
         let ends: &[&str] = match self {
             JointKind::Spherical => &["_ω1", "_ω2", "_ω3"],

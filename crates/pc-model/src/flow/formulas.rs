@@ -1,4 +1,4 @@
-//! What follows from parameters by formulas of the text: other parameters, and the start.
+//! Values given by formulas of the text in parameters: other parameters, and the start.
 
 use pc_expr::SymbolPlaces;
 use pc_mech::Expr;
@@ -60,8 +60,8 @@ impl<'g> Assembly<'g> {
         Ok(coordinates.chain(eta).chain(states).collect())
     }
 
-    /// The start values of the text, of coordinates, declared quasi-velocities and first-order states; none where there is
-    /// none, or another value was set.
+    /// The start values of the text, of coordinates, declared quasi-velocities and first-order states; `None`
+    /// for those not given, or set to other values.
     fn written(&self, model: &Model) -> Result<Vec<Option<Expr<'g>>>, ModelError> {
         let document = model.document();
         let mut scope = Scope::new(self.system.graph(), document);

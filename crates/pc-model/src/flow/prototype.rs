@@ -9,17 +9,17 @@ use crate::flow::flow::Flow;
 use crate::flow::variables::Variables;
 use crate::model::model::Model;
 
-/// A start that a projection moves by no more than this, relative to the larger of 1 and its size, satisfies the
-/// constraints up to the rounding of the numbers it is written with; a tenth of what a model is refused for.
+/// A start that a projection moves by at most this, relative to the larger of 1 and its size, satisfies the
+/// constraints up to the rounding of its digits; a tenth of the distance at which a model is refused.
 const ON_CONSTRAINTS: f64 = 1e-9;
 
 /// The equations of a model compiled once, for models of which only numbers are different.
 #[derive(Debug)]
 pub struct Prototype {
     flow: Mutex<Flow>,
-    /// For each component of the state its place among the start values; none where it starts at 0.
+    /// The index of each component of the state among the start values; `None` if it starts at 0.
     places: Vec<Option<usize>>,
-    /// Start values that are no components of the state, because constraints say that they vanish.
+    /// Start values that are not components of the state, because constraints make them vanish.
     vanishing: Vec<usize>,
 }
 

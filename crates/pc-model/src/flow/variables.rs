@@ -57,7 +57,7 @@ impl<'g> Assembly<'g> {
     pub fn system_in(&self, variables: Variables) -> Result<System<'g>, ModelError> {
         Ok(match variables {
             Variables::QuasiVelocities if self.constraints.held().is_some() => self.system.without_observed(),
-            // What is observed may contain velocities that are not among the free ones.
+            // Observables may contain velocities other than the free ones.
             Variables::Momenta if self.constraints.held().is_some() => self.free_system()?.without_observed(),
             _ => self.free_form(variables)?.system,
         })
