@@ -1,4 +1,4 @@
-//! Equations and theory as displays for a page of a browser, each with its source for a paper.
+//! Equations and theory as displays for a web page, each with its LaTeX.
 
 use pc_expr::{Folding, Given, Graph};
 use pc_mech::{Expr, System};
@@ -228,7 +228,7 @@ pub fn displayed_equations(
     Ok(DisplayedEquations { name: name.to_owned(), parts: parts.collect(), plain: None, operations: lines })
 }
 
-/// What is said of a part beside its formulas.
+/// The notes on a part, in addition to its formulas.
 fn notes(sheet: &Sheet<'_>, part: &Part<'_>) -> Vec<String> {
     match part.heading {
         Heading::Constraints => part

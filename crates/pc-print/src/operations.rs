@@ -46,12 +46,13 @@ impl Operations {
         let states = system.states().iter().map(|(z, _)| z);
         let state: Vec<Expr<'g>> =
             system.frame().coordinates().iter().chain(moving).chain(states).copied().collect();
-        // Parameters, and what else stands in the equations: external forces, reactions.
+        // Parameters, and other symbols in the equations: external forces, reactions.
         let others = graph.symbols_of(rates).into_iter().filter(|x| *x != time && !state.contains(x));
         let inputs = Inputs { time: Some(time), parameters: others.collect(), state };
         let numbers = system.parameters();
         let free = Program::new(graph, &inputs, rates)?;
-        // What is left of the free program is shorter where numbers multiplied out make more sums than there are with parameters.
+        // The rest of the free program is shorter if multiplied-out numbers would make more sums than
+        // parameters do.
         let folded = free.bound_where(|name| {
             let number = numbers.iter().find(|(symbol, _)| symbol.symbol_name().as_deref() == Some(name));
             number.map(|&(_, value)| value)
@@ -85,7 +86,7 @@ pub fn counted(what: &str, cost: &Cost) -> String {
 }
 
 impl Operations {
-    /// For programs.
+    /// As JSON.
     pub fn object(&self) -> Value {
         json!({ "free": counts(&self.free), "bound": counts(&self.bound) })
     }

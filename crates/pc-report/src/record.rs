@@ -1,4 +1,4 @@
-//! What a report takes over of a motion.
+//! The data of a motion for a report.
 
 /// What columns of a table are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -81,7 +81,7 @@ impl Samples {
 }
 
 impl Record {
-    /// What curves are drawn through.
+    /// The samples through which curves are drawn.
     pub(crate) fn curves(&self) -> &Samples {
         self.fine.as_ref().unwrap_or(&self.rows)
     }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::record::Record;
 
-/// Numbers of all frames together: a third of a megabyte.
+/// The most numbers of all frames together: a third of a megabyte.
 const MOST_NUMBERS: usize = 60_000;
 
 /// A shape; its numbers stand in the frames, those of each shape behind those of the one before it.
@@ -47,7 +47,7 @@ impl SceneShape {
         }
     }
 
-    /// Its name in the script, and what belongs to it.
+    /// Its name in the script, and its text.
     fn word(&self) -> (&'static str, &str) {
         match self {
             SceneShape::Point(label) => ("point", label.as_deref().unwrap_or_default()),
@@ -79,7 +79,7 @@ impl From<Shape<'_>> for SceneShape {
     }
 }
 
-/// The rows that are shown: all, or the first of every few and the last one.
+/// The rows that are shown: all, or every few and the last one.
 fn shown(rows: usize, width: usize) -> Vec<usize> {
     let stride = (rows * width).div_ceil(MOST_NUMBERS).max(1);
     let last = rows.saturating_sub(1);

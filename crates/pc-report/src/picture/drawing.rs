@@ -1,4 +1,4 @@
-//! What is drawn: lines, texts and areas.
+//! The elements of a drawing: lines, texts and areas.
 
 /// A drawing in points, x to the right and y down, in the order in which it is painted.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -75,7 +75,7 @@ pub enum Ink {
     Mixed([u8; 3]),
 }
 
-/// Colours that colour-blind readers tell apart [Okabe, Ito 2008].
+/// Colours that colour-blind readers can distinguish [Okabe, Ito 2008].
 const COLOURS: [[u8; 3]; 8] = [
     [0, 114, 178],
     [213, 94, 0],
@@ -88,7 +88,7 @@ const COLOURS: [[u8; 3]; 8] = [
 ];
 
 impl Ink {
-    /// The number of curves that are told apart.
+    /// The number of distinguishable curves.
     pub(crate) const CURVES: usize = COLOURS.len();
 
     /// Red, green and blue on white.

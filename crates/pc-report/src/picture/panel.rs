@@ -1,4 +1,4 @@
-//! What stands on common axes.
+//! Panels: the contents of common axes.
 
 /// Curves, bars or cells on common axes.
 #[derive(Clone, Debug, PartialEq)]
