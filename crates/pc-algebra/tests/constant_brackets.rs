@@ -161,7 +161,8 @@ fn centreless() -> Vec<LieAlgebra> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, rng_seed: RngSeed::Fixed(16), ..ProptestConfig::default() })]
 
-    /// A constant change of frame, in numbers and with parameters: the brackets found are those of the catalogue, changed.
+    /// A constant change of frame, in numbers and with parameters: the brackets found are those of the
+    /// catalogue, changed.
     #[test]
     fn brackets_of_the_catalogue_are_found_in_any_basis(
         which in 0usize..64,

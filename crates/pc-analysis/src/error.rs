@@ -24,7 +24,8 @@ pub enum AnalysisError {
         /// Names and values of the state where the residual was least.
         state: Vec<(String, f64)>,
     },
-    /// Newton's method ended where the rates vanish but have no derivatives: at a pole of the coordinates or of the frame, say.
+    /// Newton's method ended where the rates vanish but have no derivatives: at a pole of the coordinates or
+    /// of the frame, say.
     #[error("the rates vanish, but have no derivatives, at{}", listed(state).trim_start_matches(','))]
     NotSmooth {
         /// Names and values of the state.

@@ -36,8 +36,8 @@ fn bead<'g>(graph: &'g Graph, turn: f64, damping: f64) -> System<'g> {
         .unwrap()
 }
 
-/// The bead on a turning hoop, g/r = 1: below Ω = 1 it rests at the bottom and at the top, above it also at cos θ = 1/Ω², and
-/// the bottom is unstable: a pitchfork. Frequencies are √(1 − Ω²) and √(Ω² − 1/Ω²).
+/// The bead on a turning hoop, g/r = 1: below Ω = 1 it rests at the bottom and at the top, above it also at
+/// cos θ = 1/Ω², and the bottom is unstable: a pitchfork. Frequencies are √(1 − Ω²) and √(Ω² − 1/Ω²).
 #[test]
 fn a_bead_leaves_the_bottom_by_a_pitchfork() {
     let graph = Graph::new();

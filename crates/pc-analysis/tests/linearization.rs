@@ -175,8 +175,8 @@ fn gyroscopic_forces_are_skew() {
     assert_near(&second.stiffness, &[&[1.0 - turn * turn, 0.0], &[0.0, 4.0 - turn * turn]]);
 }
 
-/// The sleeping top in γ, which moves on a sphere: with γ = γ1 + iγ2 and w = ω1 + iω2, γ̇ = −iωγ + iw and ẇ = −iωw/2 − iγ, so
-/// (λ + iω)(λ + iω/2) = 1: growth by √(1 − ω²/16), below ω = 4.
+/// The sleeping top in γ, which moves on a sphere: with γ = γ1 + iγ2 and w = ω1 + iω2, γ̇ = −iωγ + iw and ẇ =
+/// −iωw/2 − iγ, so (λ + iω)(λ + iω/2) = 1: growth by √(1 − ω²/16), below ω = 4.
 #[test]
 fn a_sleeping_top_leaves_the_sphere_to_itself() {
     let graph = Graph::new();

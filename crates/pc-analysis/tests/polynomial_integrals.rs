@@ -115,7 +115,8 @@ fn functions_of_foreign_symbols_are_refused() {
     );
 }
 
-/// A body in its own axes, in directions γ and Euler's angles: the rotations in space commute with the operators of the body.
+/// A body in its own axes, in directions γ and Euler's angles: the rotations in space commute with the
+/// operators of the body.
 #[test]
 fn rotations_in_space_commute_with_those_of_the_body() {
     let graph = Graph::new();

@@ -83,8 +83,9 @@ fn with_more_degrees_of_freedom_a_multiplier_is_proved_or_absent() {
     assert!(ReducingMultiplier::of(&beside).unwrap().is_none());
 }
 
-/// With ẇ_a = h(x) ẋ_a for each of l coordinates the kinetic energy is (1 + h²) ẋ²/2, and N = (1 + h²)^(−1/2) makes it x'²/2
-/// for every l: motions without a potential are straight lines, though N^(l−1) is the density of the measure.
+/// With ẇ_a = h(x) ẋ_a for each of l coordinates the kinetic energy is (1 + h²) ẋ²/2, and N = (1 + h²)^(−1/2)
+/// makes it x'²/2 for every l: motions without a potential are straight lines, though N^(l−1) is the density
+/// of the measure.
 #[test]
 fn the_multiplier_is_a_root_of_the_density() {
     for l in 2..=4 {

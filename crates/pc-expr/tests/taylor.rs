@@ -1,4 +1,5 @@
-//! Taylor coefficients of solutions against series in twice the precision, composed from the definitions of the functions.
+//! Taylor coefficients of solutions against series in twice the precision, composed from the definitions of
+//! the functions.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

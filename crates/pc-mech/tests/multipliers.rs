@@ -573,8 +573,9 @@ fn constraints_are_affine_or_refused() {
     assert_eq!((row, rest), (vec![1.0.into(), -x], -x));
 }
 
-/// A particle in space that keeps its speed under gravity, by Chetaev's condition: with θ the angle of its velocity with
-/// the vertical θ̇ = (g/v) sin θ, so that tan(θ/2) grows as e^(g t/v), and the horizontal direction stays.
+/// A particle in space that keeps its speed under gravity, by Chetaev's condition: with θ the angle of its
+/// velocity with the vertical θ̇ = (g/v) sin θ, so that tan(θ/2) grows as e^(g t/v), and the horizontal
+/// direction stays.
 #[test]
 fn a_nonlinear_constraint_turns_the_velocity_only() {
     let (gravity, speed) = (10.0, 5.0);

@@ -116,8 +116,8 @@ fn a_motor_with_its_current_and_its_controller() {
     assert_close(&canonical.row(0.0, &momenta), &row, 1e-14);
 }
 
-/// A carriage that loses sand, m' = −q, at rest relative to it: (m v)' = −q v − c v, so v' = −c v/m; where the sand leaves at
-/// rest, (m v)' = −c v, so v' = (q − c) v/m.
+/// A carriage that loses sand, m' = −q, at rest relative to it: (m v)' = −q v − c v, so v' = −c v/m; where
+/// the sand leaves at rest, (m v)' = −c v, so v' = (q − c) v/m.
 #[test]
 fn the_mass_of_a_body_may_be_a_state() {
     for (force, factor) in [("-c*v - q*v", -0.5), ("-c*v", -0.2)] {

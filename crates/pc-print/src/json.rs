@@ -9,8 +9,9 @@ use crate::layout::Layout;
 use crate::operations::Operations;
 use crate::sheet::{Balance, Bracket, Sheet};
 
-/// The equations for programs. Where canonical equations are not closed, there are no `quasi_velocities_of_momenta`, and the
-/// quasi-velocities stand for the solution of `momenta` = `momenta_of_velocities`.
+/// The equations for programs. Where canonical equations are not closed, there are no
+/// `quasi_velocities_of_momenta`, and the quasi-velocities stand for the solution of `momenta` =
+/// `momenta_of_velocities`.
 pub(crate) fn page(
     title: &str,
     sheet: &Sheet<'_>,

@@ -69,7 +69,8 @@ pub enum Balance<'p> {
         rates: Vec<Expr<'p>>,
         /// y = ∂L/∂η as functions of η.
         of_velocities: Vec<Expr<'p>>,
-        /// η as functions of y; none where the equations are not closed, and η in them stands for the solution of y = ∂L/∂η.
+        /// η as functions of y; none where the equations are not closed, and η in them stands for the
+        /// solution of y = ∂L/∂η.
         velocities: Option<Vec<Expr<'p>>>,
         /// r as it is computed.
         right: Vec<Expr<'p>>,

@@ -101,7 +101,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// What of a model can be drawn, along a motion; none where there is nothing, or what it depends on was not computed.
+    /// What of a model can be drawn, along a motion; none where there is nothing, or what it depends on was
+    /// not computed.
     ///
     /// # Errors
     /// [`ModelError`] if the shapes cannot be resolved or compiled.
@@ -155,7 +156,8 @@ impl Scene {
         self.shapes.iter().map(SceneShape::numbers).sum()
     }
 
-    /// What the player reads: names, then times and numbers as IEEE 754 single precision, the least byte first, in base 64.
+    /// What the player reads: names, then times and numbers as IEEE 754 single precision, the least byte
+    /// first, in base 64.
     pub(crate) fn data(&self) -> Value {
         let shapes: Vec<Value> = self
             .shapes

@@ -10,7 +10,8 @@ use crate::projected::DIRECTIONS;
 pub struct Agreement {
     /// States at which all forms were compared.
     pub states: usize,
-    /// The number of these at which equations were only compared along random virtual velocities, the model being large.
+    /// The number of these at which equations were only compared along random virtual velocities, the model
+    /// being large.
     pub projected: usize,
     /// States that were skipped because the equations are singular or not defined there.
     pub skipped: usize,

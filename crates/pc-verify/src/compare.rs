@@ -43,9 +43,9 @@ impl Default for Options {
     }
 }
 
-/// Derives a model a second time and compares, at random states on the constraints: ẋ, η̇ or ẏ, λ, the energy and its rate,
-/// integrals and outputs, of the equations that are integrated, in quasi-velocities and in momenta, and of those that
-/// are emitted as source.
+/// Derives a model a second time and compares, at random states on the constraints: ẋ, η̇ or ẏ, λ, the energy
+/// and its rate, integrals and outputs, of the equations that are integrated, in quasi-velocities and in
+/// momenta, and of those that are emitted as source.
 ///
 /// # Errors
 /// [`VerifyError::Disagreement`] with the quantity, its two values and the state; [`VerifyError::Model`] if the first

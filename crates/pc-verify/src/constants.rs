@@ -109,7 +109,8 @@ fn motions_of_space() -> Constants {
     constants
 }
 
-/// R_23, R_31, R_12, R_14, R_24, R_34, R_15, … where R_ij turns axis i towards axis j: [R_ij, R_jl] = −R_il, R_ji = −R_ij.
+/// R_23, R_31, R_12, R_14, R_24, R_34, R_15, … where R_ij turns axis i towards axis j: [R_ij, R_jl] = −R_il,
+/// R_ji = −R_ij.
 fn rotations(n: usize) -> Constants {
     let mut basis = vec![(2, 3), (3, 1), (1, 2)];
     basis.extend((4..=n).flat_map(|j| (1..j).map(move |i| (i, j))));

@@ -5,9 +5,10 @@
 //!   D_t p_s − p·δw_s − X_s L − Q_s = λ_α ∂φ_α/∂w_s,   p_s = ∂L/∂w_s,   X_s L = b_is ∂L/∂x_i,
 //!
 //! where b δw_s = D_t b_s − (∂u/∂x) b_s: for a virtual displacement δx = ε b_s the variation of the velocity is
-//! δẋ = (δx)˙ = (∂u/∂x) δx + b δw, and δ∫L dt + ∫Q_s ε dt = 0 after an integration by parts. Where w = ẋ these are Lagrange's
-//! equations, δw = 0; otherwise they are Lagrange's for L̂(t, x, ẋ) = L(t, x, w(t, x, ẋ)), multiplied by bᵀ. Where b does not
-//! determine w the term is that of the brackets, p·δw_s = (c_rs^m η_r + c_0s^m) p_m, as in (9).
+//! δẋ = (δx)˙ = (∂u/∂x) δx + b δw, and δ∫L dt + ∫Q_s ε dt = 0 after an integration by parts. Where w = ẋ these
+//! are Lagrange's equations, δw = 0; otherwise they are Lagrange's for L̂(t, x, ẋ) = L(t, x, w(t, x, ẋ)),
+//! multiplied by bᵀ. Where b does not determine w the term is that of the brackets, p·δw_s = (c_rs^m η_r +
+//! c_0s^m) p_m, as in (9).
 
 use nalgebra::DMatrix;
 

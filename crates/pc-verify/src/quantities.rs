@@ -225,8 +225,8 @@ impl Derivation {
         Ok([rows, rates])
     }
 
-    /// y_f = p·W_f, where the virtual velocities W_f have the free quasi-velocity f equal to 1, the other free ones 0, and
-    /// satisfy the constraints unless all are free.
+    /// y_f = p·W_f, where the virtual velocities W_f have the free quasi-velocity f equal to 1, the other
+    /// free ones 0, and satisfy the constraints unless all are free.
     fn momenta(&self, derived: &Derived, free: &[Free], rounding: &Rounding) -> Result<Momenta, Irregular> {
         let at = &derived.place;
         let k = at.w.len();

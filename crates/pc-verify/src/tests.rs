@@ -163,7 +163,8 @@ torque = [0, 0, 0.7]
     assert_near(&derived.accelerations, &[(0.7 - 20.0 * 0.3 * 0.5f64.sin()) / (0.4 + 2.0 * 0.09)]);
 }
 
-/// z̈ = −g/(1 + k²) along a straight line, λ = −k² g ż/(ẋ² + ẏ² + k⁴ ż²) in ẍ = λ ẋ; here λ is that of ½ the constraint.
+/// z̈ = −g/(1 + k²) along a straight line, λ = −k² g ż/(ẋ² + ẏ² + k⁴ ż²) in ẍ = λ ẋ; here λ is that of ½ the
+/// constraint.
 #[test]
 fn chetaevs_condition_holds_a_nonlinear_constraint() {
     let derived = at_start(

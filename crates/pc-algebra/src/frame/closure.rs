@@ -173,7 +173,8 @@ impl<'g> Frame<'g> {
         defects
     }
 
-    /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ where b is square; `None` if rank b < k.
+    /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ where b is square; `None`
+    /// if rank b < k.
     ///
     /// Coordinates that [follow](Self::followers) others are left out: if the remaining b is square, b⁻¹ is
     /// accurate to the rounding of b, while bᵀb squares the condition of b and, with rounded constants, hides
@@ -235,7 +236,8 @@ impl<'g> Frame<'g> {
         (0..b.rows()).map(weight).collect()
     }
 
-    /// Largest component of Y − c^m X_m relative to its terms, for an operator Y such as [X_r, X_s] whose components are sums.
+    /// Largest component of Y − c^m X_m relative to its terms, for an operator Y such as [X_r, X_s] whose
+    /// components are sums.
     pub(crate) fn residual<const N: usize>(
         &self,
         y: &[[Expr<'g>; N]],

@@ -24,8 +24,8 @@ impl<'g> Frame<'g> {
     /// The c_rs^m with b c_rs = [X_r, X_s] that do not depend on the coordinates.
     ///
     /// # Errors
-    /// [`AlgebraError::Undetermined`] if there may be several; [`AlgebraError::RankDeficient`] naming the first pair for
-    /// which there are none.
+    /// [`AlgebraError::Undetermined`] if there may be several; [`AlgebraError::RankDeficient`] naming the
+    /// first pair for which there are none.
     pub(crate) fn constant_coefficients(
         &self,
         rank: usize,

@@ -92,8 +92,8 @@ impl<'g> Frame<'g> {
         Frame { graph, time, coordinates, b, b0: vec![Expr::ZERO; n], a: None }
     }
 
-    /// The matrix a of η = a ẋ + a_0 where the frame was made [by definitions](Frame::from_definitions): where det a = 0 these
-    /// do not determine ẋ.
+    /// The matrix a of η = a ẋ + a_0 where the frame was made [by definitions](Frame::from_definitions):
+    /// where det a = 0 these do not determine ẋ.
     pub fn definition_matrix(&self) -> Option<&Matrix<Expr<'g>>> {
         self.a.as_ref()
     }

@@ -11,13 +11,13 @@ use pc_expr::{Function, Number, Scalar};
 /// The relative change of an argument that shows how a function magnifies errors: far above rounding.
 const CHANGE: f64 = 1e-12;
 
-/// A number and its weight: the size of the terms that it was added up from, so that its rounding error is of the order of
-/// the weight times the unit of rounding. What is given exactly has weight 0.
+/// A number and its weight: the size of the terms that it was added up from, so that its rounding error is of
+/// the order of the weight times the unit of rounding. What is given exactly has weight 0.
 ///
 ///   w(a + b) = w(a) + w(b),   w(a b) = max(|a b|, |a| w(b), w(a) |b|),   w(f(a)) = max(|f|, |f'| w(a)),
 ///
-/// where in a sum w is at least the absolute value. It is a running error analysis \[N. J. Higham, *Accuracy and Stability of
-/// Numerical Algorithms*, 2002, § 3.3\] without the number of operations.
+/// where in a sum w is at least the absolute value. It is a running error analysis \[N. J. Higham, *Accuracy
+/// and Stability of Numerical Algorithms*, 2002, § 3.3\] without the number of operations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Weighed {
     pub(crate) value: f64,

@@ -99,7 +99,8 @@ impl<'g> Neighbourhood<'g> {
         worst
     }
 
-    /// A neighbourhood in which the expressions have values, if one is found, without any values given for their symbols.
+    /// A neighbourhood in which the expressions have values, if one is found, without any values given for
+    /// their symbols.
     pub fn anywhere(graph: &'g Graph, expressions: &[Expr<'g>]) -> Neighbourhood<'g> {
         let symbols = graph.symbols_of(expressions);
         let about =

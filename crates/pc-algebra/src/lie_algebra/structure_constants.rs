@@ -1,7 +1,8 @@
 //! Structure constants as rationals of any size.
 //!
 //! [`Number`] holds numerators and denominators up to 2⁵³ and rounds beyond; elimination soon leaves that
-//! range. Exact properties of an algebra are therefore computed with [`BigRational`] and converted back to [`Number`] at the end.
+//! range. Exact properties of an algebra are therefore computed with [`BigRational`] and converted back to
+//! [`Number`] at the end.
 
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};

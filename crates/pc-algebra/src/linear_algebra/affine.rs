@@ -4,8 +4,8 @@ use pc_expr::{Expr, Folding, Graph};
 
 use crate::linear_algebra::matrix::Matrix;
 
-/// The coefficients f_s and the rest f_0 of an expression f = f_s z_s + f_0 that is affine in the `symbols` z; `None` for
-/// one that is not.
+/// The coefficients f_s and the rest f_0 of an expression f = f_s z_s + f_0 that is affine in the `symbols`
+/// z; `None` for one that is not.
 ///
 /// |z|, max(z, 0) and the sign of z are not affine, though their second derivatives vanish.
 ///

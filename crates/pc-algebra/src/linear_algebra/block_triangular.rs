@@ -4,8 +4,9 @@
 //! (I. S. Duff, A. M. Erisman, J. K. Reid, *Direct Methods for Sparse Matrices*, 2017, ch. 6). The determinant is the
 //! product of theirs, so each is regular wherever the matrix is.
 
-/// The rows and columns of the diagonal blocks, so that the rows of each have entries in its own columns and in those of
-/// earlier ones only; `entries` are the columns of the entries of each row. `None` if no rows and columns can be matched.
+/// The rows and columns of the diagonal blocks, so that the rows of each have entries in its own columns and
+/// in those of earlier ones only; `entries` are the columns of the entries of each row. `None` if no rows and
+/// columns can be matched.
 pub(crate) fn block_triangular(entries: &[Vec<usize>]) -> Option<Vec<(Vec<usize>, Vec<usize>)>> {
     let n = entries.len();
     let mut row_of = vec![None; n];

@@ -220,8 +220,9 @@ fn cofactor_inverse<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Matrix
     }))
 }
 
-/// A⁻¹ = U⁻¹ D⁻¹ Qᵀ with A = Q U, the columns of Q orthogonal, D = QᵀQ and U unit upper triangular (Gram and Schmidt, without
-/// roots). The D_j are positive wherever A is regular; the rounding error is that of the square of its condition.
+/// A⁻¹ = U⁻¹ D⁻¹ Qᵀ with A = Q U, the columns of Q orthogonal, D = QᵀQ and U unit upper triangular (Gram and
+/// Schmidt, without roots). The D_j are positive wherever A is regular; the rounding error is that of the
+/// square of its condition.
 fn orthogonal_inverse<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
     let m = a.rows();
     let dot = |x: &[Expr<'g>], y: &[Expr<'g>]| graph.dot(x.iter().copied(), y.iter().copied());

@@ -64,8 +64,8 @@ impl<T: MatrixEntry> Matrix<T> {
         matrix
     }
 
-    /// The matrix of `columns` columns with these entries in each row, given with their columns in ascending order; the others
-    /// are zero.
+    /// The matrix of `columns` columns with these entries in each row, given with their columns in ascending
+    /// order; the others are zero.
     ///
     /// # Panics
     /// If a column is out of range.

@@ -21,10 +21,10 @@ use crate::integrals::polynomials::independent;
 /// ∂f/∂y_s y_m that the source adds for other systems is left out: with it (f, g) is not −(g, f). For them use the
 /// [extended](PoissonBracket::extended) bracket.
 ///
-/// Besides the variables, functions may contain symbols that count as constants: the symbols that stand in the tensor, those of
-/// the system it is a bracket of but for its quasi-velocities, and those [declared](PoissonBracket::with_constants). Any
-/// other symbol in a function is an error, quasi-velocities too:
-/// [`Canonical::in_momenta`](pc_mech::Canonical::in_momenta) puts momenta in their place.
+/// Besides the variables, functions may contain symbols that count as constants: the symbols that stand in
+/// the tensor, those of the system it is a bracket of but for its quasi-velocities, and those
+/// [declared](PoissonBracket::with_constants). Any other symbol in a function is an error, quasi-velocities
+/// too: [`Canonical::in_momenta`](pc_mech::Canonical::in_momenta) puts momenta in their place.
 #[derive(Clone, Debug)]
 pub struct PoissonBracket<'g> {
     graph: &'g Graph,

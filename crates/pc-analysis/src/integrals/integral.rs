@@ -93,7 +93,8 @@ impl<'g> Integrals<'g> {
         }
     }
 
-    /// Marks the energy as proved to be conserved, by a theorem where its rate along the equations is not found to vanish.
+    /// Marks the energy as proved to be conserved, by a theorem where its rate along the equations is not
+    /// found to vanish.
     pub fn keep_energy(&mut self, equations: &Equations<'g>) {
         let open = |integral: &&mut Integral<'g>| {
             integral.is_energy() && matches!(integral.verdict, ConservationVerdict::Rate { .. })

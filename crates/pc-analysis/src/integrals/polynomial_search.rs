@@ -60,8 +60,9 @@ impl<'g> Integrals<'g> {
     /// coefficients; those of low degree come first. Other functions of integrals before them are marked as dependent,
     /// such as the third component of the Runge–Lenz vector.
     ///
-    /// They are sought for the values that the parameters have. Where the coefficients are polynomials in the parameters, up to a
-    /// common factor, these stand in them and the integral is proved for all their values.
+    /// They are sought for the values that the parameters have. Where the coefficients are polynomials in the
+    /// parameters, up to a common factor, these stand in them and the integral is proved for all their
+    /// values.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of something that is not of the motion.

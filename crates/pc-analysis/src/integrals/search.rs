@@ -12,9 +12,9 @@ use crate::integrals::rates::{Conservation, Rates};
 const MOST_FUNCTIONS: usize = 150;
 
 impl<'g> Integrals<'g> {
-    /// The declared integrals, the energy, and others that are found, each with a verdict: momenta of cyclic displacements,
-    /// Casimirs, and integrals linear in η with polynomials of low degree as coefficients. `near` has values of time,
-    /// state and parameters.
+    /// The declared integrals, the energy, and others that are found, each with a verdict: momenta of cyclic
+    /// displacements, Casimirs, and integrals linear in η with polynomials of low degree as coefficients.
+    /// `near` has values of time, state and parameters.
     ///
     /// ```
     /// use pc_analysis::Integrals;
@@ -46,7 +46,8 @@ impl<'g> Integrals<'g> {
         Integrals { list }
     }
 
-    /// Adds the energy of all velocities, which a run observes; y·η − L of the independent ones is then called Jacobi's.
+    /// Adds the energy of all velocities, which a run observes; y·η − L of the independent ones is then
+    /// called Jacobi's.
     pub fn add_energy_of_all(
         &mut self,
         equations: &Equations<'g>,

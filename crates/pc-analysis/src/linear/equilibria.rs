@@ -13,8 +13,8 @@ use crate::stability::steady_motion::SteadyOptions;
 use crate::stability::steady_motions::{SAME, periods, primes};
 use crate::stability::steady_search::{EnergyCriterion, Known, NearbySteadyMotion, Seeker, largest};
 
-/// A search for equilibria by Newton's method from many starts: those of a sequence of low discrepancy, multiples of roots of
-/// primes modulo 1 (R. Kronecker, H. Weyl), the same each time.
+/// A search for equilibria by Newton's method from many starts: those of a sequence of low discrepancy,
+/// multiples of roots of primes modulo 1 (R. Kronecker, H. Weyl), the same each time.
 ///
 /// ```
 /// use pc_analysis::{EquilibriumSearch, Leaf, Linearizer};
@@ -40,7 +40,8 @@ pub struct EquilibriumSearch {
 }
 
 impl Default for EquilibriumSearch {
-    /// Angles over a turn about the start, other coordinates and first-order states from it by 2 (1 + |x|) to both sides; 256 starts.
+    /// Angles over a turn about the start, other coordinates and first-order states from it by 2 (1 + |x|) to
+    /// both sides; 256 starts.
     fn default() -> EquilibriumSearch {
         EquilibriumSearch { bounds: Vec::new(), starts: 256 }
     }
@@ -105,15 +106,15 @@ impl EquilibriumSearch {
         EquilibriumSearch { starts, ..self }
     }
 
-    /// The equilibria found, on the leaf of the start (t, y): all rates vanish. No two are the same modulo the periods of
-    /// angles; of a family with one energy there is one member. There may be others.
+    /// The equilibria found, on the leaf of the start (t, y): all rates vanish. No two are the same modulo
+    /// the periods of angles; of a family with one energy there is one member. There may be others.
     ///
-    /// `integrals` are those of the `equations` in independent quasi-velocities, by which the energy criterion judges; `linearizer` is
-    /// of these equations, or of those with multipliers.
+    /// `integrals` are those of the `equations` in independent quasi-velocities, by which the energy
+    /// criterion judges; `linearizer` is of these equations, or of those with multipliers.
     ///
     /// # Errors
-    /// [`AnalysisError::UnknownComponent`], [`AnalysisError::CyclicBox`] or [`AnalysisError::EmptyBox`] for a wrong box;
-    /// [`AnalysisError::DependsOnTime`], [`AnalysisError::LeafUnknown`].
+    /// [`AnalysisError::UnknownComponent`], [`AnalysisError::CyclicBox`] or [`AnalysisError::EmptyBox`] for a
+    /// wrong box; [`AnalysisError::DependsOnTime`], [`AnalysisError::LeafUnknown`].
     pub fn run<'g>(
         &self,
         equations: &Equations<'g>,

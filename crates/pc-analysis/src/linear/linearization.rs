@@ -11,8 +11,9 @@ use crate::numeric::dense::{norm, product};
 use crate::stability::spectrum::Spectrum;
 use crate::stability::steady_motion::{SteadyOptions, first_approximation};
 
-/// δẏ = A δy + B δu, δh = C δy + D δu for small deviations of the reduced state: independent coordinates of the states that
-/// satisfy the constraints, independent quasi-velocities, and first-order states. Inputs deviate from the values they have.
+/// δẏ = A δy + B δu, δh = C δy + D δu for small deviations of the reduced state: independent coordinates of
+/// the states that satisfy the constraints, independent quasi-velocities, and first-order states. Inputs
+/// deviate from the values they have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearization {
     /// Time.
@@ -68,7 +69,8 @@ impl Linearizer {
     /// At the equilibrium or steady motion near a state, found by Newton's method; cyclic coordinates are left out.
     ///
     /// # Errors
-    /// [`AnalysisError::NoSteadyMotion`] with the residual; [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`].
+    /// [`AnalysisError::NoSteadyMotion`] with the residual; [`AnalysisError::DependsOnTime`];
+    /// [`AnalysisError::LeafUnknown`].
     pub fn steady(
         &mut self,
         t: f64,
@@ -100,8 +102,8 @@ impl Linearizer {
         Ok(result)
     }
 
-    /// The Jacobian on the states that satisfy the constraints, at any of them, whether or not it is steady; with all cyclic
-    /// coordinates. The reduced state deviates from a solution that moves there.
+    /// The Jacobian on the states that satisfy the constraints, at any of them, whether or not it is steady;
+    /// with all cyclic coordinates. The reduced state deviates from a solution that moves there.
     ///
     /// # Errors
     /// [`ShapeError`](pc_mech::ShapeError); where f is not defined, as [`rhs`](pc_mech::VectorField::rhs).

@@ -125,8 +125,8 @@ impl Linearizer {
         Linearizer::of(equations.compile_for(options)?, equations, leaf, &[], inputs)
     }
 
-    /// Of equations with multipliers, which are regular wherever the constraints are: no choice of independent velocities is, as
-    /// that of ẏ at the lowest point of a circle.
+    /// Of equations with multipliers, which are regular wherever the constraints are: no choice of
+    /// independent velocities is, as that of ẏ at the lowest point of a circle.
     ///
     /// # Errors
     /// As [`new`](Linearizer::new).
@@ -275,8 +275,9 @@ impl Linearizer {
     /// The equilibrium or steady motion near a state, on the leaf of that state.
     ///
     /// # Errors
-    /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`] where Newton's method would have to know functions of
-    /// the coordinates that are not among those kept, and the state is not steady itself; otherwise as [`SteadyMotion::near`].
+    /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`] where Newton's method would have to
+    /// know functions of the coordinates that are not among those kept, and the state is not steady itself;
+    /// otherwise as [`SteadyMotion::near`].
     pub(super) fn find(
         &mut self,
         t: f64,

@@ -5,8 +5,8 @@ use crate::stability::spectrum::Eigenvalue;
 
 /// The eigenvalues of a linearization for values of a parameter, each followed as a branch.
 ///
-/// From one value to the next those eigenvalues are taken for the same branch that are, in sum of the roots of the distances,
-/// nearest to where the branches lead; where two branches meet, either goes on as either.
+/// From one value to the next those eigenvalues are taken for the same branch that are, in sum of the roots
+/// of the distances, nearest to where the branches lead; where two branches meet, either goes on as either.
 ///
 /// ```
 /// use pc_analysis::{Eigenvalue, RootLocus};

@@ -52,8 +52,9 @@ fn states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
     system.states().iter().map(|&(z, _)| z).collect()
 }
 
-/// The divergence ∂ẋ_i/∂x_i + ∂ẏ_s/∂y_s + ∂ż/∂z of the motion (10), (11): the rate at which phase volume dx dy grows, in
-/// terms of (t, x, y). Under constraints, (34), that of their [free system](pc_nonholo::Constrained::free_system).
+/// The divergence ∂ẋ_i/∂x_i + ∂ẏ_s/∂y_s + ∂ż/∂z of the motion (10), (11): the rate at which phase volume dx
+/// dy grows, in terms of (t, x, y). Under constraints, (34), that of their [free
+/// system](pc_nonholo::Constrained::free_system).
 ///
 /// # Errors
 /// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if the equations have no closed form.
@@ -70,11 +71,12 @@ pub fn divergence<'g>(free: &System<'g>) -> Result<Expr<'g>, AnalysisError> {
     Ok(graph.shorten(&[graph.sum(x.into_iter().chain(y).chain(z))], canonical.momenta())[0])
 }
 
-/// The invariant measure of the motion (10), (11) of a system whose density is a product of powers of `factors`, functions of
-/// (t, x, y) that are not zero, if there is one: ψ̇_i/ψ_i c_i + divergence = 0, solved for rational c_i and proved.
-/// Without `factors` the coordinates, their sines and cosines, det b, the entries of the mass matrix and its determinant are tried: with n = k and forces that have a
-/// potential dx dy/det b is Liouville's dx dp, by the momenta p = ∂L/∂ẋ, y = bᵀp. Under constraints, (34), it is that of their
-/// [free system](pc_nonholo::Constrained::free_system).
+/// The invariant measure of the motion (10), (11) of a system whose density is a product of powers of
+/// `factors`, functions of (t, x, y) that are not zero, if there is one: ψ̇_i/ψ_i c_i + divergence = 0,
+/// solved for rational c_i and proved. Without `factors` the coordinates, their sines and cosines, det b, the
+/// entries of the mass matrix and its determinant are tried: with n = k and forces that have a potential dx
+/// dy/det b is Liouville's dx dp, by the momenta p = ∂L/∂ẋ, y = bᵀp. Under constraints, (34), it is that of
+/// their [free system](pc_nonholo::Constrained::free_system).
 ///
 /// # Errors
 /// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if the equations have no closed form.
@@ -146,8 +148,8 @@ pub(crate) fn simple_factors<'g>(system: &System<'g>, parts: &[Expr<'g>]) -> Vec
     moving.flat_map(|&x| [x, x.sin(), x.cos()]).collect()
 }
 
-/// Simple factors, those of det b where b is square, the diagonal of the mass matrix and its determinant, as far as they are not
-/// constant.
+/// Simple factors, those of det b where b is square, the diagonal of the mass matrix and its determinant, as
+/// far as they are not constant.
 pub(crate) fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, AnalysisError> {
     let graph = system.graph();
     let equations = system.poincare()?;

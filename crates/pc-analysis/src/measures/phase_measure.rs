@@ -48,13 +48,14 @@ impl<'g> MeasureSearch<'g> {
     /// The measure of the motion (10), (11) of a system; under constraints, of their [free
     /// system](pc_nonholo::Constrained::free_system).
     ///
-    /// Where forces other than those of L are functions of the place, or gyroscopic, phase volume grows at the rate
-    /// η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: by (10) what H adds cancels, that of c_rs^m by its
-    /// antisymmetry. N = 1 is a density if this vanishes; with n = k, rank b = k, it is N = 1/det b, by which dx dy is
-    /// Liouville's dx dp: y = bᵀp; and where n − k conditions f(t, x) = 0 are kept, with any choice of as many dependent
-    /// coordinates x_D and the others x_I, N = det(∂f/∂x_D)/det b_I: that of Liouville on each surface f = const. Where no f are
-    /// known N is tried as a product of powers of coordinates, their sines and cosines. For dx dη it is multiplied by det M.
-    /// `positions` are f of a holonomic system, declared integrals of the place are others; `None` says that it is not
+    /// Where forces other than those of L are functions of the place, or gyroscopic, phase volume grows at
+    /// the rate η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: by (10) what H adds cancels, that
+    /// of c_rs^m by its antisymmetry. N = 1 is a density if this vanishes; with n = k, rank b = k, it is N =
+    /// 1/det b, by which dx dy is Liouville's dx dp: y = bᵀp; and where n − k conditions f(t, x) = 0 are
+    /// kept, with any choice of as many dependent coordinates x_D and the others x_I, N = det(∂f/∂x_D)/det
+    /// b_I: that of Liouville on each surface f = const. Where no f are known N is tried as a product of
+    /// powers of coordinates, their sines and cosines. For dx dη it is multiplied by det M. `positions` are f
+    /// of a holonomic system, declared integrals of the place are others; `None` says that it is not
     /// holonomic.
     ///
     /// Else one with these and the factors of [`invariant_measure`] is looked for, then one that has momenta among its

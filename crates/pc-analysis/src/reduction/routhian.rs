@@ -27,12 +27,12 @@ pub struct Routhian<'g> {
 }
 
 impl<'g> Routhian<'g> {
-    /// That of a system, in the velocities of its coordinates whatever its quasi-velocities are. Cyclic are coordinates on which
-    /// neither L nor any force depends and along which no force acts. The p_c have their values where time and state have
-    /// those `at` which the motion starts.
+    /// That of a system, in the velocities of its coordinates whatever its quasi-velocities are. Cyclic are
+    /// coordinates on which neither L nor any force depends and along which no force acts. The p_c have their
+    /// values where time and state have those `at` which the motion starts.
     ///
-    /// None if no coordinate is cyclic, if there are not as many quasi-velocities as coordinates, for systems with first-order
-    /// states or forces that are computed outside, and where L is not quadratic in the ẋ_c.
+    /// None if no coordinate is cyclic, if there are not as many quasi-velocities as coordinates, for systems
+    /// with first-order states or forces that are computed outside, and where L is not quadratic in the ẋ_c.
     ///
     /// # Errors
     /// Those of the change to velocities; [`ExprError`](pc_mech::ExprError) where p_c has no value.

@@ -101,8 +101,9 @@ impl SteadyMotion {
     /// system what is found is an equilibrium of the rates at that time.
     ///
     /// # Errors
-    /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::NotSmooth`] where the rates have no
-    /// derivatives; [`AnalysisError::UnknownComponent`], [`AnalysisError::NotCyclic`] for unsuitable names; otherwise as [`first_approximation`].
+    /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::NotSmooth`] where the
+    /// rates have no derivatives; [`AnalysisError::UnknownComponent`], [`AnalysisError::NotCyclic`] for
+    /// unsuitable names; otherwise as [`first_approximation`].
     pub fn near(
         motion: &mut Motion,
         t: f64,
@@ -183,8 +184,8 @@ impl SteadyMotion {
 /// Its [`Spectrum`] is that of all components, cyclic coordinates among them.
 ///
 /// # Errors
-/// [`ShapeError`](pc_mech::ShapeError); [`EvaluationError::NotCompiled`] without the Jacobian; where f is not defined, as
-/// [`rhs`](VectorField::rhs).
+/// [`ShapeError`](pc_mech::ShapeError); [`EvaluationError::NotCompiled`] without the Jacobian; where f is not
+/// defined, as [`rhs`](VectorField::rhs).
 pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Matrix<f64>, AnalysisError> {
     let n = motion.dim();
     shape("the state", y.len(), n)?;

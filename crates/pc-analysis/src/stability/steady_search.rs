@@ -38,8 +38,8 @@ pub struct NearbySteadyMotion {
     pub tolerance: f64,
     /// The verdict of the first approximation.
     pub first_approximation: Verdict,
-    /// How many directions are neutral, where neighbouring motions approach steady ones: λ = 0 so many times, once for each of
-    /// as many independent integrals, and all other real parts negative.
+    /// How many directions are neutral, where neighbouring motions approach steady ones: λ = 0 so many times,
+    /// once for each of as many independent integrals, and all other real parts negative.
     pub neutral: Option<usize>,
     /// The verdict of the second variation, if the energy and the integrals are conserved.
     pub second_variation: Option<EnergyCriterion>,
@@ -97,8 +97,9 @@ pub enum SteadySearch {
 }
 
 impl SteadySearch {
-    /// The steady motion of `equations` near the start (t, y), among the states in which coordinates that are not
-    /// independent keep their relations; `positions` are the relations that constraints imply, `integrals` the known integrals.
+    /// The steady motion of `equations` near the start (t, y), among the states in which coordinates that are
+    /// not independent keep their relations; `positions` are the relations that constraints imply,
+    /// `integrals` the known integrals.
     pub fn near<'g>(
         equations: &Equations<'g>,
         motion: &mut Motion,

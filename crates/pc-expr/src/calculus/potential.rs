@@ -25,8 +25,8 @@ const MOST_POWER: i32 = 4;
 type Product<'g> = Vec<(Expr<'g>, i32)>;
 
 impl Graph {
-    /// F with ∂F/∂z_i = f_i, if the `form` f_i dz_i is exact and F is found: a combination with rational coefficients of
-    /// products of powers, sines, cosines, exponentials and logarithms like those in the f_i.
+    /// F with ∂F/∂z_i = f_i, if the `form` f_i dz_i is exact and F is found: a combination with rational
+    /// coefficients of products of powers, sines, cosines, exponentials and logarithms like those in the f_i.
     ///
     /// That F has this gradient is proved. An exact form may go unrecognised.
     ///

@@ -52,15 +52,16 @@ impl Graph {
         self.echelon(columns, &[]).null_space().into_iter().map(proposal).filter(holds).collect()
     }
 
-    /// The columns that are combinations of those before them with coefficients a that do not change with the symbols of
-    /// the columns but for `constants`: f_j = Σ_{i<j} a_ji f_i at almost all values, where the a_ji are functions of the
-    /// `constants`.
+    /// The columns that are combinations of those before them with coefficients a that do not change with the
+    /// symbols of the columns but for `constants`: f_j = Σ_{i<j} a_ji f_i at almost all values, where the
+    /// a_ji are functions of the `constants`.
     ///
     /// Each comes with a_j1..a_j,j−1 as fractions, which are 0 for columns that are combinations themselves. They are a
     /// proposal, and right only where the coefficients are rational numbers.
     ///
-    /// The other columns are independent over the functions of the `constants`, for certain; that a column is a combination
-    /// may be missed where functions stand in it of which fingerprints know no identities, or rounded constants.
+    /// The other columns are independent over the functions of the `constants`, for certain; that a column is
+    /// a combination may be missed where functions stand in it of which fingerprints know no identities, or
+    /// rounded constants.
     ///
     /// # Panics
     /// If the columns have different lengths.

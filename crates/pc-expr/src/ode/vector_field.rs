@@ -21,7 +21,8 @@ pub trait VectorField {
     /// [`Failure`] where f is not defined; a recoverable one lets an integrator try a smaller step.
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
 
-    /// Whether [`rhs`](VectorField::rhs) fails where it would write a number that is not finite; if not, integrators check each.
+    /// Whether [`rhs`](VectorField::rhs) fails where it would write a number that is not finite; if not,
+    /// integrators check each.
     fn checks_rates(&self) -> bool {
         false
     }
@@ -131,12 +132,14 @@ pub trait VectorField {
         Ok(())
     }
 
-    /// The explicit dependence of f on t, which an integrator must not step over. It is queried when an integration begins.
+    /// The explicit dependence of f on t, which an integrator must not step over. It is queried when an
+    /// integration begins.
     fn time_dependence(&self) -> TimeDependence {
         TimeDependence::Unknown
     }
 
-    /// The Taylor series of the motion, ready to be expanded, with what has to keep its sign along it and what it costs.
+    /// The Taylor series of the motion, ready to be expanded, with what has to keep its sign along it and
+    /// what it costs.
     ///
     /// # Errors
     /// [`Failure`] that says why there is none: f has to be a program.
@@ -144,11 +147,12 @@ pub trait VectorField {
         Err(Failure::fatal(NoSeries))
     }
 
-    /// Expands the motion through y at time t to an order, at least 1, on the branch of these [sides](TaylorSeries::expand).
-    /// Coefficients need not be finite.
+    /// Expands the motion through y at time t to an order, at least 1, on the branch of these
+    /// [sides](TaylorSeries::expand). Coefficients need not be finite.
     ///
     /// # Errors
-    /// [`Failure`] where f is not defined, as for [`rhs`](VectorField::rhs), and where there is no [series](VectorField::series).
+    /// [`Failure`] where f is not defined, as for [`rhs`](VectorField::rhs), and where there is no
+    /// [series](VectorField::series).
     fn expand(
         &mut self,
         _t: f64,
@@ -159,8 +163,8 @@ pub trait VectorField {
         Err(Failure::fatal(NoSeries))
     }
 
-    /// f as a program to be evaluated at many states at once, with the parameters as they are; none where it is more than
-    /// that, or is to be interpreted.
+    /// f as a program to be evaluated at many states at once, with the parameters as they are; none where it
+    /// is more than that, or is to be interpreted.
     fn lanes(&mut self) -> Option<LaneField> {
         None
     }
@@ -169,7 +173,8 @@ pub trait VectorField {
     /// after an impact: conserved quantities may have new values.
     fn restart(&mut self, _t: f64, _y: &[f64]) {}
 
-    /// The times, in ascending order, at which f is not smooth in t, such as those of a table that it reads: no step crosses one.
+    /// The times, in ascending order, at which f is not smooth in t, such as those of a table that it reads:
+    /// no step crosses one.
     fn breaks(&self) -> &[f64] {
         &[]
     }

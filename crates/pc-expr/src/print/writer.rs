@@ -300,7 +300,8 @@ impl<'d> Writer<'d> {
     }
 }
 
-/// Whether q·(c + Σ…) is shorter with q multiplied in: −(a − b) is b − a, +(a − b) is a − b, and (2·a − 1)/2 is a − 1/2.
+/// Whether q·(c + Σ…) is shorter with q multiplied in: −(a − b) is b − a, +(a − b) is a − b, and (2·a − 1)/2
+/// is a − 1/2.
 fn opens(q: Number, constant: Number, terms: &[(NodeId, Number)]) -> bool {
     let whole = |c: Number| matches!(c, Number::Rational { num, den: 1 } if num != 0);
     let fraction = matches!(q, Number::Rational { den, .. } if den > 1);

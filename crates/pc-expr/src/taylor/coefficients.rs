@@ -175,7 +175,8 @@ impl TaylorSeries {
         }
     }
 
-    /// The coefficients of the [branch functions](TaylorSeries::branches), of an order below that of the last expansion.
+    /// The coefficients of the [branch functions](TaylorSeries::branches), of an order below that of the last
+    /// expansion.
     ///
     /// # Panics
     /// If k is not below it.

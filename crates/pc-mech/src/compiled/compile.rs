@@ -24,8 +24,8 @@ impl<'g> Equations<'g> {
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor
-    /// declared parameter; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) where a joint of a tree moves
-    /// nothing that has inertia.
+    /// declared parameter; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) where a joint
+    /// of a tree moves nothing that has inertia.
     pub fn compile(&self) -> Result<Motion, MechError> {
         self.compile_for(CompileOptions::default())
     }

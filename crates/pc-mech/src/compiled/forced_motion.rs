@@ -107,9 +107,10 @@ fn derived(options: CompileOptions) -> CompileOptions {
 }
 
 impl Motion {
-    /// The motion under the forces of `force` on the quasi-velocities called `names`: those for which external forces were
-    /// [declared](crate::SystemBuilder::external_force), in that order. It [keeps](Motion::keep) the same integrals.
-    /// It has a Jacobian if this motion has one and [that by its parameters](CompileOptions::parameter_jacobian).
+    /// The motion under the forces of `force` on the quasi-velocities called `names`: those for which
+    /// external forces were [declared](crate::SystemBuilder::external_force), in that order. It
+    /// [keeps](Motion::keep) the same integrals. It has a Jacobian if this motion has one and [that by its
+    /// parameters](CompileOptions::parameter_jacobian).
     ///
     /// # Errors
     /// [`ForceError::NoneDeclared`] without names; [`ShapeError`] for more names than the motion has inputs.
@@ -207,7 +208,8 @@ impl<F: ExternalForce> ForcedMotion<F> {
         }
     }
 
-    /// Writes the observables at (t, y) to `values` without computing the forces; those that contain one are not finite.
+    /// Writes the observables at (t, y) to `values` without computing the forces; those that contain one are
+    /// not finite.
     ///
     /// # Panics
     /// As for [`Motion::observe_to`].

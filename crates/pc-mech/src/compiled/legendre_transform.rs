@@ -242,8 +242,8 @@ impl LegendreTransform {
             .map_err(|failure| self.error(failure, t, state))
     }
 
-    /// (x, η) of the state (x, y), length n + k both; first-order states follow and stay. Where L is not quadratic, Newton's method finds it from
-    /// the [guess](crate::Canonical::with_guess).
+    /// (x, η) of the state (x, y), length n + k both; first-order states follow and stay. Where L is not
+    /// quadratic, Newton's method finds it from the [guess](crate::Canonical::with_guess).
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError);
@@ -256,8 +256,8 @@ impl LegendreTransform {
         Ok(result)
     }
 
-    /// Writes (x, η) of the state (x, y) to `result`, as [`to_quasi_velocities`](LegendreTransform::to_quasi_velocities) gives
-    /// it.
+    /// Writes (x, η) of the state (x, y) to `result`, as
+    /// [`to_quasi_velocities`](LegendreTransform::to_quasi_velocities) gives it.
     ///
     /// # Errors
     /// As there.

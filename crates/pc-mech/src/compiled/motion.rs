@@ -146,8 +146,8 @@ impl Motion {
         }
     }
 
-    /// The same motion with the values of some of its parameters read from tables at each evaluation. No step of an integrator
-    /// crosses their times.
+    /// The same motion with the values of some of its parameters read from tables at each evaluation. No step
+    /// of an integrator crosses their times.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -216,7 +216,8 @@ impl Motion {
     /// Writes the observables at (t, y) to `values`, as [`observe`](Motion::observe) gives them.
     ///
     /// # Panics
-    /// If `y` does not have the length of the state, or `values` not that of [`observable_names`](Motion::observable_names).
+    /// If `y` does not have the length of the state, or `values` not that of
+    /// [`observable_names`](Motion::observable_names).
     pub fn observe_to(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.watch(t, y, values, true);
     }
@@ -236,8 +237,8 @@ impl Motion {
         }
     }
 
-    /// The same motion of a system; it does not [lead](VectorField::leads) past a place where definitions of quasi-velocities by
-    /// velocities do not determine the ones by the others.
+    /// The same motion of a system; it does not [lead](VectorField::leads) past a place where definitions of
+    /// quasi-velocities by velocities do not determine the ones by the others.
     ///
     /// # Errors
     /// [`MechError`] if the frame contains a symbol that is neither a coordinate nor a parameter.
@@ -373,8 +374,8 @@ impl Motion {
         }
     }
 
-    /// The numbers that [`machine_code`](Motion::machine_code) takes for parameters, for their current values: these, and what is
-    /// computed of them alone. None where M is factorised in numbers.
+    /// The numbers that [`machine_code`](Motion::machine_code) takes for parameters, for their current
+    /// values: these, and what is computed of them alone. None where M is factorised in numbers.
     pub fn code_parameters(&mut self) -> Option<&[f64]> {
         match &mut self.form {
             Form::Unrolled(unrolled) => Some(unrolled.code_parameters(&self.parameters)),

@@ -33,7 +33,8 @@ pub struct CompileOptions {
     pub(crate) elimination: TreeElimination,
 }
 
-/// How accelerations of [bodies joined by joints](crate::Tree) are solved for. The numbers are the same but for rounding.
+/// How accelerations of [bodies joined by joints](crate::Tree) are solved for. The numbers are the same but
+/// for rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TreeElimination {
     /// By joints where that takes fewer operations, as it does for all large trees.

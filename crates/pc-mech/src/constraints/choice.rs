@@ -27,7 +27,8 @@ struct Weighed {
 }
 
 impl<'g> Multipliers<'g> {
-    /// The same with these quasi-velocities, k − m of them, as the [independent](Multipliers::in_independent_velocities) ones.
+    /// The same with these quasi-velocities, k − m of them, as the
+    /// [independent](Multipliers::in_independent_velocities) ones.
     ///
     /// # Errors
     /// [`ConstraintError::NotIndependent`] if their number is wrong, one is not the system's, or they do not determine
@@ -77,8 +78,9 @@ impl<'g> Multipliers<'g> {
         Ok(self.depending(dependent))
     }
 
-    /// The same with the independent quasi-velocities whose equations, as `derive` makes them, are shortest in print among those
-    /// that are regular at the values `at`; among equally short ones, those whose constraints are solved best.
+    /// The same with the independent quasi-velocities whose equations, as `derive` makes them, are shortest
+    /// in print among those that are regular at the values `at`; among equally short ones, those whose
+    /// constraints are solved best.
     ///
     /// With more than 20 choices, more than 3 constraints or a long Lagrangian no equations are compared: C is then
     /// eliminated with the pivot that is shortest in print among those of at least a tenth of the largest.

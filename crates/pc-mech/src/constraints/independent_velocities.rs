@@ -210,9 +210,9 @@ impl<'g> Multipliers<'g> {
         Ok(graph.shorten(&reactions, &system.collecting_order()))
     }
 
-    /// The m indices of the quasi-velocities that the constraints determine best at the values `at` of time, coordinates
-    /// and quasi-velocities, in ascending order, or the [preferred](Multipliers::preferring) ones where they can be
-    /// solved for; `at` may have other values of parameters.
+    /// The m indices of the quasi-velocities that the constraints determine best at the values `at` of time,
+    /// coordinates and quasi-velocities, in ascending order, or the [preferred](Multipliers::preferring) ones
+    /// where they can be solved for; `at` may have other values of parameters.
     ///
     /// # Errors
     /// [`ConstraintError::Singular`] if the constraints are dependent there;

@@ -68,8 +68,9 @@ impl<'g> Equations<'g> {
         })
     }
 
-    /// Whether derivatives of the right-hand side are too long to be written out, as [`emit`](Equations::emit) does not: those
-    /// of a [directional](SourceFunction::directional) function would take compilers minutes, too.
+    /// Whether derivatives of the right-hand side are too long to be written out, as
+    /// [`emit`](Equations::emit) does not: those of a [directional](SourceFunction::directional) function
+    /// would take compilers minutes, too.
     ///
     /// # Errors
     /// As for [`emit`](Equations::emit).
@@ -134,8 +135,8 @@ impl<'g> Equations<'g> {
         if short { lines } else { Vec::new() }
     }
 
-    /// The table of a right-hand side whose Jacobian would be too long as statements: its operations, those of the mass matrix
-    /// and of the energy.
+    /// The table of a right-hand side whose Jacobian would be too long as statements: its operations, those
+    /// of the mass matrix and of the energy.
     fn shared(
         &self,
         writer: &Writer<'_, 'g>,

@@ -8,8 +8,8 @@ use pc_expr::Expr;
 use crate::error::{LagrangianError, MechError, ShapeError};
 use crate::system::system::System;
 
-/// The equations of motion ẋ = b η + b_0 (3), M η̇ = r, which are (9) with n coordinates and k quasi-velocities, or (30)
-/// with l free ones in place of k.
+/// The equations of motion ẋ = b η + b_0 (3), M η̇ = r, which are (9) with n coordinates and k
+/// quasi-velocities, or (30) with l free ones in place of k.
 #[derive(Clone, Debug)]
 pub struct Equations<'g> {
     pub(crate) system: System<'g>,

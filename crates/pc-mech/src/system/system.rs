@@ -87,12 +87,14 @@ impl<'g> System<'g> {
         self.tree.as_ref().map(|tree| &tree.tree)
     }
 
-    /// That tree, if its equations are too long to be written out whole: they are derived, compiled and printed from body to body.
+    /// That tree, if its equations are too long to be written out whole: they are derived, compiled and
+    /// printed from body to body.
     pub fn large_tree(&self) -> Option<&Tree<'g>> {
         self.tree().filter(|tree| tree.is_large())
     }
 
-    /// The acceleration of gravity of a [tree](System::tree), along the axes of the world; zero of a system that is none.
+    /// The acceleration of gravity of a [tree](System::tree), along the axes of the world; zero of a system
+    /// that is none.
     pub fn gravity(&self) -> [Expr<'g>; 3] {
         self.tree.as_ref().map_or([Expr::ZERO; 3], |tree| tree.gravity)
     }
@@ -123,8 +125,8 @@ impl<'g> System<'g> {
         &self.forces
     }
 
-    /// The symbols in Q that stand for [external forces](crate::SystemBuilder::external_force), each with the name of the
-    /// quasi-velocity on which it acts, in the order of declaration.
+    /// The symbols in Q that stand for [external forces](crate::SystemBuilder::external_force), each with the
+    /// name of the quasi-velocity on which it acts, in the order of declaration.
     pub fn external_forces(&self) -> &[(String, Expr<'g>)] {
         &self.external
     }

@@ -6,7 +6,8 @@ use pc_expr::Expr;
 use crate::error::{MechError, shape};
 use crate::system::system::System;
 
-/// A system in other quasi-velocities η' = A η + A_0, with these in terms of the old ones, and the old ones in terms of them.
+/// A system in other quasi-velocities η' = A η + A_0, with these in terms of the old ones, and the old ones
+/// in terms of them.
 #[derive(Clone, Debug)]
 pub struct QuasiVelocityChange<'g> {
     system: System<'g>,

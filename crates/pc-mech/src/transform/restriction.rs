@@ -15,8 +15,8 @@ impl<'g> System<'g> {
     /// lose, counts among its forces, so that its [canonical](System::canonical) equations are (34), with y_s =
     /// ∂θ/∂η_s.
     ///
-    /// Its structure coefficients are the c_rs^m, m ≤ `free`, which are not those of its frame unless the constraints are
-    /// integrable; the bracket that they define does not satisfy Jacobi's identity.
+    /// Its structure coefficients are the c_rs^m, m ≤ `free`, which are not those of its frame unless the
+    /// constraints are integrable; the bracket that they define does not satisfy Jacobi's identity.
     ///
     /// # Errors
     /// [`ShapeError`] if there are fewer than `free` quasi-velocities.

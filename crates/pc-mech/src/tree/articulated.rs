@@ -5,9 +5,9 @@
 //!
 //!   n = J α + H a + n_0,   f = Hᵀ α + M a + f_0,
 //!
-//! with the moment n about its origin and the acceleration a of this. A joint that leaves the component c free, where the force
-//! with the moment n about its origin and the acceleration a of that. A free component c of a joint, with the
-//! force τ, is eliminated as a row of a symmetric matrix Φ = (J H; Hᵀ M) is:
+//! with the moment n about its origin and the acceleration a of this. A joint that leaves the component c
+//! free, where the force with the moment n about its origin and the acceleration a of that. A free component
+//! c of a joint, with the force τ, is eliminated as a row of a symmetric matrix Φ = (J H; Hᵀ M) is:
 //!   w_c = (τ − p_c − Σ_{r≠c} Φ_cr A_r)/Φ_cc,   Φ ← Φ − Φ_c Φ_cᵀ/Φ_cc,   p ← p + Φ_c (τ − p_c)/Φ_cc.
 //!
 //! This is the elimination M = Lᵀ D L of the mass matrix of all of the tree, in an order in which it does not fill in

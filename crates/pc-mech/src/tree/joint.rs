@@ -7,8 +7,8 @@ use crate::tree::spatial::{Tensor, Vector, ZERO, entries_of, unit};
 
 /// A joint: how a body moves relative to its parent.
 ///
-/// It stands at a point of the parent, with axes of its own. The origin of the body is the point of the joint, and the axes of
-/// the body are those of the joint where all coordinates of the joint vanish.
+/// It stands at a point of the parent, with axes of its own. The origin of the body is the point of the
+/// joint, and the axes of the body are those of the joint where all coordinates of the joint vanish.
 ///
 /// | kind | movement of the body | coordinates, quasi-velocities of a body `arm` |
 /// |---|---|---|
@@ -80,7 +80,8 @@ impl<'g> Joint<'g> {
         Joint::of(Kind::Universal(first, second))
     }
 
-    /// Slides along two axes orthogonal to a normal, which makes them a right-handed system, and turns about the normal. For the normal (0, 0, 1) they are x and y.
+    /// Slides along two axes orthogonal to a normal, which makes them a right-handed system, and turns about
+    /// the normal. For the normal (0, 0, 1) they are x and y.
     pub fn planar(normal: [f64; 3]) -> Joint<'g> {
         Joint::of(Kind::Planar(normal))
     }

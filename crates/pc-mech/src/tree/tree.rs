@@ -15,8 +15,9 @@ use crate::tree::spatial::{
 
 /// Bodies joined by joints: one or more trees that hang on the world.
 ///
-/// Its coordinates are those of the joints, in the order in which the bodies are declared; its quasi-velocities are velocities of a
-/// body against its parent. The velocities of a body follow from those of its parent,
+/// Its coordinates are those of the joints, in the order in which the bodies are declared; its
+/// quasi-velocities are velocities of a body against its parent. The velocities of a body follow from those
+/// of its parent,
 ///
 /// ω = Rᵀ ω_p + ω_joint, v = Rᵀ (v_p + ω_p × r) + v_joint,
 ///
@@ -72,8 +73,9 @@ impl<'g> Tree<'g> {
     /// The tree of bodies, declared in any order.
     ///
     /// # Errors
-    /// [`TreeError`] for two bodies of one name, a parent that there is not, parents in a circle, an axis without a direction,
-    /// or a list of names that does not fit its joint; [`BodyError`](crate::BodyError) for a rotation that is none.
+    /// [`TreeError`] for two bodies of one name, a parent that there is not, parents in a circle, an axis
+    /// without a direction, or a list of names that does not fit its joint; [`BodyError`](crate::BodyError)
+    /// for a rotation that is none.
     pub fn new(
         graph: &'g Graph,
         bodies: impl IntoIterator<Item = TreeBody<'g>>,
@@ -265,8 +267,8 @@ impl<'g> Tree<'g> {
         self.is_nowhere_negative(&[])
     }
 
-    /// Whether, at these values of the parameters, no body has a negative mass, or a negative moment of inertia about any axis
-    /// through its mass centre: then no motion has a negative kinetic energy.
+    /// Whether, at these values of the parameters, no body has a negative mass, or a negative moment of
+    /// inertia about any axis through its mass centre: then no motion has a negative kinetic energy.
     pub fn is_nowhere_negative(&self, parameters: &[(Expr<'g>, f64)]) -> bool {
         let numbers =
             |body: &TreeBody<'g>| [vec![body.mass], entries_of(&body.inertia.matrix()).concat()].concat();

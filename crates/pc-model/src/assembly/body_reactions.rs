@@ -20,8 +20,9 @@ struct Resultants<'g> {
 }
 
 impl<'g> Assembler<'g, '_> {
-    /// The system with the forces and torques of the reactions on bodies put into its integrals and outputs, and as more
-    /// outputs where all reactions are to be observed; and what of them is not determined, in words.
+    /// The system with the forces and torques of the reactions on bodies put into its integrals and outputs,
+    /// and as more outputs where all reactions are to be observed; and what of them is not determined, in
+    /// words.
     ///
     /// # Errors
     /// [`MeaningError::ForceNotDetermined`] if such a one is named.

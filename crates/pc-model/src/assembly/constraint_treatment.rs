@@ -277,7 +277,8 @@ impl<'g> ConstraintTreatment<'g> {
         Ok(multipliers.reactions().iter().copied().zip(places.map(|a| values[a])).collect())
     }
 
-    /// The equations with multipliers, if a constraint is not affine in the velocities: there are no independent ones then.
+    /// The equations with multipliers, if a constraint is not affine in the velocities: there are no
+    /// independent ones then.
     pub fn nonlinear(&self) -> Option<&Multipliers<'g>> {
         self.multipliers.as_ref().filter(|multipliers| multipliers.is_nonlinear())
     }

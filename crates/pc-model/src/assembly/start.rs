@@ -30,7 +30,8 @@ pub(super) struct Given {
     pub(super) states: Vec<f64>,
 }
 
-/// The start values alone: of coordinates, of the declared quasi-velocities or of the velocities, of first-order states.
+/// The start values alone: of coordinates, of the declared quasi-velocities or of the velocities, of
+/// first-order states.
 ///
 /// # Errors
 /// [`ModelError`] where one is not a number.
@@ -105,8 +106,8 @@ impl<'g> Assembler<'g, '_> {
     /// ones are zero.
     ///
     /// # Errors
-    /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`] where those
-    /// that complete the definitions are left open.
+    /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`]
+    /// where those that complete the definitions are left open.
     pub(super) fn start_state(
         &self,
         frame: &Frame<'g>,

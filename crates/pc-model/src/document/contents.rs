@@ -24,8 +24,8 @@ pub struct Document {
     pub definitions: Vec<NamedExpression>,
     /// Coordinates, each with its start value: those of joints, then what else is in `[coordinates]`.
     pub coordinates: Vec<NamedExpression>,
-    /// Quasi-velocities: those of joints unless all velocities are `x'`, then what else is in `[quasi_velocities]` but for
-    /// entries `"x'"`.
+    /// Quasi-velocities: those of joints unless all velocities are `x'`, then what else is in
+    /// `[quasi_velocities]` but for entries `"x'"`.
     pub quasi_velocities: Vec<QuasiVelocity>,
     /// Entries `"x'" = value` of `[quasi_velocities]`: start velocities by the names of coordinates, without prime.
     pub start_velocities: Vec<NamedExpression>,

@@ -174,7 +174,8 @@ pub struct Point {
     pub body: Located<String>,
     /// Where it is, in body axes from the origin of the body; this origin where it is left out.
     pub at: Option<[Expression; 3]>,
-    /// `NAME_x` to `NAME_z`, its place along fixed axes, then `NAME_11` to `NAME_33`, the rotation of its body, row after row.
+    /// `NAME_x` to `NAME_z`, its place along fixed axes, then `NAME_11` to `NAME_33`, the rotation of its
+    /// body, row after row.
     pub components: Vec<Name>,
 }
 

@@ -36,7 +36,8 @@ impl Model {
         }
     }
 
-    /// Compiles the equations with multipliers and tries them at the start (x, η, z) with all η, which is returned with them.
+    /// Compiles the equations with multipliers and tries them at the start (x, η, z) with all η, which is
+    /// returned with them.
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be evaluated there.

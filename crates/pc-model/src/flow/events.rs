@@ -67,8 +67,8 @@ struct OffConstraints {
 }
 
 impl FlowEvents {
-    /// The events of a model whose states are read in this way; `watch` is the motion of all quasi-velocities where there
-    /// are multipliers.
+    /// The events of a model whose states are read in this way; `watch` is the motion of all quasi-velocities
+    /// where there are multipliers.
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be compiled.

@@ -12,8 +12,8 @@ use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
 impl<'g> Assembly<'g> {
-    /// The parameters that follow others, by their places, each as a function of those that follow none. `model` is what this
-    /// was assembled from.
+    /// The parameters that follow others, by their places, each as a function of those that follow none.
+    /// `model` is what this was assembled from.
     ///
     /// # Errors
     /// [`ModelError`] for an expression that means nothing; it would not have been assembled.
@@ -32,8 +32,9 @@ impl<'g> Assembly<'g> {
         Ok(formulas)
     }
 
-    /// The start of a form in its coordinates, quasi-velocities and first-order states: functions of parameters as far as the
-    /// text gives them so, numbers where they are numbers there, follow from velocities, or were moved onto constraints.
+    /// The start of a form in its coordinates, quasi-velocities and first-order states: functions of
+    /// parameters as far as the text gives them so, numbers where they are numbers there, follow from
+    /// velocities, or were moved onto constraints.
     ///
     /// # Errors
     /// As above.

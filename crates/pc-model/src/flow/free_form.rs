@@ -194,9 +194,9 @@ impl<'g> Assembly<'g> {
         matches!(self.constraints.formulation(), ConstraintFormulation::Multipliers(_))
     }
 
-    /// Determinants, functions of time, coordinates and parameters, that vanish where the state of a form does not determine
-    /// velocities, as `within_chart` watches them; none for a matrix of more than four rows, whose
-    /// determinant is not a short expression.
+    /// Determinants, functions of time, coordinates and parameters, that vanish where the state of a form
+    /// does not determine velocities, as `within_chart` watches them; none for a matrix of more than four
+    /// rows, whose determinant is not a short expression.
     pub fn chart_determinants(&self, form: &FreeForm<'g>) -> Vec<Option<Expr<'g>>> {
         let (graph, frame, all) = (self.system.graph(), self.system.frame(), self.system.quasi_velocities());
         if form.system.frame().coordinates() != frame.coordinates() {

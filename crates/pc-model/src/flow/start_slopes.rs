@@ -14,8 +14,8 @@ fn step(value: f64) -> f64 {
 }
 
 impl Flow {
-    /// ∂y₀/∂pⱼ for number j of the [parameters](Model::parameters), the start of a column of
-    /// sensitivities, by central differences of starts: these may be expressions in parameters, or moved to constraints that
+    /// ∂y₀/∂pⱼ for number j of the [parameters](Model::parameters), the start of a column of sensitivities,
+    /// by central differences of starts: these may be expressions in parameters, or moved to constraints that
     /// have parameters.
     ///
     /// # Errors

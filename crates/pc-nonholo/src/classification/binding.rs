@@ -29,11 +29,11 @@ pub struct Redundant {
 
 /// The constraints of a system by rank: those that bind it, and those that follow from them.
 ///
-/// Conditions on velocities are C η + c_0, conditions on positions have the coefficients C_s = X_s f, c_0 = X_0 f. What is
-/// dependent at almost all states is found exactly. An overconstrained mechanism has conditions that are dependent
-/// only where all of them hold: where the start shows this, it is tested numerically at places around it that satisfy
-/// all conditions on positions, and one of these is redundant if it vanishes wherever, near the start, those before it
-/// do.
+/// Conditions on velocities are C η + c_0, conditions on positions have the coefficients C_s = X_s f, c_0 =
+/// X_0 f. What is dependent at almost all states is found exactly. An overconstrained mechanism has
+/// conditions that are dependent only where all of them hold: where the start shows this, it is tested
+/// numerically at places around it that satisfy all conditions on positions, and one of these is redundant if
+/// it vanishes wherever, near the start, those before it do.
 ///
 /// ```
 /// use pc_mech::{Constraint, Graph, System};
@@ -65,8 +65,9 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// Sorts the constraints of a system; positions come first: a condition on velocities may follow from them, but never
-    /// the other way round. [Nonlinear](Constraint::nonlinear) ones bind, and no other follows from them.
+    /// Sorts the constraints of a system; positions come first: a condition on velocities may follow from
+    /// them, but never the other way round. [Nonlinear](Constraint::nonlinear) ones bind, and no other
+    /// follows from them.
     ///
     /// `at` are values of time and coordinates where the motion starts, and may be of more.
     ///

@@ -161,8 +161,9 @@ impl<'g> Voronets<'g> {
         Ok(self.multipliers.eliminated(&self.solved, flat)?.with_added_forces(&lost)?)
     }
 
-    /// Whether the equations are Chaplygin's: neither L, Q nor the coefficients depend on the dependent coordinates, and the α_r
-    /// vanish. Then the equations of the independent coordinates can be integrated alone.
+    /// Whether the equations are Chaplygin's: neither L, Q nor the coefficients depend on the dependent
+    /// coordinates, and the α_r vanish. Then the equations of the independent coordinates can be integrated
+    /// alone.
     pub fn is_chaplygin(&self) -> bool {
         let system = self.held();
         let parts: Vec<Expr<'g>> = std::iter::once(system.lagrangian())

@@ -18,8 +18,8 @@ const WIDTH: usize = 92;
 /// Texts of more lines are folded until opened.
 const LONG_TEXT: usize = 40;
 
-/// All that is known of a model, and of its motion if there is one, as one page for a browser. The same model gives the same
-/// bytes.
+/// All that is known of a model, and of its motion if there is one, as one page for a browser. The same model
+/// gives the same bytes.
 ///
 /// # Errors
 /// [`ReportError`] if the equations cannot be derived, or a second derivation disagrees with the first.

@@ -127,8 +127,7 @@ fn over_time(record: &Record, title: &str, scale: Scale, curves: Vec<Curve>) -> 
     Panel { span: Some(span), events: record.events.clone(), ..Panel::over("t", title, scale, curves) }
 }
 
-/// log₁₀ |I(t) − I(0)|/|I(0)|; if |I(0)| is at most the drift, the largest |I| replaces it if that is above
-/// 1.
+/// log₁₀ |I(t) − I(0)|/|I(0)|; if |I(0)| is at most the drift, the largest |I|, at least 1, replaces it.
 fn drift(record: &Record, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     let curve = |(name, values): &(String, Vec<f64>)| {
         let start = values.first().copied().unwrap_or(0.0);

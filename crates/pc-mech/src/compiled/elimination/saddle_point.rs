@@ -83,8 +83,8 @@ impl Saddle {
     /// finite.
     ///
     /// # Errors
-    /// [`EvaluationFailure::Constraint`] with k and the index of the constraint that the others leave nothing to restrict;
-    /// [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes.
+    /// [`EvaluationFailure::Constraint`] with k and the index of the constraint that the others leave nothing
+    /// to restrict; [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes.
     pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), EvaluationFailure> {
         self.eliminate(lower, values)?;
         self.express_dependent();

@@ -117,8 +117,8 @@ impl KeptIntegrals {
     /// Newton's method for I(t, y) = I_0, each step the shortest.
     ///
     /// # Errors
-    /// [`EvaluationFailure::NotKept`] if the steps do not become shorter, [`EvaluationFailure::Expr`] for values that are
-    /// not finite.
+    /// [`EvaluationFailure::NotKept`] if the steps do not become shorter, [`EvaluationFailure::Expr`] for
+    /// values that are not finite.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         let (mut first, mut before) = (None, f64::INFINITY);
         for _ in 0..MOST_STEPS {

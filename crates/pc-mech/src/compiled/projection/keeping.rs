@@ -100,7 +100,8 @@ impl Motion {
         Ok(self)
     }
 
-    /// Makes the values at (t, y) those to be [kept](Motion::keep) from now on: at another start, or with other parameters.
+    /// Makes the values at (t, y) those to be [kept](Motion::keep) from now on: at another start, or with
+    /// other parameters.
     ///
     /// # Errors
     /// As for [`keep`](Motion::keep).

@@ -123,7 +123,8 @@ impl Surface {
         eta.zip(&self.weights).map(|(eta, weight)| eta * weight.sqrt()).fold(0.0, f64::hypot)
     }
 
-    /// Along g = 0: the step of Newton's method to the nearest point, and the steepest way there; both zero where it is.
+    /// Along g = 0: the step of Newton's method to the nearest point, and the steepest way there; both zero
+    /// where it is.
     ///
     ///   (M − ∂(Cᵀμ)/∂η) δ + Cᵀ ν = −M z,   C δ = 0,   where   M z + Cᵀ μ = M (η − η₀),   C z = 0.
     fn tangents(

@@ -9,10 +9,10 @@ use crate::system::bodies::particle::Particle;
 
 /// A rigid body: mass m, place r(t, x), inertia I, and how it turns.
 ///
-/// Its kinetic energy is ½ m |ṙ|² + ½ ω·Iω (König). That is right if r is the **mass centre** and I is taken about it, and
-/// also if r is any point of the body that is **at rest** (as the fixed point of a top) and I is taken about that
-/// point. For any other point r the energy has the further term m ṙ·(ω × s), s from r to the mass centre, which is not
-/// supported: give the mass centre.
+/// Its kinetic energy is ½ m |ṙ|² + ½ ω·Iω (König). That is right if r is the **mass centre** and I is taken
+/// about it, and also if r is any point of the body that is **at rest** (as the fixed point of a top) and I
+/// is taken about that point. For any other point r the energy has the further term m ṙ·(ω × s), s from r to
+/// the mass centre, which is not supported: give the mass centre.
 ///
 /// The angular velocity ω has components along axes in which I is constant, in general axes fixed in the body. It
 /// follows from a [rotation](RigidBody::rotating), or is [given](RigidBody::turning).
