@@ -136,7 +136,7 @@ pub enum AlgebraError {
         /// The known names.
         known: Vec<&'static str>,
     },
-    /// A structure constant that is a rounded real, in a question that only exact arithmetic answers.
+    /// A structure constant that is a rounded real, where exact arithmetic is needed.
     #[error("c_{r}{s}^{m} = {value} is not a rational number, so nothing exact can be said of the algebra")]
     NotRational {
         /// First lower index.

@@ -122,11 +122,11 @@ pub enum AnalysisError {
     /// A function of a symbol that is not a variable here.
     #[error("`{symbol}` stands in {what}, which can contain {}", quoted(known))]
     NotAVariable {
-        /// What it is a function of.
+        /// The kind of function.
         what: &'static str,
         /// The first symbol that is neither a variable nor declared as constant.
         symbol: String,
-        /// What the function can contain.
+        /// The symbols that the function can contain.
         known: Vec<String>,
     },
     /// An error of the derivation or of the numbers of a motion.

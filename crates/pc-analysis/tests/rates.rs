@@ -45,7 +45,7 @@ fn verdicts_on_the_top() {
     // η̇ may stand in the function: C ω3' = (A − B) ω1 ω2.
     let w3_rate = graph.symbol("ω3'");
     assert_eq!(rates.verdict(c * w3_rate - (a - b) * w1 * w2).unwrap(), Conservation::Conserved);
-    // The same in momenta.
+    // The verdicts in momenta.
     let canonical = lagrange.canonical().unwrap();
     let rates = Rates::canonical(&canonical);
     assert_eq!(rates.verdict(canonical.hamiltonian()).unwrap(), Conservation::Conserved);

@@ -23,7 +23,7 @@ pub enum ExprError {
     /// The [budget](crate::Budget) of the expressions is spent.
     #[error("{stage}: {what} ({nodes} expressions were made)")]
     Spent {
-        /// What is spent.
+        /// The limit that is reached.
         what: Spent,
         /// The stage of the work.
         stage: &'static str,

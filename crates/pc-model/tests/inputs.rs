@@ -38,7 +38,7 @@ fn pull(flow: &mut Flow, t: f64) -> [f64; 2] {
     [rates[1], flow.row(t, &[0.0, 0.0])[3]]
 }
 
-/// Of the parameters, set like these.
+/// An input is listed with the parameters, and set like them.
 #[test]
 fn a_constant_is_set_like_a_parameter() {
     let mut model = model(&text("u = \"m + 1\""));

@@ -60,7 +60,7 @@ impl<'g> NTrailer<'g> {
         NTrailer { graph, car, trailers: Vec::new() }
     }
 
-    /// The same with one more trailer behind, its axle at the distance `length` from the last.
+    /// The train with one more trailer at its end, whose axle is at the distance `length` from the last.
     #[must_use]
     pub fn trailer(mut self, length: Expr<'g>, wagon: Wagon<'g>) -> Self {
         self.trailers.push((length, wagon));

@@ -38,7 +38,7 @@ fn rate<'g>(system: &System<'g>, f: Expr<'g>) -> Expr<'g> {
     system.graph().directional(&[f], &x.chain([(system.frame().time(), Expr::ONE)]).collect::<Vec<_>>())[0]
 }
 
-/// How many of the functions are independent.
+/// The number of independent functions.
 fn rank<'g>(graph: &'g Graph, functions: &[Expr<'g>], variables: &[Expr<'g>]) -> usize {
     graph.generic_rank(&functions.iter().map(|&f| graph.gradient(f, variables)).collect::<Vec<_>>())
 }

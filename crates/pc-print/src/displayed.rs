@@ -25,7 +25,7 @@ use crate::words::short;
 pub struct Display {
     /// A `math` element.
     pub mathml: String,
-    /// The same for a paper, with amsmath.
+    /// The same as LaTeX, with amsmath.
     pub latex: String,
 }
 
@@ -36,7 +36,7 @@ pub struct DisplayedPart {
     pub title: &'static str,
     /// The formulas, where there are any.
     pub display: Option<Display>,
-    /// What is said of them.
+    /// Notes on them.
     pub notes: Vec<String>,
 }
 
@@ -49,7 +49,7 @@ pub struct DisplayedEquations {
     pub parts: Vec<DisplayedPart>,
     /// The whole in plain text instead, where it is written from body to body.
     pub plain: Option<Display>,
-    /// What a right-hand side costs, line by line.
+    /// The cost of a right-hand side, line by line.
     pub operations: Vec<String>,
 }
 
@@ -60,9 +60,9 @@ pub struct DisplayedTheory {
     pub key: &'static str,
     /// The heading.
     pub title: &'static str,
-    /// What the names in its formulas stand for.
+    /// The meanings of the names in its formulas.
     pub names: Option<String>,
-    /// What it says.
+    /// Its contents.
     pub entries: Vec<DisplayedEntry>,
     /// All its formulas for a paper.
     pub latex: Option<String>,
@@ -75,11 +75,11 @@ pub struct DisplayedEntry {
     pub name: Option<String>,
     /// A `math` element, where there are formulas.
     pub mathml: Option<String>,
-    /// What is known of them, in words: proved, disproved, open.
+    /// The verdict on them, in words: proved, disproved, open.
     pub verdict: Option<String>,
     /// Names with numbers.
     pub values: Vec<String>,
-    /// What else is said.
+    /// Further sentences.
     pub words: Vec<String>,
     /// Real and imaginary parts of eigenvalues.
     pub spectrum: Vec<(f64, f64)>,

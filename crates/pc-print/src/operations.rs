@@ -14,7 +14,7 @@ pub struct Operations {
 }
 
 impl Operations {
-    /// Those of Poincaré's equations.
+    /// The operations of Poincaré's equations.
     ///
     /// # Errors
     /// [`ExprError`] if the right-hand side cannot be compiled.
@@ -24,7 +24,7 @@ impl Operations {
         Operations::counted(system, system.quasi_velocities(), &rates)
     }
 
-    /// Those of the canonical equations; where they are not closed, with the quasi-velocities given.
+    /// The operations of the canonical equations; where they are not closed, with the quasi-velocities given.
     ///
     /// # Errors
     /// As [`of`](Operations::of).
@@ -35,7 +35,7 @@ impl Operations {
         Operations::counted(system, &[equations.momenta(), implicit].concat(), &rates)
     }
 
-    /// Those of `rates`, functions of time, coordinates, `moving` and parameters.
+    /// The operations of `rates`, functions of time, coordinates, `moving` and parameters.
     fn counted<'g>(
         system: &System<'g>,
         moving: &[Expr<'g>],

@@ -12,7 +12,7 @@ use crate::sheet::Sheet;
 use crate::visible::{one_line, visible, visible_json};
 use crate::{bodies, json, latex, text};
 
-/// How equations are printed.
+/// The format of a page of equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Page {
     /// For people.

@@ -84,7 +84,7 @@ pub enum Balance<'p> {
 pub struct Brackets<'p> {
     /// Names of X_1, …: the free quasi-velocities, then those that vanish.
     pub operators: Vec<String>,
-    /// Those that are not zero.
+    /// The brackets that are not zero.
     pub nonzero: Vec<Bracket<'p>>,
     /// Whether the free operators commute.
     pub commute: bool,

@@ -15,7 +15,7 @@ const MOST_NUMBERS: usize = 60_000;
 pub enum SceneShape {
     /// Three numbers: a dot, with a label.
     Point(Option<String>),
-    /// Three numbers for each of so many corners.
+    /// Three numbers for each corner, of which there are so many.
     Line(usize),
     /// Middle, normal, radius.
     Disc,
@@ -23,7 +23,7 @@ pub enum SceneShape {
     Sphere,
     /// Middle, edges, the rows of a rotation.
     Box,
-    /// Where they meet, the rows of a rotation.
+    /// Their common point, the rows of a rotation.
     Axes,
     /// The two ends.
     Spring,
@@ -34,7 +34,7 @@ pub enum SceneShape {
 }
 
 impl SceneShape {
-    /// How many numbers it has in each frame.
+    /// The number of its values in each frame.
     pub fn numbers(&self) -> usize {
         match self {
             SceneShape::Point(_) | SceneShape::Trace | SceneShape::Text(_) => 3,
@@ -90,7 +90,7 @@ fn shown(rows: usize, width: usize) -> Vec<usize> {
 /// Shapes along a motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    /// What is drawn.
+    /// The shapes.
     pub shapes: Vec<SceneShape>,
     /// The times of the frames.
     pub times: Vec<f64>,
@@ -101,8 +101,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// What of a model can be drawn, along a motion; none where there is nothing, or what it depends on was
-    /// not computed.
+    /// The drawing of a model along a motion; `None` if there is nothing to draw, or its variables were not
+    /// computed.
     ///
     /// # Errors
     /// [`ModelError`] if the shapes cannot be resolved or compiled.
@@ -156,7 +156,7 @@ impl Scene {
         self.shapes.iter().map(SceneShape::numbers).sum()
     }
 
-    /// What the player reads: names, then times and numbers as IEEE 754 single precision, the least byte
+    /// The data for the player: names, then times and numbers as IEEE 754 single precision, the least byte
     /// first, in base 64.
     pub(crate) fn data(&self) -> Value {
         let shapes: Vec<Value> = self

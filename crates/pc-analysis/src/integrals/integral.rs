@@ -11,7 +11,7 @@ pub struct Integral<'g> {
     pub name: String,
     /// The function of (t, x, η).
     pub value: Expr<'g>,
-    /// Where it comes from.
+    /// Its origin.
     pub origin: Origin,
     /// The verdict on its rate.
     pub verdict: ConservationVerdict<'g>,
@@ -21,7 +21,7 @@ pub struct Integral<'g> {
     pub dependent: bool,
 }
 
-/// Where an integral comes from.
+/// The origin of an integral.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Origin {
     /// It is declared with the system.

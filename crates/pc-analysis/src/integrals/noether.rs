@@ -22,7 +22,7 @@ pub struct NoetherField<'g> {
 }
 
 impl<'g> NoetherField<'g> {
-    /// That of an integral of (t, x, η), if it is linear in the momenta and the equations are
+    /// The field of an integral of (t, x, η), if it is linear in the momenta and the equations are
     /// [closed](Canonical::is_closed).
     ///
     /// ```

@@ -43,12 +43,12 @@ pub enum AnsatzSearch {
     Made {
         /// The largest degree in the coordinates.
         coefficients: u32,
-        /// How many functions have had an unknown coefficient.
+        /// The number of functions with an unknown coefficient.
         functions: usize,
     },
     /// It was not searched: there are too many functions.
     TooMany {
-        /// How many there are with coefficients that are constant but for the f_m.
+        /// The number of functions with coefficients that contain no coordinates but those of the f_m.
         functions: usize,
     },
     /// It was not searched: the accelerations are too long.

@@ -36,7 +36,7 @@ impl<'g> Integrals<'g> {
         integrals
     }
 
-    /// The same without an ansatz.
+    /// As [`find`](Integrals::find), without an ansatz.
     pub fn known(equations: &Equations<'g>, near: &Neighbourhood<'g>) -> Integrals<'g> {
         let search = Search::new(equations, near);
         let mut list = search.declared();

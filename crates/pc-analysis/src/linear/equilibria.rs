@@ -47,7 +47,7 @@ impl Default for EquilibriumSearch {
     }
 }
 
-/// What was found.
+/// The result of the search.
 #[derive(Clone, Debug)]
 pub struct Equilibria {
     /// The equilibria in ascending order of energy.
@@ -58,7 +58,7 @@ pub struct Equilibria {
     pub bounds: Vec<(String, f64, f64)>,
     /// The number of starts, and of those from which Newton's method converged.
     pub starts: usize,
-    /// Of these.
+    /// The number of starts from which it converged.
     pub converged: usize,
 }
 
@@ -71,11 +71,11 @@ pub struct FoundEquilibrium {
     pub energy: f64,
     /// The first approximation without cyclic coordinates.
     pub linearization: Linearization,
-    /// What is known of its stability.
+    /// The results on its stability.
     pub motion: NearbySteadyMotion,
     /// The dimension of the family of which it is one, beside what cyclic coordinates make of it; 0 if it is isolated.
     pub family: usize,
-    /// How many members of the family were found.
+    /// The number of members of the family that were found.
     pub members: usize,
 }
 

@@ -52,7 +52,7 @@ pub struct Linearization {
     pub second_order: Result<SecondOrder, NoSecondOrder>,
 }
 
-/// Which cyclic coordinates are components of the reduced state.
+/// The cyclic coordinates that are components of the reduced state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum CyclicCoordinates {
     /// None: stability is judged without them.
@@ -80,7 +80,7 @@ impl Linearizer {
         self.steady_with(t, guess, options, CyclicCoordinates::LeftOut)
     }
 
-    /// The same with a choice about the cyclic coordinates.
+    /// As [`steady`](Linearizer::steady), with a choice about the cyclic coordinates.
     ///
     /// # Errors
     /// As there.

@@ -31,7 +31,7 @@ impl<'g> Leaf<'g> {
         Leaf { whole: system.clone(), positions: Vec::new(), kept: Vec::new() }
     }
 
-    /// How many functions of the coordinates the frame keeps, n − rank b.
+    /// The number of functions of the coordinates that the frame keeps, n − rank b.
     pub fn codimension(&self) -> usize {
         self.whole.frame().coordinates().len() - self.whole.frame().rank()
     }
@@ -111,7 +111,7 @@ pub(super) struct Evaluated {
 }
 
 impl Linearizer {
-    /// Of equations in independent quasi-velocities, with the parameters that are inputs.
+    /// Linearizes equations in independent quasi-velocities, with the parameters that are inputs.
     ///
     /// # Errors
     /// [`AnalysisError::UnknownComponent`] for an input that is no parameter; otherwise as
@@ -125,7 +125,7 @@ impl Linearizer {
         Linearizer::of(equations.compile_for(options)?, equations, leaf, &[], inputs)
     }
 
-    /// Of equations with multipliers, which are regular wherever the constraints are: no choice of
+    /// Linearizes equations with multipliers, which are regular wherever the constraints are: no choice of
     /// independent velocities is, as that of ẏ at the lowest point of a circle.
     ///
     /// # Errors
@@ -220,7 +220,7 @@ impl Linearizer {
         self.motion.names()
     }
 
-    /// Where the quasi-velocities stand in the state.
+    /// The range of the quasi-velocities in the state.
     pub fn quasi_velocities(&self) -> Range<usize> {
         self.sizes.coordinates..self.sizes.coordinates + self.sizes.velocities
     }

@@ -27,7 +27,7 @@ pub struct Routhian<'g> {
 }
 
 impl<'g> Routhian<'g> {
-    /// That of a system, in the velocities of its coordinates whatever its quasi-velocities are. Cyclic are
+    /// The Routhian of a system, in the velocities of its coordinates for any quasi-velocities. Cyclic are
     /// coordinates on which neither L nor any force depends and along which no force acts. The p_c have their
     /// values where time and state have those `at` which the motion starts.
     ///

@@ -59,7 +59,7 @@ impl SecondVariation {
         SecondVariation::under(equations, equations.system().integrals(), state)
     }
 
-    /// The same under the given integrals with their names, functions of (x, η) and parameters.
+    /// The second variation under the given integrals with their names, functions of (x, η) and parameters.
     ///
     /// # Errors
     /// As [`at`](SecondVariation::at).

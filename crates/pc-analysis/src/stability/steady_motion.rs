@@ -116,9 +116,9 @@ impl SteadyMotion {
         })
     }
 
-    /// The same among the states with g(y) = 0, for coordinates that are not independent: γ² = 1, say.
+    /// The steady motion among the states with g(y) = 0, for coordinates that are not independent: γ² = 1, say.
     ///
-    /// `surface` answers g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Only
+    /// `surface` returns g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Only
     /// functions g that the motion keeps leave steady motions steady.
     ///
     /// # Errors

@@ -35,7 +35,7 @@ const ZERO: f64 = 1e-8;
 pub struct SteadyMotions {
     /// The motions, the nearest to the start of the model first, no two with the same state.
     pub list: Vec<FoundSteadyMotion>,
-    /// How many starts there were.
+    /// The number of starts.
     pub starts: usize,
 }
 

@@ -38,8 +38,8 @@ pub struct NearbySteadyMotion {
     pub tolerance: f64,
     /// The verdict of the first approximation.
     pub first_approximation: Verdict,
-    /// How many directions are neutral, where neighbouring motions approach steady ones: λ = 0 so many times,
-    /// once for each of as many independent integrals, and all other real parts negative.
+    /// The number of neutral directions, if neighbouring motions approach steady ones: λ = 0 with this
+    /// multiplicity, once for each of as many independent integrals, and all other real parts negative.
     pub neutral: Option<usize>,
     /// The verdict of the second variation, if the energy and the integrals are conserved.
     pub second_variation: Option<EnergyCriterion>,
@@ -87,7 +87,7 @@ pub enum SteadySearch {
     Nonlinear,
     /// The state has too many components.
     TooLarge {
-        /// So many.
+        /// Their number.
         components: usize,
     },
     /// Newton's method did not converge, or converged far from the start.

@@ -293,7 +293,7 @@ impl Graph {
     /// ```
     ///
     /// # Panics
-    /// If one of `symbols` is not a symbol, or stands there twice.
+    /// If one of `symbols` is not a symbol, or occurs twice.
     pub fn jacobian<'g>(&'g self, outputs: &[Expr<'g>], symbols: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
         let nodes: Vec<NodeId> = symbols.iter().map(|s| s.symbol_in(self)).collect();
         let places = SymbolPlaces::of(symbols);

@@ -45,7 +45,7 @@ impl PartialEq for Cancel {
     }
 }
 
-/// Which of the [limits](Limits) is reached.
+/// The [limit](Limits) that is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spent {
     /// The memory.

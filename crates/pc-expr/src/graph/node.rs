@@ -19,7 +19,7 @@ impl NodeId {
     }
 }
 
-/// What an expression is: a constant, or a node.
+/// An expression: a constant, or a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Atom {
     Constant(Number),

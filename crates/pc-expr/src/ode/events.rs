@@ -43,17 +43,17 @@ impl Event {
         Event { name: name.into(), direction: Direction::Both, terminal: false, resets: false }
     }
 
-    /// The same with a direction.
+    /// The event with a direction.
     pub fn direction(self, direction: Direction) -> Event {
         Event { direction, ..self }
     }
 
-    /// Where its function rises through zero.
+    /// The event where its function rises through zero.
     pub fn rising(self) -> Event {
         self.direction(Direction::Rising)
     }
 
-    /// Where its function falls through zero.
+    /// The event where its function falls through zero.
     pub fn falling(self) -> Event {
         self.direction(Direction::Falling)
     }

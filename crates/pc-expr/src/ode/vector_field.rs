@@ -35,7 +35,7 @@ pub trait VectorField {
 
     /// Writes ∂f_i/∂y_j to `jacobian[i + j * dim]` (column-major, dim × dim, every entry written).
     ///
-    /// Called only if [`has_jacobian`](VectorField::has_jacobian) answers true.
+    /// Called only if [`has_jacobian`](VectorField::has_jacobian) returns true.
     ///
     /// # Errors
     /// [`Failure`], as for [`rhs`](VectorField::rhs).
@@ -68,7 +68,7 @@ pub trait VectorField {
 
     /// Writes the product (∂f/∂y) v to `product`; all slices have length [`dim`](VectorField::dim).
     ///
-    /// Called only if [`has_jvp`](VectorField::has_jvp) answers true.
+    /// Called only if [`has_jvp`](VectorField::has_jvp) returns true.
     ///
     /// # Errors
     /// [`Failure`], as for [`rhs`](VectorField::rhs).
@@ -83,7 +83,7 @@ pub trait VectorField {
 
     /// Writes the product (∂f/∂y)ᵀ w to `product`; all slices have length [`dim`](VectorField::dim).
     ///
-    /// Called only if [`has_vjp`](VectorField::has_vjp) answers true.
+    /// Called only if [`has_vjp`](VectorField::has_vjp) returns true.
     ///
     /// # Errors
     /// [`Failure`], as for [`rhs`](VectorField::rhs).
@@ -104,7 +104,7 @@ pub trait VectorField {
 
     /// Writes ∂f_i/∂p_j to `jacobian[i + j * dim]` (column-major, dim × parameters, every entry written).
     ///
-    /// Called only if [`has_parameter_jacobian`](VectorField::has_parameter_jacobian) answers true.
+    /// Called only if [`has_parameter_jacobian`](VectorField::has_parameter_jacobian) returns true.
     ///
     /// # Errors
     /// [`Failure`], as for [`rhs`](VectorField::rhs).
@@ -124,7 +124,7 @@ pub trait VectorField {
 
     /// Moves `y` to the surface of the states at time t, by no more than the error of the method.
     ///
-    /// Called only if [`has_projection`](VectorField::has_projection) answers true.
+    /// Called only if [`has_projection`](VectorField::has_projection) returns true.
     ///
     /// # Errors
     /// [`Failure`] where no state of the surface is found near `y`.
@@ -142,7 +142,7 @@ pub trait VectorField {
     /// what it costs.
     ///
     /// # Errors
-    /// [`Failure`] that says why there is none: f has to be a program.
+    /// [`Failure`] with the reason why there is none: f has to be a program.
     fn series(&mut self) -> Result<&TaylorSeries, Failure> {
         Err(Failure::fatal(NoSeries))
     }
@@ -169,7 +169,7 @@ pub trait VectorField {
         None
     }
 
-    /// Announces that the motion continues from `y` at time t, a state that it did not reach by itself, such as one
+    /// Announces that the motion continues from `y` at time t, a state that it did not reach on its own, such as one
     /// after an impact: conserved quantities may have new values.
     fn restart(&mut self, _t: f64, _y: &[f64]) {}
 

@@ -32,7 +32,7 @@ const PLACEHOLDER: &str = "z10";
 pub struct Given<'g> {
     /// The name.
     pub name: String,
-    /// What it stands for.
+    /// Its value.
     pub value: Expr<'g>,
     /// Whether the value is printed in any case; then the name replaces long values only.
     pub shorthand: bool,
@@ -61,7 +61,7 @@ impl<'g> Side<'g> {
 pub struct Name<'g> {
     /// The name.
     pub name: String,
-    /// What it stands for.
+    /// Its value.
     pub value: Expr<'g>,
     /// Whether it is one of those [`Given`] as a shorthand.
     pub shorthand: bool,

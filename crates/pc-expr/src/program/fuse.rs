@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::program::program::{Instruction, Program, Register};
 
-/// How many operations of each kind one evaluation takes; fused multiply-adds count as one.
+/// The number of operations of each kind in one evaluation; fused multiply-adds count as one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cost(BTreeMap<&'static str, usize>);
 

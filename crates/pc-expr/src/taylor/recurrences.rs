@@ -13,8 +13,8 @@
 //! w = ∫ du/v       w_k = (u_k − S(Dw, v)/k)/v₀      arctan: v = 1 + u²;  arcsin: v = √(1 − u²)
 //! w = arg(x + iy)  w_k = (x₀ y_k − y₀ x_k + (S(Dy, x) − S(Dx, y) − S(Dw, r²))/k)/r₀²
 //! ```
-//! All sums of one order are known before its coefficients are: they are computed together. What has corners
-//! or jumps is taken on the branch that holds, which a factor σ says: |u| = σ u.
+//! All sums of one order are known before its coefficients are: they are computed together. Functions with
+//! corners or jumps are taken on the present branch, by a factor σ: |u| = σ u.
 
 use std::sync::Arc;
 

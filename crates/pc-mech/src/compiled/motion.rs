@@ -237,7 +237,7 @@ impl Motion {
         }
     }
 
-    /// The same motion of a system; it does not [lead](VectorField::leads) past a place where definitions of
+    /// The motion of a system that does not [lead](VectorField::leads) past a place where definitions of
     /// quasi-velocities by velocities do not determine the ones by the others.
     ///
     /// # Errors
@@ -246,7 +246,7 @@ impl Motion {
         Ok(Motion { charts: Chart::of(system)?.into_iter().collect(), ..self })
     }
 
-    /// The same motion in other quasi-velocities η' = A η + A_0, with A for all those of the system in their order;
+    /// The motion in other quasi-velocities η' = A η + A_0, with A for all those of the system in their order;
     /// nor does it lead past a place where η' do not determine η.
     ///
     /// # Errors
@@ -259,7 +259,7 @@ impl Motion {
         Ok(Motion { charts: Chart::of_change(system, change)?.into_iter().collect(), ..self })
     }
 
-    /// The same motion in independent quasi-velocities of a system; nor does it lead past a place where this square
+    /// The motion in independent quasi-velocities of a system; nor does it lead past a place where this square
     /// matrix, by which constraints determine the others, is singular.
     ///
     /// # Errors

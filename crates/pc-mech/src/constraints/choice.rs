@@ -27,7 +27,7 @@ struct Weighed {
 }
 
 impl<'g> Multipliers<'g> {
-    /// The same with these quasi-velocities, k − m of them, as the
+    /// The equations with these quasi-velocities, k − m of them, as the
     /// [independent](Multipliers::in_independent_velocities) ones.
     ///
     /// # Errors
@@ -78,7 +78,7 @@ impl<'g> Multipliers<'g> {
         Ok(self.depending(dependent))
     }
 
-    /// The same with the independent quasi-velocities whose equations, as `derive` makes them, are shortest
+    /// The equations with independent quasi-velocities whose equations, as `derive` makes them, are shortest
     /// in print among those that are regular at the values `at`; among equally short ones, those whose
     /// constraints are solved best.
     ///

@@ -142,7 +142,7 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The same with a preference: the listed quasi-velocities, k − m of them, are taken as
+    /// The equations with a preference: the listed quasi-velocities, k − m of them, are taken as
     /// [independent](Multipliers::in_independent_velocities) wherever they determine the others well.
     #[must_use]
     pub fn preferring(mut self, independent: &[Expr<'g>]) -> Multipliers<'g> {

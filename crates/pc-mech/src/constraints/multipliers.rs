@@ -162,7 +162,7 @@ impl<'g> Multipliers<'g> {
         self.constraints.get(constraint).is_some_and(|c| c.is_holonomic(&self.equations.system))
     }
 
-    /// The same in the velocities of the coordinates, η = a ẋ + a_0 (2): Lagrange's equations with multipliers.
+    /// The equations in the velocities of the coordinates, η = a ẋ + a_0 (2): Lagrange's equations with multipliers.
     ///
     /// # Errors
     /// As for [`System::in_velocities`].
@@ -181,10 +181,11 @@ impl<'g> Multipliers<'g> {
         lagrange.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())
     }
 
-    /// The same with constraints that follow from those held. Those that do so only where these hold replace them
-    /// where these are nearly dependent, as the bars of an overconstrained mechanism take turns in holding it; the
-    /// single reactions are not determined there, and NaN. A [projection](pc_expr::VectorField::project) of the
-    /// compiled motion to a state where one of them does not vanish is refused, as [`ConstraintError::Departed`].
+    /// The equations with constraints that follow from the present ones. Those that do so only where these
+    /// hold replace them where these are nearly dependent, as the bars of an overconstrained mechanism take
+    /// turns in carrying the load; there the single reactions are undetermined, and NaN. A
+    /// [projection](pc_expr::VectorField::project) of the compiled motion to a state where one of them does
+    /// not vanish is refused, as [`ConstraintError::Departed`].
     #[must_use]
     pub fn followed_by(self, followers: &[Constraint<'g>]) -> Multipliers<'g> {
         Multipliers { followers: followers.to_vec(), ..self }
@@ -197,7 +198,7 @@ impl<'g> Multipliers<'g> {
         (0..self.coefficients.columns()).map(on).collect()
     }
 
-    /// The same with the reactions as observables, after all others.
+    /// The equations with the reactions as observables, after all others.
     #[must_use]
     pub fn observe_reactions(self) -> Multipliers<'g> {
         Multipliers { observed: true, ..self }
@@ -352,7 +353,8 @@ impl<'g> Multipliers<'g> {
         self.dependent.as_deref().unwrap_or_default()
     }
 
-    /// The same with the quasi-velocities of these m indices as the dependent ones wherever the others determine them.
+    /// The equations with the quasi-velocities of these m indices as the dependent ones wherever the others
+    /// determine them.
     #[must_use]
     pub fn depending(&self, dependent: Vec<usize>) -> Multipliers<'g> {
         Multipliers { dependent: Some(dependent), ..self.clone() }

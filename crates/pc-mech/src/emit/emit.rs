@@ -52,7 +52,7 @@ impl<'g> Equations<'g> {
         self.emit_with(options, &[])
     }
 
-    /// The same with more functions.
+    /// As [`emit`](Equations::emit), with further functions.
     ///
     /// # Errors
     /// As for [`emit`](Equations::emit).

@@ -87,7 +87,7 @@ pub struct EmittedFile {
     pub text: String,
 }
 
-/// How many numbers a routine writes.
+/// The number of values that a routine writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Extent {
     /// One, which is returned.

@@ -87,7 +87,7 @@ impl<'g> System<'g> {
         self.tree.as_ref().map(|tree| &tree.tree)
     }
 
-    /// That tree, if its equations are too long to be written out whole: they are derived, compiled and
+    /// The [tree](System::tree), if its equations are too long to be written out whole: they are derived, compiled and
     /// printed from body to body.
     pub fn large_tree(&self) -> Option<&Tree<'g>> {
         self.tree().filter(|tree| tree.is_large())
@@ -273,13 +273,13 @@ impl<'g> System<'g> {
         System { integrals: put(&self.integrals), outputs: put(&self.outputs), ..self.clone() }
     }
 
-    /// The same system with more outputs, after those it has.
+    /// The same system with further outputs, after its own.
     #[must_use]
     pub fn with_more_outputs(&self, more: impl IntoIterator<Item = (String, Expr<'g>)>) -> System<'g> {
         System { outputs: self.outputs.iter().cloned().chain(more).collect(), ..self.clone() }
     }
 
-    /// The same system with more generalised forces, one a quasi-velocity.
+    /// The same system with further generalised forces, one for each quasi-velocity.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError) if there are more or fewer.

@@ -41,7 +41,7 @@ impl<'g> System<'g> {
         Ok(self.orthonormal_change(names)?.system().clone())
     }
 
-    /// The same with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
+    /// The system, with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
     ///
     /// # Errors
     /// Those of [`in_orthonormal_frame`](System::in_orthonormal_frame).

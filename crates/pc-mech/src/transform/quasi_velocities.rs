@@ -74,7 +74,7 @@ impl<'g> System<'g> {
         Ok(self.quasi_velocity_change(names, definitions)?.system)
     }
 
-    /// The same with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
+    /// The system, with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
     ///
     /// # Errors
     /// Those of [`in_quasi_velocities`](System::in_quasi_velocities).

@@ -72,7 +72,7 @@ impl<'g> TreeBody<'g> {
         TreeBody { torque: torque.map(Into::into), ..self }
     }
 
-    /// The same with each expression replaced.
+    /// The body with each expression replaced.
     pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> TreeBody<'n> {
         TreeBody {
             name: self.name.clone(),

@@ -7,7 +7,7 @@ use crate::tree::spatial::{Tensor, Vector, ZERO, entries_of, unit};
 
 /// A joint: how a body moves relative to its parent.
 ///
-/// It stands at a point of the parent, with axes of its own. The origin of the body is the point of the
+/// It is at a point of the parent, with axes of its own. The origin of the body is the point of the
 /// joint, and the axes of the body are those of the joint where all coordinates of the joint vanish.
 ///
 /// | kind | movement of the body | coordinates, quasi-velocities of a body `arm` |
@@ -126,7 +126,7 @@ impl<'g> Joint<'g> {
         Joint { names: Some(list), ..self }
     }
 
-    /// The same with each expression replaced.
+    /// The joint with each expression replaced.
     pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Joint<'n> {
         Joint {
             kind: self.kind.map(put),

@@ -48,7 +48,7 @@ pub(crate) enum Hinge<'g> {
 }
 
 impl<'g> Link<'g> {
-    /// The same with each expression replaced.
+    /// The link with each expression replaced.
     pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Link<'n> {
         Link {
             parent: self.parent,
@@ -69,7 +69,7 @@ impl<'g> Hinge<'g> {
         }
     }
 
-    /// The same with each expression replaced.
+    /// The hinge with each expression replaced.
     pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Hinge<'n> {
         match self {
             Hinge::Turn { axis, pitch, angle, rate } => {

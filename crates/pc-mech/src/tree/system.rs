@@ -100,7 +100,7 @@ impl<'g> TreeSystem<'g> {
         self.places.iter().map(|places| places.iter().map(|&place| ordered[place]).collect()).collect()
     }
 
-    /// The same with each expression replaced by one of a graph.
+    /// The system with each expression replaced by one of a graph.
     pub(crate) fn map<'n>(&self, graph: &'n Graph, put: impl Fn(Expr<'g>) -> Expr<'n>) -> TreeSystem<'n> {
         TreeSystem {
             tree: self.tree.map(graph, &put),
@@ -115,7 +115,7 @@ impl<'g> Tree<'g> {
     /// Checks that masses and places are constant in their axes.
     ///
     /// # Errors
-    /// [`TreeError::NotConstant`] with the first of `moving` that stands in one of them.
+    /// [`TreeError::NotConstant`] with the first of `moving` that occurs in one of them.
     pub(crate) fn check_constant(&self, moving: &[Expr<'g>]) -> Result<(), MechError> {
         for body in &self.bodies {
             let parts = [

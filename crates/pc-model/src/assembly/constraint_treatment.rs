@@ -37,7 +37,7 @@ struct Chosen {
     dependent: Vec<usize>,
 }
 
-/// How the constraints are kept.
+/// The formulation of the constraints.
 #[derive(Clone, Debug)]
 pub enum ConstraintFormulation<'g> {
     /// There are none.
@@ -174,7 +174,7 @@ impl<'g> ConstraintTreatment<'g> {
         self.multipliers.as_ref()
     }
 
-    /// How the constraints are kept.
+    /// The formulation of the constraints.
     pub fn formulation(&self) -> &ConstraintFormulation<'g> {
         &self.formulation
     }

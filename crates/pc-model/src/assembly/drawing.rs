@@ -17,9 +17,9 @@ pub type Spot<'g> = [Expr<'g>; 3];
 pub enum Shape<'g> {
     /// A dot, with a label of its own.
     Point {
-        /// Where it is.
+        /// Its place.
         at: Spot<'g>,
-        /// What it is called.
+        /// Its name.
         label: Option<String>,
     },
     /// A broken line.
@@ -31,7 +31,7 @@ pub enum Shape<'g> {
     Disc {
         /// Its middle.
         at: Spot<'g>,
-        /// What is perpendicular to it.
+        /// A vector perpendicular to it.
         normal: Spot<'g>,
         /// Its radius.
         radius: Expr<'g>,
@@ -54,7 +54,7 @@ pub enum Shape<'g> {
     },
     /// The axes of a body that turns.
     Axes {
-        /// Where they meet.
+        /// Their common point.
         at: Spot<'g>,
         /// From its axes to those of space.
         rotation: Matrix<Expr<'g>>,
@@ -73,7 +73,7 @@ pub enum Shape<'g> {
     },
     /// Words.
     Text {
-        /// Where they begin.
+        /// The place where they begin.
         at: Spot<'g>,
         /// The words.
         text: String,
@@ -81,7 +81,7 @@ pub enum Shape<'g> {
 }
 
 impl Model {
-    /// What of the model can be drawn: bodies with the rods from joint to joint, points, then the shapes of `[[draw]]`.
+    /// The drawing of the model: bodies with the rods from joint to joint, points, then the shapes of `[[draw]]`.
     ///
     /// # Errors
     /// [`ModelError`] at the expression that cannot be resolved.

@@ -8,25 +8,25 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::source::{Place, Source};
 use crate::document::text_map::TextMap;
 
-/// A value and where it stands in the file.
+/// A value and its place in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Located<T> {
     /// The value.
     pub value: T,
-    /// Where it stands.
+    /// Its place.
     pub place: Place,
 }
 
-/// A name and where it stands in the file, quotes excluded.
+/// A name and its place in the file, quotes excluded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
     /// The name.
     pub text: String,
-    /// Where it stands.
+    /// Its place.
     pub place: Place,
 }
 
-/// An expression and where it stands in the file.
+/// An expression and its place in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     /// As written, escapes of the TOML string resolved.
@@ -58,7 +58,7 @@ impl Expression {
         Ok(Expression { text, ast, entry: place.entry.clone(), map })
     }
 
-    /// Bytes of the file at which a part of the expression stands.
+    /// Bytes of a part of the expression in the file.
     pub fn locate(&self, span: Span) -> Range<usize> {
         self.map.locate(span.start..span.end)
     }

@@ -32,7 +32,7 @@ impl Prototype {
         Prototype::of(model, &assembly, variables, flow)
     }
 
-    /// That of a flow of the model in these variables. None where the equations may depend on the start or on
+    /// The prototype of a flow of the model in these variables. None where the equations may depend on the start or on
     /// the values of the parameters: momenta solved for velocities near the start, constraints left out
     /// because they follow from others; or where the start has to be solved for.
     pub fn of(model: &Model, assembly: &Assembly<'_>, variables: Variables, flow: Flow) -> Option<Prototype> {
@@ -49,7 +49,7 @@ impl Prototype {
     }
 
     /// The equations with the values of a model of the same text, at its start at time `t`; none if something
-    /// about it has to be looked at closer, by [`Flow::new`].
+    /// about it needs closer examination, by [`Flow::new`].
     pub fn flow(&self, model: &Model, t: f64) -> Option<Flow> {
         let values = model.start().ok()?;
         let start: Vec<f64> =

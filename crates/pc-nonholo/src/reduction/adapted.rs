@@ -42,7 +42,7 @@ impl<'g> Adapted<'g> {
         Ok(Adapted { system: system.in_quasi_velocities(names, &definitions)?, free })
     }
 
-    /// The same with free quasi-velocities of these names, as many as there are, that are orthonormal in the kinetic
+    /// The system with free quasi-velocities of these names, as many as there are, that are orthonormal in the kinetic
     /// metric: their mass matrix is the unit matrix, l × l.
     ///
     /// # Errors

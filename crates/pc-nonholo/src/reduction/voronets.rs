@@ -19,7 +19,7 @@ use crate::reduction::adapted::affine;
 ///   c_0i^r = ∂α_ri/∂t − ∂α_r/∂x_i + α_k ∂α_ri/∂x_k − α_ki ∂α_r/∂x_k,   k = l+1..n.
 #[derive(Clone, Debug)]
 pub struct Voronets<'g> {
-    /// In velocities.
+    /// The equations in velocities.
     multipliers: Multipliers<'g>,
     /// ẋ_r = α_ri ẋ_i + α_r
     solved: Vec<(Expr<'g>, Expr<'g>)>,
@@ -63,7 +63,8 @@ impl<'g> Voronets<'g> {
         })
     }
 
-    /// The same for the independent velocities that make the equations shortest, as [`Multipliers::shortest`] says.
+    /// Voronets' equations for the independent velocities that make the equations shortest, as
+    /// [`Multipliers::shortest`] says.
     ///
     /// # Errors
     /// As [`new`](Voronets::new).

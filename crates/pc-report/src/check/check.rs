@@ -15,7 +15,7 @@ use crate::check::measure::Measure;
 use crate::check::{agreement, combinations, frame, integrals, steady};
 use crate::remarks::{NEGATIVE_ENERGY, dropped};
 
-/// What can be said of a model before it is run.
+/// The properties of a model before it is run.
 #[derive(Clone, Debug)]
 pub struct Check<'g> {
     title: String,
@@ -53,7 +53,7 @@ pub struct Check<'g> {
 }
 
 impl<'g> Check<'g> {
-    /// Of an assembled model with its equations in independent quasi-velocities.
+    /// The properties of an assembled model with its equations in independent quasi-velocities.
     ///
     /// # Errors
     /// [`ModelError`] if something of it cannot be derived.
@@ -114,7 +114,7 @@ impl<'g> Check<'g> {
         })
     }
 
-    /// With the comparison with a second derivation.
+    /// The properties with the comparison with a second derivation.
     pub fn compared(self, second: Result<Agreement, VerifyError>) -> Check<'g> {
         Check { second: Some(second), ..self }
     }

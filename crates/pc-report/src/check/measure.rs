@@ -43,7 +43,7 @@ impl<'g> Measure<'g> {
         Measure { search: Some(search), square, jumps, multiplier }
     }
 
-    /// What to print.
+    /// The lines to print.
     pub(super) fn lines(&self) -> Vec<String> {
         let known = match &self.search {
             None => "not looked for: a constraint is not affine in the velocities".to_owned(),

@@ -14,7 +14,7 @@ const FLOOR: f64 = -17.0;
 /// The greatest ratio of two lengths drawn to the same scale: beyond, the shorter one is invisible.
 const MOST_UNEQUAL: f64 = 6.0;
 
-/// What is to be seen of a motion.
+/// The requested parts of a motion.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// Columns over time; `drift(NAME)` is the relative drift of NAME. Where neither columns nor pairs are given, all.

@@ -32,16 +32,16 @@ const MOST_PANELS: usize = 12;
 /// Panels under a title.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// What they are of.
+    /// The title.
     pub title: String,
-    /// What else is to be said, line by line.
+    /// Further remarks, line by line.
     pub remarks: Vec<String>,
     /// The panels.
     pub panels: Vec<Panel>,
 }
 
 impl Picture {
-    /// What is wanted of a motion.
+    /// The picture of the requested parts of a motion.
     ///
     /// # Errors
     /// [`UnknownColumn`]

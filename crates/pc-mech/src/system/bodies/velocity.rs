@@ -2,7 +2,7 @@
 
 use pc_expr::Expr;
 
-/// How a body moves: ṙ of its point and ω, affine functions of η.
+/// The velocities of a body: ṙ of its point and ω, affine functions of η.
 #[derive(Clone, Debug)]
 pub struct BodyVelocity<'g> {
     pub(crate) name: String,
