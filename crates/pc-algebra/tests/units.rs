@@ -56,7 +56,7 @@ fn a_frame_that_is_closed_up_to_rounding_is_accepted_in_all_units() {
 
 /// A small part that is not closed beside a large closed one: rotations, and ż = 10⁻¹⁰ w1 q2.
 #[test]
-fn a_small_part_is_seen_beside_a_large_one() {
+fn a_small_part_is_detected_beside_a_large_one() {
     let graph = Graph::new();
     let [t, a, b, c, z] = graph.symbols(["t", "a", "b", "c", "z"]);
     let eta = graph.symbols(["w1", "w2", "w3"]);

@@ -104,7 +104,7 @@ fn on_a_plane<'g>(graph: &'g Graph, potential: impl FnOnce(Expr<'g>, Expr<'g>) -
 
 /// Four wells, four passes and a hill of x⁴/4 − x²/2 in both directions.
 #[test]
-fn all_nine_of_four_wells_are_found_again_and_again() {
+fn all_nine_equilibria_of_four_wells_are_found_each_time() {
     let graph = Graph::new();
     let system =
         on_a_plane(&graph, |x, y| x.powi(4) / 4.0 - x.square() / 2.0 + y.powi(4) / 4.0 - y.square() / 2.0);
@@ -144,7 +144,7 @@ fn nothing_is_found_at_infinity() {
 
 /// A cyclic coordinate has any value at an equilibrium, and no box.
 #[test]
-fn cyclic_coordinates_stand_anywhere() {
+fn cyclic_coordinates_have_any_value() {
     let graph = Graph::new();
     let cart = System::builder(&graph)
         .coordinates(["x", "θ"])
@@ -164,7 +164,7 @@ fn cyclic_coordinates_stand_anywhere() {
 }
 
 #[test]
-fn what_is_driven_has_no_equilibria() {
+fn driven_systems_have_no_equilibria() {
     let graph = Graph::new();
     let time = graph.symbol("t");
     let driven = System::builder(&graph)

@@ -178,7 +178,7 @@ fn gyroscopic_forces_are_skew() {
 /// The sleeping top in γ, which moves on a sphere: with γ = γ1 + iγ2 and w = ω1 + iω2, γ̇ = −iωγ + iw and ẇ =
 /// −iωw/2 − iγ, so (λ + iω)(λ + iω/2) = 1: growth by √(1 − ω²/16), below ω = 4.
 #[test]
-fn a_sleeping_top_leaves_the_sphere_to_itself() {
+fn a_sleeping_top_is_linearized_on_its_sphere() {
     let graph = Graph::new();
     let top = System::builder(&graph)
         .coordinates(["γ1", "γ2", "γ3"])

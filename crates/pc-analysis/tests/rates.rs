@@ -95,7 +95,7 @@ fn energy_rate_along<'g>(system: &System<'g>, point: &[(Expr<'g>, f64)]) -> f64 
 /// dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s against the derivative of y·η − L along the motion: in numbers to
 /// the rounding of some hundred operations, and as expressions if there are no roots.
 #[test]
-fn the_energy_changes_at_the_rate_it_should() {
+fn the_energy_rate_agrees_with_the_motion() {
     let graph = Graph::new();
     let hoop = System::builder(&graph)
         .coordinates(["θ"])
@@ -220,7 +220,7 @@ fn lagranges_top_has_a_cyclic_displacement_by_its_symmetry() {
 
 /// A symbol foreign to the motion is not an integral, and a quasi-velocity is not a momentum.
 #[test]
-fn functions_of_something_else_have_neither_rate_nor_bracket() {
+fn functions_of_foreign_symbols_have_neither_rate_nor_bracket() {
     let graph = Graph::new();
     let system = top(&graph, [1.0, 1.0, 0.5], [0.0, 0.0, 1.0]);
     let [a, typo, g1, w1, y1] = graph.symbols(["A", "omega1", "γ1", "ω1", "p_ω1"]);

@@ -455,7 +455,7 @@ fn a_branch_that_is_not_taken_has_no_effect() {
 
 /// At the corner itself the slopes are those of the branch that is taken.
 #[test]
-fn slopes_of_the_greater_of_two_are_those_of_one() {
+fn slopes_of_max_are_those_of_one_branch() {
     let graph = Graph::new();
     let x = graph.symbol("x");
     let guarded = (x.sqrt() - 1.0).max(-x);

@@ -295,7 +295,7 @@ fn expressions_of_two_graphs_do_not_mix() {
 
 #[test]
 #[should_panic(expected = "expected a symbol, found `x + 1`")]
-fn derivatives_are_by_symbols() {
+fn derivatives_by_an_expression_panic() {
     let graph = Graph::new();
     let x = graph.symbol("x");
     let _ = x.sin().derivative(x + 1.0);
@@ -303,7 +303,7 @@ fn derivatives_are_by_symbols() {
 
 #[test]
 #[should_panic(expected = "expected a symbol, found a constant")]
-fn derivatives_are_not_by_constants() {
+fn derivatives_by_a_constant_panic() {
     let graph = Graph::new();
     let x = graph.symbol("x");
     let _ = graph.gradient(x, &[1.0.into()]);

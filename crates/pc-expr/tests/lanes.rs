@@ -180,7 +180,7 @@ proptest! {
 
     /// Each lane, beside neighbours that are NaN, infinite or out of range.
     #[test]
-    fn neither_place_nor_neighbours_matter(seed in any::<u64>(), size in 12usize..200) {
+    fn results_do_not_depend_on_lane_or_neighbours(seed in any::<u64>(), size in 12usize..200) {
         let mut random = SplitMix64::new(seed);
         let program = random_program(&mut random, size, &Function::ALL);
         for kernel in kernels(&tape(&program)) {
@@ -362,7 +362,7 @@ fn functions_have_the_librarys_values_at_special_arguments() {
 
 /// More live values than any processor has registers, read in the order of their creation and in reverse.
 #[test]
-fn values_that_wait_come_back() {
+fn spilled_values_are_restored() {
     let mut tape = LaneTape::new();
     let inputs = tape.inputs(5);
     let mut values: Vec<LaneValue> = inputs.clone();

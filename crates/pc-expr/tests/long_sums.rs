@@ -27,7 +27,7 @@ fn a_long_sum_is_shortened_part_by_part() {
 /// The entries of a Jacobian are those of the gradients, in the same order, and substitution one by one gives
 /// the same as substitution into all expressions at once.
 #[test]
-fn what_is_not_zero_is_what_gradients_have() {
+fn jacobian_entries_are_those_of_gradients() {
     let graph = Graph::new();
     let x: Vec<_> = (0..30).map(|i| graph.symbol(&format!("x{i}"))).collect();
     let functions: Vec<_> =

@@ -309,7 +309,7 @@ fn no_name_breaks_out_of_mathml() {
 
 /// Each line is complete by itself: elements are closed in it, brackets across lines do not grow.
 #[test]
-fn lines_of_mathml_are_whole() {
+fn lines_of_mathml_are_complete() {
     let graph = Graph::with_folding(Folding::Structural);
     let [a, b, x] = graph.symbols(["a", "b", "x"]);
     let line = -x.sin() * (a + b.square() / x);

@@ -12,7 +12,7 @@ fn geometric(x: Expr<'static>, n: i32) -> Expr<'static> {
 /// An expression with a value as written keeps it, whichever other forms of it the graph contains, before or
 /// after.
 #[test]
-fn a_regular_form_gives_way_to_none_that_is_singular_elsewhere() {
+fn singular_forms_do_not_replace_regular_ones() {
     let functions: [Forms; 4] = [
         [
             |x, _| geometric(x, 8),

@@ -294,7 +294,7 @@ fn each_recurrence_is_exact() {
 }
 
 #[test]
-fn sides_at_a_corner_are_those_that_the_motion_goes_to() {
+fn branches_at_a_corner_follow_the_motion() {
     // |u|, sign u, min(u, w), max(u, w), step(u, …) where u and w begin at the same 0.
     let start = [0.0, 0.0, 0.1];
     let (u, w) = (|| Tree::Symbol(1), || Tree::Symbol(2));
@@ -305,7 +305,7 @@ fn sides_at_a_corner_are_those_that_the_motion_goes_to() {
 }
 
 #[test]
-fn time_and_what_does_not_change_are_series_too() {
+fn time_and_constants_are_series() {
     let t = || Tree::Symbol(0);
     let sine = Tree::Call(Function::Sin, vec![Tree::Product(Box::new(t()), Box::new(t()))]);
     check(&[sine, Tree::Number(2.0), t()], 0.8, &[1.0, 0.0, 3.0], ROUNDING);

@@ -103,7 +103,7 @@ fn a_force_from_outside_is_the_force_in_symbols() {
 }
 
 #[test]
-fn parameters_are_apart_from_the_forces() {
+fn parameters_are_separate_from_the_forces() {
     let graph = Graph::new();
     let equations = top(&graph).external_force(["ω3", "ω1"]).build().unwrap().poincare().unwrap();
     let mut motion = equations.compile_forced(Known).unwrap();

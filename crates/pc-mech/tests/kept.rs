@@ -34,7 +34,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[test]
-fn integrals_are_brought_back_in_both_forms() {
+fn states_are_projected_to_integrals_in_both_forms() {
     let graph = Graph::new();
     let system = top(&graph);
     let names = ["norm", "area", "energy"];
@@ -89,7 +89,7 @@ fn constraints_and_energy_hold_together() {
 }
 
 #[test]
-fn an_integral_that_others_imply_is_left_to_them() {
+fn dependent_integrals_follow_from_the_others() {
     let graph = Graph::new();
     let oscillator = System::builder(&graph)
         .coordinates(["x"])
@@ -110,7 +110,7 @@ fn an_integral_that_others_imply_is_left_to_them() {
 }
 
 #[test]
-fn after_an_impact_other_values_are_kept() {
+fn new_values_are_kept_after_an_impact() {
     let graph = Graph::new();
     let equations = top(&graph).poincare().unwrap();
     let kept = equations.kept(&["energy"]).unwrap();
@@ -163,7 +163,7 @@ fn a_rate_that_vanishes_only_at_the_start_is_detected() {
 
 /// The part of y⁺ that a constraint forbids is lost; the allowed part is unchanged.
 #[test]
-fn an_impact_against_a_constraint_loses_its_part() {
+fn an_impact_loses_the_velocity_that_a_constraint_forbids() {
     let graph = Graph::new();
     let particle = System::builder(&graph)
         .coordinates(["x", "y"])

@@ -69,7 +69,7 @@ fn a_state_on_its_constraints_up_to_rounding_stays_there() {
 
 /// A state farther away reaches the constraints, to rounding.
 #[test]
-fn a_state_near_its_constraints_comes_to_them() {
+fn nearby_states_are_projected_to_their_constraints() {
     let graph = Graph::new();
     let mut motion = wheel(&graph).compile().unwrap();
     let mut next = numbers(12);

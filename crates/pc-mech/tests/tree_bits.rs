@@ -87,7 +87,7 @@ fn numbers_do_not_depend_on_what_else_was_derived_in_the_graph() {
 /// With parameters set later, the rates are those compiled with them; so are those of machine code with the
 /// values that depend on parameters alone.
 #[test]
-fn what_parameters_determine_follows_them() {
+fn values_of_parameters_alone_follow_them() {
     let graph = Graph::new();
     let system = tree(&graph);
     let mut motion = compiled(&system);
@@ -125,7 +125,7 @@ fn what_parameters_determine_follows_them() {
 /// An external force and a parameter from a table change at each evaluation, and so do values that depend on
 /// them.
 #[test]
-fn what_may_change_at_any_time_is_not_kept() {
+fn varying_parameters_are_read_at_each_evaluation() {
     let graph = Graph::new();
     let system = tree(&graph);
     let mut motion = compiled(&system);

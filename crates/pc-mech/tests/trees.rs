@@ -434,7 +434,7 @@ fn is_fixed(bodies: &[Hung], i: usize) -> bool {
 }
 
 #[test]
-fn what_joints_bear_changes_the_momenta() {
+fn joint_reactions_change_the_momenta() {
     trees(8, 4, |bodies, numbers| {
         let graph = Graph::new();
         let system = hung(&graph, bodies, true);
@@ -561,7 +561,7 @@ fn a_tree_without_its_cyclic_coordinates_moves_as_before() {
 }
 
 #[test]
-fn what_is_no_tree_is_said() {
+fn invalid_trees_are_refused() {
     let graph = Graph::new();
     let body = |name: &str| TreeBody::new(name, Joint::revolute([0.0, 0.0, 1.0]));
     let error = |bodies: Vec<TreeBody<'_>>| Tree::new(&graph, bodies).unwrap_err().to_string();

@@ -143,7 +143,7 @@ fn refused_body(lines: &str) -> String {
 }
 
 #[test]
-fn expressions_of_bodies_are_refused_where_they_stand() {
+fn expressions_of_bodies_are_refused_with_their_place() {
     let at_rest = "in the mass, inertia, position or rotation of a body\n  help: use parameters, coordinates and t only";
     assert_eq!(
         refused_body("position = [\"x\", \"w*t\", 0]"),
@@ -332,7 +332,7 @@ fn a_matrix_of_redundant_coordinates_is_a_rotation_at_the_start_and_after() {
 
 /// A quaternion of any length rotates: RᵀR = |q|⁴.
 #[test]
-fn a_quaternion_with_a_square_left_out_is_no_rotation() {
+fn a_quaternion_matrix_without_a_square_is_not_a_rotation() {
     let text = |square: &str| {
         format!(
             r#"[coordinates]

@@ -24,7 +24,7 @@ fn oscillator(definitions: &str, potential: &str) -> Model {
 
 /// On a stack too small for a nested call for each of them.
 #[test]
-fn ten_thousand_definitions_one_made_of_the_other_cost_no_stack() {
+fn ten_thousand_nested_definitions_need_no_deep_stack() {
     const COUNT: usize = 10_000;
     const STACK: usize = 256 << 10;
     let follow = || {

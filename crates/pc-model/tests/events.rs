@@ -56,7 +56,7 @@ fn refused(system: &str, event: &str) -> String {
 /// Velocities are expressed by quasi-velocities, definitions by their meaning, resets by their index in (x,
 /// η).
 #[test]
-fn an_event_is_expressions_of_the_state() {
+fn events_are_expressions_in_the_state() {
     let text = format!(
         "{PENDULUM}[events.low]\nwhen = \"height + t + d(height)\"\ndirection = \"rising\"\nterminal = true\n\
          reset = {{ omega = \"-phi'/2\", phi = \"phi + omega\" }}\n[events.\"just so\"]\nwhen = \"omega\"\n"

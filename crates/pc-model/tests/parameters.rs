@@ -58,7 +58,7 @@ fn refused(model: &Model) -> (Category, String) {
 }
 
 #[test]
-fn only_parameters_before_it_may_stand_in_one() {
+fn an_expression_contains_only_earlier_parameters() {
     for (parameters, message, help) in [
         ("a = \"m\"\nm = 1\n", "2:6: [parameters] a: `m` is used before it is defined", "move it up"),
         ("m = \"m + 1\"\n", "2:6: [parameters] m: `m` is used before it is defined", "move it up"),

@@ -58,7 +58,7 @@ fn long_sums_are_handled() {
 }
 
 #[test]
-fn definitions_are_made_of_each_other() {
+fn nested_definitions_are_handled() {
     let chain: Vec<String> = (1..300).map(|i| format!("d{i} = \"sin(d{} + y)\"", i - 1)).collect();
     on_small_stack(model("d299", &format!("d0 = \"x\"\n{}", chain.join("\n"))), true);
 }

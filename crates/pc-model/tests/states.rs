@@ -144,7 +144,7 @@ fn the_mass_of_a_body_may_be_a_state() {
 
 /// A pendulum in Cartesian coordinates with a thrust that builds up, and the same in its angle.
 #[test]
-fn constraints_leave_states_alone() {
+fn constraints_do_not_change_states() {
     const PULLED: &str = r#"[coordinates]
 x = 0.6
 y = -0.8

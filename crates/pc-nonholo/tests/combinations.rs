@@ -45,7 +45,7 @@ fn rank<'g>(graph: &'g Graph, functions: &[Expr<'g>], variables: &[Expr<'g>]) ->
 
 /// k1 does not bind positions; the other constraints add rates of functions to it.
 #[test]
-fn the_integrals_that_were_put_in_are_found() {
+fn known_integrals_are_found() {
     let graph = Graph::new();
     let system = particle(&graph);
     let [t, x, y, z, u, w] = graph.symbols(["t", "x", "y", "z", "u", "w"]);

@@ -59,7 +59,7 @@ fn sort<'g>(
 }
 
 #[test]
-fn constraints_are_sorted_by_frobenius_test() {
+fn constraints_are_classified_by_frobenius_test() {
     let graph = Graph::new();
     let [x, y, z, vx, vy, vz] = graph.symbols(["x", "y", "z", "x'", "y'", "z'"]);
     let system = System::builder(&graph)

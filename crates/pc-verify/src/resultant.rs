@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_with_underscores_are_taken_apart() {
+    fn names_with_underscores_are_parsed() {
         let [constraints, bodies] = [["rod", "rod_a"], ["a_b", "b"]].map(|list| list.map(str::to_owned));
         let found = |name: &str| Resultant::named(name, &constraints, &bodies);
         let rod = Resultant { constraint: 0, body: 0, turns: false, axis: 2 };

@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_coordinates_that_follow_each_other_one_is_left() {
+    fn one_of_two_mutual_followers_is_kept() {
         let graph = Graph::new();
         let [x, y] = graph.symbols(["x", "y"]);
         assert_eq!(followers(&graph, &[x, y], &[&[x], &[3.0 * x]]), [false, true]);

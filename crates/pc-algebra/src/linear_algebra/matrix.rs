@@ -245,7 +245,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zeros_that_are_not_held_are_there() {
+    fn zeros_are_entries_of_a_sparse_matrix() {
         let graph = Graph::new();
         let [x, y] = graph.symbols(["x", "y"]);
         let entry = |i: usize, j: usize| match (i, j) {
@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_held_whole() {
+    fn matrices_of_numbers_are_dense() {
         let a = Matrix::from_rows(2, vec![vec![(1, 3.0)], vec![(0, -1.0)]]);
         assert_eq!(*a.entries(), [0.0, 3.0, -1.0, 0.0]);
         assert_eq!(a.nonzero_rows(), [[(1, 3.0)], [(0, -1.0)]]);

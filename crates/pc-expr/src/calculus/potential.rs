@@ -259,7 +259,7 @@ mod tests {
 
     /// A deeply nested form is refused instead of being descended into.
     #[test]
-    fn deep_forms_are_given_up() {
+    fn deeply_nested_forms_are_refused() {
         let graph = Graph::new();
         let [x, y] = graph.symbols(["x", "y"]);
         let nested = |depth: usize| (0..depth).fold(y, |f, _| (f * x + 1.0) * y + 2.0);

@@ -107,7 +107,7 @@ mod tests {
     /// The same expressions, built after others and in another order, become the same nodes of an empty
     /// graph.
     #[test]
-    fn what_is_written_does_not_depend_on_what_was_made_before() {
+    fn transcription_does_not_depend_on_earlier_nodes() {
         let names = ["a", "b", "c", "d"];
         let expressions = |graph: &'_ Graph| {
             let [a, b, c, d] = graph.symbols(names);
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_stays_closed() {
+    fn kept_nodes_stay_closed() {
         let (graph, other) = (Graph::new(), Graph::new());
         let [a, b, c] = graph.symbols(["a", "b", "c"]);
         let sum = graph.keep(a - b) + c;

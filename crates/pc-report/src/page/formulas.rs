@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_long_table_is_several() {
+    fn a_long_table_is_divided() {
         let table = |lines: std::ops::Range<usize>| {
             let lines: String = lines.map(|i| format!("<mtr><mtd>{i}</mtd></mtr>")).collect();
             format!("<math display=\"block\"><mtable>{lines}</mtable></math>")

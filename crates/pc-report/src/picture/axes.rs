@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_length_may_be_as_long_on_both_axes() {
+    fn both_axes_may_have_the_same_scale() {
         let (x, y) = (Axis::new((0.0, 10.0), (0.0, 100.0)), Axis::new((0.0, 1.0), (100.0, 0.0)));
         let y = y.widened_to(x.per_point());
         assert_eq!((y.low, y.high), (0.5 - 5.0, 0.5 + 5.0));

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn no_more_curves_than_can_be_told_apart() {
+    fn groups_have_no_more_curves_than_can_be_distinguished() {
         let lists: Vec<Vec<f64>> = (0..13).map(|_| about(0.0, 1.0)).collect();
         assert_eq!(groups(&lists).iter().map(Vec::len).collect::<Vec<_>>(), [6, 6, 1]);
     }

@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn an_indefinite_matrix_is_solved_with() {
+    fn an_indefinite_matrix_is_factorised() {
         let mut ldl = factorised([2.0, 1.0, 0.0, -3.0, 1.0, 4.0]).unwrap();
         // M (1, 2, 3) = (4, −2, 14), M (0, 1, 0) = (1, −3, 1)
         let mut columns = [4.0, -2.0, 14.0, 1.0, -3.0, 1.0];

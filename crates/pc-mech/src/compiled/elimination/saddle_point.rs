@@ -336,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mass_without_inertia_of_its_own_is_held_by_a_constraint() {
+    fn a_massless_unknown_is_determined_by_a_constraint() {
         // M = diag(1, 0), w_1 = w_2
         let whole = [vec![1.0, 0.0, 1.0], vec![0.0, 0.0, -1.0], vec![1.0, -1.0, 0.0]];
         let (pattern, values) = lower(&whole);

@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn factors_solve_and_small_pivots_are_seen() {
+    fn factors_solve_and_small_pivots_are_detected() {
         // S = Nᵀ N with N = ((2, 1, 0), (0, 1, 3), (1, 0, 1)), of determinant 25.
         let whole = [[5.0, 2.0, 1.0], [2.0, 2.0, 3.0], [1.0, 3.0, 10.0]];
         let lower = || (0..3).flat_map(|b| (b..3).map(move |a| whole[a][b])).collect::<Vec<f64>>();

@@ -258,7 +258,7 @@ mod tests {
 
     /// For a chain, an arrow and a ring with a hub, with each unit vector and with a few entries at once.
     #[test]
-    fn what_right_sides_reach_is_solved_as_the_whole_is() {
+    fn sparse_right_sides_have_the_full_solution() {
         let graph = Graph::new();
         let k = 9;
         let patterns: [fn(usize, usize) -> bool; 3] = [

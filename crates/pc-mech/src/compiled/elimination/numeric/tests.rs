@@ -121,7 +121,7 @@ fn sixteen_full_rows_and_long_chains_are_written_out() {
 
 /// Two uncoupled systems: the pattern has two blocks, and velocities where they belong.
 #[test]
-fn uncoupled_bodies_stay_apart_in_the_pattern() {
+fn uncoupled_bodies_have_separate_blocks() {
     let graph = Graph::new();
     let equations = System::builder(&graph)
         .coordinates(["a", "b", "c", "d"])
