@@ -5,7 +5,7 @@ use pc_expr::ExprError;
 /// An error of this crate. Operators are numbered from 1; index 0 is time.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AlgebraError {
-    /// The parts of a frame do not fit together.
+    /// Parts of a frame with inconsistent lengths.
     #[error("{what} has {found} entries where {expected} are needed")]
     Shape {
         /// The part.
@@ -55,7 +55,8 @@ pub enum AlgebraError {
         /// The first pair without constant coefficients.
         pair: (usize, usize),
     },
-    /// Operators of which a combination vanishes everywhere: to a bracket any multiple of it could be added.
+    /// Operators with a combination that vanishes everywhere, any multiple of which could be added to a
+    /// bracket.
     #[error(
         "the frame does not determine its structure coefficients: {}, with rank {rank} of {operators}: the algebra must \
          be given",
@@ -132,10 +133,10 @@ pub enum AlgebraError {
     UnknownAlgebra {
         /// The name asked for.
         name: String,
-        /// The names there are.
+        /// The known names.
         known: Vec<&'static str>,
     },
-    /// A structure constant that is a rounded real, in a question that only exact arithmetic answers.
+    /// A structure constant that is a rounded real, where exact arithmetic is needed.
     #[error("c_{r}{s}^{m} = {value} is not a rational number, so nothing exact can be said of the algebra")]
     NotRational {
         /// First lower index.
@@ -191,7 +192,7 @@ pub enum AlgebraError {
     /// Matrices that are not a basis.
     #[error("matrix number {number} is a combination of those before it")]
     DependentMatrices {
-        /// Its number, from 1.
+        /// The number of the first matrix that depends on those before it, from 1.
         number: usize,
     },
     /// Matrices whose commutators leave their span.
@@ -200,7 +201,7 @@ pub enum AlgebraError {
         /// The pair, from 1.
         pair: (usize, usize),
     },
-    /// A member of a family with more structure constants than are sensibly kept.
+    /// A member of a family with too many structure constants.
     #[error("{family}(n) is available up to n = {largest}, not for n = {n}")]
     TooLargeFamily {
         /// Name of the family.
@@ -220,7 +221,7 @@ pub enum AlgebraError {
         /// The parameter.
         h: String,
     },
-    /// Three axes that are no sequence of Euler angles.
+    /// Three axes that do not form a sequence of Euler angles.
     #[error(
         "`{axes}` is not a sequence of Euler angles: three letters x, y, z are needed, neighbours different, as in zxz"
     )]

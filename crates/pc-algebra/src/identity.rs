@@ -1,4 +1,4 @@
-//! Verdicts on identities that the graph does not settle: proved, open, disproved.
+//! Verdicts on identities that the graph does not decide: proved, open, disproved.
 //!
 //! `identity` is the verdict; `sample` evaluates at pseudo-random points near a state, and `running_error`
 //! distinguishes a small number from the rounding error of zero; `jump` finds points at which an expression jumps.

@@ -1,4 +1,4 @@
-//! What is known of the algebras of the catalogue, and laws under random changes of basis.
+//! Known properties of the algebras of the catalogue, and laws under random changes of basis.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -64,7 +64,7 @@ fn ranks_and_indices() {
         assert_eq!(named(name).rank(), Ok(rank), "rank of {name}");
         assert_eq!(named(name).index(), Ok(index), "index of {name}");
     }
-    // Only X_1 acts on the ideal of the class-B types: its eigenvalues there are 0 and not for III, not 0
+    // Only X_1 acts on the ideal of the class-B types: one of its eigenvalues there is 0 for III, and none
     // otherwise.
     for (name, rank) in
         [("bianchi3", 2), ("bianchi4", 1), ("bianchi5", 1), ("bianchi6", 1), ("bianchi6(-4)", 1)]

@@ -1,4 +1,5 @@
-//! Brackets of frames whose operators are dependent at each point: found where the frame determines them, else refused.
+//! Brackets of frames whose operators are dependent at each point: found if the frame determines them,
+//! refused otherwise.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -11,7 +12,7 @@ fn near<'g>() -> Neighbourhood<'g> {
     Neighbourhood::default()
 }
 
-/// Equal, or but for the rounding of fractions beyond 2⁵³ and of what is solved with them, at p = 0.7.
+/// Equal, or equal at p = 0.7 up to the rounding of fractions beyond 2⁵³ and of results computed from them.
 fn assert_same<'g>(graph: &'g Graph, c: &StructureCoefficients<'g>, expected: &StructureCoefficients<'g>) {
     let k = expected.operators();
     let at = [(graph.symbol("p"), 0.7)];
@@ -83,10 +84,10 @@ fn rounded_constants_have_rounded_brackets() {
     let scale = [2f64.sqrt(), 0.3f64.cos(), 1.0];
     let c = turning(&graph, scale.map(Expr::from), [Expr::ZERO; 3]).structure_coefficients(&near()).unwrap();
     let found = c.get(1, 2, 3).constant().unwrap().to_f64();
-    assert!((found - scale[0] * scale[1]).abs() < 1e-9, "{found}"); // solved for at points near each other
+    assert!((found - scale[0] * scale[1]).abs() < 1e-9, "{found}"); // solved from points near each other
 }
 
-/// A combination that vanishes could be added to every bracket.
+/// Any multiple of a vanishing combination could be added to every bracket.
 #[test]
 fn operators_that_are_dependent_over_the_constants_have_no_brackets_of_their_own() {
     let graph = Graph::new();
@@ -160,7 +161,8 @@ fn centreless() -> Vec<LieAlgebra> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, rng_seed: RngSeed::Fixed(16), ..ProptestConfig::default() })]
 
-    /// A constant change of frame, in numbers and with parameters: the brackets found are those of the catalogue, changed.
+    /// A constant change of frame, in numbers and with parameters: the brackets found are those of the
+    /// catalogue, changed.
     #[test]
     fn brackets_of_the_catalogue_are_found_in_any_basis(
         which in 0usize..64,
@@ -172,9 +174,9 @@ proptest! {
         let algebra = &algebras[which % algebras.len()];
         let k = algebra.dim();
         let p = graph.symbol("p");
-        // A parameter only where the fractions made of these stay exact; what is rounded has no relations with parameters.
+        // Parameters only where the fractions stay exact; rounded numbers have no relations with parameters.
         let parameters = parameters && k <= 3;
-        // Triangular, so that it is regular and its inverse short.
+        // Triangular: regular, with a short inverse.
         let a = Matrix::from_fn(k, k, |i, j| match i.cmp(&j) {
             std::cmp::Ordering::Less => Expr::ZERO,
             std::cmp::Ordering::Equal if parameters && i == 0 => p,
@@ -187,8 +189,8 @@ proptest! {
         assert_same(&graph, &found, &expected);
     }
 
-    /// Where rank b = k, brackets that are carried over are those of the frame that they are carried to: in other
-    /// quasi-velocities, and when some are solved for and what is left is integrable.
+    /// Where rank b = k, transformed brackets are those of the transformed frame: in other quasi-velocities,
+    /// and after the elimination of some where the remaining operators are integrable.
     #[test]
     fn brackets_carried_over_are_those_of_the_frame(
         shears in prop::collection::vec(fraction(), 9),

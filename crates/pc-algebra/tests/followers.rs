@@ -5,7 +5,7 @@
 use pc_algebra::{Frame, Neighbourhood, StructureCoefficients};
 use pc_expr::{Expr, Graph};
 
-/// c_rs^m at a place; that of a short expression is known to some roundings.
+/// c_rs^m at a place; that of a short expression is accurate to some roundings.
 fn assert_coefficient<'g>(
     graph: &'g Graph,
     c: &StructureCoefficients<'g>,
@@ -17,8 +17,8 @@ fn assert_coefficient<'g>(
     assert!((found - expected).abs() <= 1e-13 * expected.abs(), "c_{r}{s}^{m} is {found}, not {expected}");
 }
 
-/// y' = φ² η_1, φ' = η_2 + a η_1, z = cos φ: [∂_φ, φ² ∂_y + a ∂_φ] = 2 φ ∂_y + a' ∂_φ = 2/φ X_1 + (a' − 2a/φ) X_2, which least
-/// squares over all coordinates have to a² φ⁻⁴ roundings.
+/// y' = φ² η_1, φ' = η_2 + a η_1, z = cos φ: [∂_φ, φ² ∂_y + a ∂_φ] = 2 φ ∂_y + a' ∂_φ = 2/φ X_1 + (a' − 2a/φ)
+/// X_2. Least squares over all coordinates would lose a² φ⁻⁴ roundings.
 #[test]
 fn brackets_are_known_to_rounding_near_a_place_where_the_frame_is_singular() {
     let graph = Graph::new();
@@ -38,8 +38,9 @@ fn brackets_are_known_to_rounding_near_a_place_where_the_frame_is_singular() {
     }
 }
 
-/// x' = √x η_1, y' = (1 + x²) η_2 + 0.92 (1 + y²) η_1, φ' = (1 + φ²) η_3 + √(1.15 y) η_1, and z and h functions of y and φ:
-/// [X_1, X_3] = 2 √(1.15 y) φ/(1 + φ²) X_3. Constants such as 1.19² are rounded, and hide that without x the rank is 2.
+/// x' = √x η_1, y' = (1 + x²) η_2 + 0.92 (1 + y²) η_1, φ' = (1 + φ²) η_3 + √(1.15 y) η_1, and z and h
+/// functions of y and φ: [X_1, X_3] = 2 √(1.15 y) φ/(1 + φ²) X_3. Rounded constants such as 1.19² hide that
+/// without x the rank is 2.
 fn assert_brackets_without_x(z_by_phi: f64, h_by_y: f64) {
     let graph = Graph::new();
     let [t, x, y, phi, z, h] = graph.symbols(["t", "x", "y", "φ", "z", "h"]);
@@ -66,9 +67,10 @@ fn brackets_do_not_depend_on_rounding_where_coordinates_are_functions_of_several
     assert_brackets_without_x(0.3, 0.7);
 }
 
-/// (u, v) on an ellipse, u' = −v S, v' = 1.19 u S, and (p, s) on a circle, p' = −s T, s' = p T, where no coordinate follows
-/// another, with S = (1 + x²) η_2 + 0.92 (1 + u²) η_1, T = (1 + p²) η_3 + √(1.15 u) η_1, x' = √x η_1:
-/// [X_1, X_3] = −2 √(1.15 u) p s/(1 + p²) X_3, which is written without x, but not at x = 0.
+/// (u, v) on an ellipse, u' = −v S, v' = 1.19 u S, and (p, s) on a circle, p' = −s T, s' = p T, where no
+/// coordinate follows another, with S = (1 + x²) η_2 + 0.92 (1 + u²) η_1, T = (1 + p²) η_3 + √(1.15 u) η_1,
+/// x' = √x η_1: [X_1, X_3] = −2 √(1.15 u) p s/(1 + p²) X_3, which contains no x, but is not found by setting
+/// x = 0.
 #[test]
 fn brackets_do_not_depend_on_rounding_on_curves() {
     let graph = Graph::new();

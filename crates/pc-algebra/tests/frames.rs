@@ -21,7 +21,7 @@ fn assert_same(c: &StructureCoefficients<'_>, d: &StructureCoefficients<'_>) {
 
 #[test]
 fn a_sphere_is_an_integral_manifold_of_rotations() {
-    // γ̇ = γ × ω has rank 2 with three operators, and leaves |γ| alone.
+    // γ̇ = γ × ω has rank 2 with three operators, and keeps |γ|.
     let graph = Graph::new();
     let [t, x, y, z] = graph.symbols(["t", "x", "y", "z"]);
     let b = [[Expr::ZERO, -z, y], [z, Expr::ZERO, -x], [-y, x, Expr::ZERO]];
@@ -33,7 +33,7 @@ fn a_sphere_is_an_integral_manifold_of_rotations() {
 
 #[test]
 fn integrability_takes_time_into_account() {
-    // ẋ = η, ẏ = f: the line y = const moves along if f does not depend on x, and is torn apart if it does.
+    // ẋ = η, ẏ = f: the line y = const moves along if f is independent of x, and is torn apart otherwise.
     let graph = Graph::new();
     let [t, x, y, eta] = graph.symbols(["t", "x", "y", "eta"]);
     let verdict = |f| {
@@ -50,7 +50,7 @@ fn integrability_takes_time_into_account() {
 
 #[test]
 fn unknown_identities_are_decided_by_numbers() {
-    // log(xy) = log x + log y is nothing the graph knows.
+    // log(xy) = log x + log y is unknown to the graph.
     let graph = Graph::new();
     let [t, x, y, a, b] = graph.symbols(["t", "x", "y", "a", "b"]);
     let z = graph.symbol("z");
@@ -104,7 +104,7 @@ fn body_velocities_of_the_plane_are_holonomic_in_the_angle_alone() {
     assert_eq!(frame.holonomy(3, &c), Holonomy::Nonholonomic { pair: (1, 2) });
 }
 
-/// The law of transformation against the structure coefficients found from the new frame itself, both ways.
+/// The transformed structure coefficients are those found from the new frame, in both directions.
 fn assert_transforms<'g>(from: &Frame<'g>, to: &Frame<'g>) {
     let [c, d] = [from, to].map(|frame| frame.structure_coefficients(&near()).unwrap());
     let there = from.change_to(to, &near()).unwrap();
@@ -183,7 +183,8 @@ fn frames_of_different_spaces_are_refused() {
     assert_eq!(twice.definitions().unwrap_err(), dependent);
 }
 
-/// log(xy) − log x − log y is zero, though nothing that the graph knows: fields that differ by it are dependent.
+/// log(xy) − log x − log y is zero, though the graph does not know it: fields that differ by it are
+/// dependent.
 #[test]
 fn operators_that_are_dependent_in_numbers_are_dependent() {
     let graph = Graph::new();

@@ -1,4 +1,4 @@
-//! Digits of exponentials and logarithms where formulas change or are close to singular.
+//! Digits of exponentials and logarithms where formulas change or are nearly singular.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -127,7 +127,7 @@ fn logarithms_of_small_rotations_keep_their_relative_accuracy() {
 }
 
 #[test]
-fn the_logarithm_of_a_quaternion_goes_on_to_the_full_turn() {
+fn the_logarithm_of_a_quaternion_reaches_the_full_turn() {
     let axis = Vector3::new(2.0, -1.0, 2.0) / 3.0;
     for angle in [3.0, 3.2, 5.0, 6.0, 6.25] {
         let x = axis * angle;
@@ -162,7 +162,7 @@ fn heavy_top_angles_turn_space_and_body_as_in_the_book() {
 }
 
 #[test]
-fn projections_refuse_what_has_no_nearest_element() {
+fn elements_without_a_nearest_one_are_refused() {
     let message = UnitQuaternions.project(&[0.0; 4]).unwrap_err().to_string();
     assert_eq!(message, "[0.0, 0.0, 0.0, 0.0] has no nearest element of the group");
     assert!(RotationMatrices.project(&[0.0; 9]).is_err());

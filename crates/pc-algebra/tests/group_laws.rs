@@ -160,7 +160,7 @@ fn frame_velocities<G: LieGroup>(group: &G, g: &[f64]) {
         let numbers = graph.evaluate(&b.entries(), &values).unwrap();
         let size = numbers.iter().fold(1.0f64, |size, b| size.max(b.abs()));
         if size > 20.0 {
-            continue; // near the singularity of Euler angles differences mean nothing
+            continue; // near the singularity of Euler angles differences are meaningless
         }
         for s in 0..k {
             let moved = |step: f64| {

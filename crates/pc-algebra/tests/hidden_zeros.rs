@@ -1,14 +1,14 @@
-//! Random frames whose Gram matrices are full of zeros that are hard to see, against difference quotients.
+//! Random frames whose Gram matrices are full of well-hidden zeros, against difference quotients.
 
 use pc_algebra::{Frame, Neighbourhood};
 use pc_expr::{Expr, Graph};
 use proptest::prelude::*;
 
-/// A function of one variable that has values everywhere, but for a few points.
+/// A function of one variable that is defined everywhere but at a few points.
 #[derive(Clone, Debug)]
 enum Function {
     Variable,
-    /// x + c; irrational constants, which are rounded, do not arise
+    /// x + c with rational c
     Shifted(f64),
     Sum(Box<Function>, Box<Function>),
     Product(Box<Function>, Box<Function>),
@@ -88,7 +88,7 @@ proptest! {
         let value = |x: Expr<'_>, q0: f64| graph.evaluate(&[x], &[(q, q0)]).unwrap()[0];
         let step = 1e-5;
         let slope = |x: Expr<'_>| (value(x, at + step) - value(x, at - step)) / (2.0 * step);
-        // Beyond corners and where functions are steep a quotient of differences says little.
+        // Beyond corners and on steep slopes a difference quotient says little.
         let curvature = |x: Expr<'_>| (value(x, at + step) - 2.0 * value(x, at) + value(x, at - step)).abs() / step;
         let size = [a, r, f, f.derivative(q)].map(|x| value(x, at).abs().max(slope(x).abs())).into_iter().fold(1.0, f64::max);
         prop_assume!(size < 1e2 && [a, r, f].into_iter().all(|x| curvature(x) < 1e-2));

@@ -1,11 +1,12 @@
-//! What a frame is does not depend on the units of coordinates and quasi-velocities, nor on rounding.
+//! The properties of a frame are independent of the units of coordinates and quasi-velocities, and of
+//! rounding.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use pc_algebra::{AlgebraError, Frame, Integrability, LieAlgebra, Neighbourhood};
 use pc_expr::{Expr, Graph};
 
-/// ẋ = u, ẏ = w and ż as given, the units of z, u and w being `units`.
+/// ẋ = u, ẏ = w and ż as given, in the `units` of z, u and w.
 fn frame<'g>(graph: &'g Graph, units: [f64; 3], z_dot: impl Fn([Expr<'g>; 5]) -> Expr<'g>) -> Frame<'g> {
     let symbols @ [x, y, z, u, w] = graph.symbols(["x", "y", "z", "u", "w"]);
     let [of_z, of_u, of_w] = units;
@@ -17,7 +18,7 @@ fn frame<'g>(graph: &'g Graph, units: [f64; 3], z_dot: impl Fn([Expr<'g>; 5]) ->
 const SCALES: [[f64; 3]; 6] =
     [[1.0; 3], [1e-10, 1.0, 1.0], [1e10, 1.0, 1.0], [1.0, 1e-10, 1e10], [1e-14, 1e7, 1.0], [1e8, 1e-8, 1e8]];
 
-/// ż = y u is not closed, whatever it is measured in.
+/// ż = y u is not closed in any units.
 #[test]
 fn a_frame_that_is_not_closed_is_refused_in_all_units() {
     for units in SCALES {
@@ -37,7 +38,7 @@ fn a_frame_that_is_not_closed_is_refused_in_all_units() {
     }
 }
 
-/// log(xy) − log x − log y is zero, though nothing that the graph knows.
+/// log(xy) − log x − log y is zero, though the graph does not know it.
 #[test]
 fn a_frame_that_is_closed_up_to_rounding_is_accepted_in_all_units() {
     for units in SCALES {
@@ -53,9 +54,9 @@ fn a_frame_that_is_closed_up_to_rounding_is_accepted_in_all_units() {
     }
 }
 
-/// A small part that is not closed beside a large one that is: rotations, and z˙ = 10⁻¹⁰ w1 q2.
+/// A small part that is not closed beside a large closed one: rotations, and ż = 10⁻¹⁰ w1 q2.
 #[test]
-fn a_small_part_is_seen_beside_a_large_one() {
+fn a_small_part_is_detected_beside_a_large_one() {
     let graph = Graph::new();
     let [t, a, b, c, z] = graph.symbols(["t", "a", "b", "c", "z"]);
     let eta = graph.symbols(["w1", "w2", "w3"]);
@@ -77,7 +78,7 @@ fn a_small_part_is_seen_beside_a_large_one() {
     assert!(matches!(torn.integrability(&near), Integrability::NotIntegrable { .. }));
 }
 
-/// Of so(3) with brackets made larger as a coordinate grows, Jacobi's identity fails by its derivatives.
+/// so(3) with brackets that grow with a coordinate violates Jacobi's identity by their derivatives.
 #[test]
 fn the_defect_of_jacobis_identity_does_not_depend_on_units() {
     for unit in [1.0, 1e-10, 1e10] {

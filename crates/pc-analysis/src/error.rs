@@ -1,4 +1,4 @@
-//! Errors of questions about motions.
+//! Errors of the analysis of motions.
 
 use pc_expr::{Expr, ExprError, Failure, Graph, readable};
 use pc_mech::{MechError, ShapeError};
@@ -24,7 +24,8 @@ pub enum AnalysisError {
         /// Names and values of the state where the residual was least.
         state: Vec<(String, f64)>,
     },
-    /// Newton's method ended where the rates vanish but have no derivatives: at a pole of the coordinates or of the frame, say.
+    /// Newton's method ended where the rates vanish but have no derivatives: at a pole of the coordinates or
+    /// of the frame, say.
     #[error("the rates vanish, but have no derivatives, at{}", listed(state).trim_start_matches(','))]
     NotSmooth {
         /// Names and values of the state.
@@ -121,11 +122,11 @@ pub enum AnalysisError {
     /// A function of a symbol that is not a variable here.
     #[error("`{symbol}` stands in {what}, which can contain {}", quoted(known))]
     NotAVariable {
-        /// What it is a function of.
+        /// The kind of function.
         what: &'static str,
         /// The first symbol that is neither a variable nor declared as constant.
         symbol: String,
-        /// What the function can contain.
+        /// The symbols that the function can contain.
         known: Vec<String>,
     },
     /// An error of the derivation or of the numbers of a motion.
@@ -140,7 +141,7 @@ pub enum AnalysisError {
 }
 
 impl From<Failure> for AnalysisError {
-    /// What a [`Motion`](pc_mech::Motion) failed with; of other vector fields their words.
+    /// The error of a [`Motion`](pc_mech::Motion); of other vector fields the text of their error.
     fn from(failure: Failure) -> AnalysisError {
         MechError::from(failure).into()
     }

@@ -28,7 +28,7 @@ pub enum QuasiVelocityKind<'g> {
 pub enum FrameConstraints {
     /// All can be written f = const.
     Integrable {
-        /// How many.
+        /// Their number.
         count: usize,
         /// Whether the f depend on time.
         of_time: bool,

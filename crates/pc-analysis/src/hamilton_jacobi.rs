@@ -12,7 +12,7 @@ use roots::vanishes;
 
 /// The most steps of Newton's method for one position.
 const MOST_STEPS: usize = 100;
-/// The residual that counts as zero, relative to what rounding makes of it.
+/// The residual that counts as zero, relative to its rounding error.
 const ENOUGH: f64 = 1e-12;
 
 /// A complete integral S(t, x, α) of Hamilton–Jacobi's equation, from which the motions follow by Jacobi's
@@ -100,7 +100,7 @@ impl<'g> CompleteIntegral<'g> {
             }
         }
         let remainder = hamilton_jacobi(canonical, action)?;
-        // Roots and arcs of quotients keep more laws than the graph knows.
+        // Roots and arc functions of quotients obey more laws than the graph knows.
         if !Neighbourhood::anywhere(graph, &[remainder]).vanishes(graph, remainder) {
             return Err(AnalysisError::NotAnAction { remainder: remainder.to_string() });
         }

@@ -16,8 +16,9 @@
 //! (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m (12).
 //!
 //! [`PoissonBracket::new`] is this bracket; for all others [`PoissonBracket::extended`] adds time and its
-//! momentum y_0, with H + y_0 for H. Functions that commute with everything are [Casimirs](PoissonBracket::casimirs). The
-//! bracket of two integrals is an integral (Poisson's theorem); [`PoissonBracket::closure`] adds what is new.
+//! momentum y_0, with H + y_0 for H. Functions that commute with everything are
+//! [Casimirs](PoissonBracket::casimirs). The bracket of two integrals is an integral (Poisson's theorem);
+//! [`PoissonBracket::closure`] adds what is new.
 //!
 //! ```
 //! use pc_analysis::PoissonBracket;
@@ -37,8 +38,8 @@
 //!
 //! # Lie–Poisson
 //!
-//! On a group with invariant L, [reduced](pc_mech::System::reduced) to no coordinates, the bracket is that of the [algebra
-//! alone](PoissonBracket::lie_poisson).
+//! On a group with invariant L, [reduced](pc_mech::System::reduced) to no coordinates, the bracket is that of
+//! the [algebra alone](PoissonBracket::lie_poisson).
 //!
 //! ```
 //! use pc_analysis::PoissonBracket;
@@ -156,9 +157,10 @@
 //!
 //! # Linearization
 //!
-//! A [`Linearizer`] gives the matrices of the motions near a state, in independent components of the states on its [`Leaf`]: a
-//! [`Linearization`] with eigenvalues, [modes](Mode) and equations of the [second order](SecondOrder). A [`RootLocus`] follows
-//! eigenvalues over a parameter, an [`EquilibriumSearch`] looks for equilibria in a box.
+//! A [`Linearizer`] gives the matrices of the motions near a state, in independent components of the states
+//! on its [`Leaf`]: a [`Linearization`] with eigenvalues, [modes](Mode) and equations of the [second
+//! order](SecondOrder). A [`RootLocus`] follows eigenvalues over a parameter, an [`EquilibriumSearch`] looks
+//! for equilibria in a box.
 //!
 //! # Reduction
 //!
@@ -167,10 +169,10 @@
 //!
 //! # Invariant measures
 //!
-//! [`divergence`] is the rate at which phase volume grows, and [`invariant_measure`] finds a density N with N dx dy kept, as it
-//! is by every system with potential forces, and by some under nonholonomic constraints. Those have a bracket as well, the
-//! [almost-Poisson](PoissonBracket::almost_poisson) one, and some of Chaplygin's systems a time in which they are Lagrangian,
-//! by a [`ReducingMultiplier`].
+//! [`divergence`] is the rate at which phase volume grows, and [`invariant_measure`] finds a density N with N
+//! dx dy kept, as it is by every system with potential forces, and by some under nonholonomic constraints.
+//! Those have a bracket as well, the [almost-Poisson](PoissonBracket::almost_poisson) one, and some of
+//! Chaplygin's systems a time in which they are Lagrangian, by a [`ReducingMultiplier`].
 //! [`MeasureSearch::of`] gives all that is known for a motion.
 
 mod brackets;

@@ -1,9 +1,10 @@
 //! The motions near a state, to first order.
 //!
-//! In: equations of motion in independent quasi-velocities, and the [`Leaf`](linearizer::Leaf) on which a motion stays. Out:
-//! matrices. Read `leaf` first, what coordinates are independent; `linearizer` evaluates the derivatives, `linearization` puts
-//! them together; `second_order` writes them as M q̈ + G q̇ + K q = F u and `modes` finds eigenvectors. `root_locus` follows
-//! eigenvalues over a parameter (`assignment` pairs them), `equilibria` looks for all equilibria in a box.
+//! Equations of motion in independent quasi-velocities, and the [`Leaf`](linearizer::Leaf) on which a motion
+//! stays, give matrices. Read `leaf` first (which coordinates are independent); `linearizer` evaluates the
+//! derivatives, `linearization` combines them; `second_order` writes them as M q̈ + G q̇ + K q = F u and
+//! `modes` finds eigenvectors. `root_locus` follows eigenvalues over a parameter (`assignment` pairs them),
+//! `equilibria` searches a box for equilibria.
 
 pub(crate) mod assignment;
 pub(crate) mod equilibria;

@@ -1,6 +1,6 @@
 //! Reduction by symmetry.
 //!
-//! A system becomes one in the coordinates that are left. `routhian` is Routh's reduction by cyclic coordinates;
-//! reduction by a group is [`System::reduced`](pc_mech::System::reduced).
+//! `routhian` is Routh's reduction by cyclic coordinates; reduction by a group is
+//! [`System::reduced`](pc_mech::System::reduced).
 
 pub(crate) mod routhian;

@@ -1,9 +1,9 @@
 //! Steady motions and their stability.
 //!
-//! Compiled equations and a guess give a steady motion and verdicts on its stability. `steady_motion` finds it with
-//! its first approximation, `spectrum` judges by eigenvalues, `second_variation` by integrals, for which `definite` looks for
-//! a definite combination of quadratic forms; `steady_search` applies all of them to the steady motion near a start,
-//! `steady_motions` to those found from many starts.
+//! Compiled equations and a guess give a steady motion and verdicts on its stability. `steady_motion` finds
+//! it with its first approximation, `spectrum` decides by eigenvalues, `second_variation` by integrals, for
+//! which `definite` finds a definite combination of quadratic forms; `steady_search` applies all of them to
+//! the steady motion near a start, `steady_motions` to those found from many starts.
 
 pub(crate) mod definite;
 pub(crate) mod second_variation;

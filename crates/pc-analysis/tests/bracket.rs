@@ -44,7 +44,7 @@ fn the_bracket_generates_stationary_motion() {
     }
 }
 
-/// (10) and (11) with b_0 ≠ 0, c_0s ≠ 0 and all of it depending on time; ẏ_0 = −dH/dt.
+/// (10) and (11) with b_0 ≠ 0, c_0s ≠ 0, all depending on time; ẏ_0 = −dH/dt.
 #[test]
 fn the_extended_bracket_generates_every_motion() {
     let graph = Graph::new();
@@ -105,7 +105,7 @@ fn integrals_generate_integrals() {
     let [l1, l2, l3] = [y * r - z * q, z * p - x * r, x * q - y * p];
     assert_eq!(bracket.of(l1, l2).unwrap(), l3);
     assert_eq!(bracket.closure(&[l1, l2, l1 * l2]).unwrap(), [l1, l2, l3]);
-    // A momentum more: all momenta, and with them what makes five independent functions.
+    // With one more momentum all momenta follow, five independent functions in total.
     let generated = bracket.closure(&[p, l2, l3]).unwrap();
     assert_eq!(generated.len(), 5);
     let rates = Rates::canonical(&particle.canonical().unwrap());

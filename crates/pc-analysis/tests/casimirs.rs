@@ -43,7 +43,8 @@ fn polynomial_casimirs_of_bianchi_algebras() {
     }
 }
 
-/// Those that are no polynomials, or of higher degree: with u = y2 + y3 and v = y2 − y3 for type VI, h = −a².
+/// Casimirs that are not polynomials, or of higher degree: with u = y2 + y3 and v = y2 − y3 for type VI, h =
+/// −a².
 #[test]
 fn other_casimirs_of_bianchi_algebras() {
     let graph = Graph::new();
@@ -124,7 +125,7 @@ fn casimirs_of_larger_algebras() {
     assert!(found("aff1", 2).is_empty());
 }
 
-/// |γ|² and the area integral γ·y of the heavy top, whatever its Lagrangian.
+/// |γ|² and the area integral γ·y of the heavy top, for any Lagrangian.
 #[test]
 fn the_top_has_two() {
     let graph = Graph::new();

@@ -36,8 +36,8 @@ fn bead<'g>(graph: &'g Graph, turn: f64, damping: f64) -> System<'g> {
         .unwrap()
 }
 
-/// The bead on a turning hoop, g/r = 1: below Ω = 1 it rests at the bottom and at the top, above it also at cos θ = 1/Ω², and
-/// the bottom is unstable: a pitchfork. Frequencies are √(1 − Ω²) and √(Ω² − 1/Ω²).
+/// The bead on a turning hoop, g/r = 1: below Ω = 1 it rests at the bottom and at the top, above it also at
+/// cos θ = 1/Ω², and the bottom is unstable: a pitchfork. Frequencies are √(1 − Ω²) and √(Ω² − 1/Ω²).
 #[test]
 fn a_bead_leaves_the_bottom_by_a_pitchfork() {
     let graph = Graph::new();
@@ -72,7 +72,7 @@ fn a_bead_leaves_the_bottom_by_a_pitchfork() {
     }
 }
 
-/// A box keeps what is in it; angles are counted from its lower bound.
+/// A box bounds the results; angles are counted from its lower bound.
 #[test]
 fn a_box_keeps_what_is_in_it() {
     let graph = Graph::new();
@@ -104,7 +104,7 @@ fn on_a_plane<'g>(graph: &'g Graph, potential: impl FnOnce(Expr<'g>, Expr<'g>) -
 
 /// Four wells, four passes and a hill of x⁴/4 − x²/2 in both directions.
 #[test]
-fn all_nine_of_four_wells_are_found_again_and_again() {
+fn all_nine_equilibria_of_four_wells_are_found_each_time() {
     let graph = Graph::new();
     let system =
         on_a_plane(&graph, |x, y| x.powi(4) / 4.0 - x.square() / 2.0 + y.powi(4) / 4.0 - y.square() / 2.0);
@@ -117,7 +117,7 @@ fn all_nine_of_four_wells_are_found_again_and_again() {
     assert_eq!(places(&found), places(&all()));
 }
 
-/// The bottom of a wine bottle is a circle, of which one member is listed; its top is one alone.
+/// The bottom of a wine bottle is a circle, of which one member is listed; its top is isolated.
 #[test]
 fn families_are_recognised() {
     let graph = Graph::new();
@@ -129,7 +129,7 @@ fn families_are_recognised() {
     assert!((x.hypot(y) - 1.0).abs() < EXACT && found[1].state[0].abs() < EXACT);
 }
 
-/// A force that falls off with distance vanishes nowhere, though Newton's method goes to where it is small.
+/// A force that decays with distance vanishes nowhere, although Newton's method goes to where it is small.
 #[test]
 fn nothing_is_found_at_infinity() {
     let graph = Graph::new();
@@ -142,9 +142,9 @@ fn nothing_is_found_at_infinity() {
     assert!(matches!(&found[..], [middle] if middle.state[0].abs() < EXACT), "{found:?}");
 }
 
-/// A cyclic coordinate stands anywhere, and has no box.
+/// A cyclic coordinate has any value at an equilibrium, and no box.
 #[test]
-fn cyclic_coordinates_stand_anywhere() {
+fn cyclic_coordinates_have_any_value() {
     let graph = Graph::new();
     let cart = System::builder(&graph)
         .coordinates(["x", "θ"])
@@ -164,7 +164,7 @@ fn cyclic_coordinates_stand_anywhere() {
 }
 
 #[test]
-fn what_is_driven_has_no_equilibria() {
+fn driven_systems_have_no_equilibria() {
     let graph = Graph::new();
     let time = graph.symbol("t");
     let driven = System::builder(&graph)

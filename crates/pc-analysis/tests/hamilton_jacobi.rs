@@ -93,8 +93,8 @@ fn a_harmonic_oscillator() {
     }
 }
 
-/// The same as in textbooks, S = x r/2 + (E/ω) arcsin(ω x/√(2E)) − E t, its roots √(2E) √(1 − ω² x²/(2E)) = r being more than the
-/// graph knows; and what only looks like it.
+/// The form of textbooks, S = x r/2 + (E/ω) arcsin(ω x/√(2E)) − E t, in which √(2E) √(1 − ω² x²/(2E)) = r is
+/// unknown to the graph; and a function that differs from it.
 #[test]
 fn a_harmonic_oscillator_with_an_arc_sine() {
     let graph = Graph::new();
@@ -194,7 +194,7 @@ fn an_incomplete_integral_is_refused() {
     let mut integral = CompleteIntegral::new(&canonical, -root.powi(3) / (3.0 * g) - e * t, &["E"]).unwrap();
     let outside = integral.betas(0.0, &[3.0], &[1.0]).unwrap_err();
     assert!(matches!(outside, AnalysisError::Expr(_)), "{outside}");
-    // It has risen to its greatest height and is on the other branch.
+    // After its greatest height it is on the other branch.
     let late = integral.state(2.0, &[27.0], &[-0.6], &[1.0]).unwrap_err();
     assert!(matches!(late, AnalysisError::NoPosition { t: 2.0, .. }), "{late}");
     assert!(late.to_string().starts_with("∂S/∂α = β has no solution near the guess: after "), "{late}");

@@ -12,7 +12,7 @@ fn top<'g>(graph: &'g Graph, inertia: [f64; 3], m: [f64; 3]) -> System<'g> {
     common::top(graph, inertia, m).build().unwrap()
 }
 
-/// The rank of the gradients says whether `f` is a function of `others`.
+/// Whether `f` is a function of `others`, by the rank of the gradients.
 fn is_function_of<'g>(graph: &'g Graph, f: Expr<'g>, others: &[Expr<'g>]) -> bool {
     let variables = graph.symbols_of(&[others, &[f]].concat());
     let mut rows: Vec<Vec<Expr<'g>>> = others.iter().map(|&g| graph.gradient(g, &variables)).collect();
@@ -37,7 +37,7 @@ fn lagranges_top_has_four() {
     all_conserved(&rates, &found);
     let expected = ["γ1^2 + γ2^2 + γ3^2", "ω3", "2*γ1*ω1 + 2*γ2*ω2 + γ3*ω3", "2*γ3 + ω1^2 + ω2^2"];
     assert_eq!(texts(&found), expected);
-    // What is known is not found again.
+    // Known integrals are not found again.
     let ansatz = Ansatz { known: found[..3].to_vec(), ..rates.ansatz(2, 2) };
     assert_eq!(rates.integrals(&ansatz).unwrap(), found[3..]);
 }
@@ -182,7 +182,7 @@ fn keplers_problem_has_laplaces_vector() {
     assert!(is_function_of(&graph, canonical.hamiltonian(), &bracket.closure(&[l, laplace[0]]).unwrap()));
 }
 
-/// The same in Cartesian coordinates, with a root in the coefficients.
+/// In Cartesian coordinates, with a root in the coefficients.
 #[test]
 fn keplers_problem_in_cartesian_coordinates() {
     let graph = Graph::new();
@@ -298,8 +298,8 @@ fn inertia<'g>() -> [[Expr<'g>; 3]; 3] {
     [[2.0, 0.0, 0.5], [0.0, 3.0, -0.8], [0.5, -0.8, 4.0]].map(|row| row.map(Expr::from))
 }
 
-/// Of the integrals linear in ω with coefficients quadratic in q: the angular momentum in space, R(q) I ω, where R is
-/// |q|² times a rotation, and |q|², which moves with none.
+/// Of the integrals linear in ω with coefficients quadratic in q: the angular momentum in space, R(q) I ω,
+/// where R is |q|² times a rotation, and |q|², which does not depend on ω.
 #[test]
 fn a_free_body_keeps_its_angular_momentum_in_space() {
     let graph = Graph::new();
@@ -317,18 +317,18 @@ fn a_free_body_keeps_its_angular_momentum_in_space() {
     let moment = rotation.map(|row| graph.dot(row, spin));
     let norm: Expr<'_> = q.map(Expr::square).into_iter().sum();
 
-    // 30 products q_i q_j ω_s: of the 30-dimensional space three dimensions are integrals, no more.
+    // 30 products q_i q_j ω_s: exactly three dimensions of their span are integrals.
     let rates = Rates::poincare(&body.poincare().unwrap());
     let products: Vec<Expr<'_>> = w.iter().flat_map(|&w| quadratic.iter().map(move |&f| f * w)).collect();
     let linear = rates.integrals_among(&products).unwrap();
     assert_eq!(linear.len(), 3, "{linear:?}");
     all_conserved(&rates, &linear);
-    // The moments are combinations of what was found with numbers as coefficients: they add nothing to the span.
+    // The moments are combinations of the results with numerical coefficients: they add nothing to the span.
     let columns: Vec<_> = linear.iter().chain(&moment).map(|&f| vec![f]).collect();
     assert_eq!(graph.linear_relations(&columns[3..]).len(), 0);
     assert_eq!(graph.linear_relations(&columns).len(), 3);
 
-    // With the ten functions alone, |q|² is the fourth, and the ansatz returns these four.
+    // For the ten functions alone, |q|² is the fourth integral, and the ansatz returns these four.
     let found = rates.integrals(&Ansatz { degree: 1, functions: quadratic, known: Vec::new() }).unwrap();
     assert_eq!(found.len(), 4, "{found:?}");
     all_conserved(&rates, &found);

@@ -58,7 +58,7 @@ fn a_double_pendulum_has_two_frequencies() {
     assert_near(&second.mass, &[&[2.0 * l * l, l * l], &[l * l, l * l]]);
     assert_near(&second.stiffness, &[&[2.0 * g * l, 0.0], &[0.0, g * l]]);
     assert_near(&second.velocity, &[&[0.0, 0.0], &[0.0, 0.0]]);
-    // In the slow mode the lower one swings √2 times as far.
+    // In the slow mode the lower bob swings √2 times as far.
     let slow =
         linear.modes.iter().find(|mode| (mode.eigenvalue.imaginary - expected[0]).abs() < 1e-9).unwrap();
     let v = slow.vector.as_ref().unwrap();
@@ -98,7 +98,8 @@ fn cart<'g>(graph: &'g Graph) -> System<'g> {
         .unwrap()
 }
 
-/// A and B of the inverted pendulum on a cart, as in books on control: x is a component at an equilibrium if it is to be.
+/// A and B of the inverted pendulum on a cart, as in books on control: at an equilibrium, x is a component on
+/// request.
 #[test]
 fn a_pole_on_a_cart() {
     let graph = Graph::new();
@@ -131,14 +132,14 @@ fn a_pole_on_a_cart() {
     assert_near(&second.stiffness, &[&[0.0, 0.0], &[0.0, -bob * g * l]]);
     assert_near(&second.input, &[&[1.0], &[0.0]]);
 
-    // Without x no output may contain it, and the matrices of the second order are the same.
+    // Outputs cannot contain x if it is left out, and the matrices of the second order are the same.
     let reduced = linearizer.steady(0.0, &start, &options).unwrap();
     assert_eq!((reduced.components.len(), reduced.cyclic), (3, vec![("x".to_owned(), 0.0)]));
     assert_eq!((reduced.outputs, reduced.other_outputs), (vec!["angle".to_owned()], vec!["tip".to_owned()]));
     assert_eq!(reduced.second_order.unwrap().coordinates, second.coordinates);
 }
 
-/// δh of an output with accelerations: what an accelerometer on the cart shows.
+/// δh of an output with accelerations, such as that of an accelerometer on the cart.
 #[test]
 fn accelerations_in_outputs_are_those_of_the_motion() {
     let graph = Graph::new();
@@ -174,10 +175,10 @@ fn gyroscopic_forces_are_skew() {
     assert_near(&second.stiffness, &[&[1.0 - turn * turn, 0.0], &[0.0, 4.0 - turn * turn]]);
 }
 
-/// The sleeping top in γ, which moves on a sphere: with γ = γ1 + iγ2 and w = ω1 + iω2, γ̇ = −iωγ + iw and ẇ = −iωw/2 − iγ, so
-/// (λ + iω)(λ + iω/2) = 1: growth by √(1 − ω²/16), below ω = 4.
+/// The sleeping top in γ, which moves on a sphere: with γ = γ1 + iγ2 and w = ω1 + iω2, γ̇ = −iωγ + iw and ẇ =
+/// −iωw/2 − iγ, so (λ + iω)(λ + iω/2) = 1: growth by √(1 − ω²/16), below ω = 4.
 #[test]
-fn a_sleeping_top_leaves_the_sphere_to_itself() {
+fn a_sleeping_top_is_linearized_on_its_sphere() {
     let graph = Graph::new();
     let top = System::builder(&graph)
         .coordinates(["γ1", "γ2", "γ3"])
@@ -208,7 +209,7 @@ fn a_sleeping_top_leaves_the_sphere_to_itself() {
             Err(NoSecondOrder::TooFewCoordinates { coordinates: 2, velocities: 3 })
         );
     }
-    // Nothing is known of the sphere: only where the start is steady itself is there an answer.
+    // Without the equation of the sphere, only a start that is itself steady gives a result.
     let mut blind = Linearizer::new(&equations, &Leaf::of(&top), &[]).unwrap();
     let away = blind.steady(0.0, &[0.6, 0.0, 0.8, 0.1, 0.0, 1.0], &SteadyOptions::default());
     assert!(matches!(away, Err(AnalysisError::LeafUnknown { .. })), "{away:?}");
@@ -216,7 +217,8 @@ fn a_sleeping_top_leaves_the_sphere_to_itself() {
     assert_eq!(upright.components.len(), 5);
 }
 
-/// The upright rolling disk: λ² = [mgr − C(C + mr²)Ω²/A]/(A + mr²), with heading and place left out; equations of the second order in tilt, heading and roll.
+/// The upright rolling disk: λ² = [mgr − C(C + mr²)Ω²/A]/(A + mr²), without heading and place; equations of
+/// the second order in tilt, heading and roll.
 #[test]
 fn a_disk_that_rolls_straight() {
     let graph = Graph::new();
@@ -286,7 +288,7 @@ fn a_pendulum_on_its_circle() {
     assert_near(&linear.state_matrix, &[&[0.0, 1.0], &[-g / l, 0.0]]);
 }
 
-/// Where nothing is steady the Jacobian is that of the motion that goes by: for ẍ = −x³, −3x².
+/// The Jacobian at a state that is not steady is that along the motion: −3x² for ẍ = −x³.
 #[test]
 fn the_jacobian_of_a_start_that_moves() {
     let graph = Graph::new();
@@ -303,14 +305,15 @@ fn the_jacobian_of_a_start_that_moves() {
     assert_near(&linear.state_matrix, &[&[0.0, 1.0], &[-12.0, 0.0]]);
     assert!(!linear.is_steady && linear.second_order == Err(NoSecondOrder::NotSteady));
     assert_eq!(linear.residual, 8.0);
-    // Without a drive the middle is an equilibrium; with one nothing is.
+    // Without a drive the middle is an equilibrium; with one there is none.
     assert!(linearizer.at(0.0, &[0.0, 0.0]).unwrap().is_steady);
     linearizer.set_parameters(&[0.5]);
     let driven = linearizer.steady(0.0, &[0.0, 0.0], &SteadyOptions::default());
     assert_eq!(driven, Err(AnalysisError::DependsOnTime));
 }
 
-/// A motor: a first-order state that acts on the velocity has no place in equations of the second order, but in A.
+/// A motor: a first-order state that acts on the velocity is a component of A, but excludes equations of the
+/// second order.
 #[test]
 fn first_order_states_are_components() {
     let graph = Graph::new();
@@ -328,7 +331,7 @@ fn first_order_states_are_components() {
     assert_eq!(linear.spectrum.verdict(), Verdict::AsymptoticallyStable);
 }
 
-/// At the pole of spherical coordinates the pendulum hangs, but rates have no derivatives by them there.
+/// At the pole of spherical coordinates the pendulum hangs, but rates have no derivatives by them.
 #[test]
 fn poles_are_refused() {
     let graph = Graph::new();

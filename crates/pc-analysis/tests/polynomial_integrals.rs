@@ -5,7 +5,7 @@
 use pc_analysis::{AnsatzSearch, Integral, Integrals, NoetherField, Origin, PolynomialAnsatz};
 use pc_mech::{Equations, Expr, Graph, Neighbourhood, System};
 
-/// What the ansatz adds to what is known without.
+/// The integrals that the ansatz adds to those known without it.
 fn found<'g>(
     equations: &Equations<'g>,
     degree: u32,
@@ -24,7 +24,7 @@ fn texts(found: &[Integral<'_>]) -> Vec<String> {
     found.iter().map(|integral| integral.value.to_string()).collect()
 }
 
-/// Whether f/g changes with nothing that moves.
+/// Whether f/g is independent of all variables.
 fn is_multiple<'g>(graph: &'g Graph, f: Expr<'g>, g: Expr<'g>) -> bool {
     let moving = graph.symbols(["x", "y", "z", "x'", "y'", "z'"]);
     graph.gradient(f / g, &moving).iter().all(|slope| slope.is_zero())
@@ -55,7 +55,8 @@ fn an_anisotropic_oscillator_keeps_two_energies() {
     assert!(matches!(made, AnsatzSearch::Made { coefficients: 2, functions: 35 }), "{made:?}");
 }
 
-/// Fradkin's tensor and the area, for these values of the parameters alone where they are not said to be equal.
+/// Fradkin's tensor and the area, only for these values of the parameters unless they are equal by
+/// definition.
 #[test]
 fn an_isotropic_oscillator_keeps_a_tensor() {
     let graph = Graph::new();
@@ -70,7 +71,7 @@ fn an_isotropic_oscillator_keeps_a_tensor() {
     );
 }
 
-/// A = ẋ × (x × ẋ) − (k/m) x/r, its length being a function of area and energy.
+/// A = ẋ × (x × ẋ) − (k/m) x/r, whose length is a function of area and energy.
 #[test]
 fn keplers_problem_keeps_the_vector_of_runge_and_lenz() {
     let graph = Graph::new();
@@ -94,7 +95,7 @@ fn keplers_problem_keeps_the_vector_of_runge_and_lenz() {
         assert!(list.iter().any(is_found), "{expected} is not among {:?}", texts(&list));
     }
     assert_eq!(list.len(), 6, "{:?}", texts(&list));
-    // Of the seven with the energy five are independent.
+    // Of the seven, energy included, five are independent.
     assert_eq!(list.iter().filter(|integral| !integral.dependent).count(), 4);
     // Without the function that it contains it is not found.
     assert_eq!(found(&planet.poincare().unwrap(), 2, Vec::new()).0.len(), 3);
@@ -114,7 +115,8 @@ fn functions_of_foreign_symbols_are_refused() {
     );
 }
 
-/// A body in its own axes, in directions γ and Euler's angles: the rotations in space commute with the operators of the body.
+/// A body in its own axes, in directions γ and Euler's angles: the rotations in space commute with the
+/// operators of the body.
 #[test]
 fn rotations_in_space_commute_with_those_of_the_body() {
     let graph = Graph::new();
@@ -133,7 +135,7 @@ fn rotations_in_space_commute_with_those_of_the_body() {
     let [g1, g2, g3, w1, w2, w3] = graph.symbols(["γ1", "γ2", "γ3", "ω1", "ω2", "ω3"]);
     let area = NoetherField::of(&canonical, a * (g1 * w1 + g2 * w2) + c * g3 * w3).unwrap();
     assert_eq!((area.coefficients.as_slice(), area.commutes), ([g1, g2, g3].as_slice(), true));
-    // The spin is kept by a symmetry of the body, whose operator does not commute with the others.
+    // The spin belongs to a symmetry of the body, whose operator does not commute with the others.
     let spin = NoetherField::of(&canonical, c * w3).unwrap();
     assert_eq!((spin.coefficients[2], spin.commutes), (Expr::ONE, false));
     assert!(
@@ -141,7 +143,7 @@ fn rotations_in_space_commute_with_those_of_the_body() {
     );
 }
 
-/// In a uniform magnetic field, L changes along a translation by a rate.
+/// In a uniform magnetic field, a translation changes L by a total derivative.
 #[test]
 fn translations_in_a_magnetic_field_have_a_gauge() {
     let graph = Graph::new();

@@ -1,4 +1,4 @@
-//! Verdicts on actions that are said to solve Hamilton–Jacobi's equation.
+//! Verdicts on functions proposed as solutions of Hamilton–Jacobi's equation.
 
 use pc_analysis::ProposedAction;
 use pc_mech::{Expr, Graph, Identity, Neighbourhood, System};
@@ -7,8 +7,8 @@ fn near<'g>(graph: &'g Graph, values: &[(&str, f64)]) -> Neighbourhood<'g> {
     Neighbourhood { centre: values.iter().map(|&(name, value)| (graph.symbol(name), value)).collect() }
 }
 
-/// S = x r/2 + (E/ω) arctan(ω x/r) − E t, r² = 2E − ω² x²; by an arc sine it has roots of products, of which the graph knows
-/// less; and with another E beside t it is none.
+/// S = x r/2 + (E/ω) arctan(ω x/r) − E t, r² = 2E − ω² x², is proved; with an arc sine it has roots of
+/// products, which the graph cannot decide; with another E in front of t it is refuted.
 #[test]
 fn an_oscillators_action_is_proved_or_agrees_or_is_refuted() {
     let graph = Graph::new();
@@ -40,7 +40,8 @@ fn an_oscillators_action_is_proved_or_agrees_or_is_refuted() {
     assert!((residual.value + energy / 100.0).abs() < 1e-14, "{residual:?}");
 }
 
-/// Kepler's in polar coordinates, S = l φ − E t + q + (mk/√a) arctan(…) − l arctan(…), q² = 2mE r² + 2mk r − l², a = −2mE.
+/// Kepler's action in polar coordinates, S = l φ − E t + q + (mk/√a) arctan(…) − l arctan(…), q² = 2mE r² +
+/// 2mk r − l², a = −2mE.
 #[test]
 fn keplers_action_is_proved() {
     let graph = Graph::new();
@@ -72,7 +73,7 @@ fn keplers_action_is_proved() {
     assert!((value - residual.value).abs() < 1e-13 * value.abs().max(1.0), "{value} is {}", residual.value);
 }
 
-/// With one constant of two, or with one that S does not depend on, it is not complete.
+/// With one constant of two, or one that S does not contain, it is incomplete.
 #[test]
 fn an_action_of_too_few_constants_is_not_complete() {
     let graph = Graph::new();
@@ -92,7 +93,7 @@ fn an_action_of_too_few_constants_is_not_complete() {
     assert_eq!((verdict.identity, verdict.rank), (Identity::Proved, 1));
 }
 
-/// Where S has no values nothing is said to hold.
+/// Where S has no values the verdict stays open.
 #[test]
 fn an_action_without_values_stays_open() {
     let graph = Graph::new();

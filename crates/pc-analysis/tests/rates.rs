@@ -45,7 +45,7 @@ fn verdicts_on_the_top() {
     // η̇ may stand in the function: C ω3' = (A − B) ω1 ω2.
     let w3_rate = graph.symbol("ω3'");
     assert_eq!(rates.verdict(c * w3_rate - (a - b) * w1 * w2).unwrap(), Conservation::Conserved);
-    // The same in momenta.
+    // The verdicts in momenta.
     let canonical = lagrange.canonical().unwrap();
     let rates = Rates::canonical(&canonical);
     assert_eq!(rates.verdict(canonical.hamiltonian()).unwrap(), Conservation::Conserved);
@@ -54,7 +54,7 @@ fn verdicts_on_the_top() {
     assert_eq!(rates.verdict(canonical.in_momenta(w3)).unwrap(), Conservation::ConservedHere);
 }
 
-/// A potential that jumps gives no force, yet the energy jumps with it.
+/// A jump of the potential is not a force, yet the energy jumps with it.
 #[test]
 fn a_vanishing_rate_does_not_prove_a_jumping_function_conserved() {
     let graph = Graph::new();
@@ -70,7 +70,7 @@ fn a_vanishing_rate_does_not_prove_a_jumping_function_conserved() {
     assert_eq!(rates.verdict(v).unwrap(), Conservation::Conserved);
     assert_eq!(rates.verdict(v + depth.sign()).unwrap(), Conservation::Conserved);
     assert_eq!(rates.verdict(x.sign() * v.square() + x).unwrap(), Conservation::Changing(v));
-    // A corner is no jump.
+    // A corner is not a jump.
     let bent = builder().lagrangian(|_, x, v| v[0].square() / 2.0 - depth * x[0].abs()).build().unwrap();
     assert_eq!(
         Rates::poincare(&bent.poincare().unwrap()).verdict(bent.energy()).unwrap(),
@@ -92,10 +92,10 @@ fn energy_rate_along<'g>(system: &System<'g>, point: &[(Expr<'g>, f64)]) -> f64 
     slopes.iter().zip(&rates).map(|(slope, rate)| slope * rate).sum()
 }
 
-/// dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s against the derivative of y·η − L along the motion: in numbers
-/// to the rounding of some hundred operations, and where no roots are in the way as expressions.
+/// dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s against the derivative of y·η − L along the motion: in numbers to
+/// the rounding of some hundred operations, and as expressions if there are no roots.
 #[test]
-fn the_energy_changes_at_the_rate_it_should() {
+fn the_energy_rate_agrees_with_the_motion() {
     let graph = Graph::new();
     let hoop = System::builder(&graph)
         .coordinates(["θ"])
@@ -189,7 +189,7 @@ fn cyclic_coordinates_are_cyclic_displacements() {
         .unwrap();
     let expected = [(whole([3, -2, 0]), true), (whole([1, 0, 2]), true)];
     assert_eq!(cyclic(&slope), expected);
-    // Friction along x spoils what contains x.
+    // Friction along x excludes integrals that contain x.
     let rough = System::builder(&graph)
         .coordinates(["x", "y"])
         .lagrangian(|_, _, v| (v[0].square() + v[1].square()) / 2.0)
@@ -208,7 +208,7 @@ fn lagranges_top_has_a_cyclic_displacement_by_its_symmetry() {
     assert_eq!(cyclic(&lagrange.with_parameters_bound()), [(whole([0, 0, 1]), false)]);
     let ball = top(&graph, [2.0, 2.0, 2.0], [3.0, 0.0, 4.0]).with_parameters_bound();
     assert_eq!(cyclic(&ball), [(whole([3, 0, 4]), false)]);
-    // The central displacement of Heisenberg's algebra, whatever the metric.
+    // The central displacement of Heisenberg's algebra, for any metric.
     let heisenberg = System::builder(&graph)
         .quasi_velocities(["u", "v", "w"])
         .algebra(&LieAlgebra::named("heisenberg").unwrap())
@@ -218,9 +218,9 @@ fn lagranges_top_has_a_cyclic_displacement_by_its_symmetry() {
     assert_eq!(cyclic(&heisenberg), [(whole([0, 0, 1]), true)]);
 }
 
-/// A symbol that the motion does not know is no integral of it, and a quasi-velocity no momentum.
+/// A symbol foreign to the motion is not an integral, and a quasi-velocity is not a momentum.
 #[test]
-fn functions_of_something_else_have_neither_rate_nor_bracket() {
+fn functions_of_foreign_symbols_have_neither_rate_nor_bracket() {
     let graph = Graph::new();
     let system = top(&graph, [1.0, 1.0, 0.5], [0.0, 0.0, 1.0]);
     let [a, typo, g1, w1, y1] = graph.symbols(["A", "omega1", "γ1", "ω1", "p_ω1"]);

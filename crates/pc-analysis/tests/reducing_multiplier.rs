@@ -1,4 +1,4 @@
-//! Chaplygin's reducing multiplier: in the new time the motion is that of a Lagrangian, and where there is none.
+//! Chaplygin's reducing multiplier: in the new time the motion is Lagrangian; and systems that have none.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -8,7 +8,7 @@ use pc_nonholo::Voronets;
 
 type Closure<'g> = fn(&[Expr<'g>], &[Expr<'g>]) -> Expr<'g>;
 
-/// A particle of mass 1 in as many dimensions as there are names, with ẇ = the constraint for the last coordinate w.
+/// A particle of mass 1 with one dimension for each name, and ẇ = the constraint for the last coordinate w.
 fn particle<'g>(
     graph: &'g Graph,
     names: &[&str],
@@ -72,18 +72,20 @@ fn two_degrees_of_freedom_become_lagrangian() {
 fn with_more_degrees_of_freedom_a_multiplier_is_proved_or_absent() {
     let graph = Graph::new();
     let names = ["x", "y", "s", "w"];
-    // ẇ = 2 x ẋ is a surface, and its motions Lagrangian as they are; N is constant.
+    // ẇ = 2 x ẋ is a surface, and its motions are already Lagrangian; N is constant.
     let surface = particle(&graph, &names, |_, _| 0.into(), |x, v| 2.0 * x[0] * v[0]);
     let reduced = ReducingMultiplier::of(&surface).unwrap().unwrap();
     assert_eq!(reduced.multiplier, 1.into());
     assert!(defect(&graph, &surface, &reduced) < 1e-9);
-    // ẇ = y ẋ with a third freedom beside it has the measure of the particle, but ṡ would not keep its value in τ.
+    // ẇ = y ẋ and a third free coordinate s: the measure of the particle is invariant, but s' by τ would not
+    // be constant.
     let beside = particle(&graph, &names, |_, _| 0.into(), |x, v| x[1] * v[0]);
     assert!(ReducingMultiplier::of(&beside).unwrap().is_none());
 }
 
-/// With ẇ_a = h(x) ẋ_a for each of l coordinates the kinetic energy is (1 + h²) ẋ²/2, and N = (1 + h²)^(−1/2) makes it x'²/2
-/// for every l: motions without a potential are straight lines, though N^(l−1) is the density of the measure.
+/// With ẇ_a = h(x) ẋ_a for each of l coordinates the kinetic energy is (1 + h²) ẋ²/2, and N = (1 + h²)^(−1/2)
+/// makes it x'²/2 for every l: motions without a potential are straight lines, though N^(l−1) is the density
+/// of the measure.
 #[test]
 fn the_multiplier_is_a_root_of_the_density() {
     for l in 2..=4 {
@@ -131,11 +133,11 @@ fn there_is_no_multiplier_without_a_measure_or_symmetry_or_with_forces() {
     assert!(voronets.is_chaplygin());
     assert!(ReducingMultiplier::of(&voronets).unwrap().is_none());
 
-    // Not Chaplygin's: the coefficient depends on the dependent coordinate.
+    // The coefficient depends on the dependent coordinate: the system is not Chaplygin's.
     let voronets = particle(&graph, &["x", "y", "z"], |_, _| 0.into(), |x, v| x[2] * x[1] * v[0]);
     assert!(ReducingMultiplier::of(&voronets).unwrap().is_none());
 
-    // Forces that are no potential's.
+    // Forces without a potential.
     let dragged = System::builder(&graph)
         .coordinates(["x", "y", "z"])
         .lagrangian(|_, _, v| (v[0].square() + v[1].square() + v[2].square()) / 2.0)
@@ -149,7 +151,8 @@ fn there_is_no_multiplier_without_a_measure_or_symmetry_or_with_forces() {
     assert!(ReducingMultiplier::of(&voronets).unwrap().is_none());
 }
 
-/// The particle with 3 ż, a total derivative, in its Lagrangian: nothing moves otherwise, and no multiplier of ż is right.
+/// The particle with 3 ż, a total derivative, in its Lagrangian: the motion is the same, and only the correct
+/// multiplier of ż agrees.
 #[test]
 fn terms_linear_in_the_velocities_are_taken_into_account() {
     let graph = Graph::new();

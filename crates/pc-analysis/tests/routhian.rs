@@ -40,7 +40,7 @@ fn the_routhian_of_a_heavy_top_describes_its_nutation() {
     assert_eq!(routh.cyclic, graph.symbols(["ψ", "φ"]));
     assert_eq!(routh.momenta, [p_psi, p_phi]);
 
-    // The motion of θ is that of the whole top, and so are the rates of the others.
+    // The motion of θ is that of the full top, and so are the rates of the other angles.
     let mut whole = system.poincare().unwrap().compile().unwrap();
     let mut rates = [0.0; 6];
     whole.rhs(0.0, &start[1..], &mut rates).unwrap();
@@ -65,7 +65,7 @@ fn the_routhian_of_a_heavy_top_describes_its_nutation() {
     assert!((velocities[0] - start[4]).abs() < 1e-13 && (velocities[1] - start[6]).abs() < 1e-13);
 }
 
-/// Forces along a coordinate, or that depend on it, let its momentum change.
+/// A force along a coordinate, or one that depends on it, changes its momentum.
 #[test]
 fn a_coordinate_with_a_force_is_not_cyclic() {
     let graph = Graph::new();
@@ -82,7 +82,7 @@ fn a_coordinate_with_a_force_is_not_cyclic() {
     assert!(Routhian::of(&build(false), &at).unwrap().is_none());
 }
 
-/// A force on the other coordinate that depends on the rate of the cyclic one: this is put in.
+/// A force on the other coordinate may contain the rate of the cyclic one, which is substituted.
 #[test]
 fn forces_on_other_coordinates_are_kept() {
     let graph = Graph::new();

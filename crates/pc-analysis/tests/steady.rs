@@ -31,7 +31,7 @@ fn top_in_angles() -> Motion {
     top.poincare().unwrap().compile().unwrap()
 }
 
-/// The same in Poisson's variables, where the vertical is regular.
+/// The same top in Poisson's variables, which are regular at the vertical.
 fn top_in_poisson_variables(graph: &Graph) -> Equations<'_> {
     let [a, c, mgl] = graph.symbols(["A", "C", "mgl"]);
     let top = System::builder(graph)
@@ -116,7 +116,7 @@ fn lagranges_top_precesses_steadily() {
         let expected = nutation / (A * omega);
         assert!((found - expected).abs() < 1e-10 * expected, "{found} where {expected} is right");
 
-        // With the angles kept, each belongs to a Jordan block of two zeros: growth like t, and no
+        // With the angles included, each belongs to a Jordan block of two zeros: growth like t, which is no
         // instability.
         let whole = Spectrum::of(&first_approximation(&mut top, 0.0, &steady.state).unwrap(), 0.0).unwrap();
         assert_eq!(whole.zero_blocks(), [2, 2]);
@@ -124,8 +124,8 @@ fn lagranges_top_precesses_steadily() {
     }
 }
 
-/// Without anything fixed the Jacobian is singular along a family of two dimensions, and a solution near the
-/// guess is found all the same.
+/// Without fixed components the Jacobian is singular along a family of two dimensions; a solution near the
+/// guess is found nevertheless.
 #[test]
 fn a_member_of_a_family_is_found_near_the_guess() {
     let mut top = top_in_angles();
@@ -137,9 +137,9 @@ fn a_member_of_a_family_is_found_near_the_guess() {
     assert!(steady.state.iter().zip(guess).all(|(y, guess)| (y - guess).abs() < 0.15), "{:?}", steady.state);
 }
 
-/// In Poisson's variables γ² is part of the state: without it among the equations the iteration leaves γ² = 1,
-/// and finds a steady motion of a heavier top. With γ² and the momentum about the vertical kept the motion is a
-/// rotation about it, C ω_3 being that momentum.
+/// In Poisson's variables γ² is part of the state: without it among the equations the iteration leaves γ² =
+/// 1, and finds a steady motion of a heavier top. With γ² and the momentum about the vertical fixed, the
+/// motion is a rotation about it, C ω_3 being that momentum.
 #[test]
 fn a_steady_motion_is_found_on_a_surface() {
     let graph = Graph::new();
@@ -157,7 +157,7 @@ fn a_steady_motion_is_found_on_a_surface() {
     let options = SteadyOptions::default();
     let found = SteadyMotion::on_surface(&mut motion, 0.0, &start, &options, surface).unwrap();
     let [g1, g2, g3, w1, w2, w3] = found.state[..] else { panic!("six components") };
-    // The iteration ends at the rounding of numbers of the size 1; a double root leaves half the digits.
+    // The iteration ends at rounding of numbers of size 1; a double root has half the digits.
     let close = |a: f64, b: f64| (a - b).abs() < 1e-7;
     assert!(close(g1 * g1 + g2 * g2 + g3 * g3, 1.0), "{found:?}");
     assert!(close(momentum(&found.state), momentum(&start)), "{found:?}");
@@ -207,8 +207,8 @@ fn the_sleeping_top_is_stable_above_its_threshold() {
     assert!(A * lambda * lambda + C * 2.0 * expected * lambda + MGL < 0.0, "{lambda}");
 }
 
-/// Euler's top about its longest axis: H alone has no extremum there, H under the momentum has; the integrals may
-/// be given.
+/// Euler's top about its longest axis: H alone has no extremum there, but H under the momentum has; the
+/// integrals are arguments here.
 #[test]
 fn the_second_variation_is_taken_under_given_integrals() {
     let graph = Graph::new();
@@ -278,7 +278,7 @@ fn a_pendulum_hangs_and_does_not_stand() {
     }
 }
 
-/// A block of n zeros, turned so that its zeros are not seen: eigenvalue routines answer ε^(1/n), some of it
+/// A block of n zeros, rotated so that its zeros are hidden: eigenvalue routines return ε^(1/n), part of it
 /// growth.
 #[test]
 fn jordan_blocks_of_zero_do_not_count_as_growth() {
@@ -340,8 +340,8 @@ fn failures_of_the_search_are_named() {
     );
 }
 
-/// A free particle in polar coordinates moves along a ray; integrals leave one deviation, along which nothing has a
-/// second variation: no extremum, strict or not, is seen in the rounding.
+/// A free particle in polar coordinates moves along a ray; integrals leave one deviation, along which all
+/// second variations vanish: rounding must not show an extremum, strict or not.
 #[test]
 fn a_form_that_vanishes_is_not_definite() {
     let graph = Graph::new();

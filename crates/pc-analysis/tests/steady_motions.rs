@@ -28,7 +28,7 @@ fn pendulum(graph: &Graph, damping: f64) -> System<'_> {
         .unwrap()
 }
 
-/// Below and above, each once, though there are turns.
+/// Below and above, each once, regardless of full turns.
 #[test]
 fn a_pendulum_hangs_or_stands() {
     let graph = Graph::new();
@@ -83,7 +83,7 @@ fn eulers_top_turns_about_six_half_axes() {
 
 /// The circle of the start's area: r = p²/k for m = 1.
 #[test]
-fn a_planet_has_one_circle_of_its_area() {
+fn a_planet_has_one_circular_orbit_of_its_area() {
     let graph = Graph::new();
     let k = graph.symbol("k");
     let planet = System::builder(&graph)

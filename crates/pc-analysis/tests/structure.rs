@@ -1,4 +1,4 @@
-//! What constraints leave of the Hamiltonian structure: the bracket, phase volume.
+//! The remaining Hamiltonian structure under constraints: the bracket, phase volume.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -93,7 +93,7 @@ fn assert_invariant<'g>(constrained: &Constrained<'g>, density: Expr<'g>) {
     let y = canonical.momenta().iter().zip(canonical.right_hand_side()).map(flow);
     let total = graph.sum(x.chain(y));
     let values: Vec<_> = graph.symbols_of(&[total]).into_iter().map(|symbol| (symbol, 0.7)).collect();
-    // A root is not seen to be one by the graph; rounding.
+    // Up to rounding: the graph does not recognise the root.
     assert!(graph.evaluate(&[total], &values).unwrap()[0].abs() < 1e-14, "{total}");
 }
 
@@ -111,7 +111,7 @@ fn phase_volume_is_kept_or_not() {
     let body = suslov(&graph, 0.5);
     assert!(!divergence(&body.free_system().unwrap()).unwrap().is_zero());
     assert!(invariant_measure(&body.free_system().unwrap(), &[]).unwrap().is_none());
-    // … unless the axis that is held is principal [Kozlov 1988].
+    // … unless the fixed axis is principal [Kozlov 1988].
     let graph = Graph::new();
     let balanced = System::builder(&graph)
         .quasi_velocities(["ω1", "ω2", "ω3"])

@@ -100,7 +100,7 @@ fn the_symplectic_form_of_two_variations_is_constant() {
     assert!(before.abs() > 0.1 && (end[6] - start[6]).abs() > 0.1);
 }
 
-/// Of an oscillator the variation is the motion itself; its components have names.
+/// The variations of an oscillator are motions of it; its components have names.
 #[test]
 fn linear_motions_vary_as_they_move() {
     let graph = Graph::new();

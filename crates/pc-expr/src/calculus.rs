@@ -1,11 +1,12 @@
 //! Derivatives of expressions, and short forms of the results.
 //!
-//! `derivative` sweeps backwards for gradients and forwards along a direction; `substitution` puts expressions in place of
-//! symbols. `collect` rebuilds an expression as a polynomial, by its `powers` of each symbol, whose coefficients have
-//! forgotten what they do not depend on: that is `independence`, where `numbers` finds the same values; `polynomial` writes
-//! it out. `potential` finds a function by its gradient; `root_powers` lets powers of roots be recognised; `typeset`
-//! rewrites expressions to be read, by their `columns`; `multiplied_out` opens brackets where sines and cosines merge; `breaks`
-//! are the surfaces on which an expression may jump.
+//! `derivative` sweeps backwards for gradients and forwards along a direction; `substitution` puts
+//! expressions in place of symbols. `collect` rebuilds an expression as a polynomial by its `powers` of each
+//! symbol; `independence` rids the coefficients of symbols that cancel, with the help of `numbers`;
+//! `polynomial` writes the result out. `potential` finds a function by its gradient; `root_powers` makes
+//! powers of roots recognisable; `typeset` rewrites expressions for readers and measures them by `columns`;
+//! `multiplied_out` opens brackets where sines and cosines then merge; `breaks` are the
+//! surfaces on which an expression may jump.
 
 pub(crate) mod breaks;
 pub(crate) mod collect;

@@ -5,7 +5,7 @@ use crate::graph::limits::Spent;
 /// An error of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExprError {
-    /// A quotient whose divisor is zero whatever the values of the symbols.
+    /// A quotient whose divisor is identically zero.
     #[error("division by zero: `{dividend}` is divided by an expression that is identically zero")]
     DivisionByZero {
         /// Text of the dividend.
@@ -23,11 +23,11 @@ pub enum ExprError {
     /// The [budget](crate::Budget) of the expressions is spent.
     #[error("{stage}: {what} ({nodes} expressions were made)")]
     Spent {
-        /// What is spent.
+        /// The limit that is reached.
         what: Spent,
-        /// What was being made.
+        /// The stage of the work.
         stage: &'static str,
-        /// How many expressions there are.
+        /// The number of expressions at that point.
         nodes: usize,
     },
     /// Input values that are not finite: no expression is at fault.
@@ -61,7 +61,7 @@ fn listed(values: &[(String, f64)]) -> String {
     values.join(", ")
 }
 
-/// A number in a message: with an exponent where it would be long without.
+/// A number in a message, with an exponent where it is long without one.
 pub fn readable(value: f64) -> String {
     let usual = value == 0.0 || (1e-4..1e15).contains(&value.abs()) || !value.is_finite();
     if usual { value.to_string() } else { format!("{value:e}") }

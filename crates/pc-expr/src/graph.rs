@@ -1,12 +1,13 @@
 //! Expressions as nodes of a graph, interned and normalised as they are built.
 //!
-//! The operators of [`Expr`](expr::Expr) build nodes, which are equal if they are written alike. Read
-//! `number` (exact constants), `function` (the elementary functions), `node` and `divisors` (sets of them) first, then `dag`
-//! (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`: what it knows of sums and products, of calls,
-//! of values in prime fields, of signs, and of divisors. `graph` owns a `dag` and stays within a `budget` (`limits`,
-//! and of time a `deadline`), `expr` is the handle that formulas are written with; `subgraph` walks the nodes that
-//! expressions depend on, `queries` are questions about whole expressions, `places` finds symbols in long lists, `transcription`
-//! writes expressions in another graph, and `evaluate` computes their values one by one: the reference for all faster ways.
+//! The operators of [`Expr`](expr::Expr) build nodes; nodes written alike are one node. Read `number` (exact
+//! constants), `function` (the elementary functions), `node` and `divisors` (sets of them) first, then `dag`
+//! (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`, which treat sums and products,
+//! calls, values in prime fields, signs, and divisors. `graph` owns a `dag` and stays within a `budget`
+//! (`limits`, and for time a `deadline`); `expr` is the handle that formulas are written with; `subgraph`
+//! walks the nodes below some expressions, `queries` answers questions about whole expressions, `places`
+//! finds symbols in long lists, `transcription` writes expressions in another graph, and `evaluate` computes
+//! values node by node: the reference for all faster ways.
 
 pub(crate) mod budget;
 pub(crate) mod calls;

@@ -1,9 +1,10 @@
 //! Identities, decided by values in prime fields (Schwartz, Zippel).
 //!
-//! Decides whether nodes are zero, equal, or linearly dependent, wrong with a probability below 2⁻¹⁰⁰.
-//! Read `prime_field` (arithmetic in GF(2⁶¹−c)), `fingerprint` (in two of them at once), `roots` (values that
-//! contain roots), `circle_point` (sines and cosines); the graph gives each of its nodes such a value. Then questions
-//! about several nodes at once: `rank`, of each of its `blocks`, and, by `echelon`, `linear_relations`.
+//! Decides whether nodes are zero, equal, or linearly dependent, with an error probability below 2⁻¹⁰⁰. Read
+//! `prime_field` (arithmetic in GF(2⁶¹−c)), `fingerprint` (values in two of them), `roots` (values that
+//! contain roots), `circle_point` (sines and cosines); the graph gives each node such a value. Questions
+//! about several nodes at once follow: `rank`, by independent `blocks`, and `linear_relations`, by
+//! elimination in `echelon`.
 
 pub(crate) mod blocks;
 pub(crate) mod circle_point;

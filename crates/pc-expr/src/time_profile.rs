@@ -1,8 +1,8 @@
 //! The explicit dependence of a vector field on time, examined before an integrator steps over it.
 //!
-//! A program and an interval of time give the times at which an integrator must look. Read `interval` and `jet`
-//! (enclosures of functions and of their derivatives), `part` (the part of a program that is watched), `scan` (where
-//! it turns, bends and jumps), then `profile`, the interface of a field.
+//! A program and an interval of time give the times at which an integrator must look. Read `interval` and
+//! `jet` (enclosures of functions and their derivatives), `part` (the watched part of a program), `scan`
+//! (where it turns, bends and jumps), then `profile`, the interface of a field.
 
 pub(crate) mod interval;
 pub(crate) mod jet;

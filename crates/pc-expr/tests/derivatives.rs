@@ -60,7 +60,7 @@ impl<T: DualNum<Primitive = f64> + Constant + Copy> Scalar for Dual<T> {
         Dual(T::from(value))
     }
 
-    /// By squaring: the powers of num-dual go through x^(n−3), which overflows for small x.
+    /// By squaring: num-dual computes powers from x^(n−3), which overflows for small x.
     fn powi(self, exponent: i32) -> Dual<T> {
         let mut square = if exponent < 0 { self.0.recip() } else { self.0 };
         let mut result = T::from(1.0);
@@ -110,8 +110,8 @@ impl<T: DualNum<Primitive = f64> + Constant + Copy> Scalar for Dual<T> {
     }
 }
 
-/// A value and its derivative along a direction, each with a bound of the rounding errors that the dual numbers
-/// make: δ(Σ f_i x_i') ≤ Σ |f_i| δx_i' + Σ |f_ij| |x_i'| δx_j + ε|…|.
+/// A value and its derivative along a direction, each with a bound of the rounding errors of dual numbers:
+/// δ(Σ f_i x_i') ≤ Σ |f_i| δx_i' + Σ |f_ij| |x_i'| δx_j + ε|…|.
 #[derive(Clone, Copy, Debug)]
 struct Traced {
     value: Bounded,
@@ -183,7 +183,7 @@ impl Scalar for Traced {
     }
 }
 
-/// 10⁻¹² of the size of the terms, as promised.
+/// The tolerance, relative to the size of the terms.
 const PROMISED: f64 = 1e-12;
 
 fn bind<'g, S: Copy>(symbols: &[Expr<'g>], values: &[S]) -> Vec<(Expr<'g>, S)> {
@@ -261,8 +261,8 @@ fn check_second_derivatives(tree: &Tree, point: &[f64]) {
                     .collect();
                 let reference = tree.value(&duals).0.eps1eps2;
                 let ours = graph.evaluate(&[row[j]], &values).unwrap()[0];
-                // The size of the terms of the dual numbers is bounded by that of the first derivatives at nearby
-                // points only roughly: three digits are left for it.
+                // The first derivatives at nearby points bound the size of the terms of the dual numbers only
+                // roughly: a factor of 1000 allows for that.
                 let first: Bounded = graph.evaluate(&[gradient[i]], &values).unwrap()[0];
                 let size = ours.size() + first.size() + tree.value(&bounded).size();
                 if !reference.is_finite() || !size.is_finite() || size > 1e6 {
@@ -411,13 +411,14 @@ fn directions_may_be_expressions() {
     assert_eq!(call(Function::Sin, &[x]).derivative(x), x.cos());
 }
 
-/// What is not defined beyond a switch is not asked for there: values and slopes of the first and second order, on both sides.
+/// Values and derivatives of the first and second order ignore the branch that is not taken, on both sides of
+/// a switch.
 #[test]
 fn a_branch_that_is_not_taken_has_no_effect() {
     let graph = Graph::new();
     let [x, y] = graph.symbols(["x", "y"]);
     let root = (-x).pow(Expr::ratio(3, 2));
-    // with the values and slopes that they have where x > 0, and where x < 0
+    // with their values and slopes for x > 0 and for x < 0
     let functions = [
         ((-x).step(root * y, Expr::ZERO), Expr::ZERO, root * y),
         (x.step(x.log() + y.square(), 1.0 / (x * y)), x.log() + y.square(), 1.0 / (x * y)),
@@ -454,7 +455,7 @@ fn a_branch_that_is_not_taken_has_no_effect() {
 
 /// At the corner itself the slopes are those of the branch that is taken.
 #[test]
-fn slopes_of_the_greater_of_two_are_those_of_one() {
+fn slopes_of_max_are_those_of_one_branch() {
     let graph = Graph::new();
     let x = graph.symbol("x");
     let guarded = (x.sqrt() - 1.0).max(-x);

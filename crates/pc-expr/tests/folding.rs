@@ -1,4 +1,4 @@
-//! What a graph takes to be the same expression, and what it must not.
+//! What a graph identifies as the same expression, and what it keeps apart.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -60,7 +60,7 @@ fn equal_expressions_are_the_cheaper_node_whichever_came_first() {
         |a, b| [(a - b).cosh(), (b - a).cosh()],
     ];
     for pair in pairs {
-        // Leaked, so that expressions of two graphs can be made by the same functions.
+        // Leaked, so that the same functions can make expressions of two graphs.
         let forwards: &'static Graph = Box::leak(Box::new(Graph::new()));
         let [long, short] = pair(forwards.symbol("a"), forwards.symbol("b"));
         assert_eq!(long, short, "long form first");
@@ -295,7 +295,7 @@ fn expressions_of_two_graphs_do_not_mix() {
 
 #[test]
 #[should_panic(expected = "expected a symbol, found `x + 1`")]
-fn derivatives_are_by_symbols() {
+fn derivatives_by_an_expression_panic() {
     let graph = Graph::new();
     let x = graph.symbol("x");
     let _ = x.sin().derivative(x + 1.0);
@@ -303,7 +303,7 @@ fn derivatives_are_by_symbols() {
 
 #[test]
 #[should_panic(expected = "expected a symbol, found a constant")]
-fn derivatives_are_not_by_constants() {
+fn derivatives_by_a_constant_panic() {
     let graph = Graph::new();
     let x = graph.symbol("x");
     let _ = graph.gradient(x, &[1.0.into()]);
@@ -359,7 +359,8 @@ proptest! {
         let factored = tree.expr(&symbols);
         let expanded = graph.sum(expanded(&tree, &symbols));
         prop_assume!(!factored.is_undefined() && !expanded.is_undefined());
-        // √e·√e is taken to e in the expanded form, but √e stays an unknown in the factored one; reals are rounded.
+        // √e·√e becomes e in the expanded form, while √e stays an unknown in the factored one; reals are
+        // rounded.
         let exact = !format!("{factored} {expanded}").contains(['.', 'q', 'e', 'w']);
         if exact && factored.tree_cost() < 10_000 {
             prop_assert!((factored - expanded).is_zero(), "{factored} − ({expanded})");
@@ -373,7 +374,7 @@ proptest! {
     }
 }
 
-/// Ω t is an angle of its own: t stands elsewhere, and Ω t does not matter.
+/// Ω t is an angle of its own, eliminated although t remains.
 #[test]
 fn angles_that_are_not_symbols_are_eliminated() {
     let graph = Graph::new();

@@ -15,7 +15,7 @@ use proptest::prelude::*;
 
 use random::SplitMix64;
 
-/// Options under which compiled code gives what the interpreter gives, bit for bit.
+/// Options for which compiled code gives the bits of the interpreter.
 const EXACT: JitOptions = JitOptions { fma: false, inline_trig: false, registers: 14, chunk: 1000 };
 const STATE: usize = 4;
 const PARAMETERS: usize = 3;
@@ -43,7 +43,7 @@ fn call<'g>(function: Function, x: Expr<'g>, y: Expr<'g>, z: Expr<'g>) -> Expr<'
     }
 }
 
-/// A program of random operations; `smooth` leaves out what amplifies rounding or jumps.
+/// A program of random operations; `smooth` leaves out jumps and operations that amplify rounding.
 fn random_program(random: &mut SplitMix64, size: usize, smooth: bool) -> Program {
     let graph = Graph::with_folding(Folding::Structural);
     let t = graph.symbol("t");
@@ -52,7 +52,7 @@ fn random_program(random: &mut SplitMix64, size: usize, smooth: bool) -> Program
     let mut values: Vec<Expr<'_>> = [t].into_iter().chain(state.clone()).chain(parameters.clone()).collect();
     values.extend([Expr::from(1.5), Expr::from(-0.3), Expr::from(2.0)]);
     while values.len() < size {
-        // Recent values more often, else the programs stay shallow.
+        // Recent values are preferred, so that programs become deep.
         let mut pick = || {
             let n = values.len();
             values[if random.below(3) == 0 { random.below(n) } else { n - 1 - random.below(n.min(12)) }]
@@ -70,7 +70,7 @@ fn random_program(random: &mut SplitMix64, size: usize, smooth: bool) -> Program
             8 => x * 0.5 - y.sin() * 0.25,
             9 => x / (y.square() + 1.25),
             10 => {
-                // A divisor that is identically zero is an error; this one may only happen to be zero.
+                // The sum may be zero only by chance: a divisor that is identically zero is an error.
                 x / (y + graph.symbol("p") * 1.0625)
             }
             _ => call(Function::ALL[random.below(Function::ALL.len())], x, y, z),
@@ -112,7 +112,7 @@ fn exact_options_give_the_interpreters_bits() {
     let mut seen = std::collections::BTreeSet::new();
     for round in 0..60 {
         let program = random_program(&mut random, 20 + 12 * (round % 20), false);
-        // A fused program too: its operations round once in both kernels.
+        // A fused program rounds once in both kernels, too.
         for program in [program.clone(), program.fused()] {
             seen.extend(program.cost().iter().map(|(kind, _)| kind));
             let mut interpreter = Interpreter::new(Arc::new(program.clone()));
@@ -142,8 +142,8 @@ struct Bounded {
     error: f64,
 }
 
-/// Running error analysis of the tape: every operation passes the errors of its operands on, by its derivatives, and adds
-/// its own rounding: half a unit in the last place, functions 4 units.
+/// Running error analysis of the tape: each operation propagates the errors of its operands by its
+/// derivatives and adds its own rounding, half a unit in the last place, or 4 units for functions.
 fn with_bounds(program: &Program, inputs: &(f64, [f64; STATE], [f64; PARAMETERS])) -> Vec<Bounded> {
     let exact = |value: f64| Bounded { value, error: 0.0 };
     let mut values: Vec<Bounded> = program.constants().iter().map(|&c| exact(c)).collect();
@@ -180,8 +180,8 @@ fn with_bounds(program: &Program, inputs: &(f64, [f64; STATE], [f64; PARAMETERS]
     values
 }
 
-/// The variation of a function over the box of its arguments, by its corners: the functions are monotonic in each
-/// argument where it matters, or jump, where the bound is infinite.
+/// The variation of a function over the box of its arguments, from its values at the corners: the functions
+/// are monotonic in each argument, or jump, where the bound is infinite.
 fn bounded_call(function: Function, args: [Bounded; 3]) -> Bounded {
     let at = |signs: [f64; 3]| {
         let args: [f64; 3] = std::array::from_fn(|i| args[i].value + signs[i] * args[i].error);
@@ -359,7 +359,7 @@ fn long_programs_are_cut_into_functions() {
     for chunk in [1000, 3517] {
         let mut jit = Jit::with_options(&program, &JitOptions { chunk, ..EXACT }).unwrap();
         assert_eq!(evaluate(&mut jit, &inputs, program.outputs_len()), expected);
-        // Slots are used again: there are far fewer than values.
+        // Slots are reused: there are far fewer than values.
         assert!(jit.scratch_len() > 0 && jit.scratch_len() < 5000, "{} slots", jit.scratch_len());
     }
 }
@@ -405,7 +405,7 @@ fn forks_outlive_their_original() {
     let expected = evaluate(&mut original, &inputs, program.outputs_len());
     let mut fork = original.fork();
     drop(original);
-    // Other code comes and goes where freed code would have been.
+    // Other code is compiled and freed, and may occupy freed memory.
     for steps in 1..20 {
         drop(Jit::new(&long_program(10 * steps)).unwrap());
     }
@@ -449,7 +449,7 @@ proptest! {
         let options = JitOptions { registers, ..JitOptions::default() };
         let mut other = Jit::with_options(&program, &options).unwrap();
         let mut inputs = random_inputs(&mut random);
-        inputs.1[1] = far; // some sines take the library, some do not
+        inputs.1[1] = far; // some sines are computed in line, others by the library
         let expected = evaluate(&mut reference, &inputs, program.outputs_len());
         let found = evaluate(&mut other, &inputs, program.outputs_len());
         prop_assert!(expected.iter().zip(&found).all(|(e, f)| same(*e, *f)), "{expected:?} {found:?}");

@@ -97,7 +97,7 @@ fn arguments_out_of_range_use_the_library() {
         let mut one = [7.0; 2];
         single.eval(0.0, &[x], &[], &mut one);
         assert!(same(one[0], x.sin()) && same(one[1], x.cos()), "{one:?} at {x}");
-        // A far argument takes its neighbour with it.
+        // A far argument sends its neighbour to the library, too.
         for y in [0.3, -2e7, f64::NAN] {
             for [x, y] in [[x, y], [y, x]] {
                 let mut two = [7.0; 4];
@@ -109,7 +109,7 @@ fn arguments_out_of_range_use_the_library() {
     }
 }
 
-/// The library is called amid values that live in registers: they must survive it.
+/// Values in registers survive calls of the library.
 #[test]
 fn registers_survive_the_library() {
     let graph = Graph::new();

@@ -1,4 +1,4 @@
-//! Compiled code is freed. In a process of its own, so that no other test allocates meanwhile.
+//! Compiled code is freed. A process of its own keeps allocations of other tests out.
 #![cfg(all(feature = "jit", target_os = "linux"))]
 
 use std::fs;
@@ -37,7 +37,7 @@ fn compiling_and_dropping_does_not_leak() -> Result<(), Box<dyn std::error::Erro
     for _ in 0..cycles {
         cycle()?;
     }
-    // Code takes a page or more a cycle: a leak would show as `cycles` of them.
+    // Code takes at least a page a cycle: a leak shows as `cycles` of them.
     let (more_maps, more_pages) = (mappings().saturating_sub(maps), resident_pages().saturating_sub(pages));
     assert!(more_maps <= 4, "{more_maps} more mappings after {cycles} cycles");
     assert!(more_pages < 256, "{more_pages} more pages after {cycles} cycles");

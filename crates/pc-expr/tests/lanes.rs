@@ -1,4 +1,5 @@
-//! Programs for many states at once: the same bits on every set of instructions, in every lane, beside any neighbours.
+//! Programs for many states at once give the same bits on every instruction set, in every lane, beside any
+//! neighbours.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 #[path = "../../../tests/src/classical/random.rs"]
@@ -51,7 +52,8 @@ fn random_program(random: &mut SplitMix64, size: usize, functions: &[Function]) 
     let mut values: Vec<Expr<'_>> = [t].into_iter().chain(state.clone()).chain(parameters.clone()).collect();
     values.extend([Expr::from(1.5), Expr::from(-0.3), Expr::from(2.0)]);
     while values.len() < size {
-        // Recent values more often, else the programs stay shallow; early ones now and then, so that they have to wait.
+        // Recent values are preferred, so that programs become deep; early ones are used now and then, so
+        // that they stay alive.
         let mut pick = || {
             let n = values.len();
             values[if random.below(3) == 0 { random.below(n) } else { n - 1 - random.below(n.min(12)) }]
@@ -78,7 +80,7 @@ fn random_program(random: &mut SplitMix64, size: usize, functions: &[Function]) 
     Program::new(&graph, &inputs, &outputs).unwrap()
 }
 
-/// A program between rows of a frame, its inputs first.
+/// A program as a tape on rows of a frame that begins with its inputs.
 fn tape(program: &Program) -> LaneTape {
     let mut tape = LaneTape::new();
     let t = tape.input();
@@ -97,7 +99,7 @@ fn random_number(random: &mut SplitMix64) -> f64 {
         2 => f64::INFINITY,
         3 => f64::NAN,
         4 => 1e-310,
-        5 => -3e10, // out of the range of what is in line
+        5 => -3e10, // out of the range that is computed in line
         6 => random.uniform(-1e300, 1e300),
         7..=12 => random.uniform(-20.0, 20.0),
         _ => random.uniform(-1.0, 1.0),
@@ -126,7 +128,7 @@ fn run(kernel: &LaneKernel, inputs: &[Lanes], outputs: usize) -> Vec<Lanes> {
     frame[kernel.first_output()..][..outputs].to_vec()
 }
 
-/// Those whose values in lanes are the library's, and are determined to the last bit.
+/// The functions whose lane values are those of the library, exactly.
 fn exact_functions() -> Vec<Function> {
     let apart = [Function::Sin, Function::Cos, Function::Exp, Function::Log, Function::Min, Function::Max];
     Function::ALL.into_iter().filter(|function| !apart.contains(function)).collect()
@@ -155,7 +157,7 @@ proptest! {
         }
     }
 
-    /// The interpreter goes through the program one state at a time, by code that has nothing in common with lanes.
+    /// The interpreter runs the program one state at a time, by independent code.
     #[test]
     fn lanes_are_the_interpreters_numbers(seed in any::<u64>(), size in 12usize..300) {
         let mut random = SplitMix64::new(seed);
@@ -176,9 +178,9 @@ proptest! {
         }
     }
 
-    /// Each place, beside neighbours that are no numbers, infinite or out of range too.
+    /// Each lane, beside neighbours that are NaN, infinite or out of range.
     #[test]
-    fn neither_place_nor_neighbours_matter(seed in any::<u64>(), size in 12usize..200) {
+    fn results_do_not_depend_on_lane_or_neighbours(seed in any::<u64>(), size in 12usize..200) {
         let mut random = SplitMix64::new(seed);
         let program = random_program(&mut random, size, &Function::ALL);
         for kernel in kernels(&tape(&program)) {
@@ -243,7 +245,7 @@ fn sines_and_cosines_err_by_less_than_two_units() {
             worst[i] = worst[i].max(error);
         }
     });
-    // Far from zero the reference is good to 1e-22, so that small results are left out.
+    // Far from zero the reference is accurate to 1e-22, so small results are left out.
     let far: Vec<f64> = (0..100_000).map(|_| random.uniform(-1e9, 1e9)).collect();
     values(kernel, &far, 2, |x, found| {
         for (i, exact) in double::circle(x).into_iter().enumerate() {
@@ -267,7 +269,7 @@ fn powers_and_logarithms_err_by_less_than_one_and_a_half_units() {
     let mut worst = [0.0_f64; 2];
     values(kernel, &arguments, 1, |x, found| {
         let (exact, n) = double::exp(x);
-        // Exact, as the results are normal.
+        // Exact, as the results are normal numbers.
         let scaled = found[0] * 2.0_f64.powi(-n / 2) * 2.0_f64.powi(-n - -n / 2);
         let error = double::error(scaled, exact);
         assert!(error <= 1.5, "exp {x:e}: {error} units");
@@ -291,7 +293,7 @@ fn powers_and_logarithms_err_by_less_than_one_and_a_half_units() {
     println!("exp to {:.3} units, log to {:.3}", worst[0], worst[1]);
 }
 
-/// Arguments at which functions do something of their own, and the values of the library there.
+/// The values of the library at arguments with special cases.
 #[test]
 fn functions_have_the_librarys_values_at_special_arguments() {
     let special = [
@@ -340,14 +342,14 @@ fn functions_have_the_librarys_values_at_special_arguments() {
                 for (function, row) in Function::ALL.into_iter().zip(&found) {
                     let (found, expected) = (row.0[lane], function.eval(point));
                     let close = match function {
-                        // In line: of the exact value within 1.5 units, as is the library.
+                        // Computed in line: within 1.5 units of the exact value, as is the library.
                         Function::Sin | Function::Cos | Function::Exp | Function::Log
                             if expected.is_finite() =>
                         {
                             (found - expected).abs() <= 3.0 * f64::EPSILON * expected.abs() + 5e-324
                                 && found.is_sign_negative() == expected.is_sign_negative()
                         }
-                        // Which of two zeros is the smaller is open.
+                        // The sign of the lesser or greater of two zeros is unspecified.
                         Function::Min | Function::Max => found == expected || same(found, expected),
                         _ => same(found, expected),
                     };
@@ -358,9 +360,9 @@ fn functions_have_the_librarys_values_at_special_arguments() {
     }
 }
 
-/// More values that wait than any processor has registers, read in the order in which they were made and backwards.
+/// More live values than any processor has registers, read in the order of their creation and in reverse.
 #[test]
-fn values_that_wait_come_back() {
+fn spilled_values_are_restored() {
     let mut tape = LaneTape::new();
     let inputs = tape.inputs(5);
     let mut values: Vec<LaneValue> = inputs.clone();
@@ -405,7 +407,8 @@ fn values_that_wait_come_back() {
     }
 }
 
-/// A row is replaced once, by what its lanes were, also where one of them is out of range and all are computed again.
+/// A row is replaced once, by the former values of its lanes, even if one of them is out of range and all are
+/// computed again.
 #[test]
 fn rows_are_replaced_by_what_was_read() {
     let graph = Graph::new();

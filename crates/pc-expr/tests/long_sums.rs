@@ -1,9 +1,9 @@
-//! Sums of many terms that have nothing to do with each other.
+//! Sums of many independent terms.
 
 use pc_expr::Graph;
 
-/// Each term stays as short as it is alone, and no sums of all but some of them are left behind: of n²/2 terms together these
-/// would take more than all else.
+/// Each term becomes as short as it is alone, without leaving partial sums behind, whose n²/2 terms would
+/// outweigh the rest of the graph.
 #[test]
 fn a_long_sum_is_shortened_part_by_part() {
     let nodes = |n: usize| {
@@ -14,7 +14,7 @@ fn a_long_sum_is_shortened_part_by_part() {
         let sum = graph.sum(terms) / 2.0;
         let before = graph.len();
         let short = graph.shorten(&[sum], &x)[0];
-        // The same function, whose parts are no longer than each is alone.
+        // The same function, with parts as short as each is alone.
         let alone = graph.shorten(&[(c * x[3] * x[3] + x[3] * (c - c * a / 2.0)) / 2.0], &x)[0];
         assert_eq!(short, sum);
         assert!(short.tree_cost() <= n as u32 * (alone.tree_cost() + 2), "{short}");
@@ -24,10 +24,10 @@ fn a_long_sum_is_shortened_part_by_part() {
     assert!(many <= 4 * few + 16, "{few} nodes for 100 terms, {many} for 400");
 }
 
-/// The entries of a Jacobian are those of the gradients, in the same order, and what is put into many expressions one by one is
-/// what is put into all at once.
+/// The entries of a Jacobian are those of the gradients, in the same order, and substitution one by one gives
+/// the same as substitution into all expressions at once.
 #[test]
-fn what_is_not_zero_is_what_gradients_have() {
+fn jacobian_entries_are_those_of_gradients() {
     let graph = Graph::new();
     let x: Vec<_> = (0..30).map(|i| graph.symbol(&format!("x{i}"))).collect();
     let functions: Vec<_> =

@@ -225,7 +225,7 @@ proptest! {
                 let known = ours.error.is_finite() && ours.value.is_finite();
                 prop_assert!(difference <= tolerance || !known, "{expr}: {ours:?}, directly {direct:?}");
             }
-            // What compares equal is equal.
+            // Expressions that compare equal have equal values.
             for (i, a) in pool.iter().enumerate() {
                 for (j, b) in pool.iter().enumerate().take(i).filter(|(_, b)| *b == a) {
                     let tolerance = 1e-12 * (direct[i].size() + direct[j].size());
@@ -235,7 +235,7 @@ proptest! {
         }
     }
 
-    /// Where divisors vanish: of two forms of one function none may take the place of another that is regular there.
+    /// Where divisors vanish, a form that is regular is not replaced by a singular one.
     #[test]
     fn regular_expressions_stay_regular(steps in steps(40, &SCALES[..5]), point in prop::array::uniform3(-1i32..3)) {
         let graph = Graph::new();
@@ -245,7 +245,7 @@ proptest! {
         let values: Vec<(Expr, Bounded)> = symbols.iter().copied().zip(direct.iter().copied()).collect();
         for step in &steps {
             let (expr, value) = (perform(step, &pool), perform(step, &direct));
-            // Values of moderate size, so that nothing overflows in another order.
+            // Values of moderate size do not overflow in another order of operations.
             if value.value.abs() < 1e20 && value.error.is_finite() && !expr.is_undefined() {
                 pool.push(expr);
                 direct.push(value);

@@ -1,4 +1,4 @@
-//! The expression parser: precedence, spans, every message, limits, and that no input can upset it.
+//! The expression parser: precedence, spans, every message, limits, and arbitrary input.
 
 use pc_expr::parse::{Ast, AstKind, FUNCTIONS, Factor, MAX_DEPTH, Sign, Span, is_name, nearest, parse};
 use proptest::prelude::*;
@@ -218,7 +218,7 @@ fn ast(kind: AstKind) -> Ast {
     Ast { span: Span { start: 0, end: 0 }, kind }
 }
 
-/// Any tree that can be written.
+/// Any tree in the range of the parser.
 fn trees() -> impl Strategy<Value = Ast> {
     let name = "[a-zα-ω_][a-z0-9_Α-Ω]{0,3}"
         .prop_filter("a function", |name| FUNCTIONS.iter().all(|function| function.name != name));

@@ -39,7 +39,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// One product for each colour gives every entry back.
+    /// One product for each colour recovers every entry.
     #[test]
     fn products_with_the_colours_give_the_matrix(
         columns in prop::collection::vec(prop::collection::vec(0usize..15, 0..6), 0..25),

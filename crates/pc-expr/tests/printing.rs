@@ -181,7 +181,7 @@ fn latex_keeps_the_meaning() {
     }
 }
 
-/// A line may end within a bracket, which changes nothing of what it says: \sin x (a − b) would be sin(x (a − b)).
+/// A break within a bracket keeps the meaning: \sin x (a − b) is read as sin(x (a − b)).
 #[test]
 fn brackets_across_lines_keep_the_meaning() {
     let graph = Graph::with_folding(Folding::Structural);
@@ -198,7 +198,7 @@ fn brackets_across_lines_keep_the_meaning() {
     }
 }
 
-/// Ten thousand brackets, one in the other: written out they are short, all their parts together are not.
+/// Ten thousand nested brackets: short when written out, long if each part is written separately.
 #[test]
 fn deep_expressions_are_printed_compactly() {
     let graph = Graph::with_folding(Folding::Structural);
@@ -208,7 +208,7 @@ fn deep_expressions_are_printed_compactly() {
     assert!(text.contains(" where z1 = ") && text.len() < 1 << 20, "{} bytes", text.len());
 }
 
-/// What is subtracted is turned round where it subtracts as much as it adds: l (g − f), not −l (f − g).
+/// A subtracted sum is negated where it subtracts at least as much as it adds: l (g − f), not −l (f − g).
 #[test]
 fn differences_are_subtracted_the_other_way_round() {
     let graph = Graph::new();
@@ -220,7 +220,7 @@ fn differences_are_subtracted_the_other_way_round() {
     assert_eq!(book((p - f - g) * l * -1.0), "l (f + g - p)");
     assert_eq!(book((a * p - f - g) / -2.0), "½ (f - a p + g)");
     assert_eq!(book(a - (f - g)), "a - f + g");
-    // Terms stay apart, so that a line may end between them.
+    // Terms stay separate, so that a line may end between them.
     let page = graph.page(Folding::Structural);
     let [f, g, l] = page.symbols(["f", "g", "l"]);
     let negative = -(l * f.sin() - g * l.cos() + f.powi(2));
@@ -228,7 +228,7 @@ fn differences_are_subtracted_the_other_way_round() {
     assert_eq!(names.written(Style::Book).terms(negative).len(), 3);
 }
 
-/// On paper it is 1 − x that stands under a root and is divided by.
+/// Printed forms have 1 − x under a root and as a divisor.
 #[test]
 fn differences_from_numbers_begin_with_the_number_on_paper() {
     let page = Graph::with_folding(Folding::Structural);
@@ -285,7 +285,7 @@ fn mathml_has_the_structure_of_the_expression() {
         (x.sin() * (a - b), "{sin}@<mrow>({x})</mrow>·~<mrow>({a} −{b})</mrow>"),
         (theta.cos().square(), "<msup>{cos}{2}</msup>@~{θ}"),
         (theta.cos().square() * (a - b), "<msup>{cos}{2}</msup>@<mrow>({θ})</mrow>·~<mrow>({a} −{b})</mrow>"),
-        // The brackets of the outer call are there; the inner one has none to be given.
+        // The outer call has brackets, which the inner one does without.
         (x.cos().tanh() * (a - b), "{tanh}@<mrow>({cos}@~{x})</mrow>·~<mrow>({a} −{b})</mrow>"),
         ((a + b).sqrt(), "<msqrt>{a} +{b}</msqrt>"),
         (x.abs() * y, "{y}·<mrow>|{x}|</mrow>"),
@@ -307,9 +307,9 @@ fn no_name_breaks_out_of_mathml() {
     assert_eq!(row, "<msub><mi>λ</mi><mi>&lt;/mi&gt;&lt;script&gt;&amp;&quot;\u{fffd} </mi></msub>");
 }
 
-/// Every line of the page can be read: opened elements are closed in it, brackets over lines do not grow.
+/// Each line is complete by itself: elements are closed in it, brackets across lines do not grow.
 #[test]
-fn lines_of_mathml_are_whole() {
+fn lines_of_mathml_are_complete() {
     let graph = Graph::with_folding(Folding::Structural);
     let [a, b, x] = graph.symbols(["a", "b", "x"]);
     let line = -x.sin() * (a + b.square() / x);

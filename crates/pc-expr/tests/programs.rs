@@ -29,9 +29,9 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Not bit for bit: a program adds the positive terms of a sum first, divides by a product where the graph
-    /// multiplies by negative powers, and squares repeatedly where the graph calls `powi`. The two differ by the
-    /// rounding errors of the terms.
+    /// Equal up to the rounding errors of terms: a program adds the positive terms of a sum first, divides by
+    /// a product where the graph multiplies by negative powers, and squares repeatedly where the graph calls
+    /// `powi`.
     #[test]
     fn the_interpreter_agrees_with_the_graph(trees in prop::collection::vec(trees(3), 3), point in prop::array::uniform3(-2.0..2.0)) {
         let graph = Graph::new();
@@ -179,7 +179,7 @@ fn time_state_and_parameters_are_read_in_this_order() {
     assert_eq!(out, [4321.0]);
 }
 
-/// What is not finite in a branch that is not taken is no fault, and not what is named.
+/// A value that is not finite in a branch not taken is neither an error nor named in one.
 #[test]
 fn a_branch_that_is_not_taken_is_not_blamed() {
     let graph = Graph::new();

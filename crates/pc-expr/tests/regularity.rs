@@ -1,17 +1,18 @@
-//! Forms of equal value are not equal where one of them divides by zero.
+//! Forms of equal value stay distinct where one of them divides by zero.
 
 use pc_expr::{Expr, Graph};
 
-/// Forms of one function of x and y, with all the divisors that are not 0 everywhere.
+/// Forms of one function of x and y, with all divisors that are not identically zero.
 type Forms = [fn(Expr<'static>, Expr<'static>) -> Expr<'static>; 4];
 
 fn geometric(x: Expr<'static>, n: i32) -> Expr<'static> {
     (0..n).map(|i| x.powi(i)).sum()
 }
 
-/// What has a value as it is written has it, whichever of its forms the graph has seen before or sees later.
+/// An expression with a value as written keeps it, whichever other forms of it the graph contains, before or
+/// after.
 #[test]
-fn a_regular_form_gives_way_to_none_that_is_singular_elsewhere() {
+fn singular_forms_do_not_replace_regular_ones() {
     let functions: [Forms; 4] = [
         [
             |x, _| geometric(x, 8),
@@ -43,7 +44,7 @@ fn a_regular_form_gives_way_to_none_that_is_singular_elsewhere() {
         order.iter().flat_map(|&i| order.iter().map(move |&j| [i, j, 6 - i - j])).collect::<Vec<_>>();
     for (f, forms) in functions.iter().enumerate() {
         for order in orders.iter().filter(|[i, j, _]| i != j) {
-            // Leaked, so that expressions of several graphs can be made by the same functions.
+            // Leaked, so that the same functions can make expressions of several graphs.
             let graph: &'static Graph = Box::leak(Box::new(Graph::new()));
             let [x, y] = graph.symbols(["x", "y"]);
             let forms = order.iter().filter_map(|&form| forms.get(form));
@@ -73,7 +74,7 @@ fn a_regular_form_gives_way_to_none_that_is_singular_elsewhere() {
     }
 }
 
-/// Equal they are still, and their difference is 0.
+/// They are still equal, and their difference is 0.
 #[test]
 fn forms_that_are_singular_at_different_points_are_equal() {
     let graph = Graph::new();
@@ -90,7 +91,8 @@ fn forms_that_are_singular_at_different_points_are_equal() {
     assert_eq!(3.0 * a - 3.0 * b + z, z);
 }
 
-/// A factor by itself or inside a product, under a root or not, is the same divisor; what never vanishes is none.
+/// A factor alone or inside a product, under a root or not, is the same divisor; an expression that never
+/// vanishes is none.
 #[test]
 fn equal_divisors_in_different_forms_are_recognised() {
     let graph = Graph::new();
@@ -100,7 +102,7 @@ fn equal_divisors_in_different_forms_are_recognised() {
     assert_eq!(m * (m + l), product);
     let short = 1.0 / (m + l);
     assert_eq!(long, short);
-    let long = (x.sin().square() * u + x.cos().square() * u) / (u * x + u.square()); // no u (x + u)
+    let long = (x.sin().square() * u + x.cos().square() * u) / (u * x + u.square()); // contains no factor u (x + u)
     let short = 1.0 / (x + u);
     assert_eq!((long + u).to_string(), (short + u).to_string());
     assert!((long * u).tree_cost() <= (short * u).tree_cost());

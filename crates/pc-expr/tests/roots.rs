@@ -1,4 +1,5 @@
-//! What is seen of roots, absolute values, fractional powers and inverse functions, and what must not be.
+//! Identities of roots, absolute values, fractional powers and inverse functions that are recognised, and
+//! those that are not.
 
 use pc_expr::{Expr, Graph, Number};
 
@@ -115,7 +116,7 @@ fn one_sided_identities_are_not_merged() {
     }
 }
 
-/// (√x − 1)² + 2√x − 1 is x, which also has a value below 0.
+/// (√x − 1)² + 2√x − 1 is x, which also has a value for x < 0.
 #[test]
 fn a_form_with_roots_does_not_replace_one_without() {
     let graph = Graph::new();

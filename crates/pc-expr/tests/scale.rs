@@ -1,4 +1,4 @@
-//! Long sums, long products and deep nesting: linear growth, and no recursion that follows the depth.
+//! Long sums, long products and deep nesting: linear growth, and no recursion along the depth.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -53,7 +53,7 @@ fn an_n_ary_sum_is_one_node() {
     assert!(sum.to_string().starts_with("x0 + x1 + "));
 }
 
-/// Everything that walks over an expression.
+/// All operations that walk over an expression.
 fn walk(graph: &Graph, deep: Expr<'_>, x: Expr<'_>) {
     let gradient = graph.gradient(deep, &[x])[0];
     let forward = deep.derivative(x);
@@ -63,7 +63,7 @@ fn walk(graph: &Graph, deep: Expr<'_>, x: Expr<'_>) {
     assert!(values.iter().all(|v| v.is_finite()));
     assert!((values[1] - values[2]).abs() <= 1e-9 * values[1].abs());
     let text = deep.to_string();
-    // All of it, each part once.
+    // Complete, with each part written once.
     assert!(!text.contains('…') && text.len() < 40 * graph.len(), "{} characters", text.len());
     assert!(deep.tree_cost() > 1000);
     assert_eq!(graph.symbols_of(&[deep]), [x]);
@@ -105,8 +105,8 @@ fn an_iterated_square_costs_no_stack() {
 
 #[test]
 fn forms_found_late_cost_no_stack() {
-    // Each c is written as a quotient of the one before; the short forms c + 1 are found from the top down, so that
-    // every one of them stands in for a node that the next refers to.
+    // Each c is a quotient of the one before; the short forms c + 1 are found from the top down, so that each
+    // of them replaces a node that the next one uses.
     on_a_small_stack(|| {
         let graph = Graph::new();
         let y = graph.symbol("y");

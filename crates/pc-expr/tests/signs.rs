@@ -58,7 +58,7 @@ fn forms(which: usize, form: usize, negative: bool) -> Tree {
     if negative { difference(number(0.0), positive) } else { positive }
 }
 
-/// What is made of ±E, to a power.
+/// A function of ±E, to a power.
 fn leaves(which: usize) -> impl Strategy<Value = Tree> {
     (0..2usize, any::<bool>(), 0..7, -3i32..4).prop_map(move |(form, negative, outer, e)| {
         let x = forms(which, form, negative);
@@ -97,7 +97,8 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// All in one graph, in random order, so that a shorter form of ±E may come before or after what contains E.
+    /// All in one graph, in random order, so that a shorter form of ±E is made before or after an expression
+    /// that contains E.
     #[test]
     fn no_sign_is_lost(trees in expressions(), point in prop::array::uniform3(0.2..2.0)) {
         for folding in [Folding::ByValue, Folding::Structural] {

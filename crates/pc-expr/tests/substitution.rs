@@ -1,4 +1,4 @@
-//! What is left of a symbol after it was replaced: nothing.
+//! A symbol that was replaced is absent from the result.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -8,7 +8,7 @@ use common::{Bounded, Tree, trees};
 use pc_expr::{Expr, Graph};
 use proptest::prelude::*;
 
-/// f with x and y replaced has no x and no y left, and the value of f at the values put in.
+/// f with x and y replaced contains neither, and has the value of f at the replacements.
 fn check<'g>(
     graph: &'g Graph,
     f: Expr<'g>,
@@ -28,7 +28,7 @@ fn a_symbol_that_cancels_does_not_come_back() {
     let [x, y, v, u] = graph.symbols(["x", "y", "x'", "u"]);
     let point = [(x, 1.0), (y, 0.5), (u, 1.0)];
     assert_eq!(check(&graph, (x * v + y * v) / v, &[(v, u / y)], &point), 1.5);
-    // Not a quotient; and the number put in for v must not be one at which a divisor vanishes.
+    // No division, and no replacement of v at which a divisor vanishes.
     assert_eq!(check(&graph, (v + x).square() - v.square() - 2.0 * v * x, &[(v, u / y)], &point), 1.0);
     assert_eq!(check(&graph, ((v - x) * (v - x) * y) / (v - x).square(), &[(v, u / y)], &point), 0.5);
     assert_eq!(check(&graph, (v * v * x - v * x) / (v * (v - 1.0)), &[(v, u / y)], &point), 1.0);
@@ -36,7 +36,7 @@ fn a_symbol_that_cancels_does_not_come_back() {
     assert_eq!(check(&graph, f, &[(v, u + y)], &point), 1.5);
 }
 
-/// Where no number leaves the divisors as they are, a new one vanishes at no usual place.
+/// Where every number changes the divisors, the new divisor vanishes only at unlikely places.
 #[test]
 fn a_symbol_that_cancels_is_replaced_by_a_regular_point() {
     for a in [-2.0, -1.0, 0.0, 0.5, 1.0, 2.0, 3.0] {
@@ -65,7 +65,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// f = (g h − p h)/h and (g + h)² − h² − 2 g h with random h are written with what cancels.
+    /// f = (g h − p h)/h and (g + h)² − h² − 2 g h with random h contain symbols that cancel.
     #[test]
     fn only_substituted_symbols_are_left(
         [g, p] in prop::array::uniform2(trees(2)),

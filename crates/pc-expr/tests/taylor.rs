@@ -1,4 +1,5 @@
-//! Taylor coefficients of solutions against series in twice the precision, composed from the definitions of the functions.
+//! Taylor coefficients of solutions against series in twice the precision, composed from the definitions of
+//! the functions.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -205,7 +206,7 @@ impl Scalar for Series {
     }
 }
 
-/// The coefficients by Picard's iteration, one more of which is right after each.
+/// The coefficients by Picard's iteration, each step of which gives one more.
 fn expected(rates: &[Tree], t: f64, start: &[f64]) -> Vec<Series> {
     let mut solution: Vec<Series> = start.iter().map(|&y| Series::number(y)).collect();
     for _ in 0..ORDER {
@@ -225,7 +226,7 @@ fn found(rates: &[Tree], t: f64, start: &[f64], backend: Backend) -> Option<Vec<
     let program = Program::new(&graph, &inputs, &outputs).ok()?;
     let mut series = TaylorSeries::new(&program, backend);
     let mut sides = vec![0.0; series.branches().len()];
-    // Sides at zero follow from the first coefficient that is not.
+    // Signs at zero follow from the first nonzero coefficient.
     for _ in 0..8 {
         series.expand(t, start, &sides, &[], ORDER);
         let leading = |i: usize| {
@@ -236,7 +237,7 @@ fn found(rates: &[Tree], t: f64, start: &[f64], backend: Backend) -> Option<Vec<
     Some((1..=ORDER).map(|k| series.coefficients(k).to_vec()).collect())
 }
 
-/// u̇ = 0.3 − u w/2, ẇ = u + t/5, and what `rate` makes of (t, u, w).
+/// u̇ = 0.3 − u w/2, ẇ = u + t/5, and the given `rate`, a function of (t, u, w).
 fn with_carrier(rate: Tree) -> Vec<Tree> {
     use Tree::{Difference, Number, Product, Sum, Symbol};
     let product = |a, b| Box::new(Product(Box::new(a), Box::new(b)));
@@ -246,7 +247,7 @@ fn with_carrier(rate: Tree) -> Vec<Tree> {
     vec![first, second, rate]
 }
 
-/// Compares with the sizes of the coefficients near by, of which one may be small by chance.
+/// Compares relative to the coefficients of neighbouring orders, as a single one may be small by chance.
 fn check(rates: &[Tree], t: f64, start: &[f64], tolerance: f64) {
     let right = expected(rates, t, start);
     for backend in [Backend::Fastest, Backend::Interpreter] {
@@ -262,7 +263,8 @@ fn check(rates: &[Tree], t: f64, start: &[f64], tolerance: f64) {
     }
 }
 
-/// The rounding of some tens of terms, each of them of the size of the coefficients near by: 14 orders of at most two sums.
+/// The rounding of some tens of terms, each of the size of neighbouring coefficients: 14 orders of at most
+/// two sums.
 const ROUNDING: f64 = 1e-14;
 
 #[test]
@@ -292,7 +294,7 @@ fn each_recurrence_is_exact() {
 }
 
 #[test]
-fn sides_at_a_corner_are_those_that_the_motion_goes_to() {
+fn branches_at_a_corner_follow_the_motion() {
     // |u|, sign u, min(u, w), max(u, w), step(u, …) where u and w begin at the same 0.
     let start = [0.0, 0.0, 0.1];
     let (u, w) = (|| Tree::Symbol(1), || Tree::Symbol(2));
@@ -303,7 +305,7 @@ fn sides_at_a_corner_are_those_that_the_motion_goes_to() {
 }
 
 #[test]
-fn time_and_what_does_not_change_are_series_too() {
+fn time_and_constants_are_series() {
     let t = || Tree::Symbol(0);
     let sine = Tree::Call(Function::Sin, vec![Tree::Product(Box::new(t()), Box::new(t()))]);
     check(&[sine, Tree::Number(2.0), t()], 0.8, &[1.0, 0.0, 3.0], ROUNDING);
@@ -351,14 +353,14 @@ proptest! {
         let right = expected(&rates, t, &start);
         prop_assume!(right.iter().all(|r| r.0.iter().all(|c| c.0.abs() < 1e30)));
         let Some(found) = found(&rates, t, &start, Backend::Fastest) else { return Ok(()) };
-        // What cancels on the way leaves rounding, which the coefficients magnify as they do a change of the start.
+        // Cancellation leaves rounding errors, which the coefficients magnify like a change of the start.
         let moved: Vec<Vec<Series>> = [1.0 - 3e-13, 1.0 + 3e-13]
             .map(|factor| {
                 let start: Vec<f64> = start.iter().map(|y| y * factor).collect();
                 expected(&rates, t * factor, &start)
             })
             .into();
-        // So does what is smooth although parts of it are not, as sin u/u is: the coefficients of the parts grow.
+        // So do smooth functions of singular parts, such as sin u/u: the coefficients of the parts grow.
         let mut symbols = vec![Series::time(t)];
         symbols.extend(&right);
         let largest = right.iter().chain(&symbols).map(|r| r.0[0].0.abs()).fold(1.0, f64::max);
@@ -367,7 +369,7 @@ proptest! {
         prop_assume!(parts.iter().all(|r| r.0.iter().all(|c| c.0.is_finite())));
         let growth = |r: &Series| (1..=ORDER).map(|k| (r.0[k].0.abs() / largest).powf(1.0 / k as f64)).fold(1.0, f64::max);
         let growth = parts.iter().map(growth).fold(1.0, f64::max);
-        prop_assume!(growth.powi(ORDER as i32) < 1e14); // else twice the precision does not suffice
+        prop_assume!(growth.powi(ORDER as i32) < 1e14); // beyond that, double-double precision does not suffice
         for k in 1..=ORDER {
             for i in 0..2 {
                 let spread = moved.iter().map(|moved| (moved[i].0[k] + -right[i].0[k]).0.abs()).fold(0.0, f64::max);

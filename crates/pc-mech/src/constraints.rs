@@ -1,9 +1,9 @@
 //! Systems whose coordinates or velocities are subject to conditions.
 //!
-//! A `constraint` is one condition; `multipliers` keeps all coordinates and adds the reactions, M η̇ = r + Cᵀ λ;
-//! `independent_velocities` solves for some velocities instead (14)–(16), which `choice` selects; `explicit_reactions`
-//! puts λ in as functions of the state, and `body_reactions` expresses them as forces and torques on bodies. `loops` closes those of
-//! a tree joint after joint.
+//! A `constraint` is one condition; `multipliers` keeps all coordinates and adds the reactions, M η̇ = r + Cᵀ
+//! λ; `independent_velocities` solves for some velocities instead (14)–(16), which `choice` selects;
+//! `explicit_reactions` expresses λ as functions of the state, and `body_reactions` as forces and torques on
+//! bodies. `loops` closes the loops of a tree joint after joint.
 
 pub(crate) mod body_reactions;
 pub(crate) mod choice;

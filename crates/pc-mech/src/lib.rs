@@ -50,9 +50,10 @@
 //! # Ok::<(), pc_mech::MechError>(())
 //! ```
 //!
-//! With η = ẋ all c_rs^m vanish and (9) are Lagrange's equations. On a group, with constant c_rs^m and X_s L = 0, they are
-//! Euler's. For η_s = dπ_s/dt that are the velocities of no coordinates they are those of Boltzmann and Hamel (18), with
-//! ∂/∂π_s for X_s. [`System::in_quasi_velocities`] goes from one to the other, [`System::in_velocities`] back to Lagrange's:
+//! With η = ẋ all c_rs^m vanish and (9) are Lagrange's equations. On a group, with constant c_rs^m and X_s L
+//! = 0, they are Euler's. For η_s = dπ_s/dt that are the velocities of no coordinates they are those of
+//! Boltzmann and Hamel (18), with ∂/∂π_s for X_s. [`System::in_quasi_velocities`] goes from one to the other,
+//! [`System::in_velocities`] back to Lagrange's:
 //!
 //! ```
 //! use pc_mech::{Graph, System};
@@ -73,8 +74,8 @@
 //!
 //! # Redundant coordinates
 //!
-//! Coordinates with relations f_α(t, x) = 0 between them, or velocities with C η + c_0 = 0, are given a [`Constraint`] each.
-//! [`System::with_multipliers`] keeps all of them and adds the reactions,
+//! Coordinates with relations f_α(t, x) = 0 between them, or velocities with C η + c_0 = 0, are given a
+//! [`Constraint`] each. [`System::with_multipliers`] keeps all of them and adds the reactions,
 //!
 //! M η̇ = r + Cᵀ λ;
 //!
@@ -150,8 +151,9 @@
 //!
 //! # Symmetry
 //!
-//! Coordinates on which neither L nor Q depends can be left out by [`System::reduced`]. On a group with invariant L none
-//! remain: (9) become Euler–Poincaré's equations, (10) those of Lie–Poisson, ẏ_s = c_rs^m ∂H/∂y_r y_m.
+//! Coordinates on which neither L nor Q depends can be left out by [`System::reduced`]. On a group with
+//! invariant L none remain: (9) become Euler–Poincaré's equations, (10) those of Lie–Poisson, ẏ_s = c_rs^m
+//! ∂H/∂y_r y_m.
 //!
 //! ```
 //! use pc_mech::{Graph, LieGroup, RotationMatrices, System};
@@ -173,17 +175,18 @@
 //!
 //! # States and inputs
 //!
-//! A quantity that evolves with a system but is not part of its frame, such as the current in a motor, is a first-order
-//! [state](SystemBuilder::state) z with ż = h(t, x, η, z). L and Q may depend on it; d/dt ∂L/∂η_s in (9) then has the term
-//! ż ∂²L/∂η_s∂z, and dH/dt the term −ż ∂L/∂z. Parameters that are functions of time are [signals](SystemBuilder::signal); a
-//! motion reads them from [tables](Motion::driven_by).
+//! A quantity that evolves with a system but is not part of its frame, such as the current in a motor, is a
+//! first-order [state](SystemBuilder::state) z with ż = h(t, x, η, z). L and Q may depend on it; d/dt ∂L/∂η_s
+//! in (9) then has the term ż ∂²L/∂η_s∂z, and dH/dt the term −ż ∂L/∂z. Parameters that are functions of time
+//! are [signals](SystemBuilder::signal); a motion reads them from [tables](Motion::driven_by).
 //!
 //! # Numbers and source
 //!
-//! [`Equations::compile`], [`Canonical::compile_for`] and [`Multipliers::compile`] make a [`Motion`], a [`VectorField`]
-//! ẏ = f(t, y) that owns all it needs; [`CompileOptions`] say which derivatives it has, and for which kernel. Parameters
-//! stay adjustable. Integrals, energy and outputs are [observed](Motion::observe). With an [`ExternalForce`] it is a
-//! [`ForcedMotion`]. [`Equations::emit`] writes the same operations as C or Rust without dependencies.
+//! [`Equations::compile`], [`Canonical::compile_for`] and [`Multipliers::compile`] make a [`Motion`], a
+//! [`VectorField`] ẏ = f(t, y) that owns all it needs; [`CompileOptions`] say which derivatives it has, and
+//! for which kernel. Parameters stay adjustable. Integrals, energy and outputs are
+//! [observed](Motion::observe). With an [`ExternalForce`] it is a [`ForcedMotion`]. [`Equations::emit`]
+//! writes the same operations as C or Rust without dependencies.
 //!
 //! ```
 //! use pc_mech::{EmitOptions, Graph, Language, System, VectorField};

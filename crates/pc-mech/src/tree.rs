@@ -1,12 +1,13 @@
 //! Bodies joined by joints.
 //!
-//! In goes how each body hangs on another, out come coordinates, quasi-velocities and how each body moves. Read `joint` (the
-//! kinds, as they are described), `body`, then `tree`, which takes them to `link`s: one elementary movement each, with the axes
-//! of the body along or about one of which it moves. `spatial` has the vectors and matrices of three components, `kinematics`
-//! the recursion of velocities from body to body, `energy` what it adds to a system. Joint after joint, in O(N), its equations are
-//! solved by `dynamics`, on `articulated` inertias of masses that `regrouping` has made small; `turning` takes them from one body
+//! A description of how each body hangs on another gives coordinates, quasi-velocities and the motion of each
+//! body. Read `joint` (the kinds, as they are described), `body`, then `tree`, which divides them into
+//! `link`s: one elementary movement each, with body axes chosen along its axis. `spatial` has the vectors and
+//! matrices of three components, `kinematics` the recursion of velocities from body to body, `energy` the
+//! contribution to a system. The equations are solved joint after joint, in O(N), by `dynamics`, on
+//! `articulated` inertias of masses that `regrouping` has made sparse; `turning` rotates them from one body
 //! to the next. `system` is a system that is a tree, `own_graph` writes it in a graph of its own, `equations`
-//! are its, `reactions` what its joints bear.
+//! are its equations of motion, `reactions` the loads of its joints.
 
 pub(crate) mod articulated;
 pub(crate) mod body;

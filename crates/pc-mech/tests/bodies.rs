@@ -43,7 +43,7 @@ fn rotation(q: [f64; 4]) -> [Vector; 3] {
     ]
 }
 
-/// States of `size` numbers in (−2, 2), always the same ones.
+/// States of `size` numbers in (−2, 2), the same on every run.
 fn states(size: usize, check: impl Fn(Vec<f64>)) {
     let config = ProptestConfig {
         cases: 40,
@@ -334,7 +334,7 @@ fn a_satellite_under_the_gradient_of_gravity() {
     assert_newton_euler(&by_load, (M, I), load);
 }
 
-/// A ladder in the plane, given by its turn about z and by φ'; the mixed moments about z do not count.
+/// A ladder in the plane, given by its rotation about z and by φ'; the mixed moments about z do not matter.
 #[test]
 fn bodies_in_the_plane() {
     let graph = Graph::new();
@@ -416,7 +416,7 @@ fn a_turn_that_depends_on_time() {
     assert_eq!(disk.forces(), [torque]);
 }
 
-/// Velocities x' in a force and in ω are those of the frame.
+/// Velocities x' in a force and in ω are expressed by the frame.
 #[test]
 fn velocities_of_coordinates_stand_for_the_frame() {
     let graph = Graph::new();
@@ -534,7 +534,8 @@ fn potential<'g>(system: &System<'g>) -> Expr<'g> {
     system.graph().substitute(&[system.energy()], &still)[0]
 }
 
-/// Forces that depend on the place alone and are homogeneous in it have a force function if their work is exact; others are forces.
+/// A force that depends on the place alone, and is homogeneous in it, has a force function if its work is
+/// exact; otherwise it counts as a force.
 #[test]
 fn forces_that_have_a_force_function_count_in_the_energy() {
     let graph = Graph::new();
@@ -554,7 +555,7 @@ fn forces_that_have_a_force_function_count_in_the_energy() {
     }
     let t = graph.symbol("t");
     let vx = graph.symbol("x'");
-    // Around an axis, across a gradient, by time, by velocity.
+    // A force around an axis, one across a gradient, one of time, one of velocity.
     for force in [
         [-y, x, Expr::ZERO],
         [k * y, Expr::ZERO, Expr::ZERO],
@@ -565,13 +566,14 @@ fn forces_that_have_a_force_function_count_in_the_energy() {
         assert_eq!(driven.forces(), force);
         assert!(potential(&driven).is_zero());
     }
-    // Weight beside a drag.
+    // Weight together with drag.
     let dragged = system([-vx, Expr::ZERO, -k]);
     assert_eq!(dragged.forces(), [-vx, Expr::ZERO, Expr::ZERO]);
     assert_eq!(potential(&dragged), k * z);
 }
 
-/// The same where the frame has an irrational coefficient, with which products are rounded: a uniform force, and a spring.
+/// A uniform force and a spring keep their force functions in a frame with an irrational coefficient, whose
+/// products are rounded.
 #[test]
 fn rounded_coefficients_leave_a_force_its_force_function() {
     let graph = Graph::new();

@@ -100,7 +100,7 @@ fn forms_agree(system: &System<'_>, t: f64, x: &[f64], eta: &[f64]) {
     let expected: Vec<f64> = rates[..n].iter().copied().chain(expected).collect();
     close(&found, &expected);
 
-    // The same from the printed expressions.
+    // The values of the printed expressions.
     values.extend(canonical.momenta().iter().copied().zip(y.iter().copied()));
     let mut printed = graph.evaluate(canonical.velocities(), &values).unwrap();
     printed.extend(graph.evaluate(canonical.right_hand_side(), &values).unwrap());

@@ -48,7 +48,7 @@ impl Scalar for Dual {
         Dual(match function {
             Function::Sin => args[0].0.sin(),
             Function::Cos => args[0].0.cos(),
-            _ => Dual64::from(f64::NAN), // the systems below have no others
+            _ => Dual64::from(f64::NAN), // the systems below call no others
         })
     }
 }
@@ -117,7 +117,7 @@ fn by_differences(motion: &Motion, (t, y): (f64, &[f64]), j: usize, of_parameter
     at(h).iter().zip(at(-h)).map(|(a, b)| (a - b) / (2.0 * h)).collect()
 }
 
-/// Relative to the largest entry; `what` is said on failure.
+/// Relative to the largest entry; `what` appears in the message.
 fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     let size = expected.iter().fold(1.0f64, |size, v| size.max(v.abs()));
     assert_eq!(found.len(), expected.len(), "{what}");
@@ -317,7 +317,7 @@ fn derivatives_that_were_not_compiled_are_refused() {
     }
 }
 
-/// The mass of the second body is a parameter: a pivot that no state changes.
+/// The mass of the second body is a parameter: a pivot independent of the state.
 #[test]
 fn a_parameter_that_makes_the_mass_matrix_singular_is_found_when_it_changes() {
     let graph = Graph::new();
@@ -341,7 +341,7 @@ fn a_parameter_that_makes_the_mass_matrix_singular_is_found_when_it_changes() {
     assert_eq!(ydot, [1.0, 2.0, 0.0, 0.0]);
 }
 
-/// The Earth and a satellite, kg and m: the lighter body is no rounding of the heavier one.
+/// The Earth and a satellite, kg and m: the mass of the lighter body is not a rounding error.
 #[test]
 fn masses_of_any_ratio_are_regular() {
     let graph = Graph::new();
@@ -387,7 +387,7 @@ fn an_indefinite_mass_matrix_is_regular_where_a_pivot_vanishes() {
     }
 }
 
-/// Where a pivot is what roundings leave, of an entry or of a matrix with both signs, the rates would be rounding too.
+/// Where a pivot is a rounding error, of an entry or of an indefinite matrix, the rates would be, too.
 #[test]
 fn a_mass_matrix_that_is_singular_up_to_rounding_is_refused() {
     type Lagrangian = for<'g> fn(&[Expr<'g>], &[Expr<'g>]) -> Expr<'g>;

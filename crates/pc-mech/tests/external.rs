@@ -60,7 +60,7 @@ fn assert_close(found: &[f64], expected: &[f64], tolerance: f64) {
     }
 }
 
-/// What a vector field says at (T, Y): ẏ, ∂f/∂y, (∂f/∂y) v, ∂f/∂p.
+/// All results of a vector field at (T, Y): ẏ, ∂f/∂y, (∂f/∂y) v, ∂f/∂p.
 fn everything(field: &mut impl VectorField) -> [Vec<f64>; 4] {
     assert!(field.has_jacobian() && field.has_jvp() && field.has_parameter_jacobian());
     let dim = field.dim();
@@ -91,7 +91,7 @@ fn a_force_from_outside_is_the_force_in_symbols() {
     }
     assert_close(&exact.observe(T, &Y), &inside.observe(T, &Y), ROUNDING);
 
-    // The same without derivatives: difference quotients with the error √ε = 1.5e-8 times a curvature of order one.
+    // Without derivatives: difference quotients with the error √ε = 1.5e-8 times a curvature of order one.
     let closure = |t: f64, y: &[f64], q: &mut [f64]| q.copy_from_slice(&[q3(t, y), q1(y)]);
     let mut differences = equations.compile_forced_for(options, closure).unwrap();
     let found = everything(&mut differences);
@@ -103,7 +103,7 @@ fn a_force_from_outside_is_the_force_in_symbols() {
 }
 
 #[test]
-fn parameters_are_apart_from_the_forces() {
+fn parameters_are_separate_from_the_forces() {
     let graph = Graph::new();
     let equations = top(&graph).external_force(["ω3", "ω1"]).build().unwrap().poincare().unwrap();
     let mut motion = equations.compile_forced(Known).unwrap();
@@ -115,7 +115,7 @@ fn parameters_are_apart_from_the_forces() {
     let expected = (Y[0] - Y[1] + q3(T, &Y)) / 2.0;
     assert!((rate[5] - expected).abs() < ROUNDING);
 
-    // Compiled without a force, these are parameters after the others, zero until they are set.
+    // Compiled without a force, the forces are parameters after the others, zero until they are set.
     let mut motion = equations.compile().unwrap();
     assert_eq!(motion.parameters(), [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
     let mut free = rate;
@@ -179,7 +179,7 @@ fn a_long_chain_takes_external_forces() {
     assert_close(&jacobian, &expected, 1e-5); // difference quotients, magnified likewise
 }
 
-/// The symbol of the force outlives what is done to a system.
+/// The symbol of the force is kept by transformations of a system.
 #[test]
 fn the_force_stays_a_symbol() {
     let graph = Graph::new();
@@ -212,7 +212,7 @@ fn the_force_stays_a_symbol() {
     let files = declared.poincare().unwrap().emit(&options).unwrap();
     assert!(files[1].text.contains("= p[0]; /* Q_ω3 */"), "{}", files[1].text);
 
-    // A parameter of the same name makes room.
+    // With a parameter of the same name, the force gets another one.
     let taken = System::builder(&graph)
         .parameter(graph.symbol("Q_x'"), 1.0)
         .coordinates(["x"])
@@ -253,7 +253,7 @@ fn failures_name_the_force() {
         let of_output = motion.observe(T, &Y);
         assert!(of_output[0].is_finite() && of_output[1].is_nan(), "{of_output:?}"); // energy, ω3'
     }
-    // An entry that is not written counts as NaN.
+    // An entry left unwritten counts as NaN.
     let mut motion = equations.compile_forced(|_: f64, y: &[f64], q: &mut [f64]| q[0] = y[0]).unwrap();
     let failure = motion.rhs(T, &Y, &mut rate).unwrap_err();
     assert!(failure.is_recoverable());

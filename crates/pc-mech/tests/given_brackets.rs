@@ -1,4 +1,4 @@
-//! Brackets that only an algebra says, carried through changes of frame and integrable constraints.
+//! Brackets that are given by an algebra alone, through changes of frame and integrable constraints.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -63,8 +63,8 @@ fn by_hand(case: &Case, q: f64, eta: &[f64]) -> Vec<f64> {
     rates
 }
 
-/// The accelerations in another frame, η' = (A + sin q N) η, of the system that the constraints leave, and those by hand; and
-/// the canonical equations on the way.
+/// The accelerations in another frame, η' = (A + sin q N) η, under integrable constraints agree with those by
+/// hand; so do the canonical equations.
 #[test]
 fn integrable_constraints_keep_the_brackets_that_are_given() {
     for case in &CASES {
@@ -175,7 +175,7 @@ fn a_drift_gives_brackets_with_time() {
     assert_eq!(free.poincare().unwrap().accelerations(), [w3, Expr::ZERO]);
 }
 
-/// A bracket may contain parameters and, with time, t; what violates Jacobi's identity then is refused.
+/// Brackets may contain parameters and, with time, t; those that violate Jacobi's identity are refused.
 #[test]
 fn given_brackets_may_contain_parameters_and_time() {
     let graph = Graph::new();

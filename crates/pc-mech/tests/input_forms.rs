@@ -1,4 +1,4 @@
-//! The forms in which energy and forces can be given say the same.
+//! The forms in which energy and forces can be given are equivalent.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -70,7 +70,7 @@ fn the_frame_may_come_after_the_energy() {
     assert_eq!(before.lagrangian(), after.lagrangian());
 }
 
-/// Quasi-velocities may be called as velocities are, even of another coordinate.
+/// Quasi-velocities may have the names of velocities, even of another coordinate.
 #[test]
 fn names_of_velocities_are_kept_apart() {
     let graph = Graph::new();

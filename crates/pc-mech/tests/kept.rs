@@ -34,7 +34,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[test]
-fn integrals_are_brought_back_in_both_forms() {
+fn states_are_projected_to_integrals_in_both_forms() {
     let graph = Graph::new();
     let system = top(&graph);
     let names = ["norm", "area", "energy"];
@@ -61,7 +61,7 @@ fn integrals_are_brought_back_in_both_forms() {
             let (found, expected) = (found[j], expected[j]);
             assert!((found - expected).abs() < 1e-14 * (1.0 + expected.abs()), "{j}: {found} {expected}"); // roundings
         }
-        // The nearest such state is no farther than the start.
+        // The nearest such state is at most as far as the start.
         assert!(distance(&state, &away) <= distance(&start, &away));
     }
 }
@@ -89,7 +89,7 @@ fn constraints_and_energy_hold_together() {
 }
 
 #[test]
-fn an_integral_that_others_imply_is_left_to_them() {
+fn dependent_integrals_follow_from_the_others() {
     let graph = Graph::new();
     let oscillator = System::builder(&graph)
         .coordinates(["x"])
@@ -103,14 +103,14 @@ fn an_integral_that_others_imply_is_left_to_them() {
     let mut state = [2.997, 3.996];
     motion.project(0.0, &mut state).unwrap();
     assert!(distance(&state, &[3.0, 4.0]) < 1e-14, "{state:?}");
-    // At rest the gradient vanishes, and there is nothing to move along.
+    // At rest the gradient vanishes, and no direction leads to the level.
     let mut rest = [0.0, 0.0];
     motion.project(0.0, &mut rest).unwrap();
     assert_eq!(rest, [0.0, 0.0]);
 }
 
 #[test]
-fn after_an_impact_other_values_are_kept() {
+fn new_values_are_kept_after_an_impact() {
     let graph = Graph::new();
     let equations = top(&graph).poincare().unwrap();
     let kept = equations.kept(&["energy"]).unwrap();
@@ -161,9 +161,9 @@ fn a_rate_that_vanishes_only_at_the_start_is_detected() {
     assert!(t > 0.0 && rate < 0.0, "{refused}");
 }
 
-/// What a constraint does not allow of y⁺ is not given to what it allows.
+/// The part of y⁺ that a constraint forbids is lost; the allowed part is unchanged.
 #[test]
-fn an_impact_against_a_constraint_loses_its_part() {
+fn an_impact_loses_the_velocity_that_a_constraint_forbids() {
     let graph = Graph::new();
     let particle = System::builder(&graph)
         .coordinates(["x", "y"])
@@ -181,7 +181,7 @@ fn an_impact_against_a_constraint_loses_its_part() {
     assert!(distance(&state, &[1.0, 0.0, 0.0, 0.5]) < 1e-15, "{state:?}");
 }
 
-/// tanh x has no value −2, and what Newton's method comes to is no state of its.
+/// tanh x does not reach −2, and the limit of Newton's method is not a state.
 #[test]
 fn a_value_that_cannot_be_reached_is_an_error() {
     let graph = Graph::new();
@@ -201,7 +201,7 @@ fn a_value_that_cannot_be_reached_is_an_error() {
     assert!(motion.project(0.0, &mut [1.2, 0.0, 0.0, 1.0]).is_err());
 }
 
-/// Near an equilibrium the energy is flat, and its rounding must not move the state.
+/// Near an equilibrium the energy is flat, and its rounding errors leave the state unchanged.
 #[test]
 fn rounding_moves_nothing_near_an_equilibrium() {
     let graph = Graph::new();
@@ -221,7 +221,8 @@ fn rounding_moves_nothing_near_an_equilibrium() {
     assert!(distance(&state, &[3e-9, 1e-8]) < 1e-10, "{state:?}"); // a hundredth of the motion
 }
 
-/// Far from its level an integral that is flat there is reached in many steps that are not half as long as those before.
+/// Far from its level an integral that is flat there is reached in many steps, each longer than half of the
+/// one before.
 #[test]
 fn slow_steps_do_not_end_the_iteration() {
     let graph = Graph::new();
@@ -240,7 +241,7 @@ fn slow_steps_do_not_end_the_iteration() {
     assert!((state[2] - 1.2).abs() < 1e-13, "{state:?}");
 }
 
-/// A bumper that is not touched: its power has no derivative by the exponent there.
+/// A bumper out of contact: its power has no derivative by the exponent there.
 #[test]
 fn parts_without_a_derivative_are_allowed() {
     let graph = Graph::new();
@@ -267,7 +268,7 @@ fn parts_without_a_derivative_are_allowed() {
     }
 }
 
-/// A velocity that a constraint keeps at zero, but for the rounding of a start, does not belie the energy.
+/// A velocity that a constraint keeps at zero, up to the rounding of a start, does not invalidate the energy.
 #[test]
 fn rounding_of_a_vanishing_velocity_does_not_count_as_change() {
     let graph = Graph::new();
@@ -281,13 +282,14 @@ fn rounding_of_a_vanishing_velocity_does_not_count_as_change() {
     let start = [0.0, 1.0, 0.5, -1.2e-32];
     let kept = held.kept(&["energy"]).unwrap();
     assert!(held.compile().unwrap().keep(kept, 0.0, &start).is_ok());
-    // One that does move is told from rounding.
+    // An actual motion is distinguished from rounding.
     let kept = held.kept(&["energy"]).unwrap();
     let refused = held.compile().unwrap().keep(kept, 0.0, &[0.0, 1.0, 0.5, -1e-8]).map(|_| ()).unwrap_err();
     assert!(matches!(refused, MechError::Integral(IntegralError::NotAnIntegral { .. })), "{refused}");
 }
 
-/// On its way the motion is tried on the constraints: off them by the errors of steps, their reactions would do work.
+/// The energy is tested along the motion on the constraints: off them, by the errors of steps, their
+/// reactions do work.
 #[test]
 fn energy_is_kept_along_a_steep_curve() {
     let graph = Graph::new();

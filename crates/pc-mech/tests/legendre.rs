@@ -1,4 +1,5 @@
-//! Momenta and quasi-velocities turned into each other where L is not quadratic: y = ∂L/∂η by Newton's method.
+//! Momenta and quasi-velocities converted into each other where L is not quadratic: y = ∂L/∂η by Newton's
+//! method.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -14,7 +15,7 @@ use proptest::prelude::*;
 /// L = ½ A_rs η_r η_s + ε |η|⁴ + a e^(b·η) + d·η, convex for ε, a ≥ 0 and positive definite A.
 #[derive(Clone, Debug)]
 struct Convex {
-    /// Of A = 1 + B Bᵀ.
+    /// B of A = 1 + B Bᵀ.
     b: Vec<f64>,
     quartic: f64,
     exponential: f64,
@@ -64,8 +65,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// η → y → η and y → η → y: M ≥ 1, so that an error of y, some roundings of its terms, is no less than that
-    /// of η.
+    /// η → y → η and y → η → y: as M ≥ 1, an error of y, some roundings of its terms, is at least that of η.
     #[test]
     fn quasi_velocities_and_momenta_are_converted_both_ways(
         lagrangian in convex(),
@@ -121,8 +121,8 @@ proptest! {
     }
 }
 
-/// Two particles of mass 10⁵ and 10⁻⁵ with velocities of light 10⁵ and 10⁻⁵: each velocity has the precision of its
-/// own momentum.
+/// Two particles of mass 10⁵ and 10⁻⁵ with velocities of light 10⁵ and 10⁻⁵: each velocity is as precise as
+/// its own momentum.
 #[test]
 fn no_component_is_lost_beside_one_of_other_units() {
     let graph = Graph::new();
@@ -241,7 +241,7 @@ fn an_undetermined_velocity_is_still_refused() {
     ));
 }
 
-/// Where ∂²L/∂η∂η does not show η, L may jump or bend all the same.
+/// L may have jumps and corners although ∂²L/∂η∂η does not contain η.
 #[test]
 fn a_lagrangian_that_is_quadratic_in_pieces_is_not_called_quadratic() {
     let system = |graph: &'static Graph, l: fn(Expr<'static>) -> Expr<'static>| {

@@ -1,4 +1,5 @@
-//! Momenta of all quasi-velocities under constraints: against the quasi-velocities, and their derivatives.
+//! Momenta of all quasi-velocities under constraints, and their derivatives, against the motion of the
+//! quasi-velocities.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -31,7 +32,7 @@ fn held(graph: &Graph) -> Multipliers<'_> {
     system.with_multipliers(&[surface, skate]).unwrap()
 }
 
-/// A state on the constraints near one that is not.
+/// A state on the constraints, near one that is off them.
 fn start(motion: &mut Motion, t: f64) -> Vec<f64> {
     let mut state = vec![0.5, 0.3, 0.7, 0.4, 0.2, -0.3, 0.5, 0.9];
     motion.project(t, &mut state).unwrap();
@@ -76,8 +77,8 @@ fn the_motion_is_that_of_the_quasi_velocities() {
     }
 }
 
-/// The Jacobians are those of difference quotients, along the constraints, on which alone η is a function of (x, y) that
-/// the momenta have.
+/// The Jacobians agree with difference quotients along the constraints, the only states at which the momenta
+/// determine η.
 #[test]
 fn derivatives_agree_with_difference_quotients() {
     let graph = Graph::new();
@@ -117,7 +118,7 @@ fn derivatives_agree_with_difference_quotients() {
     }
 }
 
-/// A point without mass on a rod with one that has: L determines its velocity only with the constraint. And a
+/// A massless point on a rod with a massive one: L determines its velocity only with the constraint. And a
 /// relativistic particle on a circle, where L is not quadratic.
 #[test]
 fn momenta_determine_velocities_with_the_constraints() {
@@ -149,8 +150,8 @@ fn momenta_determine_velocities_with_the_constraints() {
     }
 }
 
-/// At a given speed a velocity and its opposite satisfy the constraint; the momentum of a convex L says which it is, whatever
-/// the guess.
+/// At a given speed a velocity and its opposite satisfy the constraint; the momentum of a convex L selects
+/// one of them, for any guess.
 #[test]
 fn the_momentum_determines_the_sign_of_a_velocity() {
     let graph = Graph::new();

@@ -1,4 +1,4 @@
-//! Constraints held by multipliers against the same in independent velocities, and where their states lie.
+//! Constraints with multipliers against the same in independent velocities, and the projection of states.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -84,7 +84,8 @@ fn rates_are_those_of_independent_velocities() {
     assert!(choices.len() >= 4, "all choices of independent velocities occur: {choices:?}");
 }
 
-/// The surface is reached, kept, and reached by the shortest way: the way is a combination of M⁻¹ ∂f/∂x.
+/// The projection reaches the surface by the shortest way, a combination of M⁻¹ ∂f/∂x, and leaves states of
+/// the surface unchanged.
 #[test]
 fn projection_goes_to_the_surface_by_the_shortest_way() {
     let graph = Graph::new();
@@ -105,7 +106,8 @@ fn projection_goes_to_the_surface_by_the_shortest_way() {
         let mut projected = near.clone();
         motion.project(t, &mut projected).unwrap();
         let way: Vec<f64> = projected.iter().zip(&near).map(|(a, b)| a - b).collect();
-        // A displacement δ with C δ = 0 is orthogonal to the way in the kinetic metric diag(1, 1, 2, 2).
+        // A displacement δ with C δ = 0 is orthogonal to the correction in the kinetic metric diag(1, 1, 2,
+        // 2).
         let support = 0.3 * (2.0 * t).sin();
         let (r1, r2) = ([y[0], y[1] - support], [y[2] - y[0], y[3] - y[1]]);
         let turn = [-r1[1], r1[0], -r1[1], r1[0]];
@@ -113,7 +115,7 @@ fn projection_goes_to_the_surface_by_the_shortest_way() {
         for tangent in [turn, fold] {
             let mass = [1.0, 1.0, 2.0, 2.0];
             let product: f64 = (0..4).map(|i| mass[i] * tangent[i] * way[i]).sum();
-            // The normal at the end and on the way differ by the order of the distance.
+            // The normals at the end and along the way differ by the order of the distance.
             assert!(product.abs() < 100.0 * size * size, "{product:e}");
         }
     }
@@ -170,7 +172,8 @@ fn derivatives_are_limits_of_difference_quotients() {
     }
 }
 
-/// A quaternion whose body is held at two angles: quasi-velocities that are no velocities, conditions of both kinds.
+/// A quaternion of a body under two conditions, on positions and on velocities, in quasi-velocities that are
+/// not velocities.
 #[test]
 fn conditions_of_both_kinds_bind_quasi_velocities() {
     let graph = Graph::new();
@@ -243,7 +246,7 @@ fn constraints_that_cannot_be_held_are_refused() {
         "the constraint `nothing` restricts no velocity that those before it leave free"
     );
 
-    // x² + y² = 1 and x = y are independent but where they touch: at the origin.
+    // x² + y² = 1 and x = y are independent except where the gradient of the circle vanishes: at the origin.
     let mut motion = system.with_multipliers(&[circle, line]).unwrap().compile().unwrap();
     let failure = motion.rhs(0.5, &[0.0, 0.0, 1.0, 0.0, 0.0, 0.0], &mut [0.0; 6]).unwrap_err();
     assert_eq!(
@@ -282,7 +285,8 @@ fn states_near_the_origin_of_coordinates_are_projected() {
     }
 }
 
-/// Where a coordinate is too large to be moved by its share of a rounding, the other one comes nearer by halves.
+/// Where a coordinate is too large to be changed by its part of a rounding error, the other one approaches by
+/// halves.
 #[test]
 fn a_projection_does_not_follow_rounding() {
     let graph = Graph::new();
@@ -304,7 +308,7 @@ fn a_projection_does_not_follow_rounding() {
     }
 }
 
-/// A step along which T vanishes has a length all the same.
+/// A step along which T vanishes still has a length.
 #[test]
 fn steps_are_not_measured_by_an_indefinite_metric() {
     let graph = Graph::new();
@@ -329,7 +333,7 @@ fn steps_are_not_measured_by_an_indefinite_metric() {
     }
 }
 
-/// A coordinate in other units does not make a step a short one.
+/// Steps are not short against a large coordinate in other units.
 #[test]
 fn a_large_coordinate_hides_no_distance() {
     let graph = Graph::new();
@@ -345,7 +349,7 @@ fn a_large_coordinate_hides_no_distance() {
     assert!(state[1].abs() < 1e-15, "{state:?}");
 }
 
-/// x' − c y' has a mass, and the constraint leaves nothing of it.
+/// x' − c y' has a mass that cancels under the constraint.
 #[test]
 fn a_mass_that_cancels_under_constraints_is_singular() {
     let graph = Graph::new();
@@ -370,7 +374,7 @@ fn a_mass_that_cancels_under_constraints_is_singular() {
     }
 }
 
-/// Far from a surface that bends away Newton's whole step overshoots.
+/// Far from a curved surface Newton's full step overshoots.
 #[test]
 fn a_projection_may_take_a_long_way() {
     let graph = Graph::new();
@@ -420,7 +424,7 @@ fn units_do_not_matter_under_constraints() {
     let state = [0.0, 0.0, 0.3, 0.0, 3.0 * r * cos, 3.0 * r * sin, 0.7, 3.0];
     let mut rates = [0.0; 8];
     motion.rhs(0.0, &state, &mut rates).unwrap();
-    // It goes in a circle: v̇ = φ' v across the direction, nothing else changes.
+    // It goes in a circle: v̇ = φ' v across the direction; the other rates are zero.
     let expected = [-3.0 * r * 0.7 * sin, 3.0 * r * 0.7 * cos, 0.0, 0.0];
     for (found, (expected, unit)) in rates[4..].iter().zip(expected.iter().zip([r, r, 1.0, 1.0])) {
         assert!((found - expected).abs() < 1e-14 * unit, "{rates:?}"); // some roundings of numbers about 1
@@ -440,7 +444,7 @@ fn independent_velocities_need_integrable_constraints() {
     let knife = Constraint::new("knife", vz - y * vx);
     let error = system.with_multipliers(&[knife]).unwrap().in_independent_velocities(&at).unwrap_err();
     assert!(matches!(error, MechError::Algebra(AlgebraError::NotClosed { pair: (1, 2), .. })), "{error:?}");
-    // … and y = const is integrable whatever form it has.
+    // … and y = const is integrable in every form.
     let groove = Constraint::new("groove", vy * (1.0 + x.square()));
     let system = system.with_multipliers(&[groove]).unwrap().in_independent_velocities(&at).unwrap();
     assert_eq!(system.quasi_velocities(), [vx, vz]);
@@ -480,7 +484,7 @@ fn the_mass_matrix_may_depend_on_velocities() {
     }
 }
 
-/// Units of masses and constraints, and masses that are zero, change nothing but the multipliers.
+/// Units of masses and constraints, and masses of zero, change the multipliers only.
 #[test]
 fn units_do_not_matter() {
     let graph = Graph::new();
@@ -491,7 +495,7 @@ fn units_do_not_matter() {
             .lagrangian(|_, x, v| mass * ((v[0].square() + v[1].square()) / 2.0 - x[2]))
             .build()
             .unwrap();
-        // z is without mass, and carried by x and by y: k = 1 + m.
+        // z has no mass, and is bound to x and to y: k = 1 + m.
         let constraints = [
             Constraint::new("a", units[0] * (vz - vx * (1.0 + y.square()))),
             Constraint::new("b", units[1] * (vz - vy * (1.0 + x.square()))),
@@ -506,7 +510,7 @@ fn units_do_not_matter() {
         [(1e30, [1.0, 1.0]), (1e-30, [1.0, 1.0]), (1.0, [1e12, 1e-12]), (1e20, [1e-150, 1e100])]
     {
         for (found, expected) in rates(mass, units).iter().zip(&expected) {
-            // The choice may differ: rounding of some dozen operations.
+            // The choice of independent velocities may differ: rounding of some dozen operations.
             assert!((found - expected).abs() < 1e-14, "{mass:e} {units:?}: {found} {expected}");
         }
     }
@@ -546,7 +550,7 @@ fn values_that_are_not_finite_are_named() {
     assert!(failure.to_string().contains("sqrt(x)"), "{failure}");
 }
 
-/// |η| and the sign of η have derivatives that show no η.
+/// The derivatives of |η| and of the sign of η do not contain η.
 #[test]
 fn constraints_are_affine_or_refused() {
     let graph = Graph::new();
@@ -569,8 +573,9 @@ fn constraints_are_affine_or_refused() {
     assert_eq!((row, rest), (vec![1.0.into(), -x], -x));
 }
 
-/// A particle in space that keeps its speed under gravity, by Chetaev's condition: with θ the angle of its velocity with
-/// the vertical θ̇ = (g/v) sin θ, so that tan(θ/2) grows as e^(g t/v), and the horizontal direction stays.
+/// A particle in space that keeps its speed under gravity, by Chetaev's condition: with θ the angle of its
+/// velocity with the vertical θ̇ = (g/v) sin θ, so that tan(θ/2) grows as e^(g t/v), and the horizontal
+/// direction stays.
 #[test]
 fn a_nonlinear_constraint_turns_the_velocity_only() {
     let (gravity, speed) = (10.0, 5.0);
@@ -601,7 +606,7 @@ fn a_nonlinear_constraint_turns_the_velocity_only() {
     let start = tangent(&y);
     let (step, steps) = (1e-3, 1000);
     for i in 0..steps {
-        // Runge and Kutta's method of order 4, projected.
+        // The classical Runge–Kutta method, projected.
         let t = step * f64::from(i);
         let mut rate = |t: f64, y: &[f64]| {
             let mut rate = [0.0; 6];
@@ -620,12 +625,12 @@ fn a_nonlinear_constraint_turns_the_velocity_only() {
         motion.project(t + step, &mut y).unwrap();
     }
     let expected = start * (gravity / speed).exp();
-    // step⁴ times (g/v)⁵ of a method of order 4
+    // step⁴ times (g/v)⁵, for a method of order 4
     assert!((tangent(&y) / expected - 1.0).abs() < 1e-11, "{} instead of {expected}", tangent(&y));
     assert!((y[3] * 0.8 - y[4] * 0.6).abs() < 1e-13, "the horizontal direction stays");
 }
 
-/// A velocity in b_0 would be taken for a constant.
+/// A velocity in b_0 would count as a constant.
 #[test]
 fn a_frame_contains_no_velocities() {
     let graph = Graph::new();
@@ -656,7 +661,7 @@ fn held_components_stay_and_the_rest_moves_the_shortest_way() {
         let mut state = off;
         motion.project_holding(0.0, &mut state, coordinates, velocities).map(|()| state)
     };
-    // The displacements are as 1/m.
+    // The displacements are proportional to 1/m.
     for (found, expected) in moved(&[], &[]).unwrap().iter().zip([0.4, 1.4, 7.0, 1.8, 1.8, 3.0]) {
         assert!((found - expected).abs() < 1e-14, "{found} {expected}");
     }
@@ -669,7 +674,7 @@ fn held_components_stay_and_the_rest_moves_the_shortest_way() {
     assert_eq!(failure.singular_constraint(), Some("rod"));
 }
 
-/// x = y holds where (x − y)(x + y) = 0 and x > 0; on the other branch it does not.
+/// x = y holds where (x − y)(x + y) = 0 and x > 0, but not on the other branch.
 #[test]
 fn a_constraint_that_no_longer_follows_is_an_error() {
     let graph = Graph::new();

@@ -1,4 +1,4 @@
-//! Projection to constraints of states that satisfy them but for rounding, whatever the units.
+//! States that satisfy constraints up to rounding, or nearly, are projected to them in all units.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -9,7 +9,7 @@ use pc_mech::{Constraint, Graph, Multipliers, System, VectorField};
 
 use random::numbers;
 
-/// A particle of mass m on a circle of radius r, with a wheel of radius r/3 that rolls as it goes.
+/// A particle of mass m on a circle of radius r, with a rolling wheel of radius r/3.
 fn wheel(graph: &Graph) -> Multipliers<'_> {
     let [m, r, x, y, vx, vy, spin] = graph.symbols(["m", "r", "x", "y", "x'", "y'", "φ'"]);
     let system = System::builder(graph)
@@ -24,14 +24,14 @@ fn wheel(graph: &Graph) -> Multipliers<'_> {
     system.with_multipliers(&[circle, rolling]).unwrap()
 }
 
-/// The smallest squares of radii are just above the numbers that have fewer digits, the largest just below infinity.
+/// The smallest squares of radii are just above subnormal numbers, the largest just below infinity.
 #[test]
 fn a_state_on_its_constraints_up_to_rounding_stays_there() {
     let graph = Graph::new();
     let mut motion = wheel(&graph).compile().unwrap();
     let mut next = numbers(11);
     for radius in [1e-150f64, 3e-80, 1e-8, 1.0, 7e8, 1e80, 1e150] {
-        // Moments of inertia are numbers, too.
+        // Moments of inertia stay in the range of numbers, too.
         let masses = [1e-100f64, 1e-3, 1.0, 1e100].into_iter();
         for mass in masses.filter(|mass| (mass * radius * radius / 9.0).is_normal()) {
             motion.parameters_mut().copy_from_slice(&[mass, radius]);
@@ -47,7 +47,7 @@ fn a_state_on_its_constraints_up_to_rounding_stays_there() {
                 let sizes = [radius, radius, 1.0 + rate, speed, speed, 3.0 * rate];
                 for i in 0..6 {
                     let moved = (state[i] - given[i]).abs();
-                    // Moved by no more than it was off, some roundings of each component.
+                    // Moved by at most its distance from the constraints, some roundings of each component.
                     assert!(
                         moved <= 32.0 * f64::EPSILON * sizes[i],
                         "{radius:e} {mass:e}: {given:?} {state:?}"
@@ -67,9 +67,9 @@ fn a_state_on_its_constraints_up_to_rounding_stays_there() {
     }
 }
 
-/// From farther away it comes to the constraints, to rounding.
+/// A state farther away reaches the constraints, to rounding.
 #[test]
-fn a_state_near_its_constraints_comes_to_them() {
+fn nearby_states_are_projected_to_their_constraints() {
     let graph = Graph::new();
     let mut motion = wheel(&graph).compile().unwrap();
     let mut next = numbers(12);

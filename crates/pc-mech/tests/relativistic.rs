@@ -58,8 +58,8 @@ fn states() -> impl Iterator<Item = [f64; 4]> {
     })
 }
 
-/// A velocity that is off by one rounding where γ = 707 has a momentum that is off by γ² ε = 10⁻¹⁰ of it: but
-/// the velocities, rates and H of given momenta are all well-conditioned.
+/// Where γ = 707, a rounding error of a velocity changes its momentum by γ² ε = 10⁻¹⁰; but the velocities,
+/// rates and H of given momenta are all well-conditioned.
 #[test]
 fn a_relativistic_particle_is_that_of_the_closed_form() {
     let graph = Graph::new();
@@ -98,7 +98,7 @@ fn derivatives_are_those_of_the_closed_form() {
     let pattern = motion.sparsity().unwrap().clone();
     assert!(pattern.column(1).is_empty(), "nothing depends on φ");
     for state in states().filter(|y| y[2].hypot(y[3]) < 7.0) {
-        // Where the motion was evaluated before is of no matter.
+        // The result is independent of earlier evaluations.
         rates(&mut motion, 0.0, &[1.0, 0.0, 30.0 * some(1, 1), -20.0]);
         let values: Vec<_> = symbols.into_iter().zip(state.into_iter().chain([2.0, 1.0])).collect();
         let columns: Vec<f64> = symbols
@@ -140,8 +140,8 @@ fn earlier_solutions_change_no_bit() {
     assert_eq!(forwards, backwards);
 }
 
-/// From a guess near the velocity of light, Newton's method does not find a velocity near that of light in another
-/// direction. The motion gets there all the same.
+/// From a guess near the velocity of light, Newton's method misses velocities near that of light in another
+/// direction. The motion reaches them nevertheless.
 #[test]
 fn the_last_solution_serves_where_the_guess_fails() {
     let graph = Graph::new();

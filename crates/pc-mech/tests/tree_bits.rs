@@ -1,4 +1,5 @@
-//! The numbers of a tree depend on the tree alone, to the last bit; parameters may change under compiled equations.
+//! The numbers of a tree depend on the tree alone, to the last bit; parameters of compiled equations may
+//! change.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -11,7 +12,7 @@ use pc_mech::{
 
 const BODIES: usize = 7;
 
-/// A branching tree with all its numbers parameters, a spring at its root and a force from outside at its tip.
+/// A branching tree with a parameter for each number, a spring at its root and an external force at its tip.
 fn tree(graph: &Graph) -> System<'_> {
     let [m, l, i, g, stiffness, motor] = graph.symbols(["m", "l", "i", "g", "stiffness", "motor"]);
     let name = |b: usize| format!("b{b}");
@@ -64,7 +65,7 @@ fn rates(motion: &mut Motion) -> Vec<f64> {
 #[test]
 fn numbers_do_not_depend_on_what_else_was_derived_in_the_graph() {
     let alone = rates(&mut compiled(&tree(&Graph::new())));
-    // Symbols in another order, other expressions of them, and the whole tree at once before.
+    // A graph with symbols in another order, other expressions of them, and the whole tree beforehand.
     let graph = Graph::new();
     let mut names: Vec<String> = (0..BODIES).flat_map(|b| [format!("b{b}'"), format!("b{b}")]).collect();
     names.extend(["motor", "stiffness", "g", "i", "l", "m"].map(str::to_owned));
@@ -83,10 +84,10 @@ fn numbers_do_not_depend_on_what_else_was_derived_in_the_graph() {
     assert_eq!(bits(&again), bits(&alone));
 }
 
-/// With parameters set afterwards, the rates are those compiled with them; and those of machine code, which is given what
-/// the parameters determine.
+/// With parameters set later, the rates are those compiled with them; so are those of machine code with the
+/// values that depend on parameters alone.
 #[test]
-fn what_parameters_determine_follows_them() {
+fn values_of_parameters_alone_follow_them() {
     let graph = Graph::new();
     let system = tree(&graph);
     let mut motion = compiled(&system);
@@ -100,7 +101,8 @@ fn what_parameters_determine_follows_them() {
         "{before:?} {after:?}"
     );
     assert_eq!(bits(&rates(&mut kept)), bits(&before), "a clone has its own parameters");
-    // The same equations without parameters: rounding of two orders of evaluation, times the condition of M.
+    // The equations without parameters differ by rounding of two orders of evaluation, times the condition of
+    // M.
     let bound = values.iter().zip(system.parameters()).map(|(&value, &(symbol, _))| (symbol, value.into()));
     let bound: Vec<(Expr<'_>, Expr<'_>)> = bound.collect();
     let equations = system.poincare().unwrap();
@@ -120,9 +122,10 @@ fn what_parameters_determine_follows_them() {
     assert!(numbers.len() > 7, "something is computed of them");
 }
 
-/// A force from outside and a parameter that follows a table change at each evaluation, others with them do not.
+/// An external force and a parameter from a table change at each evaluation, and so do values that depend on
+/// them.
 #[test]
-fn what_may_change_at_any_time_is_not_kept() {
+fn varying_parameters_are_read_at_each_evaluation() {
     let graph = Graph::new();
     let system = tree(&graph);
     let mut motion = compiled(&system);
@@ -137,10 +140,10 @@ fn what_may_change_at_any_time_is_not_kept() {
         rates[tip]
     });
     assert_eq!(none, plain[tip]);
-    // Accelerations are affine in forces: what is left of the second difference is its rounding.
+    // Accelerations are affine in forces: the second difference is rounding.
     assert!(((two - one) - (one - none)).abs() < 1e-12 * two.abs().max(1.0) && (one - none).abs() > 1e-3);
 
-    // The length of the links by a table: declared as a parameter, and yet never kept.
+    // The length of the links from a table: declared as a parameter, but never constant.
     let table = Table::new(vec![0.0, 1.0], vec![0.7, 1.4], Interpolation::Linear).unwrap();
     let mut driven = compiled(&system).driven_by(Signals::new([("l", 1, Arc::new(table))]));
     for t in [0.0, 0.25, 1.0, 0.5] {
@@ -148,7 +151,7 @@ fn what_may_change_at_any_time_is_not_kept() {
         motion.parameters_mut()[1] = 0.7 + 0.7 * t;
         let expected = rates(&mut motion);
         let error = found.iter().zip(&expected).fold(0.0f64, |error, (a, b)| error.max((a - b).abs()));
-        // Fused operations round another way where something is computed before.
+        // Fused operations round differently where a part is computed beforehand.
         assert!(error < 1e-10 * expected.iter().fold(1.0f64, |size, x| size.max(x.abs())), "at {t}: {error}");
     }
 }
@@ -191,7 +194,7 @@ fn signs_of_masses_and_inertias_are_those_at_the_parameters() {
     assert!(!tree.is_nowhere_negative(&[(m, -1.0), (i, 2.0)]));
     assert!(!tree.is_nowhere_negative(&[(m, 1.0), (i, -2.0)]));
     assert!(!tree.is_nowhere_negative(&[(m, 1.0)]), "not known");
-    // Positive on the diagonal, negative in between.
+    // Positive on the diagonal, but indefinite.
     let body = TreeBody::new("b", Joint::spherical()).mass(1).inertia([1, 1, 1, 2, 0, 0]);
     assert!(!Tree::new(&graph, [body]).unwrap().is_nowhere_negative(&[]));
 }

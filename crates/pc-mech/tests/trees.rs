@@ -1,4 +1,4 @@
-//! Bodies joined by joints against the same bodies placed by hand: positions and rotations written out from what a joint is.
+//! Bodies joined by joints against the same bodies placed by hand, with positions and rotations written out.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -21,7 +21,7 @@ struct Hung {
     tilt: [f64; 3],
     mass: f64,
     centre: [f64; 3],
-    /// Points of unit mass, whose inertia is that of a body.
+    /// Points of unit mass, which give the inertia of a body.
     spread: [[f64; 3]; 3],
 }
 
@@ -196,7 +196,7 @@ fn names(list: &[Expr<'_>]) -> Vec<String> {
     list.iter().map(Expr::to_string).collect()
 }
 
-/// A system that moves as the joints of a tree do.
+/// A system that moves according to the joints of a tree.
 fn started<'g>(graph: &'g Graph, tree: &Tree<'g>, loaded: bool) -> SystemBuilder<'g> {
     let velocities = tree.velocities();
     let system = System::builder(graph)
@@ -211,7 +211,7 @@ fn hung<'g>(graph: &'g Graph, bodies: &[Hung], loaded: bool) -> System<'g> {
     started(graph, &tree, loaded).tree(tree).build().unwrap()
 }
 
-/// The tree, and the same bodies placed by hand.
+/// The system of the tree, and the same bodies placed by hand.
 fn systems<'g>(graph: &'g Graph, bodies: &[Hung]) -> (System<'g>, System<'g>) {
     let tree = tree(graph, bodies, true);
     let start = || started(graph, &tree, true);
@@ -266,7 +266,7 @@ fn state(bodies: &[Hung], numbers: &[f64]) -> Vec<f64> {
     y
 }
 
-/// The largest difference of two lists, of the largest number in them.
+/// The largest difference of two lists, relative to the largest number in them.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     let largest = a.iter().chain(b).fold(1.0f64, |largest, x| largest.max(x.abs()));
     a.iter().zip(b).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs())) / largest
@@ -278,7 +278,7 @@ fn trees(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
         cases,
         rng_seed: RngSeed::Fixed(20),
         failure_persistence: None,
-        max_shrink_iters: 0, // smaller numbers are masses without inertia
+        max_shrink_iters: 0, // smaller numbers give masses without inertia
         ..ProptestConfig::default()
     };
     let strategy = (tree_of(count), prop::collection::vec(-1.0..1.0f64, 20 * count));
@@ -290,7 +290,7 @@ fn trees(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
     outcome.unwrap();
 }
 
-/// Condition of mass matrices of a few bodies times rounding.
+/// The condition of mass matrices of a few bodies, times rounding.
 const ROUNDING: f64 = 1e-10;
 
 #[test]
@@ -311,7 +311,8 @@ fn bodies_hung_by_joints_move_as_those_placed_by_hand() {
     });
 }
 
-/// A direction along which quaternions stay unit quaternions: off these what is derived in two ways is not the same function.
+/// A direction along which quaternions keep their norm: off the spheres the two derivations are different
+/// functions.
 fn along_spheres(bodies: &[Hung], y: &[f64], numbers: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut direction: Vec<f64> = numbers.take(y.len()).collect();
     let mut first = 0;
@@ -372,7 +373,7 @@ fn values(system: &System<'_>, expressions: &[Expr<'_>], y: &[f64], acceleration
 
 #[test]
 fn inverse_dynamics_inverts_forward_dynamics() {
-    // More links than are looked at whole, so that both go from body to body.
+    // Enough links that both go from body to body.
     trees(12, 8, |bodies, numbers| {
         let graph = Graph::new();
         let system = hung(&graph, bodies, true);
@@ -385,7 +386,7 @@ fn inverse_dynamics_inverts_forward_dynamics() {
         let missing = values(&system, &found, &y, &rates[n..]);
         let other: Vec<f64> = rates[n..].iter().map(|rate| rate + 1.0).collect();
         let taken = values(&system, &found, &y, &other);
-        // Against what unit accelerations take.
+        // Relative to the forces for unit accelerations.
         let size = taken.iter().fold(1.0f64, |size, force| size.max(force.abs()));
         assert!(missing.iter().all(|force| force.abs() < 1e-11 * size), "{missing:?} of {size}");
     });
@@ -421,19 +422,19 @@ fn a_free_tree_keeps_its_momenta_and_its_energy() {
         let eta = system.quasi_velocities().iter().copied().zip(system.accelerations());
         let along: Vec<_> = x.chain(eta).collect();
         let change = values(&system, &graph.directional(&kept, &along), &y, &rates[n..]);
-        // Of the accelerations that would change it.
+        // Relative to the accelerations that would change it.
         let size = rates.iter().fold(1.0f64, |size, rate| size.max(rate.abs()));
         assert!(change.iter().all(|rate| rate.abs() < ROUNDING * size), "{change:?} of {size}");
     });
 }
 
-/// Whether nothing between a body and the world moves.
+/// Whether a body is fixed to the world.
 fn is_fixed(bodies: &[Hung], i: usize) -> bool {
     bodies[i].kind == 0 && bodies[i].parent.is_none_or(|parent| is_fixed(bodies, parent))
 }
 
 #[test]
-fn what_joints_bear_changes_the_momenta() {
+fn joint_reactions_change_the_momenta() {
     trees(8, 4, |bodies, numbers| {
         let graph = Graph::new();
         let system = hung(&graph, bodies, true);
@@ -446,7 +447,7 @@ fn what_joints_bear_changes_the_momenta() {
         let x = system.frame().coordinates().iter().copied().zip(tree.velocities());
         let eta = system.quasi_velocities().iter().copied().zip(system.accelerations());
         let along: Vec<_> = x.chain(eta).collect();
-        // The momentum of all is changed by weights, loads and what the joints of the world bear.
+        // The total momentum is changed by weights, loads and the reactions of the joints at the world.
         let mut change = [Expr::ZERO; 3];
         let mut borne = [Expr::ZERO; 3];
         let fixed = |i: usize| is_fixed(bodies, i);
@@ -459,7 +460,7 @@ fn what_joints_bear_changes_the_momenta() {
         }
         for reaction in system.joint_reactions() {
             let i = tree.bodies().iter().position(|body| body.name() == reaction.body()).unwrap();
-            // Bodies that hang on the world, or on what is fixed to it.
+            // Bodies that hang on the world, or on a body fixed to it.
             if bodies[i].parent.is_none_or(fixed) {
                 let rotation = motions.rotation(reaction.body()).unwrap();
                 for c in 0..3 {
@@ -490,11 +491,12 @@ fn a_pendulum_pulls_at_its_joint() {
     assert_eq!(pendulum.joint_reactions()[0].moment()[1], pendulum.poincare().unwrap().inverse_dynamics()[0]);
 }
 
-/// A mass point on a ball joint, and one on a hinge at it: where all are on one line nothing resists a turn about this.
+/// A mass point on a ball joint, and one on a hinge at it: if all are on one line, no inertia resists a
+/// rotation about it.
 #[test]
 fn a_state_in_which_a_joint_loses_its_inertia_is_refused() {
     let graph = Graph::new();
-    let line = [0.3, 0.0, -1.1]; // no axis, so that each diagonal entry of the inertia is positive
+    let line = [0.3, 0.0, -1.1]; // no axis of the frame, so that all diagonal entries of the inertia are positive
     let ball = TreeBody::new("ball", Joint::spherical()).mass(2).centre(line);
     let hinge =
         TreeBody::new("hinge", Joint::revolute([0.0, 1.0, 0.0]).at(line)).on("ball").mass(0.7).centre(line);
@@ -510,7 +512,7 @@ fn a_state_in_which_a_joint_loses_its_inertia_is_refused() {
     assert!(rates(1.0).is_ok());
 }
 
-/// Where gravity is not the same everywhere L has its slope, and the world does not accelerate.
+/// Where gravity depends on the place, L contains its gradient, and the world has no acceleration.
 #[test]
 fn gravity_may_change_from_place_to_place() {
     let graph = Graph::new();
@@ -528,7 +530,7 @@ fn gravity_may_change_from_place_to_place() {
     assert_eq!(motion.rates(0.0, &[0.25, 0.5]).unwrap(), [0.5, -0.5]);
 }
 
-/// What is left of a tree when its cyclic coordinates are left out moves as before.
+/// A tree without its cyclic coordinates moves as before.
 #[test]
 fn a_tree_without_its_cyclic_coordinates_moves_as_before() {
     let graph = Graph::new();
@@ -559,7 +561,7 @@ fn a_tree_without_its_cyclic_coordinates_moves_as_before() {
 }
 
 #[test]
-fn what_is_no_tree_is_said() {
+fn invalid_trees_are_refused() {
     let graph = Graph::new();
     let body = |name: &str| TreeBody::new(name, Joint::revolute([0.0, 0.0, 1.0]));
     let error = |bodies: Vec<TreeBody<'_>>| Tree::new(&graph, bodies).unwrap_err().to_string();

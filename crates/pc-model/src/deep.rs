@@ -1,19 +1,19 @@
-//! Recursive work on models.
+//! Deep recursion on models.
 
-/// Where less of the stack is left, work gets one of its own.
+/// With less of the stack left, work gets a stack of its own.
 #[cfg(feature = "any-stack")]
 const LEAST: usize = 2 << 20;
 
-/// So much: functions nested as deep as they may be take a third of a mebibyte, several times that in a build without
-/// optimisation.
+/// The size of that stack: functions at the greatest depth of nesting take a third of a mebibyte, and several
+/// times as much without optimisation.
 #[cfg(feature = "any-stack")]
 const STACK: usize = 8 << 20;
 
-/// Does work on models that may recurse deeply, as reading and deriving do, on a stack of its own where the thread has
-/// too little left.
+/// Runs work on models that may recurse deeply, such as reading and deriving, on a stack of its own if the
+/// thread has too little left.
 ///
-/// With the feature `any-stack`, any thread with 128 KiB of stack may call it; without, it needs as much as the main
-/// thread usually has.
+/// With the feature `any-stack`, any thread with 128 KiB of stack may call it; without, the thread needs as
+/// much as the main thread usually has.
 pub fn deep<T>(work: impl FnOnce() -> T) -> T {
     #[cfg(feature = "any-stack")]
     return stacker::maybe_grow(LEAST, STACK, work);

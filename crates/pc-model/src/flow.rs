@@ -1,9 +1,10 @@
 //! The vector field that is integrated, its events, and the columns of a table of its states.
 //!
-//! An [`Assembly`](crate::Assembly) becomes a [`Flow`](flow::Flow). Read `variables` first, the equations in the
-//! variables of their state, `free_form`, those of independent quasi-velocities, whose start `formulas` give, and `compile`, their motion, tried at
-//! the start; `reading` converts states to coordinates, quasi-velocities and first-order states; `events` are the
-//! model's events on them, and `flow` combines all of these; `prototype` gives a flow other numbers without deriving it again.
+//! An [`Assembly`](crate::Assembly) becomes a [`Flow`](flow::Flow). Read `variables` first, the equations in
+//! the variables of their state, `free_form`, those of independent quasi-velocities, whose start is given by
+//! `formulas`, and `compile`, their motion, evaluated at the start; `reading` converts states to coordinates,
+//! quasi-velocities and first-order states; `events` are the model's events on them, and `flow` combines all
+//! of these; `prototype` gives a flow other numbers without deriving it again.
 
 pub(crate) mod compile;
 pub(crate) mod event_slopes;

@@ -1,10 +1,10 @@
 //! The text model: TOML to a mechanical system, with spans in every error.
 //! `docs/model-format.md` explains the format.
 //!
-//! A [`Document`] is the contents of the text, section by section. A [`Model`] is a document with the values of its parameters;
-//! [assembled](Model::assemble) in a graph, it is an [`Assembly`]: a [`System`](pc_mech::System) in quasi-velocities
-//! with its start, the constraints, and the way in which they [bind](ConstraintTreatment) it. Any consistent units
-//! will do.
+//! A [`Document`] is the contents of the text, section by section. A [`Model`] is a document with the values
+//! of its parameters; [assembled](Model::assemble) in a graph, it is an [`Assembly`]: a
+//! [`System`](pc_mech::System) in quasi-velocities with its start, the constraints, and the way in which they
+//! [bind](ConstraintTreatment) it. Any consistent units will do.
 //!
 //! ```
 //! use pc_mech::Graph;

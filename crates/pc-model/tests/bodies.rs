@@ -1,4 +1,4 @@
-//! `[bodies.NAME]`: what they add to the energy and the forces, and every refusal in full.
+//! `[bodies.NAME]`: contributions to the energy and the forces, and every refusal in full.
 
 #[path = "../../../tests/src/verified.rs"]
 mod verified;
@@ -63,7 +63,7 @@ fn particles_give_the_energy_and_the_forces() {
     let drag = -k * s_rate * l * phi.cos();
     assert_eq!(pendulum.forces(), [-k * s_rate, drag]);
 
-    // With a Lagrangian beside them, and the dissipation function of another drag.
+    // With a Lagrangian in addition, and the dissipation function of another drag.
     let text = format!(
         "{PENDULUM}\n[lagrangian]\nkinetic = \"s'^2\"\npotential = \"k*s^2\"\ndissipation = \"k*φ'^2/2\"\n\n[forces]\ns = 3\n"
     );
@@ -126,7 +126,7 @@ w = { is = "2*x'", start = 1.0 }
 v = "x'"
 "#;
 
-/// The message on a body with these lines, without the line and the carets that it shows.
+/// The message on a body with these lines, without the excerpt of the file.
 fn refused_body(lines: &str) -> String {
     let mut text = format!("{BODY}[bodies.b]\n{lines}\n");
     if !lines.contains("mass") {
@@ -143,7 +143,7 @@ fn refused_body(lines: &str) -> String {
 }
 
 #[test]
-fn expressions_of_bodies_are_refused_where_they_stand() {
+fn expressions_of_bodies_are_refused_with_their_place() {
     let at_rest = "in the mass, inertia, position or rotation of a body\n  help: use parameters, coordinates and t only";
     assert_eq!(
         refused_body("position = [\"x\", \"w*t\", 0]"),
@@ -192,7 +192,7 @@ fn expressions_of_bodies_are_refused_where_they_stand() {
     );
 }
 
-/// What only the start and the derivation show is put to the body too.
+/// Errors found only at the start or in the derivation are located at the body, too.
 #[test]
 fn singular_energies_are_located_at_bodies() {
     let root = refused(&format!("{BODY}[bodies.b]\nmass = \"m\"\nposition = [\"sqrt(x - 2)\", 0, 0]\n"));
@@ -249,7 +249,8 @@ angular_velocity = [0, "φ'", 0]
     assert!(fallen.energy_rate().is_zero());
 }
 
-/// The bodies do not move across: a component that depends on time does no work on them. One that does is seen.
+/// Bodies that do not move sideways: a component that depends on time does no work on them. One along the
+/// motion does.
 #[test]
 fn gravity_that_changes_with_time_does_not_keep_the_energy() {
     let graph = Graph::new();
@@ -271,7 +272,7 @@ fn gravity_depends_on_parameters_and_time_only() {
     }
 }
 
-/// A body whose nine direction cosines, as they are at the start, follow its angular velocity.
+/// A body whose nine direction cosines, given at the start, follow its angular velocity.
 fn by_cosines(start: [&str; 9], rotation: [&str; 9]) -> String {
     let name = |row: usize, column: usize| format!("r{row}{column}");
     let mut text = String::from("[coordinates]\n");
@@ -299,7 +300,7 @@ fn a_matrix_of_redundant_coordinates_is_a_rotation_at_the_start_and_after() {
     let bound = system(&graph, &by_cosines(turned, COSINES));
     assert_eq!(bound.quasi_velocities().len(), 3);
 
-    // Nine digits leave 4e-10: ω would be uncertain by as much.
+    // Nine digits leave 4e-10: ω would have that uncertainty.
     let short =
         ["0.764842187", "-0.644217687", "0.0", "0.644217687", "0.764842187", "0.0", "0.0", "0.0", "1.0"];
     let refusal = refused(&by_cosines(short, COSINES));
@@ -312,7 +313,8 @@ fn a_matrix_of_redundant_coordinates_is_a_rotation_at_the_start_and_after() {
   help: give the start with all digits or as expressions, or the body its `angular_velocity`"#
     );
 
-    // The transposed matrix is a rotation for as long, of other axes; one with a wrong sign is none, though it is one at the start.
+    // The transposed matrix remains a rotation, about other axes; one with a wrong sign does not, though it
+    // is one at the start.
     let plain = ["1.0", "0.0", "0.0", "0.0", "1.0", "0.0", "0.0", "0.0", "1.0"];
     let transposed = ["r11", "r21", "r31", "r12", "r22", "r32", "r13", "r23", "r33"];
     system(&graph, &by_cosines(plain, transposed));
@@ -328,9 +330,9 @@ fn a_matrix_of_redundant_coordinates_is_a_rotation_at_the_start_and_after() {
     );
 }
 
-/// A quaternion of any length turns: RᵀR = |q|⁴.
+/// A quaternion of any length rotates: RᵀR = |q|⁴.
 #[test]
-fn a_quaternion_with_a_square_left_out_is_no_rotation() {
+fn a_quaternion_matrix_without_a_square_is_not_a_rotation() {
     let text = |square: &str| {
         format!(
             r#"[coordinates]

@@ -1,4 +1,4 @@
-//! `[constraints]`: what they do to a model, and every refusal in full.
+//! `[constraints]`: their effect on a model, and every refusal in full.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -14,7 +14,7 @@ use verified::derived_twice;
 /// A point in a vertical plane, below the origin.
 const BELOW: &str = "x = 0.6\ny = -0.8\n";
 
-/// The model of a heavy point in a plane that starts there, with more sections, under constraints.
+/// The model of a heavy point in a plane with this start, with further sections, under constraints.
 fn point(start: &str, more: &str, constraints: &str) -> String {
     format!(
         "[coordinates]\n{start}{more}[constraints]\n{constraints}\n[lagrangian]\n\
@@ -44,7 +44,7 @@ fn model(text: &str) -> Model {
     derived_twice(Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}")))
 }
 
-/// Assembled, compiled and evaluated at its start, or why not.
+/// Assembles, compiles and evaluates the model at its start; or returns the error.
 fn tried(model: &Model) -> Result<Vec<f64>, ModelError> {
     let graph = Graph::new();
     let assembly = model.assemble(&graph)?;
@@ -95,7 +95,7 @@ fn texts_that_are_not_constraints_are_refused() {
          or declare it nonlinear, with Chetaev's condition for the displacements: \
          `speed = { expr = \"…\", kind = \"nonlinear\" }`",
     );
-    // Of these the second derivatives vanish.
+    // The second derivatives of these vanish.
     for text in ["abs(x') - y'", "sign(x') - 1", "max(x', y')", "step(x', 1, 2)*x"] {
         let error = error(&point(BELOW, "", &format!("c = \"{text}\"")));
         let expected = format!("m.toml:5:6: [constraints] c: `{text}` is not affine in the velocities\n");
@@ -114,7 +114,7 @@ fn constraints_must_leave_something_to_move() {
         "m.toml:6:6: [constraints] b: the constraints leave nothing free: there are 2 of them for 2 quasi-velocities\n    b = \"y + 0.8\"\n         \
          ^^^^^^^\n  help: there must be fewer independent constraints than velocities, or nothing moves",
     );
-    // Two that say the same leave one velocity.
+    // Two equivalent constraints leave one velocity.
     tried(&model(&point(BELOW, "", "a = \"x - 0.6\"\nb = \"2*x - 1.2\""))).unwrap();
     refuses(
         &format!("{SLEIGH}{BLADE}more = \"x' + y'\"\n"),
@@ -148,7 +148,7 @@ fn redundant_constraints_are_dropped() {
     };
     let (held, dropped) = redundant("a = \"x - 0.6\"\nb = \"x'*y\"\nc = \"x^2 - 0.36\"");
     assert_eq!((held, dropped), (vec!["a".to_owned()], vec![follows("c", &["a"]), follows("b", &["a"])]));
-    // A position is kept, whatever stands before it.
+    // A position is kept, wherever it stands.
     let (held, dropped) = redundant("rolling = \"x*x' + y*y'\"\nlength = \"x^2 + y^2 - 1\"");
     assert_eq!((held, dropped), (vec!["length".to_owned()], vec![follows("rolling", &["length"])]));
     let (held, dropped) = redundant("nothing = \"0*x\"");
@@ -188,7 +188,7 @@ fn contradictions_name_both() {
         "m.toml:5:6: [constraints] v: the constraint `v` contradicts `b`\n    v = \"x'\"\n         ^^\n  \
          help: no motion satisfies it; correct it or leave it out",
     );
-    // No contradiction: the velocity follows from the position, which the start misses.
+    // No contradiction: the velocity follows from the position, which the start violates.
     refuses_point(
         "x = 0\ny = 0\n",
         "v = \"x'\"\nb = \"x - 1\"",
@@ -246,7 +246,7 @@ fn a_start_off_a_constraint_is_refused_or_moved() {
          help: give a start that satisfies it, or move it there with --project-start",
     );
 
-    // The nearest point of the circle is on the ray, and of the velocity the tangential part is left.
+    // The nearest point of the circle is on the ray, and the velocity keeps its tangential part.
     let moved = |text: &str| {
         let mut model = model(text);
         model.project_start(true);
@@ -266,7 +266,7 @@ fn a_start_off_a_constraint_is_refused_or_moved() {
     assert!((start[2] - 0.6 * start[3]).abs() < 1e-15, "{start:?}");
 }
 
-/// A constraint means the same in all units.
+/// A constraint has the same effect in all units.
 #[test]
 fn the_units_of_a_constraint_do_not_matter() {
     let rates = |factor: &str, start: &str| {
@@ -289,7 +289,7 @@ fn the_units_of_a_constraint_do_not_matter() {
         let off = rates(factor, "x = 1.0\ny = -0.8\n").unwrap_err().to_string();
         assert!(off.contains("the start is off the constraint `length`"), "{factor}: {off}");
     }
-    // 10⁻⁸ of a coordinate is what a start may be off, of a large one relatively.
+    // A start may be off by 10⁻⁸ of a coordinate, relative for a large one.
     for (start, good) in [("x = 1.000000009\ny = 0\n", true), ("x = 1.00000002\ny = 0\n", false)] {
         assert_eq!(rates("1e-3", start).is_ok(), good, "{start}");
     }
@@ -315,13 +315,14 @@ fn a_start_where_constraints_are_singular_is_refused() {
         "m.toml:5:9: [constraints] root: `d(sqrt(x) - y)` is NaN at the start (x = 0, y = 0, x' = 0, y' = 0)\n    \
          root = \"sqrt(x) - y\"\n            ^^^^^^^^^^^\n  help: start where the coordinates and functions are regular",
     );
-    // A nonholonomic one: here the singular place is met by Frobenius' test.
+    // A nonholonomic one: here Frobenius' test meets the singular place.
     let text = point("x = 0\ny = 0\nz = 0\n", "", "blade = \"x*x' + y*z*y' + z*z'\"");
     let text = text.replace("y'^2)", "y'^2 + z'^2)");
     let expected = "m.toml:6:10: [constraints] blade: the constraint `blade` restricts no velocity that the others leave \
                     free at t = 0, x = 0, y = 0, z = 0, ";
     assert!(error(&text).to_string().starts_with(expected), "{}", error(&text));
-    // Two links folded onto each other while the end is led along the first: rank is lost exactly at the start.
+    // Two links folded onto each other while the end moves along the first: the rank is lost exactly at the
+    // start.
     let folded = "[coordinates]\nx1 = 1\ny1 = 0\nx2 = 0\ny2 = 0\n[constraints]\na = \"x1^2 + y1^2 - 1\"\n\
                   b = \"(x2 - x1)^2 + (y2 - y1)^2 - 1\"\nc = \"x2\"\n[lagrangian]\n\
                   kinetic = \"x1'^2 + y1'^2 + x2'^2 + y2'^2\"\n";
@@ -372,7 +373,7 @@ fn a_kind_may_be_given() {
     assert_eq!(kind(&point(BELOW, "", "c = \"x^2 + y^2 - 1\"")).unwrap(), Kind::Position);
 }
 
-/// The name of a constraint may be taken: it is not in the namespace of expressions.
+/// The name of a constraint may be that of something else: it is outside the namespace of expressions.
 #[test]
 fn constraints_may_have_any_label() {
     for name in ["blade", "m", "x", "v", "t", "energy"] {
@@ -412,7 +413,7 @@ fn a_quasi_velocity_that_vanishes_starts_at_zero() {
     assert_eq!(tried(&model(&text("0"))).unwrap(), [0.0, 0.0, 0.4, 0.0, 1.0, 2.0]);
 }
 
-/// [bodies] give the energy, constraints the shape: ẍ = −λ x, ÿ = −λ y − g with λ = ẋ² + ẏ² − g y.
+/// [bodies] give the energy, constraints the geometry: ẍ = −λ x, ÿ = −λ y − g with λ = ẋ² + ẏ² − g y.
 #[test]
 fn constraints_bind_bodies_too() {
     let text = "[coordinates]\nx = 0.6\ny = -0.8\n[quasi_velocities]\n\"x'\" = 0.8\n\"y'\" = 0.6\n[constraints]\n\
@@ -481,7 +482,7 @@ fn a_constraint_declared_nonlinear_must_be_so() {
             place(38, &position)
         ),
     );
-    // Of one that defines a quasi-velocity where it is not called so.
+    // One that defines a quasi-velocity without being declared nonlinear.
     let defining = format!("{SLEIGH}speed = \"x'^2 + y'^2 - 1\"\n");
     let found = error(&defining).to_string();
     assert!(found.contains("`x'^2 + y'^2 - 1` is not affine in the velocities\n"), "{found}");
@@ -494,7 +495,7 @@ fn a_constraint_declared_nonlinear_must_be_so() {
     );
 }
 
-/// Beside quasi-velocities that are defined, it defines none; beside others, these keep their kinds.
+/// With defined quasi-velocities, it defines none; other constraints keep their kinds.
 #[test]
 fn nonlinear_constraints_stand_beside_others() {
     let classified = |text: &str| {
@@ -509,14 +510,14 @@ fn nonlinear_constraints_stand_beside_others() {
     let found = classified(text);
     assert_eq!(found[0], ("cone".to_owned(), Kind::Nonlinear));
     assert!(found[1].0 == "knife" && matches!(found[1].1, Kind::Nonholonomic { .. }), "{found:?}");
-    // On a circle of the plane, a constant speed is one of the angle: the circle is a position still.
+    // On a circle of the plane, a constant speed is one of the angle: the circle remains a position.
     let circle = "circle = \"x^2 + y^2 - 1\"\nspeed = { expr = \"x'^2 + z'^2 - 1\", kind = \"nonlinear\" }";
     let text = point("x = 1\ny = 0\nz = 0\n", "[quasi_velocities]\n\"z'\" = 1\n", circle);
     let found = classified(&text.replace("y'^2)", "y'^2 + z'^2)"));
     assert_eq!(found.iter().map(|(_, kind)| *kind).collect::<Vec<_>>(), [Kind::Position, Kind::Nonlinear]);
 }
 
-/// The definition that is to blame, not the first.
+/// The error is located at the definition that causes it, not at the first.
 #[test]
 fn errors_in_definitions_are_located_there() {
     let text = |is: &str| {

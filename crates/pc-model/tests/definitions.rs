@@ -1,4 +1,4 @@
-//! `[definitions]`: any number of them, made of those before.
+//! `[definitions]`: any number of them, each of earlier ones.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -13,7 +13,7 @@ use pc_model::{Document, Model, ModelError, Source};
 
 use verified::derived_twice;
 
-/// An oscillator with definitions before it, that moves in the potential given.
+/// An oscillator with definitions before it, in the given potential.
 fn oscillator(definitions: &str, potential: &str) -> Model {
     let text = format!(
         "[definitions]\n{definitions}[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
@@ -22,9 +22,9 @@ fn oscillator(definitions: &str, potential: &str) -> Model {
     derived_twice(Document::parse(Source::new("m.toml", &text)).unwrap())
 }
 
-/// With so little stack that each of them may not cost a call.
+/// On a stack too small for a nested call for each of them.
 #[test]
-fn ten_thousand_definitions_one_made_of_the_other_cost_no_stack() {
+fn ten_thousand_nested_definitions_need_no_deep_stack() {
     const COUNT: usize = 10_000;
     const STACK: usize = 256 << 10;
     let follow = || {
@@ -51,7 +51,7 @@ fn refused(definitions: &str, potential: &str) -> String {
     error.to_string().lines().next().unwrap().to_owned()
 }
 
-/// Whether they are used or not, at the entry that is wrong.
+/// Used or not, the error is located at the wrong entry.
 #[test]
 fn definitions_contain_what_is_defined_before() {
     let (good, bad) = ("b = \"2*x\"\n", "c = \"y + b\"\n");
@@ -74,7 +74,7 @@ fn definitions_contain_what_is_defined_before() {
     }
 }
 
-/// One that nothing is made of has no place that says what it may contain, and no value that would matter.
+/// An unused definition has no place that restricts its contents, and its value does not matter.
 #[test]
 fn an_unused_definition_may_contain_all_that_an_output_may() {
     let graph = Graph::new();

@@ -1,5 +1,5 @@
-//! Quasi-velocities defined by `is` together with `[constraints]`: what determines the velocities, their start, and every
-//! refusal in full.
+//! Quasi-velocities defined by `is` together with `[constraints]`: how velocities and their start are
+//! determined, and every refusal in full.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -48,7 +48,7 @@ fn model(text: &str) -> Model {
 /// Names, state and rates at the start.
 type Tried = (Vec<String>, Vec<f64>, Vec<f64>);
 
-/// Assembled and evaluated at its start: names and values of the state, and its rates.
+/// Assembles the model and evaluates it at its start: names and values of the state, and its rates.
 fn tried(model: &Model) -> Result<Tried, ModelError> {
     let graph = Graph::new();
     let assembly = model.assemble(&graph)?;
@@ -91,7 +91,7 @@ fn a_pendulum_moves_by_its_angular_velocity() {
     assert_eq!(equations.system().quasi_velocities(), [graph.symbol("w")]);
 }
 
-/// Whatever of the velocities is defined: x'' = −x (w² − y) for the pendulum with w = y'/x = −x'/y.
+/// For any defined velocity: x'' = −x (w² − y) for the pendulum with w = y'/x = −x'/y.
 #[test]
 fn any_choice_of_velocities_gives_the_same_motion() {
     let by = |is: &str, start: f64| {
@@ -106,7 +106,7 @@ fn any_choice_of_velocities_gives_the_same_motion() {
     assert!((of(&by("3*x' - y'", -3.0 * y * w - x * w), "w").1 - expected).abs() < 1e-14);
 }
 
-/// η in a constraint stands for its definition, also where it stands in an entry of `[definitions]`.
+/// η in a constraint stands for its definition, also inside an entry of `[definitions]`.
 #[test]
 fn rolling_may_be_written_with_the_angular_velocity() {
     let expected = -0.3 * 0.5 / (0.25 + 0.125); // (m r² + m r²/2) ω̇ = −0.3 r
@@ -151,7 +151,7 @@ fn definitions_and_constraints_are_as_many_as_coordinates() {
             "m.toml:5:1: [quasi_velocities] w: 3 definitions of quasi-velocities cannot be solved for 2 velocities{line}{help}"
         ),
     );
-    // The definition is what the constraint keeps constant.
+    // The constraint keeps the definition constant.
     refuses(
         &PENDULUM.replace("x*y' - y*x'", "x*x' + y*y'").replace("start = 0.2", "start = 0"),
         &format!(
@@ -185,7 +185,7 @@ fn quasi_velocities_follow_from_start_velocities() {
          is 0.16\n    \"x'\" = 0.8\n           ^^^\n  \
          help: leave it out, or the `start` of a quasi-velocity, which then follows",
     );
-    // Beside [kinematics], too, and where two of them are needed.
+    // With [kinematics], too, and where two of them are needed.
     let sleigh = "[coordinates]\nx = 0\ny = 0\nφ = 0.5\n[quasi_velocities]\nv = { is = \"cos(φ)*x' + sin(φ)*y'\" }\n\
                   u = { is = \"cos(φ)*y' - sin(φ)*x'\" }\nω = { is = \"φ'\", start = 2 }\n\"x'\" = 3\n\"y'\" = 4\n[lagrangian]\n\
                   kinetic = \"(x'^2 + y'^2 + φ'^2)/2\"\n";
@@ -216,7 +216,7 @@ fn held_start_values_are_not_moved() {
     let close = |found: Vec<f64>, expected: [f64; 4]| {
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?}");
     };
-    // The velocity's part along the circle.
+    // The component of the velocity along the circle.
     close(moved(&["x"]).unwrap(), [0.6, -0.8, 0.8 * 0.64, 0.8 * 0.48]);
     close(moved(&["x", "x'"]).unwrap(), [0.6, -0.8, 0.8, 0.6]);
     close(moved(&["y", "y'"]).unwrap(), [0.51f64.sqrt(), -0.7, 0.0, 0.0]);

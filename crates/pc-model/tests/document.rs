@@ -1,4 +1,4 @@
-//! The text of a model: what is read, what is refused and with which words, and that no input can upset it.
+//! The text of a model: how it is read, every refusal in full, and arbitrary input.
 
 use pc_expr::Direction;
 use pc_expr::parse::{Ast, AstKind, Span};
@@ -38,7 +38,7 @@ potential = "0"
 t_end = 5.0
 "#;
 
-/// Every section and every entry that there is.
+/// Every section and every entry.
 const EVERYTHING: &str = r#"
 [simulation]
 t_start = -1
@@ -204,7 +204,7 @@ fn every_entry() {
     assert_eq!(simulation.form.unwrap().value, EquationForm::Canonical);
 }
 
-/// The names in a tree, as the file has them at their spans.
+/// The names in a tree, as written in the file at their spans.
 fn leaves(ast: &Ast, expression: &Expression, source: &Source, out: &mut Vec<String>) {
     match &ast.kind {
         AstKind::Sum(terms) => terms.iter().for_each(|(_, term)| leaves(term, expression, source, out)),
@@ -212,7 +212,7 @@ fn leaves(ast: &Ast, expression: &Expression, source: &Source, out: &mut Vec<Str
     }
 }
 
-/// The terms of the sum `literal` as they stand in the file.
+/// The terms of the sum `literal` as written in the file.
 fn located(literal: &str) -> Vec<String> {
     let text = format!("[lagrangian]\nlagrangian = {literal}\n[coordinates]\nx=1");
     let document = read(&text);
@@ -365,7 +365,7 @@ proptest! {
         prop_assert!(Document::from_bytes("m", text.as_bytes()).is_err());
     }
 
-    /// A good model with a piece taken out, put in twice, or replaced.
+    /// A valid model with a piece removed, doubled, or replaced.
     #[test]
     fn damaged_models(
         from in 0..EVERYTHING.len(), length in 0..60usize, to in 0..EVERYTHING.len(), junk in "[-\\]\\[{}\"'=#.,θ\n\\\\ a1]{0,8}",

@@ -1,4 +1,4 @@
-//! `[[draw]]`, and what is drawn by itself.
+//! `[[draw]]`, and the shapes drawn automatically.
 
 use pc_mech::Graph;
 use pc_model::{Builtin, Document, Model, ModelError, Shape, Source};
@@ -11,7 +11,7 @@ fn read(draw: &str) -> Result<Model, ModelError> {
     Ok(Model::new(Document::parse(Source::new("model.toml", text))?))
 }
 
-/// The functions of each shape as they are written.
+/// The functions of each shape as written.
 fn drawn(model: &Model) -> Result<Vec<String>, ModelError> {
     let graph = Graph::new();
     let assembly = model.assemble(&graph)?;

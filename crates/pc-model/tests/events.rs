@@ -1,4 +1,4 @@
-//! `[events.NAME]`: what becomes of it, and every refusal in full.
+//! `[events.NAME]`: their assembly, and every refusal in full.
 
 #[path = "../../../tests/src/verified.rs"]
 mod verified;
@@ -53,9 +53,10 @@ fn refused(system: &str, event: &str) -> String {
     error.to_string()
 }
 
-/// Velocities are put in as quasi-velocities, definitions as what they stand for, resets by their place in (x, η).
+/// Velocities are expressed by quasi-velocities, definitions by their meaning, resets by their index in (x,
+/// η).
 #[test]
-fn an_event_is_expressions_of_the_state() {
+fn events_are_expressions_in_the_state() {
     let text = format!(
         "{PENDULUM}[events.low]\nwhen = \"height + t + d(height)\"\ndirection = \"rising\"\nterminal = true\n\
          reset = {{ omega = \"-phi'/2\", phi = \"phi + omega\" }}\n[events.\"just so\"]\nwhen = \"omega\"\n"
@@ -80,7 +81,7 @@ fn velocities_are_reset_where_they_are_the_quasi_velocities() {
     assert_eq!(assembly.events[0].resets, [(3, -graph.symbol("y'"))]);
 }
 
-/// A reset need have no value at the start, where `when` must have one.
+/// A reset needs no value at the start, where `when` needs one.
 #[test]
 fn only_the_event_function_is_tried_at_the_start() {
     let later = "[events.low]\nwhen = \"phi\"\nreset = { omega = \"sqrt(-phi)\" }\n";
@@ -144,7 +145,7 @@ fn every_message() {
         "{found}"
     );
 
-    // A velocity that one keeps: it would be dropped without a word.
+    // A velocity kept by a constraint: the reset would be lost silently.
     let found = reset(&format!("{POINT}[constraints]\nlevel = \"y'\"\n"), "\"y'\"");
     assert!(
         found.contains("`y'` cannot be reset: it is a velocity that a constraint keeps at zero"),

@@ -38,7 +38,7 @@ fn pull(flow: &mut Flow, t: f64) -> [f64; 2] {
     [rates[1], flow.row(t, &[0.0, 0.0])[3]]
 }
 
-/// Of the parameters, set like these.
+/// An input is listed with the parameters, and set like them.
 #[test]
 fn a_constant_is_set_like_a_parameter() {
     let mut model = model(&text("u = \"m + 1\""));
@@ -55,7 +55,7 @@ fn a_constant_is_set_like_a_parameter() {
     assert_eq!(value, [4.0]);
 }
 
-/// A parabola is its own spline; a line through two values its own, too.
+/// A parabola is its own spline; so is a line through two values.
 #[test]
 fn tables_are_read_between_their_times() {
     let squares = "times = [0, 1, 2.5, 3, 4], values = [0, 1, 6.25, 9, 16]";
@@ -84,7 +84,8 @@ fn tables_are_read_between_their_times() {
     }
 }
 
-/// At the end of a step the value before the jump counts, at its start that after it; what is shown is after it.
+/// At the end of a step the value before the jump counts, at its start the one after it; outputs show the one
+/// after it.
 #[test]
 fn a_jump_has_two_sides() {
     let held = "u = { times = [0, 1, 2], values = [3, 5, 5], interpolation = \"hold\" }";
@@ -114,7 +115,7 @@ fn a_table_has_no_value_outside_its_times() {
     assert!(error.starts_with(message), "{error}");
 }
 
-/// Neither by the energy's own rate, nor by that of functions.
+/// Neither by the rate of the energy, nor by that of other functions.
 #[test]
 fn a_function_driven_by_a_table_is_not_an_integral() {
     let graph = Graph::new();

@@ -1,4 +1,4 @@
-//! What quasi-velocities mean: solved for the velocities without loss, and refused where they have no such meaning.
+//! The meaning of quasi-velocities: solved for the velocities without loss, and refused where there is none.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -45,7 +45,7 @@ fn a_rounding_error_in_a_definition_does_not_affect_the_velocities() {
     }
 }
 
-/// What is linear for each sign alone: its second derivatives vanish, but there is no matrix b.
+/// Kinematics that are linear for each sign only: the second derivatives vanish, but there is no matrix b.
 #[test]
 fn kinematics_with_a_kink_are_refused() {
     for velocity in
@@ -70,7 +70,7 @@ fn kinematics_with_a_kink_are_refused() {
             error(&text).to_string().contains(&format!("`{definition}` is not affine in the velocities"))
         );
     }
-    // In the coordinates a kink is allowed.
+    // A kink in the coordinates is allowed.
     let text = "[coordinates]\nx = -3.0\n[quasi_velocities]\nw = 2.0\n[kinematics]\nx = \"abs(x)*w + max(x, 0)\"\n\
                 [lagrangian]\nkinetic = \"w^2/2\"\n";
     assert_eq!(rates(text)[0], 6.0);
@@ -104,7 +104,7 @@ fn brackets_with_time_obey_jacobis_identity() {
     assert_eq!(rates(&format!("{FREE}brackets = {{ \"a,b\" = \"b\", \"t,b\" = \"2*b\" }}\n")).len(), 2);
 }
 
-/// ż = 10⁻¹⁰ y u is no constraint on positions, however small.
+/// ż = 10⁻¹⁰ y u is not a constraint on positions, however small.
 #[test]
 fn small_kinematics_that_are_not_closed_are_refused() {
     let text = "[coordinates]\nx = 0.0\ny = 1.0\nz = 0.0\n[quasi_velocities]\nu = 1.0\nw = 2.0\n[kinematics]\n\

@@ -1,9 +1,9 @@
-//! Many coordinates that have little to do with each other: what vanishes costs nothing, so that these end at all.
+//! Many nearly independent coordinates: vanishing terms cost nothing, so that these tests end.
 
 use pc_mech::{Graph, VectorField};
 use pc_model::{Document, Model, Source};
 
-/// Oscillators in quasi-velocities ω_i = ẋ_i, with the potential given.
+/// Oscillators in quasi-velocities ω_i = ẋ_i, in the given potential.
 fn chain(n: usize, potential: impl Fn(usize) -> String) -> Model {
     let list = |entry: &dyn Fn(usize) -> String| (0..n).map(entry).collect::<Vec<_>>();
     let text = format!(
@@ -21,7 +21,8 @@ fn start(i: usize) -> f64 {
     0.1 + (i % 7) as f64 / 8.0
 }
 
-/// With 400 of them, brackets, ranks, factors and Jacobian taken pair by pair, or triple by triple, would take minutes.
+/// With 400 of them, computing brackets, ranks, factors and Jacobian for each pair or triple would take
+/// minutes.
 #[test]
 fn four_hundred_oscillators() {
     const N: usize = 400;

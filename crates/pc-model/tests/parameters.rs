@@ -38,7 +38,7 @@ fn an_expression_follows_the_parameters_in_it() {
     assert_eq!(of_system, values(&tube));
 }
 
-/// In whichever order they are set.
+/// In any order of setting them.
 #[test]
 fn a_value_that_is_set_replaces_its_expression() {
     for order in [["m", "r", "rho"], ["rho", "m", "r"], ["r", "rho", "m"]] {
@@ -58,7 +58,7 @@ fn refused(model: &Model) -> (Category, String) {
 }
 
 #[test]
-fn only_parameters_before_it_may_stand_in_one() {
+fn an_expression_contains_only_earlier_parameters() {
     for (parameters, message, help) in [
         ("a = \"m\"\nm = 1\n", "2:6: [parameters] a: `m` is used before it is defined", "move it up"),
         ("m = \"m + 1\"\n", "2:6: [parameters] m: `m` is used before it is defined", "move it up"),
@@ -77,7 +77,7 @@ fn only_parameters_before_it_may_stand_in_one() {
     }
 }
 
-/// What has no value is refused, and is no more where a parameter in it is set.
+/// An expression without a value is refused, until a parameter in it is set so that it has one.
 #[test]
 fn an_expression_without_a_value_is_refused() {
     for parameters in ["a = 0\nm = \"1/a\"\n", "a = 1\nm = \"sqrt(0 - a)\"\n", "a = 0\nm = \"log(a)\"\n"] {

@@ -25,7 +25,8 @@ fn value(observed: &[(String, f64)], name: &str) -> f64 {
     observed.iter().find(|(known, _)| known == name).unwrap().1
 }
 
-/// A particle held against the force (2, 3, 0): the reactions are −2 and −3, whatever the order of the constraints.
+/// A particle held against the force (2, 3, 0): the reactions are −2 and −3, for any order of the
+/// constraints.
 const HELD: &str = r#"
 [coordinates]
 x = 0.0
@@ -62,7 +63,8 @@ fn reactions_bear_the_names_of_their_constraints() {
     assert!(observed(HELD, false).iter().all(|(name, _)| !name.starts_with('λ')));
 }
 
-/// The rod of a spherical pendulum pulls with 2λ r, λ = (g z − |ṙ|²)/(2|r|²); what follows from it has no reaction.
+/// The rod of a spherical pendulum pulls with 2λ r, λ = (g z − |ṙ|²)/(2|r|²); a constraint that follows from
+/// it has no reaction.
 #[test]
 fn multipliers_are_outputs_and_those_dropped_are_zero() {
     let sphere = r#"
@@ -90,7 +92,7 @@ fn a_reaction_of_an_unknown_constraint_is_refused() {
     let model = derived_twice(Document::parse(Source::new("model.toml", &wrong)).unwrap());
     let error = model.assemble(&Graph::new()).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("the name `λ_third` is not declared"), "{error}");
-    // … and a reaction is none of the things that determine the motion.
+    // … and a reaction cannot occur in expressions that determine the motion.
     let circular = HELD.replace("-2*x - 3*y", "-2*x - 3*y + λ_first");
     let model = derived_twice(Document::parse(Source::new("model.toml", &circular)).unwrap());
     let error = model.assemble(&Graph::new()).map(|_| ()).unwrap_err();

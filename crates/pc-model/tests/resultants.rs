@@ -1,4 +1,4 @@
-//! Reactions as forces and torques on bodies: closed forms, Newton's laws, and what is not determined.
+//! Reactions as forces and torques on bodies: closed forms, Newton's laws, and undetermined components.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -19,7 +19,7 @@ fn model(text: &str) -> Model {
     model
 }
 
-/// The motion of a model, with the names of its state, and what is not determined.
+/// The motion of a model, with the names of its state, and the undetermined components.
 struct Watched {
     motion: Motion,
     start: Vec<f64>,
@@ -101,7 +101,7 @@ fn the_rod_of_a_pendulum_pulls_with_its_tension() {
     }
 }
 
-/// A sphere that rolls down a plane: friction −(2/7) m g sin α at its centre, and the torque that turns it.
+/// A sphere that rolls down a plane: friction −(2/7) m g sin α at its centre, and the torque that rotates it.
 #[test]
 fn friction_of_a_rolling_sphere_is_two_sevenths() {
     let sphere = r#"
@@ -168,7 +168,7 @@ across = "Y' - 0.5*θ'*sin(φ)"
     }
 }
 
-/// A ball on a turntable: the friction is m a, and turns the ball: J ω̇ = a e_z × F, the contact being below.
+/// A ball on a turntable: the friction is m a, and turns the ball: J ω̇ = a e_z × F, with the contact below.
 #[test]
 fn friction_drives_the_ball_on_a_turntable() {
     // η = (ẋ, ẏ, ω_x, ω_y), with ṗ = ω_x and q̇ = ω_y: no attitude is needed for the forces.
@@ -257,15 +257,15 @@ blade = "x2' - y2*y2'"
             close(&[weight[1] + down[i] + blade[i]], &[3.0 * rates[9 + i]]);
         }
     }
-    // No constraint but the blade is on velocities, none but the support holds the upper alone.
+    // Only the blade is a constraint on velocities, and only the support acts on the upper bob alone.
     let names = pair.motion.observable_names();
     assert!(
         !names.iter().any(|name| name.starts_with("F_support_lower") || name.starts_with("F_blade_upper"))
     );
 }
 
-/// Two masses on a rod by its centre and angle: what a blade at one end does to each is not told by virtual work, but what
-/// it does to a third mass is.
+/// Two masses on a rod by its centre and angle: virtual work does not determine the effect of a blade at one
+/// end on each of them, but its effect on a third mass.
 #[test]
 fn undetermined_reactions_are_left_out() {
     let rod = r#"
@@ -312,7 +312,7 @@ stop = "s"
     assert!(error(&torque).to_string().contains("the name `N_stop_slide_1` is not declared"));
 }
 
-/// What has kinetic energy in [lagrangian] beside a body on the same coordinate takes a share that is not known.
+/// Kinetic energy of [lagrangian] on the coordinate of a body takes an unknown part of the load.
 #[test]
 fn kinetic_energy_beside_bodies_shares_the_load() {
     let text = |kinetic: &str| {

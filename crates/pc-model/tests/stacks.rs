@@ -8,10 +8,10 @@ use std::thread;
 use pc_model::{Document, Flow, Model, Source, Variables};
 use pc_verify::{Options, verify};
 
-/// What `deep` asks of a thread.
+/// The stack that `deep` requires of a thread.
 const STACK: usize = 128 << 10;
 
-/// All of it; with the second derivation of what is not long only.
+/// The full derivation; with the second derivation for short models only.
 fn on_small_stack(text: String, again: bool) {
     let derive = move || {
         let model = Model::new(Document::parse(Source::new("deep.toml", text)).unwrap());
@@ -58,7 +58,7 @@ fn long_sums_are_handled() {
 }
 
 #[test]
-fn definitions_are_made_of_each_other() {
+fn nested_definitions_are_handled() {
     let chain: Vec<String> = (1..300).map(|i| format!("d{i} = \"sin(d{} + y)\"", i - 1)).collect();
     on_small_stack(model("d299", &format!("d0 = \"x\"\n{}", chain.join("\n"))), true);
 }

@@ -1,4 +1,4 @@
-//! `[states]`: first-order states beside the frame.
+//! `[states]`: first-order states in addition to the frame.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -116,8 +116,8 @@ fn a_motor_with_its_current_and_its_controller() {
     assert_close(&canonical.row(0.0, &momenta), &row, 1e-14);
 }
 
-/// A carriage that loses sand, m' = −q, at rest relative to it: (m v)' = −q v − c v, so v' = −c v/m; where the sand leaves at
-/// rest, (m v)' = −c v, so v' = (q − c) v/m.
+/// A carriage that loses sand, m' = −q, at rest relative to it: (m v)' = −q v − c v, so v' = −c v/m; where
+/// the sand leaves at rest, (m v)' = −c v, so v' = (q − c) v/m.
 #[test]
 fn the_mass_of_a_body_may_be_a_state() {
     for (force, factor) in [("-c*v - q*v", -0.5), ("-c*v", -0.2)] {
@@ -142,9 +142,9 @@ fn the_mass_of_a_body_may_be_a_state() {
     }
 }
 
-/// A pendulum in Cartesian coordinates with a thrust that builds up, and its angle with the same.
+/// A pendulum in Cartesian coordinates with a thrust that builds up, and the same in its angle.
 #[test]
-fn constraints_leave_states_alone() {
+fn constraints_do_not_change_states() {
     const PULLED: &str = r#"[coordinates]
 x = 0.6
 y = -0.8
@@ -184,7 +184,7 @@ x = "F"
     assert_close(&row[..5], &held.start, 1e-14);
 }
 
-/// What an event resets of them, and sees.
+/// Events reset first-order states, and depend on them.
 #[test]
 fn events_see_and_reset_states() {
     let text = format!("{MOTOR}[events.off]\nwhen = \"i - 3\"\nreset = {{ e = \"e/2\", w = \"i\" }}\n");
@@ -205,7 +205,8 @@ fn events_see_and_reset_states() {
     assert_eq!(category, Category::Text);
 }
 
-/// A gain that only energy tells: kept by projection, the charge of a capacitor stays as it is.
+/// A gain that only the energy shows: with the energy kept by projection, the charge of a capacitor is
+/// unchanged.
 #[test]
 fn integrals_are_kept_without_changing_states() {
     let text = "[coordinates]\nx = 1\n[states]\nz = { start = 2, rate = \"-z\" }\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
@@ -261,7 +262,7 @@ fn the_frame_contains_no_states() {
     assert!(message.contains("`d(b)` cannot be used in the rate of a first-order state"), "{message}");
 }
 
-/// Their start values are set as others are.
+/// Their start values are set like others.
 #[test]
 fn starts_are_set_by_name() {
     let mut model = model(MOTOR);
@@ -271,7 +272,8 @@ fn starts_are_set_by_name() {
     assert_eq!(model.start().unwrap(), [0.25, 0.5, 1.5, -1.0]);
 }
 
-/// A total derivative in a rate, by itself and in a definition: z = ∫ d(x²) is x², and the way is that of the speed.
+/// A total derivative in a rate, alone and in a definition: z = ∫ d(x²) is x², and the path is that of the
+/// speed.
 #[test]
 fn rates_contain_total_derivatives() {
     let text = "[coordinates]\nx = 1.0\n[definitions]\nrate = \"d(x^2)\"\n\

@@ -1,4 +1,4 @@
-//! Tags of the built-in models: each model has some, and those that can be read off a model are true.
+//! Tags of the built-in models: each model has some, and those that a model shows are true.
 
 use std::collections::HashSet;
 
@@ -53,7 +53,8 @@ fn tags_of_the_format_are_true() {
     });
 }
 
-/// By Frobenius' test, as `pc check` says it. Models on joints have constraints by their loops alone, which are of positions.
+/// By Frobenius' test, as in `pc check`. Models on joints have constraints by their loops alone, all on
+/// positions.
 #[test]
 fn nonholonomic_models_are_those_whose_constraints_cannot_be_integrated() {
     compare("nonholonomic", |model, document| {

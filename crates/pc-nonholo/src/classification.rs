@@ -1,8 +1,9 @@
 //! Classification of constraints: which bind, which are redundant, which are integrable.
 //!
-//! Conditions on positions and velocities are given their kinds: `classification` by Frobenius' test, with `reach`,
-//! the velocities allowed, `involutive`, the directions that these reach by commutators, and `binding`, which of them
-//! bind the motion at a state that `positions` finds. `combinations` writes those that are integrable together.
+//! Conditions on positions and velocities are classified: `classification` by Frobenius' test, with `reach`,
+//! the allowed velocities, `involutive`, the directions that these reach by commutators, and `binding`, the
+//! constraints that bind the motion at a state found by `positions`. `combinations` finds those that are
+//! integrable together.
 
 pub(crate) mod binding;
 pub(crate) mod classification;

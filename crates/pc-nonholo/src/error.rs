@@ -23,7 +23,7 @@ pub enum NonholoError {
     /// A form of the equations that requires constraints affine in the velocities.
     #[error("{form} need constraints that are affine in the velocities; `{constraint}` is not")]
     Nonlinear {
-        /// What was asked for.
+        /// The form requested.
         form: &'static str,
         /// The name of the first that is not.
         constraint: String,

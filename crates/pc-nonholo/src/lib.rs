@@ -1,15 +1,16 @@
 //! Nonholonomic constraints in quasi-velocities: their classification, equations of motion, reactions.
 //!
-//! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
-//! corrected; conventions are those of [`pc_mech`]. Of k quasi-velocities l are free, counted by r, s = 1..l, and k − l
-//! are kept at zero, counted by α = l+1..k; m counts all of them. The library is unit-agnostic: any consistent units will
-//! do.
+//! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its
+//! misprints corrected; conventions are those of [`pc_mech`]. Of k quasi-velocities l are free, counted by r,
+//! s = 1..l, and k − l are kept at zero, counted by α = l+1..k; m counts all of them. The library is
+//! unit-agnostic: any consistent units will do.
 //!
 //! # Which constraints are nonholonomic
 //!
-//! A [`Constraint`](pc_mech::Constraint) is a condition f(t, x) = 0, or one on velocities. Of those on velocities some can
-//! be integrated, and some follow from others or contradict them. A [`ConstraintClassification`] says which: with X'_1..X'_l
-//! a basis of the velocities allowed and X'_0 one of them,
+//! A [`Constraint`](pc_mech::Constraint) is a condition f(t, x) = 0, or one on velocities. Of those on
+//! velocities some can be integrated, and some follow from others or contradict them. A
+//! [`ConstraintClassification`] says which: with X'_1..X'_l a basis of the velocities allowed and X'_0 one of
+//! them,
 //!
 //! \[X'_r, X'_s\] = c'_rs^m X'_m + c'_rs^α X'_α, r, s = 0..l,
 //!

@@ -18,9 +18,9 @@ pub struct Wagon<'g> {
 
 /// A car with n trailers, each hitched to the middle of the axle before it [Laumond 1993].
 ///
-/// The coordinates are the middle (x, y) of the car's axle and the headings θ0..θn; the quasi-velocities the car's speed
-/// v, its turning ω, and the velocities u0..un of the axles along themselves, which the wheels forbid. With v_i the
-/// speed of axle i ahead and ℓ_i its distance from the one before,
+/// The coordinates are the middle (x, y) of the car's axle and the headings θ0..θn; the quasi-velocities the
+/// car's speed v, its turning ω, and the velocities u0..un of the axles along themselves, which the wheels
+/// forbid. With v_i the speed of axle i ahead and ℓ_i its distance from the one before,
 ///
 ///   v_i = v_{i−1} cos δ − u_{i−1} sin δ,   ℓ_i θ̇_i = v_{i−1} sin δ + u_{i−1} cos δ − u_i,   δ = θ_{i−1} − θ_i.
 ///
@@ -46,7 +46,7 @@ pub struct NTrailer<'g> {
     trailers: Vec<(Expr<'g>, Wagon<'g>)>,
 }
 
-/// How an axle moves: v_i, u_i and θ̇_i.
+/// The motion of an axle: v_i, u_i and θ̇_i.
 #[derive(Clone, Copy)]
 struct Axle<'g> {
     ahead: Expr<'g>,
@@ -60,7 +60,7 @@ impl<'g> NTrailer<'g> {
         NTrailer { graph, car, trailers: Vec::new() }
     }
 
-    /// The same with one more trailer behind, its axle at the distance `length` from the last.
+    /// The train with one more trailer at its end, whose axle is at the distance `length` from the last.
     #[must_use]
     pub fn trailer(mut self, length: Expr<'g>, wagon: Wagon<'g>) -> Self {
         self.trailers.push((length, wagon));

@@ -1,4 +1,4 @@
-//! Combinations of constraints with an integral: what is found is one, and all are found that were put in.
+//! Combinations of constraints with an integral: every result is one, and all known ones are found.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -16,7 +16,7 @@ fn particle(graph: &Graph) -> System<'_> {
         .unwrap()
 }
 
-/// How many combinations there are, and those found, each of them with μ_α φ_α = dF/dt identically.
+/// The number of combinations, and those found, each with μ_α φ_α = dF/dt identically.
 fn found<'g>(system: &System<'g>, constraints: &[Constraint<'g>]) -> (usize, Vec<IntegrableCombination<'g>>) {
     let (graph, time) = (system.graph(), system.frame().time());
     let state = system.state().into_iter().zip((1..).map(|i| 0.2 + 0.1 * f64::from(i)));
@@ -38,14 +38,14 @@ fn rate<'g>(system: &System<'g>, f: Expr<'g>) -> Expr<'g> {
     system.graph().directional(&[f], &x.chain([(system.frame().time(), Expr::ONE)]).collect::<Vec<_>>())[0]
 }
 
-/// How many of the functions are independent.
+/// The number of independent functions.
 fn rank<'g>(graph: &'g Graph, functions: &[Expr<'g>], variables: &[Expr<'g>]) -> usize {
     graph.generic_rank(&functions.iter().map(|&f| graph.gradient(f, variables)).collect::<Vec<_>>())
 }
 
-/// k1 binds no positions; what is added to it are rates of functions.
+/// k1 does not bind positions; the other constraints add rates of functions to it.
 #[test]
-fn the_integrals_that_were_put_in_are_found() {
+fn known_integrals_are_found() {
     let graph = Graph::new();
     let system = particle(&graph);
     let [t, x, y, z, u, w] = graph.symbols(["t", "x", "y", "z", "u", "w"]);
@@ -70,12 +70,13 @@ fn the_integrals_that_were_put_in_are_found() {
             assert_eq!(count, 2, "{first}, {second}");
             let variables = [x, y, z, u, w, t];
             let written: Vec<Expr<'_>> = found.iter().map(|combination| combination.integral).collect();
-            // Each is a function of those put in.
+            // Each is a function of those used.
             for &integral in &written {
                 assert_eq!(rank(&graph, &[first, second, integral], &variables), 2, "{integral}");
             }
             assert_eq!(rank(&graph, &written, &variables), written.len(), "{first}, {second}: {written:?}");
-            // With functions the combination has to be divided by one before it is a rate, which is not always found.
+            // With functions, the combination has to be divided by one to become a rate, which is not always
+            // found.
             let expected = if q.constant().is_some() { 2 } else { 1 };
             assert!(written.len() >= expected, "{first}, {second}: {written:?}");
         }

@@ -1,4 +1,4 @@
-//! Constraints as expressions: sorted, and put into frames of their own.
+//! Constraints as expressions: classified, and put into frames of their own.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -59,7 +59,7 @@ fn sort<'g>(
 }
 
 #[test]
-fn constraints_are_sorted_by_frobenius_test() {
+fn constraints_are_classified_by_frobenius_test() {
     let graph = Graph::new();
     let [x, y, z, vx, vy, vz] = graph.symbols(["x", "y", "z", "x'", "y'", "z'"]);
     let system = System::builder(&graph)
@@ -96,7 +96,7 @@ fn constraints_are_sorted_by_frobenius_test() {
     assert_eq!(sort(&system, &[Constraint::new("empty", vx - vx)], &at).redundant().len(), 1);
 }
 
-/// A disk that rolls, of whatever radius: what a constraint does is no matter of units.
+/// A rolling disk of any radius: the kinds of constraints are independent of units.
 #[test]
 fn the_kind_of_a_constraint_does_not_depend_on_units() {
     for radius in [1.0, 1e-6, 1e-10, 1e-14, 1e10] {
@@ -120,7 +120,7 @@ fn the_kind_of_a_constraint_does_not_depend_on_units() {
     }
 }
 
-/// log(xy) − log x − log y is zero, though nothing that the graph knows.
+/// log(xy) − log x − log y is zero, though the graph does not know it.
 #[test]
 fn a_bracket_that_vanishes_up_to_rounding_is_integrable() {
     let graph = Graph::new();
@@ -135,7 +135,8 @@ fn a_bracket_that_vanishes_up_to_rounding_is_integrable() {
     assert_eq!(sort(&system, &[plane], &state(&graph, &system)).kinds(), [Kind::Integrable]);
 }
 
-/// In an orthonormal frame ζ of the allowed velocities ζ̇_s = r_s; ẍ is what it is in independent velocities.
+/// In an orthonormal frame ζ of the allowed velocities ζ̇_s = r_s; ẍ is the same as in independent
+/// velocities.
 #[test]
 fn an_orthonormal_frame_gives_the_same_motion() {
     let graph = Graph::new();
@@ -175,7 +176,7 @@ fn an_orthonormal_frame_gives_the_same_motion() {
     );
 }
 
-/// A position that follows from others is dropped, but a velocity never makes a position redundant.
+/// A position that follows from others is dropped, but a velocity does not make a position redundant.
 #[test]
 fn positions_come_first() {
     let graph = Graph::new();
@@ -204,8 +205,8 @@ fn positions_come_first() {
     assert_eq!(error.to_string(), "the constraint `speed` is not affine in the quasi-velocities");
 }
 
-/// The disk that rolls without tilt: [X_φ, X_θ] has a component along `along` only where the disk is not along an axis,
-/// brackets of brackets have one along both.
+/// A disk rolling without tilt: [X_φ, X_θ] has a component along `along` only where the disk is oblique to an
+/// axis; brackets of brackets have one along both.
 #[test]
 fn brackets_of_brackets_count() {
     let graph = Graph::new();
@@ -217,7 +218,7 @@ fn brackets_of_brackets_count() {
         .build()
         .unwrap();
     let at = state(&graph, &system);
-    // Across and along the heading: only one of the two is met by the first bracket.
+    // Across and along the heading: the first bracket reaches only one of the two.
     let (s, c) = (heading.sin(), heading.cos());
     let across = Constraint::new("across", c * vy - s * vx);
     let rolling = Constraint::new("rolling", c * vx + s * vy - theta);
@@ -229,7 +230,7 @@ fn brackets_of_brackets_count() {
     );
 }
 
-/// A frame of three bars that are parallel, where two would do; where a bar has another length, it stands still.
+/// A frame of three parallel bars, where two suffice; if one bar has another length, it cannot move.
 #[test]
 fn a_redundant_bar_is_found_where_the_others_hold() {
     let frame = |third: f64| {
@@ -242,7 +243,8 @@ fn a_redundant_bar_is_found_where_the_others_hold() {
             .unwrap();
         let [a, b, c, top, end] = graph.symbols(names);
         let [t] = graph.symbols(["t"]);
-        // Cranks of length one at 0, 2 and 3 on the ground; a platform at θ from the first to the second and at φ on to the third.
+        // Cranks of length one at 0, 2 and 3 on the ground; a platform at θ from the first to the second and
+        // at φ from there to the third.
         let loops = [
             Constraint::new("x2", a.cos() + 2.0 * top.cos() - b.cos() - 2.0),
             Constraint::new("y2", a.sin() + 2.0 * top.sin() - b.sin()),
@@ -277,8 +279,8 @@ fn tangent_conditions_do_not_follow_from_each_other() {
     assert!(binding.redundant().is_empty());
 }
 
-/// The velocity of a point on a circle that turns at the rate 1 follows from its position, with the rest c_0 only where that
-/// holds; at another rate it contradicts it.
+/// The velocity of a point on a circle that turns at the rate 1 follows from its position, c_0 included only
+/// where that holds; at another rate the two contradict each other.
 #[test]
 fn a_velocity_may_follow_only_where_positions_hold() {
     let graph = Graph::new();

@@ -28,8 +28,8 @@ fn rates(graph: &Graph, train: &NTrailer<'_>, headings: &[f64], v: f64, w: f64) 
     graph.evaluate(&rates, &at).unwrap()
 }
 
-/// With the mass centres on the axles, which circle one centre, nothing but the wheels need pull:
-/// R_i² = R_{i−1}² − ℓ_i², and all turn alike.
+/// With the mass centres on the axles, which circle one centre, only the wheels exert forces: R_i² = R_{i−1}²
+/// − ℓ_i², and all turn at the same rate.
 #[test]
 fn circles_are_steady() {
     let (v, w) = (1.5, 0.6);
@@ -48,7 +48,8 @@ fn circles_are_steady() {
     assert!(rates[6].abs() < 1e-14 && rates[7].abs() < 1e-14, "{:?}", &rates[6..]);
 }
 
-/// The bodies by the places of their mass centres, the wheels by the velocities of their axles, all written out in x, y, θ.
+/// The bodies by the places of their mass centres, the wheels by the velocities of their axles, written out
+/// in x, y, θ.
 fn in_the_plane<'g>(graph: &'g Graph, ahead: [f64; 4]) -> (System<'g>, Vec<Constraint<'g>>) {
     /// The velocity of axle i.
     fn axle<'g>(i: usize, x: &[Expr<'g>], v: &[Expr<'g>]) -> [Expr<'g>; 2] {
@@ -93,7 +94,7 @@ fn three_trailers_obey_lagrange_with_multipliers() {
     let state = [&[0.4, -0.2], &headings[..], &found[..6]].concat();
     let mut expected = vec![0.0; 12];
     motion.rhs(0.0, &state, &mut expected).unwrap();
-    // v = ẋ cos θ0 + ẏ sin θ0, whose rate has no other terms since the car does not slip; ω = θ̇0.
+    // v = ẋ cos θ0 + ẏ sin θ0, whose rate has no other terms as the car does not slip; ω = θ̇0.
     let (s, c) = headings[0].sin_cos();
     let speed = expected[6] * c + expected[7] * s;
     assert!((found[6] - speed).abs() < 1e-12, "{} and {speed}", found[6]); // some thousand roundings of numbers below 5

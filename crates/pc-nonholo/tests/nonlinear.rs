@@ -1,4 +1,4 @@
-//! Constraints that are not affine in the velocities beside those that are.
+//! Constraints that are nonlinear in the velocities, together with affine ones.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -18,7 +18,7 @@ fn at(graph: &Graph) -> Vec<(Expr<'_>, f64)> {
     symbols.into_iter().zip([1.0, 2.0, 3.0, 0.6, 0.8, 1.2, 0.0]).collect()
 }
 
-/// The knife ż = y ẋ is nonholonomic, the plane ẏ = 0 integrable, whatever the speed is bound to.
+/// The knife ż = y ẋ is nonholonomic, the plane ẏ = 0 integrable, for any condition on the speed.
 #[test]
 fn affine_constraints_keep_their_kinds() {
     let graph = Graph::new();
@@ -53,7 +53,7 @@ fn forms_in_independent_velocities_refuse_nonlinear_constraints() {
     assert_eq!(error, MechError::Constraint(ConstraintError::NotAffine { constraint: "speed".to_owned() }));
 }
 
-/// Of an affine constraint, λ(t, x, η) is the reaction of equations (30) on it, and so are the rates.
+/// For an affine constraint, λ(t, x, η) is the reaction of the equations (30), with the same rates.
 #[test]
 fn reactions_of_affine_constraints_are_those_of_the_adapted_frame() {
     let graph = Graph::new();

@@ -1,7 +1,7 @@
 //! The equations of large trees of bodies, from body to body.
 //!
-//! Written out whole they would be longer than a page, and the longer the more bodies there are; from body to body each has the
-//! same few equations, with its own rotation, place and mass.
+//! Written out whole, they are longer than a page and grow with the number of bodies; from body to body each
+//! has the same few equations, with its own rotation, place and mass.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::layout::Layout;
 use crate::operations::Operations;
 
-/// What is the same for all bodies, for people and for a paper.
+/// The equations common to all bodies, in text and in LaTeX.
 const LAWS: [(&str, &str, &str); 6] = [
     (
         "From the axes of a body to those of its parent, by R, and to those of the world",
@@ -52,15 +52,15 @@ pub(crate) struct TreeOnPage<'p> {
     gravity: [Expr<'p>; 3],
 }
 
-/// A body with what is its own.
+/// A body with its own data.
 struct BodyOnPage<'p> {
     name: String,
     parent: String,
-    /// Letters of a book, those of a program, and what they are.
+    /// Letters as in a book, identifiers for programs, and the vectors they denote.
     vectors: Vec<(&'static str, &'static str, [Expr<'p>; 3])>,
     matrices: Vec<(&'static str, &'static str, Matrix<Expr<'p>>)>,
     mass: Expr<'p>,
-    /// η with Q_η, loads on bodies left out.
+    /// η with Q_η, without loads on bodies.
     forces: Vec<(Expr<'p>, Expr<'p>)>,
     kinematics: Vec<(Expr<'p>, Expr<'p>)>,
 }
@@ -110,7 +110,7 @@ fn vanishes(vector: &[Expr<'_>; 3]) -> bool {
     vector.iter().all(|component| component.is_zero())
 }
 
-/// For people; `heading` is the title with the name of the form.
+/// As text; `heading` is the title with the name of the form.
 pub(crate) fn text(heading: &str, tree: &TreeOnPage<'_>, operations: &Operations, layout: &Layout) -> String {
     let mut page = crate::text::underlined(heading);
     page +=
@@ -162,7 +162,7 @@ pub(crate) fn text(heading: &str, tree: &TreeOnPage<'_>, operations: &Operations
     page
 }
 
-/// For a paper.
+/// As LaTeX.
 pub(crate) fn latex(heading: &str, tree: &TreeOnPage<'_>) -> String {
     let mut page =
         format!("% {heading}, from body to body (needs amsmath)\n\n% For each body\n\\begin{{align*}}\n");
@@ -203,7 +203,7 @@ pub(crate) fn latex(heading: &str, tree: &TreeOnPage<'_>) -> String {
     page
 }
 
-/// For programs.
+/// As JSON.
 pub(crate) fn programs(
     title: &str,
     system: &System<'_>,

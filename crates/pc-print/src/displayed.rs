@@ -1,4 +1,4 @@
-//! Equations and theory as displays for a page of a browser, each with its source for a paper.
+//! Equations and theory as displays for a web page, each with its LaTeX.
 
 use pc_expr::{Folding, Given, Graph};
 use pc_mech::{Expr, System};
@@ -25,7 +25,7 @@ use crate::words::short;
 pub struct Display {
     /// A `math` element.
     pub mathml: String,
-    /// The same for a paper, with amsmath.
+    /// The same as LaTeX, with amsmath.
     pub latex: String,
 }
 
@@ -36,7 +36,7 @@ pub struct DisplayedPart {
     pub title: &'static str,
     /// The formulas, where there are any.
     pub display: Option<Display>,
-    /// What is said of them.
+    /// Notes on them.
     pub notes: Vec<String>,
 }
 
@@ -49,7 +49,7 @@ pub struct DisplayedEquations {
     pub parts: Vec<DisplayedPart>,
     /// The whole in plain text instead, where it is written from body to body.
     pub plain: Option<Display>,
-    /// What a right-hand side costs, line by line.
+    /// The cost of a right-hand side, line by line.
     pub operations: Vec<String>,
 }
 
@@ -60,9 +60,9 @@ pub struct DisplayedTheory {
     pub key: &'static str,
     /// The heading.
     pub title: &'static str,
-    /// What the names in its formulas stand for.
+    /// The meanings of the names in its formulas.
     pub names: Option<String>,
-    /// What it says.
+    /// Its contents.
     pub entries: Vec<DisplayedEntry>,
     /// All its formulas for a paper.
     pub latex: Option<String>,
@@ -75,20 +75,22 @@ pub struct DisplayedEntry {
     pub name: Option<String>,
     /// A `math` element, where there are formulas.
     pub mathml: Option<String>,
-    /// What is known of them, in words: proved, disproved, open.
+    /// The verdict on them, in words: proved, disproved, open.
     pub verdict: Option<String>,
     /// Names with numbers.
     pub values: Vec<String>,
-    /// What else is said.
+    /// Further sentences.
     pub words: Vec<String>,
     /// Real and imaginary parts of eigenvalues.
     pub spectrum: Vec<(f64, f64)>,
 }
 
-/// What equations are derived from: the operators X_s = b_is ∂/∂x_i of the frame and their brackets (5), T, U and L, forces.
+/// What equations are derived from: the operators X_s = b_is ∂/∂x_i of the frame and their brackets (5), T, U
+/// and L, forces.
 ///
-/// U = L where all quasi-velocities vanish, T = L − U; where the frame moves by itself, what is not of degree 0 in the
-/// quasi-velocities is not T alone, and L is shown alone. Of a large tree of bodies L is longer than a page and is left out.
+/// U = L where all quasi-velocities vanish, T = L − U; where the frame moves by itself, what is not of degree
+/// 0 in the quasi-velocities is not T alone, and L is shown alone. Of a large tree of bodies L is longer than
+/// a page and is left out.
 ///
 /// # Errors
 /// [`ModelError`] if a limit is reached.
@@ -228,7 +230,7 @@ pub fn displayed_equations(
     Ok(DisplayedEquations { name: name.to_owned(), parts: parts.collect(), plain: None, operations: lines })
 }
 
-/// What is said of a part beside its formulas.
+/// The notes on a part, in addition to its formulas.
 fn notes(sheet: &Sheet<'_>, part: &Part<'_>) -> Vec<String> {
     match part.heading {
         Heading::Constraints => part

@@ -15,7 +15,7 @@ pub enum Form {
     Voronets,
     /// Equations for the quasi-velocities without coordinates that nothing depends on: Euler–Poincaré.
     Reduced,
-    /// Those for the momenta: Lie–Poisson.
+    /// Equations for the momenta of these: Lie–Poisson.
     LiePoisson,
     /// Equations for quasi-velocities that are orthonormal in the kinetic metric.
     Orthonormal,

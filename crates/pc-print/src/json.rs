@@ -9,8 +9,9 @@ use crate::layout::Layout;
 use crate::operations::Operations;
 use crate::sheet::{Balance, Bracket, Sheet};
 
-/// The equations for programs. Where canonical equations are not closed, there are no `quasi_velocities_of_momenta`, and the
-/// quasi-velocities stand for the solution of `momenta` = `momenta_of_velocities`.
+/// The equations for programs. Where canonical equations are not closed, there are no
+/// `quasi_velocities_of_momenta`, and the quasi-velocities stand for the solution of `momenta` =
+/// `momenta_of_velocities`.
 pub(crate) fn page(
     title: &str,
     sheet: &Sheet<'_>,
@@ -80,7 +81,7 @@ pub(crate) fn page(
     Value::Object(object)
 }
 
-/// Text in the expression language, which has d(x') for x''.
+/// Text in the expression language, in which x'' is d(x').
 fn in_language(text: &str) -> String {
     let mut pieces = text.split("''");
     let mut written = pieces.next().unwrap_or_default().to_owned();
@@ -128,7 +129,7 @@ impl Text {
 }
 
 impl<'p> Sheet<'p> {
-    /// Names for what is long in what programs are told.
+    /// Names for long expressions in the output.
     fn names(&self, layout: &Layout, page: &'p Graph) -> Names<'p> {
         let (b, b_0) = &self.frame;
         let second = |pairs: &[(Expr<'p>, Expr<'p>)]| pairs.iter().map(|&(_, x)| x).collect::<Vec<_>>();

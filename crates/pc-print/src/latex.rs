@@ -25,7 +25,7 @@ pub(crate) fn page(heading: &str, sheet: &Sheet<'_>, layout: &Layout, page: &Gra
     text
 }
 
-/// What is said of a part.
+/// The remark on a part.
 pub(crate) fn remark(sheet: &Sheet<'_>, heading: Heading) -> Option<&'static str> {
     match heading {
         Heading::Energy | Heading::Hamiltonian => sheet.energy_remark,
@@ -33,7 +33,7 @@ pub(crate) fn remark(sheet: &Sheet<'_>, heading: Heading) -> Option<&'static str
     }
 }
 
-/// The parts, each with its display unless there is nothing in it to be displayed.
+/// The parts, each with its display unless it has nothing to display.
 pub(crate) fn displays<'a, 'p>(
     operators: &'a [String],
     layout: &'a Layout,
@@ -54,28 +54,29 @@ pub(crate) fn displays<'a, 'p>(
     parts.with_names().map(display).collect()
 }
 
-/// The environment about some lines.
+/// The environment around some lines.
 pub(crate) fn aligned(lines: &[String]) -> String {
     format!("\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"))
 }
 
-/// What is set of a sheet, by which names.
+/// The parts of a sheet to typeset, with the names in use.
 struct Latex<'a, 'p> {
     /// The names of the quasi-velocities to which operators belong.
     operators: &'a [String],
     layout: &'a Layout,
     names: &'a Names<'p>,
     set: Written,
-    /// The same in plain characters, by which lines are broken: what is set is as wide as they are, roughly.
+    /// The same in plain characters, whose widths decide where lines are broken.
     plain: Written,
 }
 
-/// Left sides of more columns have lines of their own: all right sides of a display begin behind the longest of the others.
+/// Left sides of more columns have lines of their own: all right sides of a display begin behind the longest
+/// of the others.
 const LONG_LEFT: usize = 24;
-/// Columns before what goes on in the next line.
+/// Columns before the continuation of a line.
 const HANGING: usize = 6;
 
-/// A line whose bracket both opens and closes in it, which then grows with what is in it.
+/// A line whose brackets open and close in it, which may therefore grow with their contents.
 pub(crate) fn whole(line: String) -> String {
     match (line.matches("\\Bigl(").count(), line.matches("\\Bigr)").count()) {
         (1, 1) => line.replace("\\Bigl(", "\\left(").replace("\\Bigr)", "\\right)"),
@@ -88,7 +89,7 @@ fn operator_of(quasi_velocity: Option<&str>) -> String {
     format!("X_{{{}}}", quasi_velocity.unwrap_or("0"))
 }
 
-/// Terms as they are set, each with its columns in plain characters.
+/// Terms as typeset, each with its columns in plain characters.
 type Terms = Vec<(String, usize)>;
 
 impl<'p> Latex<'_, 'p> {
@@ -149,7 +150,7 @@ impl<'p> Latex<'_, 'p> {
             let term = match size {
                 "1" => operator,
                 _ if is_sum => format!("\\left({size}\\right) {operator}"),
-                _ => format!("{size} \\, {operator}"), // kept apart from the argument of a sine
+                _ => format!("{size} \\, {operator}"), // separated from the argument of a sine
             };
             let sign = match (terms.is_empty(), sign) {
                 (true, "+") => "",
@@ -172,7 +173,8 @@ impl<'p> Latex<'_, 'p> {
         }
     }
 
-    /// The two sides in as many lines as they need: the right side begins behind a short left side, else in a line of its own.
+    /// The two sides in as many lines as needed: the right side begins behind a short left side, or in a line
+    /// of its own.
     fn equation(&self, left: Terms, right: Terms) -> String {
         let width: usize = left.iter().map(|(_, width)| width + 1).sum();
         let joined = |lines: Terms, before: &str| {

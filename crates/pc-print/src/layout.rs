@@ -21,9 +21,9 @@ impl Default for Layout {
 
 /// Left sides of more columns are not padded.
 const WIDEST_PADDED: usize = 24;
-/// What goes on in the next line stands at most so far to the right.
+/// The greatest indentation of a continuation line.
 const DEEPEST: usize = 32;
-/// Where a line goes on that has no room under its equals sign.
+/// The indentation of a continuation line without room under its equals sign.
 const HANGING: usize = 4;
 /// Left sides of more columns have lines of their own.
 const LONG_LEFT: usize = 60;
@@ -34,7 +34,7 @@ impl Layout {
         self.width.saturating_sub(24).max(24)
     }
 
-    /// Left = right, each in terms, the equals signs under each other unless a left side is long.
+    /// Left = right, each in terms, with aligned equals signs unless a left side is long.
     pub(crate) fn aligned(&self, equations: &[(Vec<String>, Vec<String>)]) -> Vec<String> {
         let wide = |(left, _): &(Vec<String>, Vec<String>)| columns(&left.join(" "));
         let width = equations.iter().map(wide).filter(|&width| width <= WIDEST_PADDED).max().unwrap_or(0);
@@ -58,7 +58,7 @@ impl Layout {
         }
     }
 
-    /// Terms one behind the other, in as many lines as they need, the first of which begins with `head`.
+    /// Terms one after the other, in as many lines as needed, the first of which begins with `head`.
     pub(crate) fn flowed(&self, head: &str, terms: &[String]) -> Vec<String> {
         let indent = if columns(head) <= DEEPEST && !head.is_empty() { columns(head) } else { HANGING };
         let mut lines = vec![head.to_owned()];

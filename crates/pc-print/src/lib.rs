@@ -1,14 +1,16 @@
 //! The equations of a model in print: as in a book, in LaTeX for a paper, as JSON for programs.
 //!
-//! A [`page`] is what `pc derive` and `pc_system_print` of the C interface show. Its parts are there too: what is
-//! [derived](Derived) in each [`Form`], the [`Sheet`] of expressions that is printed of it, and the [cost](Operations) of a
-//! right-hand side. The [`theory`](theory()) is what `pc theory` and `pc_system_theory` show.
+//! A [`page`] is what `pc derive` and `pc_system_print` of the C interface show. Its parts are there too:
+//! what is [derived](Derived) in each [`Form`], the [`Sheet`] of expressions that is printed of it, and the
+//! [cost](Operations) of a right-hand side. The [`theory`](theory()) is what `pc theory` and
+//! `pc_system_theory` show.
 //!
-//! An [`Assembly`](pc_model::Assembly) becomes text. Read `form` and `derived` first, the equations with their
-//! constraints and reactions; then `sheet`, the expressions to print, and `operations`, their cost; `part` and
-//! `layout`, headings and lines, with `lines` and `constraints`, words and columns, and `visible`, which makes foreign
-//! text harmless; then `text`, `latex` and `json`, the three ways to print, `mathml` with `displayed`, formulas for a browser, `bodies`, the page of a large tree of bodies, and `page`, which chooses. `theory` prints
-//! the analysis of motions, with `words` for numbers and lists.
+//! An [`Assembly`](pc_model::Assembly) becomes text. Read `form` and `derived` first, the equations with
+//! their constraints and reactions; then `sheet`, the expressions to print, and `operations`, their cost;
+//! `part` and `layout`, headings and lines, with `lines` and `constraints`, words and columns, and `visible`,
+//! which makes foreign text harmless; then `text`, `latex` and `json`, the three ways to print, `mathml` with
+//! `displayed`, formulas for a browser, `bodies`, the page of a large tree of bodies, and `page`, which
+//! chooses. `theory` prints the analysis of motions, with `words` for numbers and lists.
 //!
 //! ```
 //! use pc_mech::Graph;

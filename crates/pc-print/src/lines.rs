@@ -1,6 +1,6 @@
 //! Linear combinations and columns of text.
 
-/// The linear combination with those coefficients and elements, as `2*X1 - X3`; `0` where all coefficients are.
+/// The linear combination with those coefficients and elements, as `2*X1 - X3`; `0` if all coefficients are.
 pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String {
     combined(terms).join(" ")
 }
@@ -21,7 +21,7 @@ pub(crate) fn combined(terms: impl IntoIterator<Item = (String, String)>) -> Vec
         };
         sum.push(match size {
             "1" => format!("{sign}{element}"),
-            // What follows a quotient would be read into its divisor.
+            // An element behind a quotient would be read as part of its divisor.
             _ if is_sum(size) || is_quotient(size) => format!("{sign}({size}) {element}"),
             _ => format!("{sign}{size} {element}"),
         });
@@ -34,7 +34,7 @@ fn is_sum(text: &str) -> bool {
     outside.contains(" + ") || outside.contains(" - ")
 }
 
-/// The text without what stands in brackets.
+/// The text outside of brackets.
 fn outside_of_brackets(text: &str) -> String {
     let mut depth = 0usize;
     let is_outside = |c: &char| {
@@ -48,7 +48,7 @@ fn outside_of_brackets(text: &str) -> String {
     text.chars().filter(is_outside).collect()
 }
 
-/// Whether it is a quotient of more than numbers.
+/// Whether it is a quotient with more than numbers.
 fn is_quotient(text: &str) -> bool {
     outside_of_brackets(text).contains('/') && text.chars().any(char::is_alphabetic)
 }

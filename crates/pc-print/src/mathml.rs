@@ -8,7 +8,7 @@ use crate::lines::columns;
 use crate::part::{Part, Parts, Row};
 use crate::sheet::Bracket;
 
-/// d/dt of what stands behind it.
+/// d/dt of the expression that follows.
 pub(crate) const RATE: &str =
     "<mfrac><mi>d</mi><mrow><mi>d</mi><mi>t</mi></mrow></mfrac><mspace width=\"0.17em\"/>";
 const MINUS: &str = "<mo>−</mo>";
@@ -17,13 +17,13 @@ const THIN: &str = "<mspace width=\"0.17em\"/>";
 
 /// Left sides of more columns have lines of their own.
 const LONG_LEFT: usize = 24;
-/// Columns before what goes on in the next line.
+/// Columns before the continuation of a line.
 const HANGING: usize = 6;
 
-/// Terms as they are set, each with its columns in plain characters.
+/// Terms as typeset, each with its columns in plain characters.
 pub(crate) type Terms = Vec<(String, usize)>;
 
-/// Text between elements, in which nothing is one.
+/// Text between elements, with markup escaped.
 pub(crate) fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {
@@ -56,7 +56,8 @@ pub(crate) fn operator(eta: &str) -> String {
     format!("<msub><mi>X</mi>{eta}</msub>")
 }
 
-/// The terms of a linear combination: of each coefficient in plain characters and as it is set, and of what it stands before.
+/// The terms of a linear combination, from each coefficient in plain characters and as typeset, and its
+/// element.
 pub(crate) fn combination(terms: impl Iterator<Item = (String, String, String)>) -> Terms {
     let mut sum = Terms::new();
     for (plain, set, element) in terms {
@@ -68,7 +69,7 @@ pub(crate) fn combination(terms: impl Iterator<Item = (String, String, String)>)
         let term = match plain.trim_start_matches('-') {
             "1" => element,
             _ if is_sum => format!("{}{THIN}{element}", bracketed(size)),
-            _ => format!("{size}{THIN}{element}"), // kept apart from the argument of a sine
+            _ => format!("{size}{THIN}{element}"), // separated from the argument of a sine
         };
         let sign = match (sum.is_empty(), negative) {
             (true, false) => "",
@@ -85,12 +86,13 @@ pub(crate) fn table(rows: &[String]) -> String {
     format!("<math display=\"block\"><mtable displaystyle=\"true\">{}</mtable></math>", rows.concat())
 }
 
-/// The two sides in one row, whatever their lengths.
+/// The two sides in one row, of any lengths.
 pub(crate) fn row(left: &str, right: &str) -> String {
     format!("<mtr><mtd>{left}</mtd><mtd>{EQUALS}</mtd><mtd>{right}</mtd></mtr>")
 }
 
-/// The two sides in as many rows as they need: the right side begins behind a short left side, else in a row of its own.
+/// The two sides in as many rows as needed: the right side begins behind a short left side, or in a row of
+/// its own.
 pub(crate) fn equation(left: Terms, right: Terms, width: usize) -> Vec<String> {
     let columns: usize = left.iter().map(|(_, width)| width + 1).sum();
     if columns <= LONG_LEFT {
@@ -125,7 +127,7 @@ fn flowed(terms: Terms, begin: usize, width: usize) -> Vec<String> {
     lines.into_iter().map(|(line, _)| line).collect()
 }
 
-/// The parts, each with its table unless there is nothing in it to be displayed.
+/// The parts, each with its table unless it has nothing to display.
 pub(crate) fn displays<'a, 'p>(
     operators: &'a [String],
     layout: &'a Layout,
@@ -146,14 +148,14 @@ pub(crate) fn displays<'a, 'p>(
     parts.with_names().map(display).collect()
 }
 
-/// What is set, by which names.
+/// The expressions to typeset, with the names in use.
 struct Set<'a, 'p> {
     /// The names of the quasi-velocities to which operators belong.
     operators: &'a [String],
     layout: &'a Layout,
     names: &'a Names<'p>,
     set: Written,
-    /// The same in plain characters, by which lines are broken.
+    /// The same in plain characters, whose widths decide where lines are broken.
     plain: Written,
 }
 

@@ -14,7 +14,7 @@ pub struct Operations {
 }
 
 impl Operations {
-    /// Those of Poincaré's equations.
+    /// The operations of Poincaré's equations.
     ///
     /// # Errors
     /// [`ExprError`] if the right-hand side cannot be compiled.
@@ -24,7 +24,7 @@ impl Operations {
         Operations::counted(system, system.quasi_velocities(), &rates)
     }
 
-    /// Those of the canonical equations; where they are not closed, with the quasi-velocities given.
+    /// The operations of the canonical equations; where they are not closed, with the quasi-velocities given.
     ///
     /// # Errors
     /// As [`of`](Operations::of).
@@ -35,7 +35,7 @@ impl Operations {
         Operations::counted(system, &[equations.momenta(), implicit].concat(), &rates)
     }
 
-    /// Those of `rates`, functions of time, coordinates, `moving` and parameters.
+    /// The operations of `rates`, functions of time, coordinates, `moving` and parameters.
     fn counted<'g>(
         system: &System<'g>,
         moving: &[Expr<'g>],
@@ -46,12 +46,13 @@ impl Operations {
         let states = system.states().iter().map(|(z, _)| z);
         let state: Vec<Expr<'g>> =
             system.frame().coordinates().iter().chain(moving).chain(states).copied().collect();
-        // Parameters, and what else stands in the equations: external forces, reactions.
+        // Parameters, and other symbols in the equations: external forces, reactions.
         let others = graph.symbols_of(rates).into_iter().filter(|x| *x != time && !state.contains(x));
         let inputs = Inputs { time: Some(time), parameters: others.collect(), state };
         let numbers = system.parameters();
         let free = Program::new(graph, &inputs, rates)?;
-        // What is left of the free program is shorter where numbers multiplied out make more sums than there are with parameters.
+        // The rest of the free program is shorter if multiplied-out numbers would make more sums than
+        // parameters do.
         let folded = free.bound_where(|name| {
             let number = numbers.iter().find(|(symbol, _)| symbol.symbol_name().as_deref() == Some(name));
             number.map(|&(_, value)| value)
@@ -85,7 +86,7 @@ pub fn counted(what: &str, cost: &Cost) -> String {
 }
 
 impl Operations {
-    /// For programs.
+    /// As JSON.
     pub fn object(&self) -> Value {
         json!({ "free": counts(&self.free), "bound": counts(&self.bound) })
     }

@@ -12,7 +12,7 @@ use crate::sheet::Sheet;
 use crate::visible::{one_line, visible, visible_json};
 use crate::{bodies, json, latex, text};
 
-/// How equations are printed.
+/// The format of a page of equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Page {
     /// For people.
@@ -58,7 +58,7 @@ pub fn page(
     })
 }
 
-/// The sheet of equations that are derived in a form, with the name of the form and the cost of a right-hand side.
+/// The sheet of equations in a form, with the name of the form and the cost of a right-hand side.
 pub(crate) fn sheet_of<'g, 'p>(
     form: Form,
     name: &'static str,
@@ -82,7 +82,7 @@ pub(crate) fn sheet_of<'g, 'p>(
     Ok((name, sheet, operations))
 }
 
-/// Names of constraints may be anything where a program has given them.
+/// A program may have given constraints arbitrary names.
 fn on_terminal(text: String) -> String {
     match visible(&text) {
         std::borrow::Cow::Borrowed(_) => text,

@@ -1,4 +1,4 @@
-//! A page in parts with headings, the same for people and for a paper.
+//! A page in parts with headings, the same in text and in LaTeX.
 
 use pc_expr::{Given, Names, Side};
 use pc_mech::{Expr, Graph, Matrix};
@@ -7,14 +7,14 @@ use pc_nonholo::Kind;
 use crate::layout::Layout;
 use crate::sheet::{Balance, Bracket, Sheet};
 
-/// What stands under a heading.
+/// The contents under a heading.
 #[derive(Clone, Debug)]
 pub(crate) struct Part<'p> {
     pub(crate) heading: Heading,
     pub(crate) rows: Vec<Row<'p>>,
 }
 
-/// What a part is about.
+/// The subject of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Heading {
     Constraints,
@@ -54,7 +54,7 @@ impl Heading {
     }
 }
 
-/// What is said in one go.
+/// A line of a part.
 #[derive(Clone, Debug)]
 pub(crate) enum Row<'p> {
     /// `name: left = 0 (kind)`
@@ -72,7 +72,7 @@ pub(crate) enum Row<'p> {
 }
 
 impl<'p> Row<'p> {
-    /// What is written in this row.
+    /// The expressions in this row.
     fn sides(&self) -> Vec<Side<'p>> {
         match self {
             Row::Constraint { left, .. } => vec![Side::Sum(*left)],
@@ -84,7 +84,7 @@ impl<'p> Row<'p> {
     }
 }
 
-/// The parts of a page with the names that are needed.
+/// The parts of a page with the names they use.
 pub(crate) struct Parts<'p> {
     pub(crate) parts: Vec<Part<'p>>,
     pub(crate) names: Names<'p>,
@@ -93,8 +93,8 @@ pub(crate) struct Parts<'p> {
 }
 
 impl<'p> Parts<'p> {
-    /// The parts of a sheet, and names for what is long in them; with its `entries` a mass matrix is a part, by which left sides
-    /// become short.
+    /// The parts of a sheet, with names for long expressions; with `entries` the mass matrix is a part, which
+    /// shortens left sides.
     pub(crate) fn new(sheet: &Sheet<'p>, layout: &Layout, page: &'p Graph, entries: bool) -> Parts<'p> {
         let mut given: Vec<Given<'p>> = if layout.inline { Vec::new() } else { sheet.definitions.clone() };
         let mut parts = sheet.parts(page, entries);
@@ -112,12 +112,12 @@ impl<'p> Parts<'p> {
             .velocity_names()
             .into_iter()
             .filter(|velocity| named.list().iter().any(|name| name.shorthand && name.name == velocity.name))
-            // Those that are velocities are in the kinematics.
+            // Those that are velocities are part of the kinematics.
             .filter(|velocity| !sheet.rates.iter().any(|(rate, _)| rate.to_string() == velocity.name))
             .map(|velocity| Row::Equation { left: page.symbol(&velocity.name), right: velocity.value })
             .collect();
         if !velocities.is_empty() {
-            // Where they are used, they are said before.
+            // They precede their uses.
             parts.insert(0, Part { heading: Heading::QuasiVelocities, rows: velocities });
             named = names(&parts, &given, layout, page);
         }
@@ -125,7 +125,7 @@ impl<'p> Parts<'p> {
         Parts::of(parts, named)
     }
 
-    /// Parts whose names are known.
+    /// Parts whose names are given.
     fn of(parts: Vec<Part<'p>>, names: Names<'p>) -> Parts<'p> {
         let starts = parts.iter().scan(0, |next, part| {
             let start = *next;
@@ -136,7 +136,7 @@ impl<'p> Parts<'p> {
         Parts { parts, names, starts }
     }
 
-    /// Parts with names for what is long in them, among which are those `given`.
+    /// Parts with names for long expressions, among them those `given`.
     pub(crate) fn named(
         mut parts: Vec<Part<'p>>,
         given: &[Given<'p>],
@@ -148,7 +148,7 @@ impl<'p> Parts<'p> {
         Parts::of(parts, named)
     }
 
-    /// The parts, each with the numbers of the names that are first needed there.
+    /// The parts, each with the numbers of the names first used there.
     pub(crate) fn with_names(&self) -> impl Iterator<Item = (&Part<'p>, Vec<usize>)> {
         self.parts.iter().enumerate().map(|(i, part)| {
             let end = self.starts.get(i + 1).copied().unwrap_or(usize::MAX);
@@ -160,7 +160,7 @@ impl<'p> Parts<'p> {
     }
 }
 
-/// Names of entries of the mass matrix that would be used before it is printed.
+/// Names of entries of the mass matrix that are used before it is printed.
 fn used_before_matrix(parts: &[Part<'_>], named: &Names<'_>) -> Vec<String> {
     let before = parts.iter().take_while(|part| part.heading != Heading::MassMatrix);
     let lines: usize = before.flat_map(|part| &part.rows).map(|row| row.sides().len()).sum();
@@ -174,7 +174,7 @@ fn names<'p>(parts: &[Part<'p>], given: &[Given<'p>], layout: &Layout, page: &'p
     page.names(&sides, given, layout.room())
 }
 
-/// What an entry of the mass matrix is called.
+/// The name of an entry of the mass matrix.
 pub(crate) fn entry_name(sheet: &Sheet<'_>, [r, s]: [usize; 2]) -> String {
     format!("M({}, {})", sheet.quasi_velocities[r], sheet.quasi_velocities[s])
 }

@@ -1,6 +1,6 @@
-//! Everything that is printed of equations, as expressions in the graph of a page.
+//! All printed expressions of equations, in the graph of a page.
 //!
-//! A page has a graph of its own, in which expressions stay as they are written and are not merged into the form that
+//! A page has a graph of its own, in which expressions keep their form and are not merged into the one that
 //! is cheapest to compute.
 
 use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
@@ -11,7 +11,7 @@ use pc_nonholo::Kind;
 
 use crate::derived::Derived;
 
-/// Equations of so many nodes are multiplied out whatever that makes of them.
+/// Equations of at most this many nodes are multiplied out, whatever the result.
 const SMALL: usize = 60;
 
 /// The contents of a page of equations of motion.
@@ -69,7 +69,8 @@ pub enum Balance<'p> {
         rates: Vec<Expr<'p>>,
         /// y = ∂L/∂η as functions of η.
         of_velocities: Vec<Expr<'p>>,
-        /// η as functions of y; none where the equations are not closed, and η in them stands for the solution of y = ∂L/∂η.
+        /// η as functions of y; none where the equations are not closed, and η in them stands for the
+        /// solution of y = ∂L/∂η.
         velocities: Option<Vec<Expr<'p>>>,
         /// r as it is computed.
         right: Vec<Expr<'p>>,
@@ -83,7 +84,7 @@ pub enum Balance<'p> {
 pub struct Brackets<'p> {
     /// Names of X_1, …: the free quasi-velocities, then those that vanish.
     pub operators: Vec<String>,
-    /// Those that are not zero.
+    /// The brackets that are not zero.
     pub nonzero: Vec<Bracket<'p>>,
     /// Whether the free operators commute.
     pub commute: bool,
@@ -155,7 +156,7 @@ impl<'p> Sheet<'p> {
     }
 }
 
-/// Parts of the equations that have other names in other forms.
+/// Parts of the equations that have different names in different forms.
 struct Parts<'a, 'g> {
     vanishing: &'a [Expr<'g>],
     velocities: &'a [Expr<'g>],
@@ -170,7 +171,7 @@ struct Writing<'a, 'g, 'p> {
 }
 
 impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
-    /// Symbols in the order of a book: parameters, coordinates, then what moves.
+    /// Symbols in the order of a book: parameters, coordinates, then velocities or momenta.
     fn new(system: &'a System<'g>, moving: &[Expr<'g>], page: &'p Graph) -> Writing<'a, 'g, 'p> {
         let parameters = system.parameters().iter().map(|(symbol, _)| symbol);
         for symbol in parameters.chain(system.frame().coordinates()).chain(moving) {
@@ -194,7 +195,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         Matrix::from_rows(matrix.columns(), (0..matrix.rows()).map(row).collect())
     }
 
-    /// Right sides as sums of products where they are polynomials, unless they are much longer so.
+    /// Right sides as sums of products if they are polynomials, unless they become much longer.
     fn multiplied_out(&self, right: &[Expr<'p>], written: Vec<Option<Expr<'p>>>) -> Vec<Expr<'p>> {
         let products: Vec<Expr<'p>> =
             written.into_iter().zip(right).map(|(written, &right)| written.unwrap_or(right)).collect();
@@ -206,7 +207,8 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
     fn rates(&self, values: &[Expr<'g>]) -> Vec<(Expr<'p>, Expr<'p>)> {
         let (graph, x) = (self.system.graph(), self.system.frame().coordinates());
         let plain = self.all(values);
-        // Nothing is made in the graph in vain: of equal values the form made first is the one that others are made of.
+        // Forms not needed are not made in the graph: of equal values the first form made is used in later
+        // ones.
         let of_angles = |&value: &Expr<'g>| {
             graph.applies(value, x, |function| matches!(function, Function::Sin | Function::Cos))
         };
@@ -270,7 +272,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
 }
 
 impl<'p> Brackets<'p> {
-    /// Those of a system, with components along quasi-velocities that vanish, in the graph of a page.
+    /// The brackets of a system, with components along vanishing quasi-velocities, in the graph of a page.
     pub(crate) fn of<'g>(system: &System<'g>, vanishing: &[Expr<'g>], page: &'p Graph) -> Brackets<'p> {
         let (structure, free) = (system.structure(), system.quasi_velocities());
         let one = |expression: Expr<'g>| system.graph().typeset(&[expression], page)[0];

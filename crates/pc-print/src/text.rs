@@ -1,4 +1,4 @@
-//! Equations for people, as a book prints them.
+//! Equations as text, as a book prints them.
 
 use pc_expr::{Names, Style, Written};
 use pc_mech::{Expr, Graph};
@@ -12,10 +12,10 @@ use crate::sheet::{Balance, Bracket, Sheet};
 
 /// Matrices of more columns are written entry by entry.
 const WIDEST_MATRIX: usize = 96;
-/// What is indented under a heading.
+/// The indentation under a heading.
 const INDENT: usize = 2;
 
-/// The equations as a book prints them, with what one right-hand side costs.
+/// The equations as a book prints them, with the cost of a right-hand side.
 pub(crate) fn page(sheet: &Sheet<'_>, operations: &Operations, layout: &Layout, page: &Graph) -> String {
     let layout = Layout { width: layout.width.saturating_sub(INDENT), ..*layout };
     let parts = Parts::new(sheet, &layout, page, true);
@@ -58,7 +58,7 @@ fn sections(parts: &[(&str, Vec<String>)]) -> String {
     written.join("\n")
 }
 
-/// What is written of a sheet, by which names.
+/// The contents of a sheet as text, with the names in use.
 struct Text<'a, 'p> {
     sheet: &'a Sheet<'p>,
     layout: Layout,
@@ -67,7 +67,7 @@ struct Text<'a, 'p> {
 }
 
 impl<'p> Text<'_, 'p> {
-    /// What names stand for.
+    /// The meanings of names.
     fn meanings(&self, numbers: &[usize]) -> Vec<String> {
         if self.layout.brief {
             return Vec::new();
@@ -112,7 +112,8 @@ impl<'p> Text<'_, 'p> {
         }
     }
 
-    /// The brackets by the names of the quasi-velocities, `t` for time; they may have components along what vanishes.
+    /// The brackets by the names of the quasi-velocities, `t` for time; they may have components along
+    /// vanishing ones.
     fn brackets(&self, part: &Part<'p>) -> Vec<String> {
         let operators = &self.sheet.brackets.operators;
         let name = |s: usize| s.checked_sub(1).map_or("t", |s| operators[s].as_str());
@@ -178,7 +179,7 @@ impl<'p> Text<'_, 'p> {
     }
 }
 
-/// What is said where no bracket within the frame is different from zero.
+/// The line printed if all brackets within the frame are zero.
 pub(crate) fn no_brackets(commute: bool) -> &'static str {
     if commute {
         "all operators commute"

@@ -1,9 +1,9 @@
 //! The analysis of a model's motions, in print.
 //!
-//! An assembled model becomes text. Read `description` first, the content whatever the format; then `ground`, from
-//! which all parts start, and the parts: `brackets`, `integrals`, `measure`, `action`, `steady`, `routh`. `names` writes the
-//! formulas, with names for what is long; `text`, `latex` and `json` are the three ways to print, `folded` breaks long formulas into several lines, and `page` puts
-//! these together.
+//! An assembled model becomes text. Read `description` first, the content in any format; then `ground`, the
+//! common basis of all parts, and the parts: `brackets`, `integrals`, `measure`, `action`, `steady`, `routh`.
+//! `names` writes the formulas, with names for long expressions; `text`, `latex` and `json` are the three
+//! ways to print, `folded` breaks long formulas into several lines, and `page` combines these.
 
 pub(crate) mod action;
 pub(crate) mod brackets;

@@ -1,8 +1,8 @@
 //! The consistency and the properties of a model.
 //!
-//! A model becomes a [`Check`](check::Check). `frame` describes its frame, `combinations` its constraints, `integrals` the
-//! conserved quantities, `measure` the invariant measure, `steady` the nearest steady motion, `agreement` the second
-//! derivation; `check` puts these together, as text or for programs.
+//! A model becomes a [`Check`](check::Check). `frame` describes its frame, `combinations` its constraints,
+//! `integrals` the conserved quantities, `measure` the invariant measure, `steady` the nearest steady motion,
+//! `agreement` the second derivation; `check` combines these, as text or as JSON.
 
 pub(crate) mod agreement;
 pub(crate) mod check;

@@ -1,14 +1,14 @@
-//! What is known of a model on one page.
+//! Everything known of a model, on one page.
 //!
-//! A [`Model`](pc_model::Model) and, where it was integrated, the [`Record`] of its motion become [one page](report()) for a
-//! browser: the text of the model, frame and operators, verdicts, equations in every form that applies, brackets, integrals,
-//! steady motions, plots. The page needs nothing beside itself, and is read without scripts; where they run, the motion can be watched ([`animation`],
-//! alone). A [`Check`] is what `pc check`
-//! says of a model; it stands on the page too.
+//! A [`Model`](pc_model::Model) and, if it was integrated, the [`Record`] of its motion become [one
+//! page](report()) for a browser: the text of the model, frame and operators, verdicts, equations in every
+//! form that applies, brackets, integrals, steady motions, plots. The page is self-contained and readable
+//! without scripts; where scripts run, it plays the motion ([`animation`] is the player alone). A [`Check`]
+//! is the output of `pc check`, which is part of the page, too.
 //!
-//! Read `check`, the properties of a model; `record`, what is taken over of a motion, and `scene`, what of it can be drawn; then
-//! [`picture`], curves and eigenvalues, also for files of their own, and `page`, which puts all of it under headings. Numbers and formulas come from the crates
-//! below.
+//! Read `check`, the properties of a model; `record`, the data of a motion, and `scene`, its drawing; then
+//! [`picture`], curves and eigenvalues, also for files of their own, and `page`, which puts everything under
+//! headings. Numbers and formulas come from the crates below.
 //!
 //! ```
 //! use pc_model::{Builtin, Model};

@@ -1,8 +1,9 @@
 //! The page of a browser.
 //!
-//! A model becomes a page in parts under headings. `html` makes text harmless and writes elements, `formulas` shows displays
-//! with their sources, `equations`, `theory` and `motion` with the `player` and the `pairs` of portraits are the long parts, and `report` puts the parts together.
-//! The page is XML as well as HTML: every element is closed.
+//! A model becomes a page in parts under headings. `html` escapes text and writes elements, `formulas` shows
+//! displays with their sources, `equations`, `theory` and `motion` with the `player` and the `pairs` of
+//! portraits are the long parts, and `report` combines the parts. The page is XML as well as HTML: every
+//! element is closed.
 
 mod equations;
 mod formulas;

@@ -1,6 +1,6 @@
-//! What a report takes over of a motion.
+//! The data of a motion for a report.
 
-/// What columns of a table are.
+/// The kinds of columns of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// Coordinates x.
@@ -20,18 +20,18 @@ pub enum Kind {
 /// Columns of a kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
-    /// What they are.
+    /// Their kind.
     pub kind: Kind,
     /// Each with its values, one for each time.
     pub list: Vec<(String, Vec<f64>)>,
 }
 
-/// What was computed at some times.
+/// Values at some times.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
     /// The times of the values.
     pub times: Vec<f64>,
-    /// What was computed, an entry for each kind that there is.
+    /// The values, an entry for each kind present.
     pub columns: Vec<Columns>,
 }
 
@@ -42,7 +42,7 @@ pub struct Record {
     pub rows: Samples,
     /// As close as the motion needs to be drawn in curves, where that is known.
     pub fine: Option<Samples>,
-    /// What is said of the motion, each with a label, in lines; nothing that differs from run to run.
+    /// The summary of the motion, lines with labels; the same on every run.
     pub summary: Vec<(String, Vec<String>)>,
     /// Whether the energy, the last of what is conserved, is an integral.
     pub keeps_energy: bool,
@@ -58,7 +58,7 @@ pub struct Record {
 pub struct UnknownColumn {
     /// The name asked for.
     pub name: String,
-    /// Those there are.
+    /// The known names.
     pub known: Vec<String>,
 }
 
@@ -81,7 +81,7 @@ impl Samples {
 }
 
 impl Record {
-    /// What curves are drawn through.
+    /// The samples through which curves are drawn.
     pub(crate) fn curves(&self) -> &Samples {
         self.fine.as_ref().unwrap_or(&self.rows)
     }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::record::Record;
 
-/// Numbers of all frames together: a third of a megabyte.
+/// The most numbers of all frames together: a third of a megabyte.
 const MOST_NUMBERS: usize = 60_000;
 
 /// A shape; its numbers stand in the frames, those of each shape behind those of the one before it.
@@ -15,7 +15,7 @@ const MOST_NUMBERS: usize = 60_000;
 pub enum SceneShape {
     /// Three numbers: a dot, with a label.
     Point(Option<String>),
-    /// Three numbers for each of so many corners.
+    /// Three numbers for each corner, of which there are so many.
     Line(usize),
     /// Middle, normal, radius.
     Disc,
@@ -23,7 +23,7 @@ pub enum SceneShape {
     Sphere,
     /// Middle, edges, the rows of a rotation.
     Box,
-    /// Where they meet, the rows of a rotation.
+    /// Their common point, the rows of a rotation.
     Axes,
     /// The two ends.
     Spring,
@@ -34,7 +34,7 @@ pub enum SceneShape {
 }
 
 impl SceneShape {
-    /// How many numbers it has in each frame.
+    /// The number of its values in each frame.
     pub fn numbers(&self) -> usize {
         match self {
             SceneShape::Point(_) | SceneShape::Trace | SceneShape::Text(_) => 3,
@@ -47,7 +47,7 @@ impl SceneShape {
         }
     }
 
-    /// Its name in the script, and what belongs to it.
+    /// Its name in the script, and its text.
     fn word(&self) -> (&'static str, &str) {
         match self {
             SceneShape::Point(label) => ("point", label.as_deref().unwrap_or_default()),
@@ -79,7 +79,7 @@ impl From<Shape<'_>> for SceneShape {
     }
 }
 
-/// The rows that are shown: all, or the first of every few and the last one.
+/// The rows that are shown: all, or every few and the last one.
 fn shown(rows: usize, width: usize) -> Vec<usize> {
     let stride = (rows * width).div_ceil(MOST_NUMBERS).max(1);
     let last = rows.saturating_sub(1);
@@ -90,7 +90,7 @@ fn shown(rows: usize, width: usize) -> Vec<usize> {
 /// Shapes along a motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    /// What is drawn.
+    /// The shapes.
     pub shapes: Vec<SceneShape>,
     /// The times of the frames.
     pub times: Vec<f64>,
@@ -101,7 +101,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// What of a model can be drawn, along a motion; none where there is nothing, or what it depends on was not computed.
+    /// The drawing of a model along a motion; `None` if there is nothing to draw, or its variables were not
+    /// computed.
     ///
     /// # Errors
     /// [`ModelError`] if the shapes cannot be resolved or compiled.
@@ -155,7 +156,8 @@ impl Scene {
         self.shapes.iter().map(SceneShape::numbers).sum()
     }
 
-    /// What the player reads: names, then times and numbers as IEEE 754 single precision, the least byte first, in base 64.
+    /// The data for the player: names, then times and numbers as IEEE 754 single precision, the least byte
+    /// first, in base 64.
     pub(crate) fn data(&self) -> Value {
         let shapes: Vec<Value> = self
             .shapes

@@ -1,4 +1,5 @@
-//! Pages of models: well-formed, complete in themselves, the same each time; whatever a model is called, its text stays text.
+//! Pages of models: well-formed, self-contained, the same each time; names and texts of a model cannot become
+//! markup.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -71,7 +72,7 @@ fn an_oscillator_from_its_text_to_its_curves() {
     insta::assert_snapshot!(page);
 }
 
-/// What every page has to satisfy; `name` says of which model it is.
+/// Checks that every page satisfies; `name` is the model.
 fn check(name: &str, page: &str) {
     assert!(page.len() < 1_000_000, "{name}: {} bytes", page.len());
     assert!(!page.contains("http"), "{name}: nothing from elsewhere");
@@ -113,7 +114,7 @@ fn check(name: &str, page: &str) {
         level = next;
     }
     assert!(with("details").filter(|node| node.descendants().any(|n| n.text() == Some("LaTeX"))).count() > 2);
-    // The player is all that needs a script, and is hidden until it runs.
+    // Only the player needs a script, and it is hidden until that runs.
     let scripts = with("script").count();
     assert_eq!(scripts, 2 * page.matches("id=\"player\" hidden=\"hidden\"").count(), "{name}");
 }
@@ -129,7 +130,7 @@ fn pages_of_models_are_whole_small_and_the_same_each_time() {
     }
 }
 
-/// The long pages, of trees and loops, among them.
+/// Includes the long pages, of trees and loops.
 #[test]
 fn pages_of_all_models() {
     let models: Vec<_> = Builtin::all().collect();
@@ -156,7 +157,7 @@ fn hostile_text_stays_text() {
     let text = if Document::parse(Source::new("a", &text)).is_ok() {
         text
     } else {
-        // Names of constraints have to be names.
+        // Names of constraints must be names.
         text.replace(&format!("\"{hostile}\" = \"x'"), "roll = \"x'")
     };
     let mut motion = record();

@@ -1,4 +1,4 @@
-//! Says of each model file how closely its two derivations agree.
+//! Prints for each model file how closely its two derivations agree.
 
 use std::process::ExitCode;
 use std::{env, fs};

@@ -10,7 +10,8 @@ use crate::projected::DIRECTIONS;
 pub struct Agreement {
     /// States at which all forms were compared.
     pub states: usize,
-    /// The number of these at which equations were only compared along random virtual velocities, the model being large.
+    /// The number of these at which equations were only compared along random virtual velocities, the model
+    /// being large.
     pub projected: usize,
     /// States that were skipped because the equations are singular or not defined there.
     pub skipped: usize,
@@ -77,13 +78,13 @@ impl Agreement {
     }
 }
 
-/// Why a state gave no comparison.
+/// The reason why a state gives no comparison.
 pub(crate) enum Passed {
     /// It is not regular.
     Irregular(Irregular),
     /// The derivations differ.
     Error(VerifyError),
-    /// They do, by what rounding makes of the first there.
+    /// The derivations differ, within the rounding of the first at that state.
     Noise(Box<Disagreement>),
 }
 

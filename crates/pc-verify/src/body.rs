@@ -14,14 +14,15 @@ pub(crate) struct Body {
     pub(crate) inertia: Option<Vec<Term>>,
     pub(crate) turning: Option<Turning>,
     pub(crate) force: Vec<Term>,
-    /// μ_i for each component of the force: where it is not 0 the force has the force function μ_i F_i r_i, which counts in L.
+    /// μ_i for each component of the force; if it is not 0, the component has the force function μ_i F_i r_i,
+    /// a term of L.
     pub(crate) force_functions: Vec<f64>,
-    /// Whether any of it may: none does of a force on a body with a joint.
+    /// Whether components may have force functions: those of a force on a body with a joint have none.
     pub(crate) may_have_force_functions: bool,
     pub(crate) torque: Vec<Term>,
 }
 
-/// How a body turns.
+/// The rotation of a body.
 #[derive(Clone, Debug)]
 pub(crate) enum Turning {
     /// The matrix from body to space, row by row.

@@ -1,4 +1,4 @@
-//! The structure coefficients, where the frame does not determine them at each point.
+//! The structure coefficients, for frames that do not determine them at each point.
 
 use nalgebra::DMatrix;
 
@@ -12,7 +12,7 @@ use crate::structure::Structure;
 use crate::term::Term;
 
 impl Structure {
-    /// The c_rs^m, unless they come from the frame.
+    /// The c_rs^m, unless they follow from the frame.
     pub(crate) fn constants(
         &self,
         derivation: &Derivation,
@@ -43,8 +43,8 @@ fn tabulated(
     Ok(constants)
 }
 
-/// The constants with which the brackets close at many points at the time of a place: least squares, refused unless they
-/// are the only ones and leave nothing.
+/// The constants for which the brackets close at many points at the time of a place: by least squares,
+/// refused unless unique and without residual.
 fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     let (n, k) = (at.x.len(), at.w.len());
     let exact = Rounding::none();
@@ -74,7 +74,7 @@ fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     let right = DMatrix::from_fn(brackets.len(), pairs, |i, j| brackets[i][j]);
     let (inverse, rank) = pseudo_inverse(&b).ok_or(Irregular::NotFinite { what: "the frame" })?;
     let mut solved = &inverse * &right;
-    solved -= &inverse * (&b * &solved - &right); // takes away what the pseudo-inverse is wrong by
+    solved -= &inverse * (&b * &solved - &right); // corrects the error of the pseudo-inverse
     let rest = &b * &solved - &right;
     if rank < k || !within(rest.amax(), 1e-8 * (1.0 + right.amax())) {
         return Err(Unable::NoBrackets.into());
@@ -86,7 +86,7 @@ fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     Ok(constants)
 }
 
-/// b_s, and [X_r, X_s] for r < s, time being 0, in the order of the pairs.
+/// b_s, and [X_r, X_s] for r < s in the order of the pairs, with 0 for time.
 #[allow(clippy::type_complexity)] // two lists of vectors
 fn commutators(
     derivation: &Derivation,

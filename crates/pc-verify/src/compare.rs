@@ -18,11 +18,13 @@ use crate::second::{LONG, Second};
 use crate::sized::Sized;
 use crate::tolerance::{ORDINARY, TOLERANCE};
 
-/// Velocities that differ by more of the largest are others; momenta that differ by less are the same.
+/// Velocities with a larger difference, relative to the largest, are distinct; momenta with a smaller one are
+/// equal.
 const OTHER: f64 = 1e-9;
 
-/// By how much the first derivation may be rounded worse than the second: forms other than those chosen here lose half of the
-/// digits at most. Where it scatters further there is nothing to be compared.
+/// The greatest factor by which rounding in the first derivation may exceed that in the second: forms that
+/// are not chosen for accuracy lose up to half of the digits. Where values scatter further, they are not
+/// compared.
 const WORSE: f64 = 1e4;
 
 /// The extent of a comparison.
@@ -41,9 +43,9 @@ impl Default for Options {
     }
 }
 
-/// Derives a model a second time and compares, at random states on the constraints: ẋ, η̇ or ẏ, λ, the energy and its rate,
-/// integrals and outputs, of the equations that are integrated, in quasi-velocities and in momenta, and of those that
-/// are emitted as source.
+/// Derives a model a second time and compares, at random states on the constraints: ẋ, η̇ or ẏ, λ, the energy
+/// and its rate, integrals and outputs, of the equations that are integrated, in quasi-velocities and in
+/// momenta, and of those that are emitted as source.
 ///
 /// # Errors
 /// [`VerifyError::Disagreement`] with the quantity, its two values and the state; [`VerifyError::Model`] if the first
@@ -102,7 +104,7 @@ fn compared(
     agreement.finished(&firsts, number)
 }
 
-/// All forms but that in quasi-velocities which is integrated.
+/// All forms but the one in quasi-velocities that is integrated.
 fn others<'g>(
     observed: &Model,
     assembly: &Assembly<'_>,
@@ -134,7 +136,7 @@ fn others<'g>(
     }
     for form in FORMS {
         match second.too_large_for(form, plain) {
-            // Forms that no run has by itself are compared where that is soon done.
+            // Forms that are not integrated by default are compared if that takes little time.
             Some(reason) if form.variables().is_none_or(Variables::are_own) || form == Form::Hamel => {
                 agreement.leave_out(&printed_name(form), reason);
             }
@@ -145,7 +147,7 @@ fn others<'g>(
     firsts
 }
 
-/// Whether equations in these variables are others than those compared already.
+/// Whether equations in these variables differ from those already compared.
 fn has_form(variables: Variables, assembly: &Assembly<'_>) -> bool {
     match variables {
         Variables::Reduced | Variables::ReducedMomenta => is_reduced(assembly) && assembly.events.is_empty(),
@@ -161,12 +163,13 @@ struct Projection {
     layout: Layout,
 }
 
-/// States that are tried for each that is to be compared.
+/// The number of states tried for each comparison.
 const TRIES: usize = 3;
 
 impl Agreement {
     fn finished(mut self, firsts: &[First<'_>], tried: usize) -> Result<Agreement, VerifyError> {
-        // What is noise wherever it was looked at says nothing, though it may be near what is right.
+        // A form that is noise wherever it was evaluated is undecided, even if its values are near the right
+        // ones.
         let noise = firsts.iter().filter(|first| first.compared == 0).find_map(|first| first.noise.as_ref());
         if let Some(noise) = noise {
             return Err(VerifyError::Disagreement(noise.clone()));
@@ -229,7 +232,7 @@ impl Second {
         agreement.finished(&firsts, 1)
     }
 
-    /// The same as [`agrees`](Second::agrees) along random virtual velocities.
+    /// As [`agrees`](Second::agrees), along random virtual velocities.
     fn agrees_projected(
         &self,
         form: &str,
@@ -369,9 +372,10 @@ impl Second {
         all.map(|(rounding, derived)| Ok((rounding, Here::new(&self.derivation, derived)?))).collect()
     }
 
-    /// Raises sizes to how far the values of the first derivation scatter, in units of rounding, at states that differ by
-    /// rounding: its eliminations amplify it, too, where independent velocities determine the others badly. They do so within
-    /// bounds: a value that is noise scatters by its own size, and would agree with any. Given back are the sizes without bounds.
+    /// Raises sizes to the scatter of the values of the first derivation, in units of rounding, at states
+    /// that differ by rounding: its eliminations, too, amplify rounding where independent velocities
+    /// determine the others badly. The increase is bounded, as a value that is noise scatters by its own size
+    /// and would agree with any. Returns the sizes without bounds.
     fn scatter_first(
         &self,
         first: &mut First<'_>,
@@ -382,7 +386,7 @@ impl Second {
         let mut noise = vec![0.0f64; values.len()];
         let most: Vec<f64> = seconds.iter().map(|second| WORSE * second.size).collect();
         for (rounding, near) in scattered {
-            // Where it has no values there it says nothing of rounding.
+            // A state without values gives no information on rounding.
             let Ok(moved) = first.values(&self.derivation, near, rounding) else { continue };
             for (i, moved) in moved.into_iter().enumerate() {
                 let scatter = (moved - values[i]).abs() / UNIT;
@@ -395,8 +399,8 @@ impl Second {
         noise
     }
 
-    /// Whether a form in momenta reads other velocities from those of a place, which satisfy the constraints, too, and have the
-    /// same momenta: where L is not convex in η, these do not determine η.
+    /// Whether a form in momenta finds velocities other than those of a place, with the same momenta and
+    /// under the same constraints: if L is not convex in η, momenta do not determine η.
     fn has_other_velocities(
         &self,
         first: &First<'_>,
@@ -428,8 +432,7 @@ impl Second {
     }
 }
 
-/// The difference of two values relative to the size of their terms; none where it is smaller than the numbers that have all
-/// their digits.
+/// The difference of two values relative to the size of their terms; `None` if it is subnormal.
 fn error(one: f64, two: Sized) -> f64 {
     let difference = (one - two.value).abs();
     if difference <= f64::MIN_POSITIVE { 0.0 } else { difference / two.size }

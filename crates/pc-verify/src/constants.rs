@@ -1,6 +1,6 @@
-//! Structure coefficients that are constants, and those of algebras with names.
+//! Structure coefficients that are constant, and those of named algebras.
 
-/// c_rs^m with r, s = 0..k and m = 1..k, which stands at m − 1.
+/// c_rs^m with r, s = 0..k and m = 1..k, stored at m − 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Constants {
     pub(crate) k: usize,
@@ -30,7 +30,7 @@ impl Constants {
         constants
     }
 
-    /// Those of an algebra with a name, as `pc models --algebras` lists them.
+    /// The constants of a named algebra, as listed by `pc models --algebras`.
     pub(crate) fn named(name: &str) -> Option<Constants> {
         let cyclic = [(1, 2, 3, 1.0), (2, 3, 1, 1.0), (3, 1, 2, 1.0)];
         Some(match name {
@@ -109,7 +109,8 @@ fn motions_of_space() -> Constants {
     constants
 }
 
-/// R_23, R_31, R_12, R_14, R_24, R_34, R_15, … where R_ij turns axis i towards axis j: [R_ij, R_jl] = −R_il, R_ji = −R_ij.
+/// R_23, R_31, R_12, R_14, R_24, R_34, R_15, … where R_ij turns axis i towards axis j: [R_ij, R_jl] = −R_il,
+/// R_ji = −R_ij.
 fn rotations(n: usize) -> Constants {
     let mut basis = vec![(2, 3), (3, 1), (1, 2)];
     basis.extend((4..=n).flat_map(|j| (1..j).map(move |i| (i, j))));

@@ -1,19 +1,19 @@
-//! Which velocities stand together in a summand of the energy.
+//! Which velocities occur together in a term of the energy.
 //!
-//! Where none has both of w_r and w_s, ∂²L/∂w_r∂w_s vanishes, and need not be computed: n uncoupled coordinates cost n
-//! evaluations of L instead of n². If this were wrong, the mass matrix would lack an entry, and the derivations would
-//! disagree.
+//! If no term contains both w_r and w_s, ∂²L/∂w_r∂w_s vanishes, and need not be computed: n uncoupled
+//! coordinates cost n evaluations of L instead of n². An error here would remove an entry of the mass matrix,
+//! and the derivations would disagree.
 
 use crate::body::Turning;
 use crate::term::Term;
 use crate::text::{Text, Velocities};
 
-/// Which velocities stand together in a summand of the energy.
+/// The pairs of velocities that occur together in a term of the energy.
 #[derive(Clone, Debug)]
 pub(crate) struct Couplings(Vec<Set>);
 
 impl Couplings {
-    /// Those of the energy that a text gives.
+    /// The couplings in the energy of a text.
     pub(crate) fn of(text: &Text) -> Couplings {
         let mut reader = Reader::new(text);
         let energy = [&text.kinetic, &text.potential, &text.lagrangian];
@@ -22,12 +22,12 @@ impl Couplings {
         Couplings(reader.coupled)
     }
 
-    /// Whether a summand has both.
+    /// Whether a term contains both.
     pub(crate) fn has(&self, r: usize, s: usize) -> bool {
         self.0[r].has(s)
     }
 
-    /// How many pairs r ≤ s there are.
+    /// The number of pairs r ≤ s.
     pub(crate) fn pairs(&self) -> usize {
         let (both, alone) =
             self.0.iter().enumerate().fold((0, 0), |(both, alone), (r, with)| {
@@ -63,7 +63,7 @@ impl Set {
     }
 }
 
-/// What a term contains: coordinates and velocities w, and whether first-order states.
+/// The coordinates and velocities w in a term, and whether it contains first-order states.
 #[derive(Clone, Debug)]
 struct Contents {
     coordinates: Set,
@@ -79,12 +79,12 @@ impl Contents {
     }
 }
 
-/// What is known of the names of a text.
+/// The contents of the names of a text, as far as they are known.
 struct Reader<'a> {
     text: &'a Text,
     n: usize,
     k: usize,
-    /// Of the definitions, and of what stands for ẋ or η, those that have been read.
+    /// The contents of definitions, and of the expressions for ẋ or η, as far as they have been read.
     definitions: Vec<Option<Contents>>,
     moving: Vec<Option<Contents>>,
     coupled: Vec<Set>,
@@ -105,7 +105,7 @@ impl<'a> Reader<'a> {
             moving: vec![None; moving.len()],
             coupled: vec![Set::empty(k); k],
         };
-        // Each definition is made of those before, which may stand for velocities; of velocities some are made of definitions.
+        // A definition may contain earlier ones and velocities, and a velocity may contain definitions.
         reader.read_definitions();
         for (i, term) in moving.iter().enumerate() {
             reader.moving[i] = Some(reader.contents(term));
@@ -125,7 +125,7 @@ impl<'a> Reader<'a> {
         Contents { coordinates, velocities, states: false }
     }
 
-    /// Of what is not known it may be anything.
+    /// Unknown contents may be anything.
     fn add_known(&self, known: Option<&Contents>, all: &mut Contents) {
         if let Some(known) = known {
             return all.join(known);
@@ -169,7 +169,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What the rate of a term contains that has these contents.
+    /// The contents of the rate of a term with these contents.
     fn rate(&self, inner: &Contents) -> Contents {
         let mut all = inner.clone();
         if inner.states || inner.velocities.len() > 0 {
@@ -228,7 +228,7 @@ impl<'a> Reader<'a> {
             }
             body.inertia.iter().flatten().for_each(|entry| turning.join(&self.contents(entry)));
             self.couple(&turning);
-            // Those of gravity and of forces that have force functions have velocities only if they are written so.
+            // Terms of gravity and of force functions contain velocities only if they are written with them.
             let mut forced = mass;
             let terms = body.position.iter().chain(&body.force).chain(&self.text.gravity);
             terms.for_each(|term| forced.join(&self.contents(term)));
@@ -262,7 +262,7 @@ mod tests {
         );
         let pairs: Vec<(usize, usize)> =
             (0..4).flat_map(|r| (r..4).map(move |s| (r, s))).filter(|&(r, s)| couplings.has(r, s)).collect();
-        // Of the product c'·both it is not asked which of its velocities are squared.
+        // For the product c'·both the squared velocities are not determined separately.
         assert_eq!(pairs, [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2), (3, 3)]);
         assert_eq!(couplings.pairs(), pairs.len());
     }

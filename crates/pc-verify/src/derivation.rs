@@ -1,4 +1,5 @@
-//! The second derivation: the text over dual numbers at a place, and what is linear in velocities there.
+//! The second derivation: the text over dual numbers at a place, and the parts that are linear in velocities
+//! there.
 
 use crate::couplings::Couplings;
 use crate::error::Irregular;
@@ -10,12 +11,12 @@ use crate::rounding::Rounding;
 use crate::structure::Structure;
 use crate::text::Text;
 
-/// A quasi-velocity that is not declared, but completes those that are defined by `is` to as many as coordinates.
+/// A quasi-velocity that is not declared, but completes those defined by `is` to the number of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Completing {
     /// ẋ_i
     Velocity(usize),
-    /// What a constraint fixes at 0.
+    /// The left side of a constraint, which is 0.
     Constraint(usize),
 }
 
@@ -33,11 +34,11 @@ impl Completing {
 #[derive(Clone, Debug)]
 pub(crate) struct Derivation {
     pub(crate) text: Text,
-    /// Of each constraint, whether it contains no velocities.
+    /// Whether each constraint is free of velocities.
     pub(crate) on_positions: Vec<bool>,
-    /// The constraints that do not follow from those before.
+    /// The constraints that are independent of those before.
     pub(crate) kept: Vec<usize>,
-    /// What completes the quasi-velocities.
+    /// The quasi-velocities that complete the declared ones.
     pub(crate) completing: Vec<Completing>,
     pub(crate) structure: Structure,
     /// Which second derivatives of L by velocities vanish.
@@ -45,7 +46,7 @@ pub(crate) struct Derivation {
 }
 
 impl Derivation {
-    /// The point of a place as it changes in a direction.
+    /// The point of a place that changes in a direction.
     pub(crate) fn once<'a>(&'a self, at: &Place, along: &Direction, rounding: &'a Rounding) -> Point<'a, D1> {
         let both = |values: &[f64], rates: &[f64]| -> Vec<D1> {
             values.iter().zip(rates).map(|(&value, &rate)| D1::new(value, rate)).collect()
@@ -54,7 +55,7 @@ impl Derivation {
         Point::new(&self.text, rounding, D1::new(at.t, along.t), all)
     }
 
-    /// The point of a place as it changes in two directions.
+    /// The point of a place that changes in two directions.
     pub(crate) fn twice<'a>(
         &'a self,
         at: &Place,
@@ -72,7 +73,7 @@ impl Derivation {
         Point::new(&self.text, rounding, number(at.t, first.t, second.t), [x, w, z])
     }
 
-    /// The point of a place.
+    /// The point of a place without changes.
     pub(crate) fn still<'a>(&'a self, at: &Place, rounding: &'a Rounding) -> Point<'a, f64> {
         Point::new(&self.text, rounding, at.t, [at.x.clone(), at.w.clone(), at.z.clone()])
     }
@@ -125,7 +126,8 @@ impl Derivation {
         (0..at.w.len()).map(field).collect()
     }
 
-    /// The constraints that do not follow at a place from those before, in an order in which some come last; in that of the text.
+    /// The constraints that are independent at a place of those before, in an order in which some come last;
+    /// returned in the order of the text.
     pub(crate) fn independent(&self, at: &Place, last: &[usize]) -> Result<Vec<usize>, Irregular> {
         let first = (0..self.on_positions.len()).filter(|a| !last.contains(a));
         let order: Vec<usize> = first.chain(last.iter().copied()).collect();
@@ -135,9 +137,9 @@ impl Derivation {
         Ok(kept)
     }
 
-    /// The place moved by rounding errors of a state, w by those of terms of these sizes.
+    /// The place moved by rounding errors of a state, w by errors of terms of these sizes.
     pub(crate) fn near(&self, place: &Place, sizes: &[f64], rounding: &Rounding) -> Place {
-        // Where constraints mix velocities each is as uncertain as the largest.
+        // Constraints mix velocities, so each is as uncertain as the largest.
         let largest = place.w.iter().fold(0.0f64, |largest, w| largest.max(w.abs()));
         let least = if self.kept.is_empty() { 0.0 } else { largest };
         let by = |(&value, &size): (&f64, &f64)| value + (rounding.of(size.max(least)) - size.max(least));

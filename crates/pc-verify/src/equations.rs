@@ -5,9 +5,10 @@
 //!   D_t p_s − p·δw_s − X_s L − Q_s = λ_α ∂φ_α/∂w_s,   p_s = ∂L/∂w_s,   X_s L = b_is ∂L/∂x_i,
 //!
 //! where b δw_s = D_t b_s − (∂u/∂x) b_s: for a virtual displacement δx = ε b_s the variation of the velocity is
-//! δẋ = (δx)˙ = (∂u/∂x) δx + b δw, and δ∫L dt + ∫Q_s ε dt = 0 after an integration by parts. Where w = ẋ these are Lagrange's
-//! equations, δw = 0; otherwise they are Lagrange's for L̂(t, x, ẋ) = L(t, x, w(t, x, ẋ)), multiplied by bᵀ. Where b does not
-//! determine w the term is that of the brackets, p·δw_s = (c_rs^m η_r + c_0s^m) p_m, as in (9).
+//! δẋ = (δx)˙ = (∂u/∂x) δx + b δw, and δ∫L dt + ∫Q_s ε dt = 0 after an integration by parts. Where w = ẋ these
+//! are Lagrange's equations, δw = 0; otherwise they are Lagrange's for L̂(t, x, ẋ) = L(t, x, w(t, x, ẋ)),
+//! multiplied by bᵀ. Where b does not determine w the term is that of the brackets, p·δw_s = (c_rs^m η_r +
+//! c_0s^m) p_m, as in (9).
 
 use nalgebra::DMatrix;
 
@@ -22,7 +23,7 @@ use crate::text::Velocities;
 /// The equations at a place, solved.
 #[derive(Clone, Debug)]
 pub(crate) struct Derived {
-    /// Where they were taken.
+    /// The place of evaluation.
     pub(crate) place: Place,
     /// ẋ
     pub(crate) velocities: Vec<f64>,
@@ -31,17 +32,18 @@ pub(crate) struct Derived {
     /// ẇ, each with the size of its terms.
     pub(crate) accelerations: Vec<f64>,
     pub(crate) acceleration_sizes: Vec<f64>,
-    /// How large the terms of the forces are, reactions among them, and the accelerations that each would give its own mass.
+    /// The sizes of the terms of the forces, reactions included, and of the accelerations that each would
+    /// give its own mass.
     pub(crate) force_sizes: Vec<f64>,
     pub(crate) unconstrained_sizes: Vec<f64>,
-    /// λ of the constraints kept, each with the size of its terms.
+    /// λ of the independent constraints, each with the size of its terms.
     pub(crate) reactions: Vec<f64>,
     pub(crate) reaction_sizes: Vec<f64>,
-    /// p, its rate, and the size of the terms of this.
+    /// p, its rate, and the size of the terms of the rate.
     pub(crate) momenta: Vec<f64>,
     pub(crate) momentum_rates: Vec<f64>,
     pub(crate) momentum_rate_sizes: Vec<f64>,
-    /// How large the terms of p are, ∂²L/∂w∂w w, and those of w where p is solved for it.
+    /// The sizes of the terms of p, ∂²L/∂w∂w w, and of those of w where p is solved for it.
     pub(crate) momentum_sizes: Vec<f64>,
     pub(crate) velocity_sizes: Vec<f64>,
     /// L and its rate.
@@ -199,7 +201,7 @@ impl Derivation {
         Ok(all)
     }
 
-    /// The constraints left out as following from others are followed by the motion, too.
+    /// Checks that the motion also satisfies the constraints left out as dependent.
     fn require_followed(
         &self,
         at: &Place,
@@ -225,8 +227,8 @@ impl Derivation {
     }
 }
 
-/// The brackets of a frame close to rounding; an error of derivation is of order one.
+/// The greatest error of closure of the brackets of a frame; an error of derivation is of order one.
 const CLOSED: f64 = 1e-7;
 
-/// What a constraint that follows from others may leave, to the same.
+/// The greatest residual of a dependent constraint; an error of derivation is of order one.
 const FOLLOWED: f64 = 1e-6;

@@ -1,4 +1,4 @@
-//! Why there is no agreement.
+//! The reasons why no agreement is found.
 
 use std::fmt;
 
@@ -71,13 +71,13 @@ pub enum Unable {
     /// A name that the model does not declare.
     #[error("`{name}` is unknown")]
     UnknownName {
-        /// It.
+        /// The name.
         name: String,
     },
     /// A definition that contains itself.
     #[error("`{name}` is defined by itself")]
     Circular {
-        /// It.
+        /// The name.
         name: String,
     },
     /// d() of velocities where accelerations are not known, or d() nested too deeply.
@@ -103,7 +103,7 @@ pub enum Unable {
     },
 }
 
-/// Why a state is passed over.
+/// The reason why a state is passed over.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Irregular {
     /// The model cannot be evaluated anywhere.
@@ -112,7 +112,7 @@ pub(crate) enum Irregular {
     /// Something is not finite.
     #[error("{what} is not finite")]
     NotFinite {
-        /// It.
+        /// The quantity.
         what: &'static str,
     },
     /// A derivative at a corner of |x|, min, max, sign or step.
@@ -130,15 +130,15 @@ pub(crate) enum Irregular {
     /// The frame does not determine its brackets here.
     #[error("the frame is singular or not closed")]
     Frame,
-    /// The first derivation, compiled, says that it cannot be evaluated.
+    /// The compiled first derivation reports that it cannot be evaluated.
     #[error("the form {form} refuses it: {message}")]
     Refused {
         /// The form.
         form: String,
-        /// What it says.
+        /// Its message.
         message: String,
     },
-    /// A limit of the work was reached, which is the answer then.
+    /// A limit of the work was reached, which ends the comparison.
     #[error("{what}")]
     Spent {
         /// The limit.

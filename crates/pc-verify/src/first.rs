@@ -17,33 +17,33 @@ use crate::second::Second;
 /// Equations of the first derivation.
 pub(crate) struct First<'g> {
     pub(crate) form: String,
-    /// Names of what is compared, with what it is.
+    /// The compared quantities with their names.
     pub(crate) wanted: Vec<(String, Quantity)>,
-    /// Places of these among the values of the first derivation.
+    /// The indices of these among the values of the first derivation.
     places: Vec<usize>,
-    /// The free quasi-velocities, where momenta or energies of these are compared.
+    /// The free quasi-velocities, if their momenta or energies are compared.
     pub(crate) free: Option<Vec<Free>>,
     source: Values<'g>,
-    /// Number of states at which it was compared, and why it was not at the last of the others.
+    /// The number of states at which it was compared, and the reason for the last of the others.
     pub(crate) compared: usize,
     pub(crate) reason: Option<String>,
-    /// What differed at the last state at which its values were noise.
+    /// The difference at the last state at which its values were noise.
     pub(crate) noise: Option<Box<Disagreement>>,
 }
 
-/// Where its values come from.
+/// The source of its values.
 enum Values<'g> {
-    /// The expressions that are printed.
+    /// The printed expressions.
     Printed(Box<Printed<'g>>),
-    /// What is integrated, with what each quasi-velocity of the system is.
+    /// The integrated equations, with the meaning of each quasi-velocity of the system.
     Flow { flow: Box<Flow>, coordinates: Vec<usize>, quasi_velocities: Vec<Option<Free>> },
-    /// What is written as source, in the interpreter, with the columns in its state and the rate of the energy at t and
-    /// state.
+    /// The emitted source, run by the interpreter, with the columns of its state and the rate of the energy
+    /// at t and state.
     Emitted {
         motion: Box<Motion>,
         free: Vec<Free>,
         energy_rate: EnergyRate<'g>,
-        /// The inputs that are read from tables, with their places among the parameters.
+        /// The inputs that are read from tables, with their indices among the parameters.
         tables: Vec<(usize, Arc<Table>)>,
     },
 }
@@ -66,7 +66,7 @@ impl EnergyRate<'_> {
 }
 
 impl<'g> First<'g> {
-    /// What is integrated.
+    /// The integrated equations.
     pub(crate) fn flow(
         form: &str,
         flow: Flow,
@@ -86,7 +86,7 @@ impl<'g> First<'g> {
         let free: Option<Vec<Free>> = if canonical { columns.collect() } else { None };
         let mut candidates: Vec<(String, Option<Quantity>)> = Vec::new();
         let moving = n..state.len() - flow.motion.states();
-        // Quasi-velocities that the model does not have, and their rates, are compared as those that it has.
+        // Quasi-velocities absent from the model, and their rates, are compared as those of the model.
         let is_strange = |i: &usize| is_changed && moving.contains(i);
         for (i, name) in state.iter().enumerate() {
             let momentum = (canonical && moving.contains(&i)).then(|| {
@@ -116,7 +116,8 @@ impl<'g> First<'g> {
         if is_changed {
             candidates.extend(names.iter().map(|name| (format!("the rate of {name}"), second.rate(name))));
         }
-        // What is given to it: coordinates, first-order states, and the quasi-velocities where these are its state.
+        // The values given to it: coordinates, first-order states, and the quasi-velocities if they are its
+        // state.
         let (dim, columns) = (state.len(), 2 * state.len());
         let inputs = [
             0..if canonical { n } else { dim },
@@ -129,7 +130,7 @@ impl<'g> First<'g> {
         First::comparing(form, candidates, &inputs, free, source, agreement)
     }
 
-    /// What is written as source.
+    /// The emitted source.
     pub(crate) fn emitted(
         assembly: &Assembly<'g>,
         second: &Second,
@@ -171,7 +172,7 @@ impl<'g> First<'g> {
         Ok(First::comparing("emit", candidates, &[], Some(free), source, agreement))
     }
 
-    /// What is printed in a form.
+    /// The printed equations of a form.
     pub(crate) fn printed(
         form: pc_print::Form,
         assembly: &Assembly<'g>,
@@ -195,7 +196,7 @@ impl<'g> First<'g> {
         }
     }
 
-    /// Compares those candidates that the second derivation has, but for what is given to the first.
+    /// Compares those candidates that the second derivation has, except the values given to the first.
     fn comparing(
         form: &str,
         candidates: Vec<(String, Option<Quantity>)>,
@@ -222,7 +223,7 @@ impl<'g> First<'g> {
         self.wanted.iter().map(|(_, quantity)| quantity.clone()).collect()
     }
 
-    /// What is compared, at a place.
+    /// The compared values at a place.
     pub(crate) fn values(
         &mut self,
         second: &Derivation,
@@ -239,7 +240,7 @@ impl<'g> First<'g> {
                 all.extend(quasi_velocities.iter().map(|free| free.as_ref().map_or(0.0, velocity)));
                 all.extend(&at.z);
                 let mut state = flow.state_of(at.t, &all).map_err(|error| refused(error.to_string()))?;
-                // Momenta are rounded as well, and much of the velocities may be in their last digits.
+                // Momenta are rounded as well, which may change many digits of the velocities.
                 if flow.has_momenta() {
                     state.iter_mut().for_each(|y| *y = rounding.of(*y));
                 }

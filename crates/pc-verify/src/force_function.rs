@@ -1,22 +1,22 @@
 //! Which forces on bodies count in the energy.
 //!
-//! A force F on a body at r that depends on the place alone, and is homogeneous of degree d in r there, has the force function
-//! U = F·r/(d + 1) (Euler) if F·X_s r = X_s U for all s. The text format takes such forces, whole or by components, into L.
-//! Here this is looked at in numbers: the quotient μ of F·X_s r and X_s (F·r) is one constant for all s, at all places and
-//! also for other values of the parameters.
+//! A force F on a body at r that depends on the place alone, and is homogeneous of degree d in r there, has
+//! the force function U = F·r/(d + 1) (Euler) if F·X_s r = X_s U for all s. The text format adds such forces,
+//! whole or by components, to L. Here the property is tested in numbers: the quotient μ of F·X_s r and X_s
+//! (F·r) is one constant for all s, at all places and for other values of the parameters.
 
 use crate::derivation::Derivation;
 use crate::error::Irregular;
 use crate::place::{Direction, Place};
 use crate::rounding::{Random, Rounding, within};
 
-/// Places at which the quotient is looked at, for the parameters as they are and for others.
+/// The number of places at which the quotient is tested, for the present parameters and for others.
 const PLACES: usize = 6;
 
-/// How far parameters and places are moved.
+/// The greatest change of parameters and places.
 const MOVED: f64 = 0.3;
 
-/// What rounding may leave, relative to the larger of both sides.
+/// The remainder that rounding may leave, relative to the larger of both sides.
 const ALIKE: f64 = 1e-9;
 
 impl Derivation {
@@ -43,13 +43,13 @@ impl Derivation {
         }
     }
 
-    /// μ of the vector that has these components of the force on a body and no others.
+    /// μ of the vector with these components of the force on a body, and zeros.
     fn factor(&self, body: usize, components: &[usize], near: &Place) -> Option<f64> {
         let mut random = Random::new(2);
         let mut factor = None;
         let mut looked = 0;
         for number in 0..PLACES {
-            // Anywhere, also off the surface on which a frame or constraints keep the coordinates.
+            // At any place, also off the surface of a frame or of constraints.
             let scale = if number == 0 { 0.0 } else { MOVED };
             let mut moved = |values: &[f64]| -> Vec<f64> {
                 values.iter().map(|value| value + scale * (1.0 + value.abs()) * random.signed()).collect()
@@ -72,7 +72,7 @@ impl Derivation {
                 }
             }
         }
-        // A force that does no work at all counts once.
+        // A force that does no work counts once.
         if looked == 0 { None } else { Some(factor.unwrap_or(1.0)) }
     }
 

@@ -8,8 +8,8 @@ use crate::rounding::Rounding;
 use crate::text::{Forced, Velocities};
 
 impl Derivation {
-    /// The parts of Q along virtual velocities, Q_s where these are of unit w_s: of forces on coordinates and quasi-velocities, of dissipation −∂R/∂w_s, and (8) of forces and torques
-    /// on bodies.
+    /// The components of Q along virtual velocities, Q_s for unit w_s: of forces on coordinates and
+    /// quasi-velocities, of dissipation −∂R/∂w_s, and (8) of forces and torques on bodies.
     pub(crate) fn forces(
         &self,
         at: &Place,

@@ -1,4 +1,4 @@
-//! Dense matrices, with pivoting, block by block: n uncoupled coordinates cost n small ones.
+//! Dense matrices with pivoting, block by block: n uncoupled coordinates cost n small matrices.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,7 +8,8 @@ use crate::rounding::within;
 /// Singular values below this part of the largest count as zero.
 const RANK: f64 = 1e-9;
 
-/// What is so far from that is no matter of rounding, of which a decomposition has some thousand times the condition.
+/// The factor that excludes doubt about a rank: the rounding of a decomposition is some thousand times the
+/// condition.
 const CERTAIN: f64 = 0.1;
 
 /// Pivots below this part of the largest make equations singular.
@@ -19,7 +20,7 @@ pub(crate) fn matrix(rows: &[Vec<f64>], columns: usize) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j])
 }
 
-/// Rows and columns of a matrix, ascending, that entries other than zero join to each other.
+/// Rows and columns of a matrix, ascending, that are connected by nonzero entries.
 struct Block {
     rows: Vec<usize>,
     columns: Vec<usize>,
@@ -31,10 +32,10 @@ impl Block {
     }
 }
 
-/// The blocks of a matrix. Rows and columns of zeros are blocks by themselves.
+/// The blocks of a matrix. Zero rows and columns are blocks of their own.
 fn blocks(a: &DMatrix<f64>) -> Vec<Block> {
     let (m, n) = a.shape();
-    // Each points towards the first of its block; columns come after the rows.
+    // Each points towards the first of its block; columns follow the rows.
     let mut first: Vec<usize> = (0..m + n).collect();
     let find = |first: &mut Vec<usize>, mut i: usize| {
         while first[i] != i {
@@ -87,7 +88,8 @@ pub(crate) fn pseudo_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> 
     let mut rank = 0;
     for ((block, part), (of_block, of_rank)) in blocks.iter().zip(inverses) {
         rank += of_rank;
-        // Either way it may be wrong by some thousand roundings: a step of Schulz squares that, and leaves the rank.
+        // Either result may have an error of some thousand roundings: a step of Schulz's iteration squares
+        // that, and keeps the rank.
         let product = part * &of_block;
         let better = &of_block * 2.0 - &of_block * product;
         for (i, &row) in block.columns.iter().enumerate() {
@@ -97,8 +99,8 @@ pub(crate) fn pseudo_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> 
     Some((inverse, rank))
 }
 
-/// The pseudo-inverse by orthogonal elimination, unless the rank is in doubt: no singular value is below 1/‖A⁺‖, and none above
-/// the norm of the whole matrix, `largest`.
+/// The pseudo-inverse by orthogonal elimination, unless the rank is in doubt: singular values are at least
+/// 1/‖A⁺‖, and at most the norm of the full matrix, `largest`.
 fn of_full_rank(a: &DMatrix<f64>, largest: f64) -> Option<(DMatrix<f64>, usize)> {
     let rank = a.nrows().min(a.ncols());
     if rank == 0 {
@@ -114,7 +116,7 @@ fn of_full_rank(a: &DMatrix<f64>, largest: f64) -> Option<(DMatrix<f64>, usize)>
     Some((if is_tall { inverse } else { inverse.transpose() }, rank))
 }
 
-/// The same with the singular values, which tell the rank.
+/// The pseudo-inverse by singular values, which show the rank.
 fn by_singular_values(blocks: &[(Block, DMatrix<f64>)]) -> Option<Vec<(DMatrix<f64>, usize)>> {
     let parts: Vec<_> =
         blocks.iter().map(|(_, part)| (!part.is_empty()).then(|| part.clone().svd(true, true))).collect();
@@ -133,7 +135,7 @@ fn by_singular_values(blocks: &[(Block, DMatrix<f64>)]) -> Option<Vec<(DMatrix<f
     Some(inverses)
 }
 
-/// The numbers of rows none of which is a combination of those before, by the method of Gram and Schmidt.
+/// The indices of rows that are independent of those before, by the method of Gram and Schmidt.
 pub(crate) fn independent_rows(rows: &[Vec<f64>]) -> Vec<usize> {
     let mut basis: Vec<DVector<f64>> = Vec::new();
     let mut independent = Vec::new();
@@ -164,8 +166,8 @@ pub(crate) struct Solution {
     pub(crate) condition: f64,
 }
 
-/// Solves by elimination with complete pivoting, rows and columns being scaled by powers of two. `terms` has the largest
-/// term of each right-hand side.
+/// Solves by elimination with complete pivoting, with rows and columns scaled by powers of two. `terms` has
+/// the largest term of each right-hand side.
 pub(crate) fn solve(a: &DMatrix<f64>, right: &[f64], terms: &[f64]) -> Result<Solution, Irregular> {
     let size = right.len();
     if a.iter().chain(right).any(|entry| !entry.is_finite()) {
@@ -190,7 +192,7 @@ pub(crate) fn solve(a: &DMatrix<f64>, right: &[f64], terms: &[f64]) -> Result<So
     Ok(Solution { values: values.iter().copied().collect(), sizes, inverse, condition })
 }
 
-/// The inverse, block by block, unless a pivot is too small beside the largest.
+/// The inverse, block by block, unless a pivot is too small against the largest.
 fn inverse_by_pivots(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let mut inverse = DMatrix::zeros(a.nrows(), a.ncols());
     let (mut least, mut largest) = (f64::INFINITY, 0.0f64);
@@ -209,7 +211,7 @@ fn inverse_by_pivots(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     within(PIVOT * largest, least).then_some(inverse)
 }
 
-/// Powers of two by which rows and columns are multiplied so that their largest entries are near 1.
+/// Powers of two that scale rows and columns to largest entries near 1.
 fn scales(a: &DMatrix<f64>) -> (Vec<f64>, Vec<f64>) {
     let (mut rows, mut columns) = (vec![1.0; a.nrows()], vec![1.0; a.ncols()]);
     let power = |largest: f64| if largest > 0.0 { (-largest.log2() / 2.0).round().exp2() } else { 1.0 };

@@ -1,10 +1,11 @@
-//! How large quantities are where nothing cancels.
+//! The sizes of quantities without cancellation.
 
 use crate::equations::Derived;
 use crate::place::Direction;
 use crate::quantity::Quantity;
 
-/// Of 1e-12 of the size of the terms, what is some units in the last place of the largest.
+/// The part of 1e-12 of the size of the terms that corresponds to some units in the last place of the
+/// largest.
 pub(crate) const SHARED: f64 = 1e-3;
 
 /// The direction of the motion: time, ẋ and ẇ.
@@ -13,9 +14,10 @@ pub(crate) fn motion(derived: &Derived) -> Direction {
     Direction { w, z: derived.state_rates.clone(), ..derived.place.in_time(&derived.velocities) }
 }
 
-/// How large a quantity is for the velocities and momenta there are, where nothing cancels: what vanishes by cancelling is
-/// known to roundings of this, as forces are that reactions take up to the last digit. Where η = a ẋ + a_0 the first derivation has ẋ as b η less the `drift` b a_0, and momenta
-/// likewise, however much of these cancels.
+/// The size of a quantity at the given velocities and momenta without cancellation: a quantity that vanishes
+/// by cancellation is accurate to roundings of this, such as a force that reactions balance to the last
+/// digit. If η = a ẋ + a_0, the first derivation has ẋ as b η minus the `drift` b a_0, and momenta likewise,
+/// however much of these cancels.
 pub(crate) fn natural_size(derived: &Derived, drift: &[f64], quantity: &Quantity) -> f64 {
     let largest =
         |lists: &[&[f64]]| lists.iter().copied().flatten().fold(0.0f64, |size, x| size.max(x.abs()));

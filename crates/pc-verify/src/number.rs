@@ -1,15 +1,15 @@
-//! Numbers that carry rates of change: dual numbers, nested as often as there are derivatives.
+//! Numbers with rates of change: dual numbers, nested as deeply as there are derivatives.
 
 use num_dual::{Dual, DualNum};
 
 use crate::rounding::Rounding;
 
-/// A number with derivatives along so many directions, none of them for `f64`.
+/// A number with derivatives along several directions; `f64` has none.
 pub(crate) trait Number: DualNum<Primitive = f64> + Copy {
-    /// The same with one direction more.
+    /// The same with one more direction.
     type Rate: Number;
 
-    /// This number where it changes at a rate; none past the deepest nesting.
+    /// This number as it changes at a rate; `None` beyond the deepest nesting.
     fn changing(self, rate: Self) -> Option<Self::Rate>;
 
     /// The rate at which a number changes.
@@ -24,7 +24,7 @@ pub(crate) trait Number: DualNum<Primitive = f64> + Copy {
     /// Whether the value and all derivatives vanish.
     fn vanishes(self) -> bool;
 
-    /// x^c for a constant exponent. By products where it is a small integer, so that no power of 0 is 0/0.
+    /// x^c for a constant exponent, by products if it is a small integer, so that no power of 0 is 0/0.
     fn power(self, exponent: f64) -> Self;
 
     /// Every part moved by one unit in the last place, up or down.
@@ -84,7 +84,7 @@ impl Number for f64 {
     }
 }
 
-/// One nesting more. `next` has yet another direction; the deepest has none.
+/// Another level of nesting. `next` has one more direction; the deepest has none.
 macro_rules! level {
     ($number:ty, $next:ty, $changing:expr, $rate:expr) => {
         impl Number for $number {

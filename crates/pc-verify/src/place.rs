@@ -26,19 +26,19 @@ pub(crate) struct Virtual {
 }
 
 impl Place {
-    /// In the direction of w_s.
+    /// The direction of w_s.
     pub(crate) fn along_velocity(&self, s: usize) -> Direction {
         let mut still = self.along(vec![0.0; self.x.len()]);
         still.w[s] = 1.0;
         still
     }
 
-    /// In the direction of coordinates.
+    /// A direction of the coordinates.
     pub(crate) fn along(&self, x: Vec<f64>) -> Direction {
         Direction { t: 0.0, x, w: vec![0.0; self.w.len()], z: vec![0.0; self.z.len()] }
     }
 
-    /// In that of time, coordinates moving with it and first-order states at rest.
+    /// The direction of time, with moving coordinates and first-order states at rest.
     pub(crate) fn in_time(&self, velocity: &[f64]) -> Direction {
         Direction { t: 1.0, ..self.along(velocity.to_vec()) }
     }

@@ -10,10 +10,10 @@ use crate::rounding::Rounding;
 use crate::term::{Function, Term};
 use crate::text::{Text, Velocities};
 
-/// Definitions that may be nested in calls; with more of them those before are evaluated in order.
+/// The deepest nesting of definitions by calls; with more definitions, earlier ones are evaluated in order.
 const DEEP: usize = 64;
 
-/// Time, coordinates and velocities w as numbers, with all that follows from them.
+/// Time, coordinates and velocities w as numbers, with everything that follows from them.
 pub(crate) struct Point<'a, T: Number> {
     text: &'a Text,
     rounding: &'a Rounding,
@@ -21,31 +21,31 @@ pub(crate) struct Point<'a, T: Number> {
     x: Vec<T>,
     w: Vec<T>,
     z: Vec<T>,
-    /// Whether w is known here; it is not as a function of time where accelerations are unknown.
+    /// Whether w is known here; as a function of time it is unknown without accelerations.
     knows_velocities: bool,
-    /// ẇ, where it is known.
+    /// ẇ, if known.
     accelerations: Option<Vec<T>>,
-    /// λ, where it is known.
+    /// λ, if known.
     reactions: Option<Vec<f64>>,
-    /// What they are on bodies, where that is known.
+    /// The reactions on bodies, if known.
     resultants: Option<Resultants>,
     definitions: Vec<OnceCell<T>>,
     /// The largest summands of definitions.
     pub(crate) largest: Vec<OnceCell<f64>>,
-    /// How many of the first ones were tried in order.
+    /// The number of definitions already evaluated in order.
     tried: Cell<usize>,
     /// The definitions that are being evaluated.
     open: Vec<Cell<bool>>,
     velocities: OnceCell<Vec<T>>,
     moving: OnceCell<Box<dyn Moving<T> + 'a>>,
-    /// The same with first-order states that stand still, for what their rates are made of: no total derivative in these
-    /// contains a state.
+    /// The same with first-order states at rest, for their own rates, which contain no total derivative of a
+    /// state.
     moving_without_states: OnceCell<Box<dyn Moving<T> + 'a>>,
     /// Whether the rates of the first-order states are being evaluated.
     in_state_rates: Cell<bool>,
 }
 
-/// A point as it moves in time. Nested points would have types without end.
+/// A point as it moves in time; boxed, as nested points would have types without end.
 trait Moving<T> {
     /// The rate of a term.
     fn rate(&self, term: &Term) -> Result<T, Irregular>;
@@ -84,17 +84,17 @@ impl<'a, T: Number> Point<'a, T> {
         }
     }
 
-    /// The same on a motion of which accelerations and reactions are known.
+    /// The point on a motion with known accelerations and reactions.
     pub(crate) fn on_motion(self, accelerations: Vec<T>, reactions: Vec<f64>) -> Point<'a, T> {
         Point { accelerations: Some(accelerations), reactions: Some(reactions), ..self }
     }
 
-    /// The same with what reactions are on bodies.
+    /// The point with known reactions on bodies.
     pub(crate) fn with_resultants(self, resultants: Option<Resultants>) -> Point<'a, T> {
         Point { resultants, ..self }
     }
 
-    /// The same without w.
+    /// The point without w.
     fn without_velocities(self) -> Point<'a, T> {
         Point { knows_velocities: false, ..self }
     }
@@ -107,7 +107,7 @@ impl<'a, T: Number> Point<'a, T> {
         value.rounded(self.rounding)
     }
 
-    /// That there is time left: each evaluation of something long asks.
+    /// Checks that there is time left; each longer evaluation calls it.
     fn within_limits(&self) -> Result<(), Irregular> {
         self.text.deadline.passed().map_or(Ok(()), |what| Err(Irregular::Spent { what }))
     }
@@ -250,7 +250,8 @@ impl<'a, T: Number> Point<'a, T> {
             return Ok(*value);
         }
         if j >= DEEP {
-            // One made of the other, each would cost a call. What fails is asked for again where it is needed.
+            // Definitions in a chain would cost a nested call each. An error is reported again where the
+            // value is needed.
             for before in self.tried.get()..j {
                 self.tried.set(self.tried.get().max(before + 1));
                 if self.definitions[before].get().is_none() {
@@ -275,7 +276,7 @@ impl<'a, T: Number> Point<'a, T> {
     fn call(&self, function: Function, arguments: &[Term]) -> Result<T, Irregular> {
         let x = self.value(&arguments[0])?;
         let second = || self.value(&arguments[1]);
-        // The derivatives of what has a corner are taken on the side where the argument is; at the corner there are none.
+        // Derivatives at a corner are taken on the side of the argument; at the corner itself there are none.
         let side = |difference: T, name| match difference.real() {
             0.0 if !difference.is_constant() => Err(Irregular::Corner { function: name }),
             side => Ok(side),
@@ -325,8 +326,8 @@ impl<'a, T: Number> Point<'a, T> {
         })
     }
 
-    /// What stays zero of constraint number `a`, as far as it contains velocities: the constraint itself, or the rate of
-    /// one on positions.
+    /// The expression of constraint number `a` that stays zero and contains velocities: the constraint
+    /// itself, or the rate of one on positions.
     pub(crate) fn velocity_constraint(&self, a: usize, on_positions: bool) -> Result<T, Irregular> {
         self.within_limits()?;
         let term = &self.text.constraints[a];
@@ -342,7 +343,7 @@ impl<'a, T: Number> Point<'a, T> {
         Ok(self.round(lagrangian))
     }
 
-    /// L without that of the bodies.
+    /// L without the energy of the bodies.
     pub(crate) fn own_lagrangian(&self) -> Result<T, Irregular> {
         self.within_limits()?;
         let part = |term: &Option<Term>| term.as_ref().map_or(Ok(T::constant(0.0)), |term| self.value(term));
@@ -371,7 +372,7 @@ impl<'a, T: Number> Point<'a, T> {
         Ok(self.round(twice * 0.5))
     }
 
-    /// m g·r, and that of the force where it has one.
+    /// m g·r, and the force function of its force if it has one.
     fn force_function(&self, body: &Body) -> Result<T, Irregular> {
         let mut function = T::constant(0.0);
         if !self.text.gravity.is_empty() {

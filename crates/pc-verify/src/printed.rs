@@ -1,4 +1,4 @@
-//! The printed equations as numbers: the very expressions that `pc derive` prints.
+//! The printed equations in numbers: exactly the expressions that `pc derive` prints.
 
 use nalgebra::DMatrix;
 use pc_expr::ExprError;
@@ -26,12 +26,12 @@ pub(crate) const FORMS: [Form; 8] = [
     Form::Hamel,
 ];
 
-/// What a printed form is called.
+/// The name of a printed form.
 pub(crate) fn printed_name(form: Form) -> String {
     format!("{} as printed", form.name())
 }
 
-/// What is compared, with its name.
+/// The quantities to compare, with their names.
 pub(crate) type Candidates = Vec<(String, Option<Quantity>)>;
 
 /// The expressions of one form.
@@ -41,20 +41,20 @@ pub(crate) struct Printed<'g> {
     sheet: Sheet<'g>,
     /// Names of the free quasi-velocities.
     quasi_velocities: Vec<String>,
-    /// What expressions are equal to, each with its name, but for reactions.
+    /// The left sides of equations and the expressions they equal, without reactions.
     direct: Vec<(Side, Expr<'g>)>,
-    /// The symbols, with what they stand for.
+    /// The symbols with their meanings.
     inputs: Vec<(Expr<'g>, Input)>,
-    /// Where the quasi-velocities are not those of the model.
+    /// The change of quasi-velocities, if they are not those of the model.
     change: Option<Change<'g>>,
 }
 
-/// Quasi-velocities that are not those of the model, on the page.
+/// Quasi-velocities other than those of the model, on the page.
 struct Change<'g> {
-    /// They and their rates.
+    /// Their symbols and those of their rates.
     symbols: Vec<Expr<'g>>,
     accelerations: Vec<Expr<'g>>,
-    /// What they are in terms of the independent ones of the model.
+    /// Their definitions in terms of the independent ones of the model.
     definitions: Vec<Expr<'g>>,
     /// The rates of these in terms of them.
     rates: Vec<Expr<'g>>,
@@ -73,7 +73,7 @@ enum Side {
 }
 
 impl Second {
-    /// What a name of the model stands for.
+    /// The meaning of a name of the model.
     fn input(&self, name: &str) -> Option<Input> {
         let names = &self.derivation.text.names;
         let place = |list: &[String], name: &str| list.iter().position(|known| known == name);
@@ -86,14 +86,14 @@ impl Second {
             .or_else(reaction)
     }
 
-    /// Whether there are as many of these as velocities, or as velocities that the constraints leave.
+    /// Whether these are as many as the velocities, or as the velocities that the constraints leave.
     fn are_free(&self, free: &[Free]) -> bool {
         let k = self.start.w.len();
         free.len() == k || free.len() + self.derivation.kept.len() == k
     }
 }
 
-/// What a symbol stands for.
+/// The meaning of a symbol.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Input {
     Time,
@@ -108,14 +108,14 @@ pub(crate) enum Input {
 }
 
 impl<'g> Printed<'g> {
-    /// What is printed in a form; none where there is no such form of the equations.
+    /// The printed equations of a form; `None` if there is no such form.
     pub(crate) fn new(form: Form, assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
         if assembly.system.large_tree().is_some() {
-            return None; // what is printed of it are its bodies, not its equations
+            return None; // bodies are printed instead of equations
         }
         let (_, derived) = Derived::new(form, assembly).ok()?;
         let sheet = match form {
-            // The same as Lagrange's.
+            // They equal Lagrange's equations.
             Form::Voronets if assembly.constraints.multipliers().is_none() => return None,
             Form::Hamel if assembly.given.is_empty() => return None,
             Form::Reduced | Form::LiePoisson if !is_reduced(assembly) => return None,
@@ -142,7 +142,7 @@ impl<'g> Printed<'g> {
         direct.push((Side::Energy, sheet.energy));
         if let Balance::Momenta { of_velocities, velocities, .. } = &sheet.balance {
             direct.extend((0..).zip(of_velocities).map(|(s, &y)| (Side::Momentum(s), y)));
-            // Where the equations are not closed, quasi-velocities stand for themselves.
+            // If the equations are not closed, quasi-velocities are their own values.
             let solved = velocities.as_ref().unwrap_or(&sheet.quasi_velocities);
             let solved = quasi_velocities.iter().zip(solved);
             direct.extend(solved.map(|(eta, &value)| (Side::QuasiVelocity(eta.clone()), value)));
@@ -155,7 +155,8 @@ impl<'g> Printed<'g> {
         printed_name(self.form)
     }
 
-    /// What is compared, in the order of the [values](Printed::values), with the free quasi-velocities.
+    /// The compared quantities, in the order of the [values](Printed::values), with the free
+    /// quasi-velocities.
     pub(crate) fn prepare(
         &mut self,
         second: &Second,
@@ -174,7 +175,7 @@ impl<'g> Printed<'g> {
                 .strip_suffix('\'')
                 .is_some_and(|eta| self.quasi_velocities.iter().any(|known| known == eta))
             {
-                continue; // an acceleration, by the equations themselves
+                continue; // an acceleration, which the equations give
             }
             if self.change.as_ref().is_some_and(|change| change.has(symbol)) {
                 continue; // it follows from the definitions
@@ -218,7 +219,7 @@ impl<'g> Printed<'g> {
         }
     }
 
-    /// M by rows, empty where rates of momenta are printed, and the right sides as they are and multiplied out.
+    /// M by rows, empty if rates of momenta are printed, and the right sides, both as they are and expanded.
     fn balance(&self) -> (Vec<Expr<'g>>, [&[Expr<'g>]; 2]) {
         match &self.sheet.balance {
             Balance::Velocities { mass, right, written, .. } => {
@@ -242,8 +243,8 @@ impl<'g> Printed<'g> {
         self.form.variables().is_some_and(Variables::has_momenta)
     }
 
-    /// The right sides of what is printed, M η̇ = r being solved, with the momenta of the second derivation where these are the
-    /// variables, and its multipliers where these stand in the equations.
+    /// The right sides of the printed equations, with M η̇ = r solved, with the momenta of the second
+    /// derivation if these are the variables, and its multipliers if the equations contain them.
     pub(crate) fn values(
         &self,
         second: &Derivation,
@@ -261,7 +262,7 @@ impl<'g> Printed<'g> {
             Input::State(j) => here.derived.place.z[j],
             Input::Parameter(j) => still.parameter(j),
             Input::Velocity(free) => here.velocity(free),
-            // Momenta are rounded as well, and much of the velocities may be in their last digits.
+            // Momenta are rounded as well, which may change many digits of the velocities.
             Input::Momentum(s) => rounding.of(momenta[s].value),
             Input::Reaction(a) => {
                 let place = second.kept.iter().position(|&kept| kept == a);
@@ -330,14 +331,14 @@ impl<'g> Change<'g> {
         }
     }
 
-    /// Whether a symbol is one of them, and none of the model, or the rate of one.
+    /// Whether a symbol is one of these quasi-velocities and foreign to the model, or the rate of one.
     fn has(&self, symbol: Expr<'g>) -> bool {
         let place = self.symbols.iter().position(|&eta| eta == symbol);
         place.is_some_and(|place| self.definitions[place] != symbol) || self.accelerations.contains(&symbol)
     }
 }
 
-/// Whether there are coordinates that nothing depends on.
+/// Whether there are ignorable coordinates.
 pub(crate) fn is_reduced(assembly: &Assembly<'_>) -> bool {
     let left = assembly.free_form(Variables::Reduced);
     let all = assembly.system.frame().coordinates().len();

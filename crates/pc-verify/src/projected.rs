@@ -1,12 +1,13 @@
 //! The equations of large models, along a few virtual velocities drawn at random.
 //!
-//! All equations at a state need all second derivatives of L by the velocities, n² of them. Along one virtual velocity v that
-//! the constraints allow they are one equation without multipliers,
+//! All equations at a state need all second derivatives of L by the velocities, n² of them. Along one virtual
+//! velocity v that the constraints allow they are one equation without multipliers,
 //!
 //!   v_s (D_t p_s − p·δw_s − X_s L − Q_s) = 0,
 //!
-//! which takes some five evaluations of L along the motion of the first derivation. An error in any equation shows in it
-//! unless v is chosen against it; what v does not see, the rates of the constraints along the motion, is looked at beside it.
+//! which takes some five evaluations of L along the motion of the first derivation. An error in any equation
+//! shows in it, except for special v; the rates of the constraints along the motion, to which v is
+//! insensitive, are checked in addition.
 
 use nalgebra::DMatrix;
 use pc_mech::VectorField;
@@ -22,10 +23,10 @@ use crate::sized::Sized;
 use crate::text::Velocities;
 use crate::tolerance::ORDINARY;
 
-/// How many virtual velocities are drawn.
+/// The number of virtual velocities.
 pub(crate) const DIRECTIONS: usize = 3;
 
-/// Where the motion of the first derivation goes, from a state.
+/// The motion of the first derivation from a state.
 struct Moving {
     place: Place,
     velocities: Vec<f64>,
@@ -34,18 +35,18 @@ struct Moving {
     energy: Option<f64>,
 }
 
-/// What should vanish, with the largest of its terms.
+/// A value that should vanish, with the largest of its terms.
 type Residual = Sized;
 
-/// The names that the state of the first derivation and its observables have.
+/// The indices of quantities in the state and observables of the first derivation.
 pub(crate) struct Layout {
-    /// Places of the columns among the rates.
+    /// The indices of the columns among the rates.
     columns: Vec<Option<usize>>,
     energy: Option<usize>,
 }
 
 impl Layout {
-    /// That of a flow in quasi-velocities.
+    /// The layout of a flow in quasi-velocities.
     pub(crate) fn of(flow: &Flow, columns: &[String]) -> Layout {
         let place = |list: &[String], name: &String| list.iter().position(|known| known == name);
         let observables = flow.motion.observable_names();
@@ -57,8 +58,8 @@ impl Layout {
 }
 
 impl Derivation {
-    /// What should vanish at a state of the first derivation, each with its name: that along random virtual velocities, the
-    /// rates of constraints, ẋ and ż, and the energy.
+    /// The values that should vanish at a state of the first derivation, with their names: the equations
+    /// along random virtual velocities, the rates of constraints, ẋ and ż, and the energy.
     pub(crate) fn projected(
         &self,
         flow: &mut Flow,
@@ -74,7 +75,7 @@ impl Derivation {
         if all.iter().all(|residual| residual.value.abs() <= ORDINARY * residual.size) {
             return Ok(names.into_iter().zip(all).collect());
         }
-        // How far rounding in either derivation moves it.
+        // The change by rounding in either derivation.
         let sizes: Vec<f64> = at.w.iter().map(|w| w.abs()).collect();
         for seed in 1..=REPETITIONS {
             let rounding = Rounding::made(seed);
@@ -90,7 +91,7 @@ impl Derivation {
         }
     }
 
-    /// The motion of the first derivation at a place: ẇ solved for where η̇ and constraints determine it.
+    /// The motion of the first derivation at a place: ẇ solved for if η̇ and constraints determine it.
     fn moving(
         &self,
         flow: &mut Flow,
@@ -119,7 +120,7 @@ impl Derivation {
         Ok(Moving { place: at.clone(), velocities, accelerations, state_rates, energy })
     }
 
-    /// ẇ of η̇ and of constraints that stay satisfied.
+    /// ẇ from η̇ and from constraints that stay satisfied.
     fn accelerations(
         &self,
         at: &Place,
@@ -158,7 +159,7 @@ impl Derivation {
         let mut random = Random::new(k as u64);
         let allowed = |_| {
             let mut v = DMatrix::from_fn(k, 1, |_, _| random.signed());
-            // Twice: the first time leaves rounding of what is taken away.
+            // Twice, as the first pass leaves rounding of the removed part.
             for _ in 0..2 {
                 v -= &inverse * (&constraints * &v);
             }
@@ -195,7 +196,7 @@ impl Derivation {
         }
         let rates = self.constraint_rates(&self.kept, at, &in_time, rounding)?;
         let largest = |list: &[f64]| list.iter().fold(0.0f64, |size, x| size.max(x.abs()));
-        // What vanishes has the size of what cancels in it, and by how much it scatters.
+        // A value that vanishes has the size of its terms, or that of its scatter.
         let rows = match rates.iter().all(|&rate| rate == 0.0) {
             true => vec![Vec::new(); rates.len()],
             false => self.constraint_matrix(&self.kept, at, rounding)?,
@@ -248,7 +249,7 @@ impl Derivation {
         })
     }
 
-    /// δw, with b δw = D_t (b v) − (∂u/∂x) b v, or by the brackets; none where w = ẋ, of which it vanishes.
+    /// δw, with b δw = D_t (b v) − (∂u/∂x) b v, or by the brackets; `None` if w = ẋ, where it vanishes.
     fn variation(
         &self,
         here: &Moving,

@@ -1,4 +1,4 @@
-//! What is compared, with the size of the rounding errors in it.
+//! The compared quantities, with the sizes of their rounding errors.
 
 use crate::derivation::Derivation;
 use crate::equations::Derived;
@@ -13,7 +13,7 @@ use crate::rounding::{Rounding, UNIT, within};
 use crate::sized::Sized;
 use crate::solved::Solved;
 
-/// Momenta of independent quasi-velocities, others following from the constraints.
+/// Momenta of independent quasi-velocities, where constraints determine the others.
 struct Momenta {
     values: Vec<Sized>,
     rates: Vec<Sized>,
@@ -22,17 +22,17 @@ struct Momenta {
     condition: f64,
 }
 
-/// Evaluations with rounding errors made at will.
+/// The number of evaluations with deliberate rounding errors.
 pub(crate) const REPETITIONS: u64 = 3;
 
-/// Condition past which equations say little.
+/// The condition beyond which equations are too inaccurate.
 const WORST_CONDITION: f64 = 1e10;
 
-/// Condition past which a choice of independent velocities is taken to fail.
+/// The condition beyond which a choice of independent velocities fails.
 const WORST_CHOICE: f64 = 1e4;
 
 impl Derivation {
-    /// The same equations with rounding errors made at will, as often as these are repeated.
+    /// The equations repeated with deliberate rounding errors.
     pub(crate) fn scattered(&self, derived: &Derived) -> Result<Vec<(Rounding, Derived)>, Irregular> {
         let again = |seed| {
             let rounding = Rounding::made(seed);
@@ -43,7 +43,8 @@ impl Derivation {
         (1..=REPETITIONS).map(again).collect()
     }
 
-    /// Quantities of the equations at a place, each with the largest of its terms, led through the linear equations.
+    /// Quantities of the equations at a place, each with the largest of its terms, propagated through the
+    /// linear equations.
     pub(crate) fn quantities(
         &self,
         derived: &Derived,
@@ -107,8 +108,8 @@ impl Derivation {
         Ok(quantities)
     }
 
-    /// The same with sizes that are also as large as they scatter, in units of rounding, where the computation is repeated with
-    /// rounding errors.
+    /// Quantities whose sizes are at least their scatter, in units of rounding, when the computation is
+    /// repeated with rounding errors.
     pub(crate) fn scatter(
         &self,
         quantities: &mut [Sized],
@@ -125,7 +126,7 @@ impl Derivation {
         Ok(())
     }
 
-    /// |∂η_s/∂w_r| times the terms of w_r, and times those of ẇ_r: the largest.
+    /// The largest |∂η_s/∂w_r| times the terms of w_r, and times those of ẇ_r.
     fn column_sizes(&self, derived: &Derived) -> Result<Vec<(f64, f64)>, Irregular> {
         let rows = self.quasi_velocity_matrix(&derived.place, &Rounding::none())?;
         let led = |row: &[f64], sizes: &[f64]| {
@@ -136,7 +137,7 @@ impl Derivation {
         Ok(rows.iter().map(both).collect())
     }
 
-    /// |b_is| times the terms of ẇ_s, the largest for each ẋ_i.
+    /// The largest |b_is| times the terms of ẇ_s, for each ẋ_i.
     fn acceleration_sizes(&self, derived: &Derived) -> Result<Vec<f64>, Irregular> {
         let frame = self.frame(&derived.place, &Rounding::none())?;
         let led = |i: usize| {
@@ -154,7 +155,7 @@ impl Derivation {
         Ok(sum(terms.chain([-derived.lagrangian])))
     }
 
-    /// What reactions are on bodies, where that is wanted or stands in what is observed.
+    /// The reactions on bodies, if they are compared or occur in observables.
     pub(crate) fn needed_resultants(
         &self,
         derived: &Derived,
@@ -170,7 +171,7 @@ impl Derivation {
         needed.then(|| self.resultants(derived, rounding)).transpose()
     }
 
-    /// The integrals and outputs wanted, at the places where they are wanted.
+    /// The given integrals and outputs, at their indices.
     fn observed(
         &self,
         derived: &Derived,
@@ -224,8 +225,8 @@ impl Derivation {
         Ok([rows, rates])
     }
 
-    /// y_f = p·W_f, where the virtual velocities W_f have the free quasi-velocity f equal to 1, the other free ones 0, and
-    /// satisfy the constraints unless all are free.
+    /// y_f = p·W_f, where the virtual velocities W_f have the free quasi-velocity f equal to 1, the other
+    /// free ones 0, and satisfy the constraints unless all are free.
     fn momenta(&self, derived: &Derived, free: &[Free], rounding: &Rounding) -> Result<Momenta, Irregular> {
         let at = &derived.place;
         let k = at.w.len();
@@ -241,7 +242,7 @@ impl Derivation {
         let solution = solve(&matrix(&rows, k), &nothing, &nothing)?;
         let virtual_velocities = solution.inverse.columns(l, free.len()).into_owned();
         let virtual_rates = -(&solution.inverse * (matrix(&rates, k) * &virtual_velocities));
-        // By how much w changes with time, and along the virtual displacements, while the free velocities stay.
+        // The change of w with time, and along the virtual displacements, at fixed free velocities.
         let mut sizes = solution.inverse.abs() * (matrix(&rates, k).abs() * virtual_velocities.abs());
         let frame = self.frame(at, &exact)?;
         for f in 0..free.len() {
@@ -271,7 +272,7 @@ impl Derivation {
         let point = self.once(at, &motion, &exact);
         let (columns, velocities) = (self.columns(&point)?, point.velocities()?);
         let (sizes, acceleration_sizes) = (self.column_sizes(derived)?, self.acceleration_sizes(derived)?);
-        // Those that constraints fix at 0 do not contribute.
+        // Left sides of constraints vanish and do not contribute.
         let moving = free.iter().enumerate().filter_map(|(f, &free)| match free {
             Free::Column(column) => Some((f, columns[column], sizes[column].1)),
             Free::Velocity(i) => Some((f, velocities[i], acceleration_sizes[i])),
@@ -292,7 +293,8 @@ impl Derivation {
     }
 }
 
-/// Quantities that one elimination gives are as uncertain as some roundings of the largest of them, or of their natural size.
+/// Quantities from one elimination are as uncertain as some roundings of the largest of them, or of their
+/// natural size.
 fn raise(quantities: &mut [Sized], wanted: &[Quantity], natural_size: impl Fn(&Quantity) -> f64) {
     for (quantity, wanted) in quantities.iter_mut().zip(wanted) {
         quantity.size = quantity.size.max(SHARED * natural_size(wanted));

@@ -1,4 +1,4 @@
-//! What both derivations have.
+//! Quantities that both derivations have.
 
 use crate::resultant::Resultant;
 
@@ -15,30 +15,30 @@ pub(crate) enum Quantity {
     Column(usize),
     /// η̇_s of the columns.
     ColumnRate(usize),
-    /// What constraint number α fixes at 0, or its rate.
+    /// The left side of constraint number α, or its rate: 0.
     Zero,
     /// λ_α by the number of the constraint.
     Reaction(usize),
-    /// What a reaction is on a body.
+    /// A reaction on a body.
     Resultant(Resultant),
     /// y·η − L of all velocities.
     Energy,
-    /// y_f of the free quasi-velocities, by their place among these.
+    /// y_f of the free quasi-velocities, by their indices among these.
     Momentum(usize),
     MomentumRate(usize),
     /// y_f η_f − L of the free quasi-velocities, and its rate.
     FreeEnergy,
     FreeEnergyRate,
-    /// An integral or output, by its place in the text.
+    /// An integral or output, by its index in the text.
     Observed(usize),
 }
 
-/// A quasi-velocity that is free, or whose momentum is one of the state.
+/// A quasi-velocity that is free, or whose momentum is part of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Free {
-    /// That of a column.
+    /// The quasi-velocity of a column.
     Column(usize),
-    /// What a constraint fixes at 0.
+    /// The left side of a constraint.
     Constraint(usize),
     /// ẋ_i
     Velocity(usize),

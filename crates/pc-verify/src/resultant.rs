@@ -1,19 +1,19 @@
-//! What reactions are on bodies.
+//! Reactions on bodies.
 
 use crate::sized::Sized;
 
-/// A component of what the reaction of a constraint is on a body.
+/// A component of the reaction of a constraint on a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Resultant {
     pub(crate) constraint: usize,
     pub(crate) body: usize,
-    /// Whether it is one of the torque.
+    /// Whether it is a component of the torque.
     pub(crate) turns: bool,
     pub(crate) axis: usize,
 }
 
 impl Resultant {
-    /// The component that is called `F_CONSTRAINT_BODY_x` or `N_CONSTRAINT_BODY_1`.
+    /// The component with the name `F_CONSTRAINT_BODY_x` or `N_CONSTRAINT_BODY_1`.
     pub(crate) fn named(name: &str, constraints: &[String], bodies: &[String]) -> Option<Resultant> {
         let (turns, axes, rest) = match (name.strip_prefix("F_"), name.strip_prefix("N_")) {
             (Some(rest), _) => (false, ["_x", "_y", "_z"], rest),
@@ -37,12 +37,12 @@ pub(crate) struct Resultants {
     /// The first row of the force on each body, and of the torque.
     pub(crate) rows: Vec<[usize; 2]>,
     pub(crate) kept: Vec<usize>,
-    /// For each row the value for each constraint kept.
+    /// For each row the value for each independent constraint.
     pub(crate) values: Vec<Vec<Sized>>,
 }
 
 impl Resultants {
-    /// A component; zero where the constraint follows from others, or the body has none.
+    /// A component; zero if the constraint follows from others, or the body has no such component.
     pub(crate) fn get(&self, resultant: Resultant) -> Sized {
         let place = self.kept.iter().position(|&kept| kept == resultant.constraint);
         let row = self.rows[resultant.body][usize::from(resultant.turns)] + resultant.axis;
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_with_underscores_are_taken_apart() {
+    fn names_with_underscores_are_parsed() {
         let [constraints, bodies] = [["rod", "rod_a"], ["a_b", "b"]].map(|list| list.map(str::to_owned));
         let found = |name: &str| Resultant::named(name, &constraints, &bodies);
         let rod = Resultant { constraint: 0, body: 0, turns: false, axis: 2 };

@@ -1,8 +1,9 @@
 //! Reactions as forces and torques on bodies, by virtual work.
 //!
-//! Forces F at the points of the bodies, torques N on them and impulses on what has kinetic energy without being a body do
-//! the work of the reactions on all virtual velocities: Jᵀ F = λ_α ∂φ_α/∂w, where J has the rows ∂ṙ/∂w, ∂ω/∂w and ∂p/∂w. The
-//! least F is that of the pseudo-inverse; of it those parts are compared that the first derivation takes for determined.
+//! Forces F at the points of the bodies, torques N on them and impulses on other terms of the kinetic energy
+//! do the work of the reactions on all virtual velocities: Jᵀ F = λ_α ∂φ_α/∂w, where J has the rows ∂ṙ/∂w,
+//! ∂ω/∂w and ∂p/∂w. The least F is that of the pseudo-inverse; compared are the parts of it that the first
+//! derivation considers determined.
 
 use nalgebra::DMatrix;
 
@@ -15,7 +16,7 @@ use crate::rounding::Rounding;
 use crate::sized::Sized;
 
 impl Derivation {
-    /// λ_α (Jᵀ)⁺ ∂φ_α/∂w for all constraints that are kept.
+    /// λ_α (Jᵀ)⁺ ∂φ_α/∂w for all independent constraints.
     pub(crate) fn resultants(&self, derived: &Derived, rounding: &Rounding) -> Result<Resultants, Irregular> {
         let (at, text, k) = (&derived.place, &self.text, derived.place.w.len());
         let mut columns = Vec::with_capacity(k);

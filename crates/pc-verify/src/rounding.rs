@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-/// Whether a value is at most a bound; what is no number is not.
+/// Whether a value is at most a bound; false for NaN.
 pub(crate) fn within(value: f64, bound: f64) -> bool {
     value <= bound
 }
@@ -10,28 +10,28 @@ pub(crate) fn within(value: f64, bound: f64) -> bool {
 /// Half a unit in the last place of 1.
 pub(crate) const UNIT: f64 = f64::EPSILON / 2.0;
 
-/// Moves numbers by one part in 2⁵³, up or down by chance; or leaves them as they are.
+/// Moves numbers by one part in 2⁵³, up or down at random; or leaves them unchanged.
 ///
-/// A computation that is repeated so gives results that scatter as far as its rounding errors reach: what cancels, and
-/// what is divided by little, scatters widely.
+/// The results of a computation repeated in this way scatter as far as its rounding errors reach: widely
+/// after cancellation, and after division by small numbers.
 #[derive(Debug)]
 pub(crate) struct Rounding {
-    /// State of the generator; none where nothing is moved.
+    /// State of the generator; `None` if numbers stay unchanged.
     state: Cell<Option<u64>>,
 }
 
 impl Rounding {
-    /// That moves nothing.
+    /// Leaves numbers unchanged.
     pub(crate) fn none() -> Rounding {
         Rounding { state: Cell::new(None) }
     }
 
-    /// That is made at will, another for each seed.
+    /// Moves numbers, differently for each seed.
     pub(crate) fn made(seed: u64) -> Rounding {
         Rounding { state: Cell::new(Some(seed)) }
     }
 
-    /// Whether nothing is moved.
+    /// Whether numbers stay unchanged.
     pub(crate) fn is_none(&self) -> bool {
         self.state.get().is_none()
     }
@@ -45,7 +45,7 @@ impl Rounding {
         value * if up { 1.0 + f64::EPSILON } else { 1.0 - f64::EPSILON }
     }
 
-    /// What a computation gives in which nothing is moved.
+    /// The result of a computation in which numbers stay unchanged.
     pub(crate) fn suspended<T>(&self, compute: impl FnOnce() -> T) -> T {
         let state = self.state.take();
         let result = compute();
@@ -54,7 +54,7 @@ impl Rounding {
     }
 }
 
-/// Numbers that are the same in every run: SplitMix64 of Steele, Lea and Flood (2014).
+/// Pseudo-random numbers, the same on every run: SplitMix64 of Steele, Lea and Flood (2014).
 #[derive(Clone, Debug)]
 pub(crate) struct Random {
     state: u64,

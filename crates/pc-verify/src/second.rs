@@ -15,39 +15,39 @@ use crate::rounding::{Random, Rounding};
 use crate::structure::Structure;
 use crate::text::{Text, Velocities};
 
-/// Terms that are evaluated in some milliseconds.
+/// The number of terms that can be evaluated in some milliseconds.
 pub(crate) const LONG: usize = 100_000;
 
-/// Terms that are evaluated for all states together, in a second or so.
+/// The number of terms to evaluate for all states together, in about a second.
 const ALL_STATES: usize = 5_000_000;
 
-/// What all equations at a single state may take beyond that, in the same unit: some seconds.
+/// The additional number of terms for all equations at a single state: some seconds.
 const ONE_STATE: usize = 5 * ALL_STATES;
 
-/// Operations of a product of matrices that take as long as one term.
+/// The operations of a matrix product that take as long as one term.
 const PRODUCTS: usize = 50;
 
-/// States at which a model is compared along virtual velocities, however long that takes.
+/// The number of states at which a model is always compared along virtual velocities.
 const FEWEST: usize = 3;
 
-/// Velocities up to which the canonical equations are derived to be compared: by then their inverse of a full mass matrix takes
-/// a second, and ten times that with each two more.
+/// The most velocities for which the canonical equations are derived to be compared: the inverse of a full
+/// mass matrix then takes a second, and ten times as long with each two more.
 const MOST_INVERTED: usize = 9;
 
-/// Velocities up to which an orthonormal frame is made to be compared: its roots stand within roots.
+/// The most velocities for which an orthonormal frame is made to be compared: its roots are nested.
 const MOST_ORTHONORMAL: usize = 3;
 
 /// The second derivation of a model.
 #[derive(Clone, Debug)]
 pub struct Second {
     pub(crate) derivation: Derivation,
-    /// What the columns of a table are called.
+    /// The names of the columns of a table.
     pub(crate) columns: Vec<String>,
     pub(crate) start: Place,
     external: Vec<String>,
 }
 
-/// Points at which ranks are looked at.
+/// The number of points at which ranks are evaluated.
 const RANK_POINTS: usize = 6;
 
 impl Second {
@@ -70,7 +70,7 @@ impl Second {
             couplings: Couplings::of(&text),
             text,
         };
-        // Which velocities the energy is one of is the first derivation's choice.
+        // The velocities of the energy are chosen by the first derivation.
         let all = assembly.system.quasi_velocities().iter().skip(columns.len());
         derivation.completing =
             all.filter_map(|eta| completing(&derivation.text, &eta.to_string())).collect();
@@ -91,8 +91,8 @@ impl Second {
             derivation.structure = Structure::new(&derivation.text, derivation.rank(&start), start.w.len())?;
         }
         if !derivation.on_positions.is_empty() {
-            // Of constraints that follow from each other any may be dropped: the first derivation says which. That they do
-            // is looked at here, and that the motion follows them.
+            // Of constraints that follow from each other any may be dropped: the first derivation chooses.
+            // That they follow, and that the motion satisfies them, is verified here.
             let dropped = |a: &usize| {
                 let name = &derivation.text.names.constraints[*a];
                 assembly.constraints.redundant().iter().any(|redundant| redundant.constraint == *name)
@@ -112,7 +112,7 @@ impl Second {
         Ok(Second { derivation, columns, start, external: model.external_forces() })
     }
 
-    /// The place of coordinates, columns and first-order states.
+    /// The place with these coordinates, columns and first-order states.
     pub(crate) fn place(&self, t: f64, row: &[f64]) -> Result<Place, Irregular> {
         let (x, eta) = row.split_at(self.start.x.len());
         let (eta, z) = eta.split_at(eta.len() - self.start.z.len());
@@ -130,7 +130,7 @@ impl Second {
         &self.start
     }
 
-    /// No state compared.
+    /// An agreement without compared states.
     pub(crate) fn nothing_yet(&self) -> Agreement {
         let mut agreement = Agreement {
             states: 0,
@@ -148,7 +148,7 @@ impl Second {
         agreement
     }
 
-    /// The quasi-velocity of this name: a column, what a constraint fixes at 0, or a velocity.
+    /// The quasi-velocity of this name: a column, the left side of a constraint, or a velocity.
     pub(crate) fn free(&self, name: &str) -> Option<Free> {
         let column = self.columns.iter().position(|column| column == name).map(Free::Column);
         column.or_else(|| {
@@ -208,7 +208,7 @@ impl Second {
             .saturating_add(k.saturating_pow(3) / PRODUCTS)
     }
 
-    /// The same along a few virtual velocities.
+    /// The cost along a few virtual velocities.
     fn projected_cost(&self) -> usize {
         let k = self.start.w.len();
         // The frame, the definitions of quasi-velocities and the constraints are linearised several times.
@@ -225,10 +225,10 @@ impl Second {
         self.cost() > LONG && (flow.has_momenta() || !is_own)
     }
 
-    /// Why a printed form is not derived only to be compared.
+    /// The reason why a printed form is not derived only to be compared.
     pub(crate) fn too_large_for(&self, form: Form, assembly: &Assembly<'_>) -> Option<&'static str> {
         if form == Form::Voronets && assembly.constraints.multipliers().is_none() {
-            return None; // the same as Lagrange's, and not derived
+            return None; // equal to Lagrange's, and not derived
         }
         let quasi_velocities = assembly.system.quasi_velocities().len();
         if form == Form::Hamel && assembly.given.is_empty() {
@@ -244,8 +244,8 @@ impl Second {
         (form != Form::Poincare && self.cost() > LONG).then_some("the model is large")
     }
 
-    /// The row of coordinates, columns and first-order states of what a flow shows; coordinates that it does without
-    /// are as at the start.
+    /// The row of coordinates, columns and first-order states in the state of a flow; coordinates that it
+    /// leaves out are those of the start.
     pub(crate) fn row(&self, flow: &mut Flow, t: f64, state: &[f64]) -> Vec<f64> {
         let shown = flow.row(t, state);
         let names = &self.derivation.text.names;
@@ -256,13 +256,13 @@ impl Second {
         coordinates.chain(others).collect()
     }
 
-    /// At how many of so many states all equations are compared.
+    /// The number of states, of this many, at which all equations are compared.
     pub(crate) fn wholly(&self, states: usize) -> usize {
         let least = usize::from(self.cost() <= ONE_STATE);
         states.min(ALL_STATES / self.cost().max(1)).max(least)
     }
 
-    /// At how many of so many states they are compared at all.
+    /// The number of states, of this many, at which any are compared.
     pub(crate) fn affordable(&self, states: usize) -> usize {
         let affordable = self.wholly(states) + 4 * ONE_STATE / self.projected_cost().max(1);
         states.min(affordable.max(FEWEST))
@@ -276,7 +276,8 @@ impl Second {
     }
 }
 
-/// A quasi-velocity that is not declared: `x'`, or the name of a constraint, made longer where it is that of something else.
+/// A quasi-velocity that is not declared: `x'`, or the name of a constraint, extended if something else has
+/// it.
 fn completing(text: &Text, name: &str) -> Option<Completing> {
     let place = |names: &[String], name: &str| names.iter().position(|known| known == name);
     let velocity = name.strip_suffix('\'').and_then(|x| place(&text.names.coordinates, x));
@@ -285,7 +286,7 @@ fn completing(text: &Text, name: &str) -> Option<Completing> {
 }
 
 impl Derivation {
-    /// The rank of b, the largest of those at some points near a place.
+    /// The rank of b: the largest at some points near a place.
     fn rank(&self, near: &Place) -> usize {
         let exact = Rounding::none();
         let mut random = Random::new(0);

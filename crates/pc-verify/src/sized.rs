@@ -1,6 +1,6 @@
-//! Values with the size of the rounding errors in them.
+//! Values with the sizes of their terms.
 
-/// A value, and how large the terms are that it is made up of.
+/// A value, and the size of the terms of which it is the sum.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Sized {
     pub(crate) value: f64,

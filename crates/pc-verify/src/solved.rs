@@ -1,4 +1,4 @@
-//! What is solved for, and how far that may be off in what is computed of it.
+//! The solved unknowns, and the effect of their errors on functions of them.
 
 use crate::derivation::Derivation;
 use crate::equations::Derived;
@@ -13,7 +13,7 @@ use crate::rounding::Rounding;
 use crate::sized::Sized;
 use crate::tolerance::TOLERANCE;
 
-/// w, ẇ, λ and what these are on bodies.
+/// w, ẇ, λ and the reactions on bodies.
 #[derive(Clone)]
 pub(crate) struct Solved {
     velocities: Vec<f64>,
@@ -34,7 +34,7 @@ impl Solved {
 }
 
 impl Derivation {
-    /// The place of a motion where these are so.
+    /// The place of a motion with these values.
     pub(crate) fn on_motion<'a>(
         &'a self,
         solved: &Solved,
@@ -48,8 +48,9 @@ impl Derivation {
         point.with_resultants(solved.resultants.clone())
     }
 
-    /// How large the terms of integrals and outputs are by what they are computed of: where each of w, ẇ and λ agrees to the
-    /// tolerance of its own terms, an output may differ by what this makes of it, λ² by the square where λ vanishes.
+    /// The sizes of the terms of integrals and outputs by the unknowns in them: if each of w, ẇ and λ agrees
+    /// to the tolerance of its own terms, an output may differ accordingly, λ² by the square where λ
+    /// vanishes.
     pub(crate) fn led_to_observed(
         &self,
         derived: &Derived,
@@ -72,7 +73,7 @@ impl Derivation {
         let solved = Solved::of(derived, resultants.cloned());
         let values = observed(&solved)?;
         for moved in self.uncertain(&solved, derived)? {
-            // At a corner, and past an edge of where it is defined, it says nothing of rounding.
+            // At a corner, and past an edge of its domain, a function gives no information on rounding.
             let Ok(moved) = observed(&moved) else { continue };
             for (size, (moved, value)) in sizes.iter_mut().zip(moved.iter().zip(&values)) {
                 let led = (moved - value).abs() / TOLERANCE;
@@ -82,7 +83,7 @@ impl Derivation {
         Ok(sizes)
     }
 
-    /// Raises the sizes of integrals and outputs to what the reactions in them make, where these were found to be less certain.
+    /// Raises the sizes of integrals and outputs for the reactions in them, if these are less certain.
     pub(crate) fn lead_reactions(
         &self,
         quantities: &mut [Sized],
@@ -102,7 +103,7 @@ impl Derivation {
         Ok(())
     }
 
-    /// Each number that is solved for, moved up and down by as much as it may be off.
+    /// The unknowns with each number moved up and down by its possible error.
     fn uncertain(&self, solved: &Solved, derived: &Derived) -> Result<Vec<Solved>, Irregular> {
         let [drift, _] = self.drift(&derived.place, &derived.velocities, &Rounding::none())?;
         let natural = |quantity: Quantity| SHARED * natural_size(derived, &drift, &quantity);
@@ -129,13 +130,14 @@ impl Derivation {
         Ok(all)
     }
 
-    /// How large the reactions are where nothing cancels, in one of the units that two eliminations share: for the velocities
-    /// and momenta there are, and where the quasi-velocities of the text and the constraints determine each other, also by
+    /// The sizes of the reactions without cancellation, in a unit that two eliminations share: at the given
+    /// velocities and momenta, and where the quasi-velocities of the text and the constraints determine each
+    /// other, also by
     ///
     ///   λ_α = (ṗ − F)·W_α,
     ///
-    /// the virtual velocities W_α being those at which φ_α alone is 1 and all quasi-velocities are 0. By these the first
-    /// derivation finds λ, and where they are large more cancels than in M ẇ − Cᵀλ = F.
+    /// with the virtual velocities W_α at which φ_α alone is 1 and all quasi-velocities are 0. The first
+    /// derivation finds λ by these, and where they are large more cancels than in M ẇ − Cᵀλ = F.
     pub(crate) fn least_reaction_sizes(&self, derived: &Derived) -> Result<Vec<f64>, Irregular> {
         let exact = Rounding::none();
         let (at, k, l) = (&derived.place, derived.place.w.len(), self.kept.len());
@@ -149,7 +151,7 @@ impl Derivation {
         }
         let [rows, rates] = self.adapted(at, &self.kept, &columns, &motion(derived), &exact)?;
         let nothing = vec![0.0; k];
-        // Where they do not determine each other there is no first derivation, either.
+        // If they do not determine each other, there is no first derivation, either.
         let Ok(solution) = solve(&matrix(&rows, k), &nothing, &nothing) else { return Ok(sizes) };
         let w = solution.inverse.abs().columns(0, l).into_owned();
         let turning = solution.inverse.abs() * (matrix(&rates, k).abs() * &w);
@@ -178,7 +180,7 @@ mod tests {
         Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
     }
 
-    /// x is held though nothing moves it: λ = 0, of terms as large as the velocity of y.
+    /// x is fixed without forces: λ = 0, with terms as large as the velocity of y.
     const HELD: &str = r#"
 [parameters]
 g = 0.0
@@ -206,16 +208,17 @@ root = "sqrt(1 + λ_k) - 1"
         let wanted: Vec<Quantity> = (0..3).map(Quantity::Observed).collect();
         let led = second.derivation().led_to_observed(&derived, &wanted, None).unwrap();
         let size = derived.reaction_sizes[0];
-        // y'² = 4 of 1e-3 of which reactions are known.
+        // y'² = 4, times the accuracy of reactions, 1e-3.
         assert!((size - 4.0 * SHARED).abs() < 1e-15, "{size}");
-        // The third is evaluated near 1, with a part in 1e-4 of rounding for 1e-12.
+        // The third is evaluated near 1, with rounding of a part in 1e-4 for 1e-12.
         let near = |found: f64, expected: f64, error: f64| (found - expected).abs() <= error;
         assert!(near(led[0], 3.0 * size, 1e-12), "{led:?}");
         assert!(near(led[1], TOLERANCE * size * size, 1e-25), "{led:?}");
         assert!(near(led[2], size / 2.0, 1e-3), "{led:?}");
     }
 
-    /// Of a reaction that is a part in 1e9 of its terms another than it is, no output agrees; not even its square.
+    /// A reaction with an error of a part in 1e9 of its terms gives outputs that disagree, even for its
+    /// square.
     #[test]
     fn an_output_of_a_wrong_reaction_is_found() {
         for output in ["3*λ_k", "λ_k^2", "sqrt(1 + λ_k) - 1"] {
@@ -234,7 +237,7 @@ root = "sqrt(1 + λ_k) - 1"
         }
     }
 
-    /// λ vanishes, and is some units in the last place of what cancels in one of the derivations.
+    /// λ vanishes in one derivation, and in the other is some units in the last place of cancelling terms.
     #[test]
     fn squares_of_reactions_that_vanish_agree() {
         let frames = r#"
@@ -279,7 +282,8 @@ out = "λ_k0^2"
         }
     }
 
-    /// ẋ = (2 + x²) (w − e^{x/2} q'): nothing acts along q, and λ is what is left of terms (∂ẋ/∂q')˙ p, which cancel.
+    /// ẋ = (2 + x²) (w − e^{x/2} q'): no force acts along q, and λ is the remainder of cancelling terms
+    /// (∂ẋ/∂q')˙ p.
     const LEVER: &str = r#"
 [parameters]
 p = 0.74
@@ -306,7 +310,7 @@ t_end = -0.5
         assert_eq!(agreement.states, 100);
     }
 
-    /// A part in 1e8 of a mass is a part in 1e10 of the reaction that it has a part in.
+    /// A part in 1e8 of a mass is a part in 1e10 of the reaction to which it contributes.
     #[test]
     fn a_reaction_of_another_mass_is_found() {
         let (mut heavier, graph) = (model(LEVER), Graph::new());

@@ -10,10 +10,10 @@ use crate::rounding::{Random, Rounding};
 use crate::text::Velocities;
 use crate::velocities::{NEWTON, SETTLED};
 
-/// Sizes of the random displacements, in turn.
+/// The sizes of the random displacements, in turn.
 const SCALES: [f64; 4] = [1.0, 0.3, 0.05, 0.002];
 
-/// Smaller and smaller displacements that are tried where none of a size leads to a state.
+/// The number of smaller displacements that are tried if a size leads to no state.
 const ATTEMPTS: i32 = 5;
 
 impl Derivation {
@@ -32,7 +32,7 @@ impl Derivation {
         outcome
     }
 
-    /// A state so far from a place.
+    /// A state at this distance from a place.
     pub(crate) fn random_within(
         &self,
         near: &Place,
@@ -52,8 +52,8 @@ impl Derivation {
         self.on_constraints(at)
     }
 
-    /// The place where one comes from another by the motion with velocity b ξ + τ b_0 for a unit of time, during which t grows
-    /// by τ: so it stays where the frame leads.
+    /// The place reached from another one by the motion with velocity b ξ + τ b_0 for a unit of time, during
+    /// which t grows by τ: it stays on the leaf of the frame.
     fn moved(&self, from: &Place, tau: f64, xi: &[f64]) -> Result<Place, Irregular> {
         if let Velocities::Ordinary(_) = self.text.velocities {
             let size = |x: &f64| 1.0 + x.abs();
@@ -121,14 +121,14 @@ impl Derivation {
                 at.w.iter_mut().zip(&step).for_each(|(w, step)| *w += step);
                 Ok(size(&step) / (1.0 + size(&at.w)))
             })?;
-            // What rounding has left of velocities that vanish.
+            // Velocities that vanish up to rounding.
             let fastest = size(&at.w);
             at.w.iter_mut().filter(|w| w.abs() <= SETTLED * fastest).for_each(|w| *w = 0.0);
         }
         Ok(at)
     }
 
-    /// Repeats a step until it is rounding; it says how long it was.
+    /// Repeats a step, which returns its length, until it is rounding.
     fn settle(&self, mut step: impl FnMut() -> Result<f64, Irregular>) -> Result<(), Irregular> {
         for _ in 0..NEWTON {
             if step()? <= SETTLED {
@@ -143,7 +143,8 @@ fn size(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |size, value| if value.abs() <= size { size } else { value.abs() })
 }
 
-/// The shortest solution of C ξ = −rest. Each constraint counts as much as any other, however large its coefficients are.
+/// The shortest solution of C ξ = −rest. All constraints have the same weight, whatever the size of their
+/// coefficients.
 fn shortest(rows: &[Vec<f64>], rest: &[f64], columns: usize) -> Result<Vec<f64>, Irregular> {
     let scale = |row: &Vec<f64>| match size(row) {
         0.0 => 1.0,
@@ -160,14 +161,14 @@ fn shortest(rows: &[Vec<f64>], rest: &[f64], columns: usize) -> Result<Vec<f64>,
     }
 }
 
-/// The shortest part of a displacement that is tried.
+/// The shortest part of a displacement.
 const SHORTEST: f64 = 1.0 / 64.0;
 
-/// Numbers of parts of a step, for extrapolation to infinitely many.
+/// The numbers of parts of a step, for extrapolation to infinitely many.
 const PARTS: [usize; 8] = [2, 4, 6, 8, 10, 12, 14, 16];
 
-/// Gragg's, Bulirsch's and Stoer's step: the midpoint rule with more and more parts, extrapolated; an error unless what is
-/// reached is known to rounding.
+/// The step of Gragg, Bulirsch and Stoer: the midpoint rule with increasing numbers of parts, extrapolated;
+/// an error unless the result is accurate to rounding.
 fn extrapolated(
     rate: impl Fn(f64, &[f64]) -> Result<Vec<f64>, Irregular>,
     s: f64,

@@ -1,11 +1,11 @@
-//! Where the structure coefficients come from.
+//! The source of the structure coefficients.
 
 use crate::constants::Constants;
 use crate::error::Unable;
 use crate::term::Term;
 use crate::text::{Brackets, Text};
 
-/// Where the brackets come from.
+/// The source of the brackets.
 #[derive(Clone, Debug)]
 pub(crate) enum Structure {
     /// From the frame: b has as many independent columns as there are quasi-velocities.
@@ -19,7 +19,7 @@ pub(crate) enum Structure {
 }
 
 impl Structure {
-    /// Where the brackets come from if `rank` of the `k` fields are independent at a point.
+    /// The source of the brackets, if `rank` of the `k` fields are independent at a point.
     pub(crate) fn new(text: &Text, rank: usize, k: usize) -> Result<Structure, Unable> {
         if rank == k {
             return Ok(Structure::Frame);

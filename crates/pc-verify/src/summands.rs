@@ -1,4 +1,4 @@
-//! How large the summands of a term are: of what cancels, so many roundings are left.
+//! The sizes of the terms of a sum, which determine the rounding error after cancellation.
 
 use crate::error::Irregular;
 use crate::number::Number;
@@ -6,8 +6,9 @@ use crate::point::Point;
 use crate::term::Term;
 
 impl Point<'_, f64> {
-    /// The largest summand of a term, led through its sums, products and definitions: |x| + |y| for x − y, however small this is.
-    /// What stands inside a function or a power counts as known; rounding errors made at will show how that errs.
+    /// The largest summand of a term, through its sums, products and definitions: |x| + |y| for x − y,
+    /// however small the difference. Arguments of functions and powers count as exact; deliberate rounding
+    /// errors show their effect.
     pub(crate) fn largest_term(&self, term: &Term) -> Result<f64, Irregular> {
         Ok(match term {
             Term::Negative(inner) => self.largest_term(inner)?,

@@ -5,7 +5,7 @@ use pc_expr::parse::{Ast, AstKind, Factor, Sign};
 use crate::error::Unable;
 use crate::resultant::Resultant;
 
-/// An expression, names replaced by their places.
+/// An expression with names replaced by indices.
 #[derive(Clone, Debug)]
 pub(crate) enum Term {
     Number(f64),
@@ -21,7 +21,7 @@ pub(crate) enum Term {
     Definition(usize),
     /// λ_α
     Reaction(usize),
-    /// What a reaction is on a body.
+    /// A reaction on a body.
     Resultant(Resultant),
     /// The total time derivative.
     Rate(Box<Term>),
@@ -81,7 +81,7 @@ const FUNCTIONS: [(&str, Function); 19] = [
 ];
 
 impl Term {
-    /// The number of terms that it is made up of, itself included.
+    /// The number of terms in it, itself included.
     pub(crate) fn size(&self) -> usize {
         1 + match self {
             Term::Sum(parts) | Term::Product(parts) => parts.iter().map(|(_, part)| part.size()).sum(),
@@ -92,7 +92,7 @@ impl Term {
         }
     }
 
-    /// Whether what a reaction is on a body stands in it.
+    /// Whether it contains a reaction on a body.
     pub(crate) fn has_resultants(&self) -> bool {
         match self {
             Term::Resultant(_) => true,
@@ -104,8 +104,8 @@ impl Term {
         }
     }
 
-    /// Whether there are velocities in it; `definitions` says so of those above, and none is known of one that is not among
-    /// them.
+    /// Whether it contains velocities; `definitions` tells this of the definitions before it, and `None` is
+    /// returned if it uses a later one.
     pub(crate) fn has_velocities(&self, definitions: &[bool]) -> Option<bool> {
         let any = |terms: &mut dyn Iterator<Item = &Term>| -> Option<bool> {
             let has: Option<Vec<bool>> = terms.map(|term| term.has_velocities(definitions)).collect();
@@ -129,7 +129,7 @@ impl Term {
     }
 }
 
-/// What names stand for.
+/// The meanings of names.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Names {
     pub(crate) coordinates: Vec<String>,
@@ -140,7 +140,7 @@ pub(crate) struct Names {
     pub(crate) definitions: Vec<String>,
     pub(crate) constraints: Vec<String>,
     pub(crate) bodies: Vec<String>,
-    /// Components of points, each with what it is.
+    /// Components of points with their meanings.
     pub(crate) points: Vec<(String, Term)>,
 }
 

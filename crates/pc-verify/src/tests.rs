@@ -72,8 +72,8 @@ kinetic = "(2*w1^2 + 3*w2^2 + 5*w3^2)/2"
     );
 }
 
-/// The same with Euler's angles, of which the frame determines the brackets; and with Poisson's vertical, for which
-/// constants are found.
+/// The same with Euler's angles, where the frame determines the brackets; and with Poisson's vertical, for
+/// which constants are found.
 #[test]
 fn brackets_come_from_the_frame_or_fit_everywhere() {
     let angles = r#"
@@ -163,7 +163,8 @@ torque = [0, 0, 0.7]
     assert_near(&derived.accelerations, &[(0.7 - 20.0 * 0.3 * 0.5f64.sin()) / (0.4 + 2.0 * 0.09)]);
 }
 
-/// z̈ = −g/(1 + k²) along a straight line, λ = −k² g ż/(ẋ² + ẏ² + k⁴ ż²) in ẍ = λ ẋ; here λ is that of ½ the constraint.
+/// z̈ = −g/(1 + k²) along a straight line, λ = −k² g ż/(ẋ² + ẏ² + k⁴ ż²) in ẍ = λ ẋ; here λ is that of ½ the
+/// constraint.
 #[test]
 fn chetaevs_condition_holds_a_nonlinear_constraint() {
     let derived = at_start(
@@ -209,7 +210,7 @@ x = "5*t + 1"
     assert_near(&derived.accelerations, &[(1.0 - 2.0 - 0.4 * 3.0) / 2.0]);
 }
 
-/// A mass that is a thousandth larger in one of the derivations: the acceleration tells.
+/// A mass that is a thousandth larger in one of the derivations changes the acceleration.
 #[test]
 fn a_difference_is_an_error_with_both_values() {
     let text = "[coordinates]\nx = 1.0\n[parameters]\nm = 2.0\n[lagrangian]\nkinetic = \"m*x'^2/2\"\npotential = \"x^2/2\"";
@@ -247,7 +248,7 @@ kinetic = "(x'^2 + y'^2)/2"
     }
 }
 
-/// One constraint with coefficients of 1e40 leaves the other as it is.
+/// A constraint with coefficients of 1e40 does not affect another one.
 #[test]
 fn the_scale_of_a_constraint_does_not_matter() {
     let text = r#"
@@ -272,7 +273,7 @@ kinetic = "(x'^2 + y'^2 + z'^2)/2"
     }
 }
 
-/// x' − y' of x' = y' is as large as either, as far as its rounding goes.
+/// x' − y' for x' = y' has the size of either, as far as rounding goes.
 #[test]
 fn cancelling_sums_are_measured_by_their_summands() {
     let text = r#"
@@ -295,8 +296,8 @@ out = "rest/4"
     assert_eq!((point.value(out).unwrap(), point.largest_term(out).unwrap()), (0.0, 1.5));
 }
 
-/// L = x'⁴/4 − x'²/2 has the momentum x'³ − x': three velocities for one where |x'| < 2/√3. The form in momenta is compared where
-/// they determine the velocity, and it is said that they do not always.
+/// L = x'⁴/4 − x'²/2 has the momentum x'³ − x': three velocities for one where |x'| < 2/√3. The form in
+/// momenta is compared where they determine the velocity, and the result mentions that this is not always so.
 #[test]
 fn ambiguous_momenta_are_not_a_disagreement() {
     let text = r#"
@@ -314,7 +315,8 @@ potential = "x^2/2"
     assert!(agreement.not_compared.iter().any(|line| line == said), "{:?}", agreement.not_compared);
 }
 
-/// η = √a q' + 1/q of a free particle: p = 2 q'/√a is kept, and its rate is what rounding leaves of terms in 1/q³.
+/// η = √a q' + 1/q of a free particle: p = 2 q'/√a is conserved, and its rate is the rounding of terms in
+/// 1/q³.
 #[test]
 fn quantities_that_a_drift_cancels_have_the_rounding_of_the_drift() {
     let agreement = verify(
@@ -336,7 +338,8 @@ kinetic = "q'^2"
     assert_eq!(agreement.unwrap().states, 100);
 }
 
-/// y is held against a force, and moves with a part in 2⁵⁴ of it; the motion along q is a thousand times as slow.
+/// y is fixed against a force, and moves by a part in 2⁵⁴ of it; the motion along q is a thousand times
+/// slower.
 #[test]
 fn quantities_that_reactions_balance_have_the_rounding_of_the_forces() {
     let agreement = verify(
@@ -365,8 +368,8 @@ x = "(-0.33)*exp(-((t - 0.13769)/0.02769)^2)"
     assert_eq!(agreement.unwrap().states, 100);
 }
 
-/// w_2 = y φ' + y' and ω = y' say less and less of φ' as y goes to 0, to y⁻⁴ roundings of reactions: states near there
-/// say nothing of the derivation, others do.
+/// w_2 = y φ' + y' and ω = y' determine φ' less and less as y goes to 0, to y⁻⁴ roundings of reactions:
+/// states near there give no information on the derivation, others do.
 #[test]
 fn states_at_which_rounding_hides_everything_are_skipped() {
     let agreement = verify(
@@ -395,8 +398,8 @@ kinetic = "x'^2 + φ'^2 + q'^2"
     assert!(partly, "{:?}", agreement.not_compared);
 }
 
-/// Sixty coordinates, coupled by one with all, on fifty-nine circles: the rates of the constraints cancel to the last digit, and
-/// scatter by nothing.
+/// Sixty coordinates, one of them coupled to all, on fifty-nine circles: the rates of the constraints cancel
+/// to the last digit, without scatter.
 #[test]
 fn fully_cancelling_sums_have_the_size_of_their_terms() {
     let list = |n: usize, entry: &dyn Fn(usize) -> String, between: &str| -> String {
@@ -413,7 +416,7 @@ fn fully_cancelling_sums_have_the_size_of_their_terms() {
     assert!(agreement.projected > 0, "{agreement:?}");
 }
 
-/// Numbers below 2⁻¹⁰²² have fewer digits the smaller they are.
+/// Subnormal numbers, below 2⁻¹⁰²², have fewer digits the smaller they are.
 #[test]
 fn values_without_significant_digits_are_not_compared() {
     let text = "[coordinates]\nx = 0.7\ny = 0.3\n[lagrangian]\nkinetic = \"3*x'^2 + x'*y'*cos(x) + y'^2\"\n\

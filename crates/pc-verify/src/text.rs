@@ -12,19 +12,19 @@ use crate::error::Unable;
 use crate::term::{Names, Term};
 use crate::tree::Tree;
 
-/// Everything that a model says about its motion.
+/// Everything in a model that determines its motion.
 #[derive(Clone, Debug)]
 pub(crate) struct Text {
     pub(crate) names: Names,
-    /// Values of the parameters and inputs, at the start where these are tables.
+    /// Values of the parameters and inputs, at the start for tables.
     pub(crate) parameters: Vec<f64>,
-    /// The tables among them, with their places.
+    /// The tables among them, with their indices.
     pub(crate) tables: Vec<(usize, Arc<Table>)>,
     /// ż of the first-order states.
     pub(crate) state_rates: Vec<Term>,
     /// The acceleration of gravity.
     pub(crate) gravity: Vec<Term>,
-    /// Those of the text that are constant, those of bodies on joints, then the rest of the text.
+    /// The constant definitions of the text, those of bodies on joints, then the others of the text.
     pub(crate) definitions: Vec<Term>,
     pub(crate) velocities: Velocities,
     pub(crate) brackets: Option<Brackets>,
@@ -36,22 +36,22 @@ pub(crate) struct Text {
     pub(crate) dissipation: Option<Term>,
     pub(crate) bodies: Vec<Body>,
     pub(crate) forces: Vec<(Forced, Term)>,
-    /// `[integrals]` and `[outputs]`, those that can be understood.
+    /// `[integrals]` and `[outputs]`, as far as they can be resolved.
     pub(crate) observed: Vec<(String, Term)>,
     /// When work on the model has to end.
     pub(crate) deadline: Deadline,
 }
 
-/// The velocities w in which the equations are written, of which ẋ and η are functions.
+/// The velocities w of the equations, of which ẋ and η are functions.
 #[derive(Clone, Debug)]
 pub(crate) enum Velocities {
-    /// w = ẋ, the quasi-velocities, if there are any, being defined by ẋ: η_s = a_s(t, x, ẋ).
+    /// w = ẋ; any quasi-velocities are defined by ẋ: η_s = a_s(t, x, ẋ).
     Ordinary(Vec<Term>),
-    /// w = η, ẋ_i = u_i(t, x, η) being given.
+    /// w = η, with ẋ_i = u_i(t, x, η) given.
     Quasi(Vec<Term>),
 }
 
-/// What a force acts on.
+/// The target of a force.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Forced {
     Coordinate(usize),
@@ -62,12 +62,12 @@ pub(crate) enum Forced {
 #[derive(Clone, Debug)]
 pub(crate) enum Brackets {
     Catalogue(String),
-    /// r, s, and the right-hand side, linear in the quasi-velocities, which stand for their fields.
+    /// r, s, and the right-hand side, linear in the quasi-velocities, which represent their fields.
     Table(Vec<(usize, usize, Term)>),
 }
 
 impl Text {
-    /// What the document of a model says, with the values that its parameters have.
+    /// The document of a model, with the present values of its parameters.
     pub(crate) fn new(model: &Model) -> Result<Text, Unable> {
         let document = model.document();
         let named = |list: &[NamedExpression]| -> Vec<String> {
@@ -142,7 +142,7 @@ impl Text {
         })
     }
 
-    /// Of each constraint, whether it contains no velocities, itself or by its definitions.
+    /// Whether each constraint is free of velocities, also by its definitions.
     pub(crate) fn on_positions(&self) -> Result<Vec<bool>, Unable> {
         let mut moving: Vec<bool> = Vec::with_capacity(self.definitions.len());
         for term in &self.definitions {
@@ -151,11 +151,11 @@ impl Text {
                 .ok_or_else(|| Unable::Circular { name: self.names.definitions[moving.len()].clone() })?;
             moving.push(has);
         }
-        // All definitions are known by now.
+        // The contents of all definitions are known.
         Ok(self.constraints.iter().map(|term| term.has_velocities(&moving) == Some(false)).collect())
     }
 
-    /// The number of terms that the energy and the constraints are written with.
+    /// The number of terms in the energy and the constraints.
     pub(crate) fn terms(&self) -> usize {
         let velocities = match &self.velocities {
             Velocities::Ordinary(terms) | Velocities::Quasi(terms) => terms,
@@ -172,7 +172,7 @@ impl Text {
         all.map(Term::size).sum::<usize>() + self.bodies.iter().map(of_body).sum::<usize>()
     }
 
-    /// Whether there is energy beside that of bodies.
+    /// Whether there is energy in addition to that of bodies.
     pub(crate) fn has_own_energy(&self) -> bool {
         self.lagrangian.is_some() || self.kinetic.is_some()
     }

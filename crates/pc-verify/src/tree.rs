@@ -1,8 +1,8 @@
-//! Bodies on joints, as terms: where each is, how it is turned, and the rates of the joints' coordinates.
+//! Bodies on joints, as terms: their places, their rotations, and the rates of the joints' coordinates.
 //!
-//! A body has thirty definitions of its own: the constant rotation of its joint, the rotation by the joint, its own, and its
-//! place; a point has three. They stand after those definitions of the text that are constant, of which joints are made, and
-//! before the others, which may be made of points.
+//! A body has thirty definitions of its own: the constant rotation of its joint, the rotation by the joint,
+//! its own, and its place; a point has three. They follow the constant definitions of the text, which joints
+//! may contain, and precede the others, which may contain points.
 
 use std::collections::HashSet;
 
@@ -15,18 +15,18 @@ use crate::body::{Body, Turning, matrix};
 use crate::error::Unable;
 use crate::term::{Function, Names, Term};
 
-/// Definitions of a body: J_0, J, R and r.
+/// The number of definitions of a body: J_0, J, R and r.
 const OF_BODY: usize = 9 + 9 + 9 + 3;
-/// Definitions of a point.
+/// The number of definitions of a point.
 const OF_POINT: usize = 3;
 
-/// The places of the definitions of bodies and points.
+/// The order of the definitions of bodies and points.
 pub(crate) struct Tree<'a> {
     document: &'a Document,
-    /// The definitions of the text, those that are constant first, and how many these are.
+    /// The definitions of the text, the constant ones first, and the number of these.
     written: Vec<&'a NamedExpression>,
     constant: usize,
-    /// The bodies, each after the one it hangs on.
+    /// The bodies, parents first.
     order: Vec<usize>,
 }
 
@@ -59,7 +59,7 @@ impl<'a> Tree<'a> {
         Tree { document, written, constant, order }
     }
 
-    /// The names of all definitions, those of bodies and points only for where something is wrong with them.
+    /// The names of all definitions, those of bodies and points for error messages only.
     pub(crate) fn names(&self) -> Vec<String> {
         let bodies = self.order.iter().map(|&body| &self.document.tree[body].name.text);
         let bodies = bodies.flat_map(|name| std::iter::repeat_n(name, OF_BODY));
@@ -86,7 +86,7 @@ impl<'a> Tree<'a> {
         (all[..9].to_vec(), all[9..].to_vec())
     }
 
-    /// The names of the components of points, with what they are.
+    /// The names of the components of points, with their terms.
     pub(crate) fn points(&self) -> Vec<(String, Term)> {
         let first = self.constant + OF_BODY * self.document.tree.len();
         let components = |(number, point): (usize, &Point)| {
@@ -183,7 +183,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// Whether an expression is made of numbers and known names alone.
+/// Whether an expression contains only numbers and known names.
 fn is_constant(ast: &Ast, known: &HashSet<&str>) -> bool {
     let all = |parts: Vec<&Ast>| parts.into_iter().all(|part| is_constant(part, known));
     match &ast.kind {
@@ -202,7 +202,7 @@ fn place_of(document: &Document, body: Option<&str>) -> Option<usize> {
     body.and_then(|name| document.tree.iter().position(|body| body.name.text == name))
 }
 
-/// What a joint does, in its own axes: first the slide, then the turn.
+/// The movement of a joint, in its own axes: first the slide, then the rotation.
 struct Motion {
     slide: Option<Vec<Term>>,
     turn: Option<Vec<Term>>,
@@ -325,7 +325,7 @@ fn skew(u: &[Term]) -> Vec<Term> {
     ]
 }
 
-/// Rodrigues' 1 + sin φ S + (1 − cos φ) S², S being that of a unit vector.
+/// Rodrigues' 1 + sin φ S + (1 − cos φ) S² for the S of a unit vector.
 fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
     let (s, one) = (skew(axis), Term::Number(1.0));
     let square = product(&s, &s);
@@ -336,8 +336,8 @@ fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
     unit().into_iter().zip(s).zip(square).map(entry).collect()
 }
 
-/// Those of an angle. That of a number which is a multiple of π/2 to rounding is one exactly: the cosine of the number next to
-/// π/2 would be all that is left where something vanishes, and no sense of its size.
+/// The sine and cosine of an angle, exact for a number that is a multiple of π/2 up to rounding: the cosine
+/// of the double next to π/2 could remain alone where other terms vanish, and would be taken for their size.
 fn sine_and_cosine(angle: &Term) -> [Term; 2] {
     let quarter = std::f64::consts::FRAC_PI_2;
     if let Some(value) = number(angle) {
@@ -355,7 +355,7 @@ fn sine_and_cosine(angle: &Term) -> [Term; 2] {
     [Function::Sin, Function::Cos].map(|function| Term::Call(function, vec![angle.clone()]))
 }
 
-/// The value of a term made of numbers by sums and products.
+/// The value of a term that consists of sums and products of numbers.
 fn number(term: &Term) -> Option<f64> {
     match term {
         Term::Number(value) => Some(*value),
@@ -372,7 +372,7 @@ fn number(term: &Term) -> Option<f64> {
     }
 }
 
-/// 1 + 2 q_0 S + 2 S², S being that of the vector of a unit quaternion.
+/// 1 + 2 q_0 S + 2 S² for the S of the vector of a unit quaternion.
 fn by_quaternion(q: &[Term]) -> Vec<Term> {
     let (s, two) = (skew(&q[1..]), Term::Number(2.0));
     let square = product(&s, &s);

@@ -1,4 +1,4 @@
-//! Differences that jump from state to state: rounding, which no derivation makes.
+//! Differences that jump between nearby states: they come from rounding, not from a derivation.
 
 use crate::derivation::Derivation;
 use crate::error::Irregular;
@@ -8,18 +8,20 @@ use crate::rounding::{Random, Rounding};
 use crate::sized::Sized;
 use crate::tolerance::TOLERANCE;
 
-/// How far other states are, against this one: so far that what a large number has absorbed is rounded otherwise, which a change
-/// by single roundings does not show, and so near that the difference that a wrong term makes keeps as many digits.
+/// The distance of other states from this one: large enough that small terms absorbed by a large number are
+/// rounded differently, unlike after single roundings, and small enough that the difference due to a wrong
+/// term keeps as many digits.
 const ASIDE: f64 = 1e-9;
 
-/// Such states.
+/// The number of such states.
 const STATES: u64 = 4;
 
-/// A difference that is no larger than so many of its jumps is rounding.
+/// A difference of at most this many jumps is rounding.
 const JUMPS: f64 = 4.0;
 
 impl Derivation {
-    /// The sizes that terms would have for rounding to make what the differences of two derivations jump by near a state.
+    /// The sizes of terms whose rounding would explain the jumps of the differences between two derivations
+    /// near a state.
     pub(crate) fn unsteadiness(
         &self,
         first: &mut First<'_>,
@@ -37,7 +39,7 @@ impl Derivation {
                 let values = first.values(self, &near, &exact)?;
                 Ok(values.iter().zip(&seconds).map(|(one, two)| one - two.value).collect())
             };
-            // Where there are no values near by they do not jump.
+            // Nearby states without values are left out.
             let Ok(near) = differences() else { continue };
             for (i, near) in near.into_iter().enumerate() {
                 let jump = (near - (values[i] - seconds[i].value)).abs();
@@ -63,7 +65,7 @@ mod tests {
         Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
     }
 
-    /// A mass that is another one by a part in 1e10 makes a difference that does not jump.
+    /// A mass with an error of a part in 1e10 makes a difference that does not jump.
     #[test]
     fn errors_of_derivation_are_steady() {
         let text = "[coordinates]\nx = 1.0\ny = 0.3\n[parameters]\nm = 2.0\n[lagrangian]\n\
@@ -86,8 +88,9 @@ mod tests {
         assert!(TOLERANCE * unsteady[rate] < 1e-3 * difference, "{difference:e} of {:e}", unsteady[rate]);
     }
 
-    /// As x goes to 0 the constraint says less and less of w: what is printed for the other velocity has terms in 1/x⁴ that cancel
-    /// and absorb what is left. Some states say nothing of it, others do.
+    /// As x goes to 0 the constraint determines w less and less: the printed expression for the other
+    /// velocity has terms in 1/x⁴ that cancel and absorb the remainder. Some states give no information on
+    /// it, others do.
     #[test]
     fn absorbed_terms_are_ignored() {
         let agreement = verify(

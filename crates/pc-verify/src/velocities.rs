@@ -12,7 +12,7 @@ use crate::rounding::Rounding;
 use crate::text::Velocities;
 
 impl Derivation {
-    /// ∂η_s/∂w of the quasi-velocities, a row for each; those of ordinary velocities where none is declared.
+    /// ∂η_s/∂w of the quasi-velocities, a row for each; of ordinary velocities if none is declared.
     pub(crate) fn quasi_velocity_matrix(
         &self,
         at: &Place,
@@ -27,7 +27,7 @@ impl Derivation {
         Ok(rows)
     }
 
-    /// Number of the quasi-velocities that are columns.
+    /// The number of quasi-velocities that are columns.
     pub(crate) fn declared(&self) -> usize {
         match self.text.names.quasi_velocities.len() {
             0 => self.text.coordinates(),
@@ -35,7 +35,7 @@ impl Derivation {
         }
     }
 
-    /// η; ẋ where none is declared.
+    /// η, or ẋ if none is declared.
     pub(crate) fn columns<T: Number>(&self, point: &Point<'_, T>) -> Result<Vec<T>, Irregular> {
         if self.text.names.quasi_velocities.is_empty() {
             return Ok(point.velocities()?.to_vec());
@@ -43,7 +43,7 @@ impl Derivation {
         point.quasi_velocities()
     }
 
-    /// The velocities w at which η has these values and the constraints hold, found by least squares where w = ẋ.
+    /// The velocities w at which η has these values and the constraints hold, by least squares where w = ẋ.
     pub(crate) fn velocities_of(&self, t: f64, x: &[f64], eta: &[f64]) -> Result<Vec<f64>, Irregular> {
         match &self.text.velocities {
             Velocities::Quasi(_) => return Ok(eta.to_vec()),
@@ -52,7 +52,7 @@ impl Derivation {
         }
         let exact = Rounding::none();
         let all: Vec<usize> = (0..self.on_positions.len()).collect();
-        // First-order states stand in no definition and no constraint.
+        // First-order states occur in no definition and no constraint.
         let mut at =
             Place { t, x: x.to_vec(), w: vec![0.0; x.len()], z: vec![0.0; self.text.state_rates.len()] };
         for _ in 0..NEWTON {
@@ -72,8 +72,8 @@ impl Derivation {
         Err(Irregular::OffConstraints)
     }
 
-    /// ẋ where all quasi-velocities vanish, those that complete the ones defined among them, and its rate along the motion:
-    /// what b_0 is where quasi-velocities are defined by ẋ. Zero otherwise: in the velocities w = η there is nothing to add.
+    /// ẋ at zero quasi-velocities, including those that complete the defined ones, and its rate along the
+    /// motion: b_0 if quasi-velocities are defined by ẋ. Otherwise zero, as w = η needs no addition.
     pub(crate) fn drift(
         &self,
         at: &Place,

@@ -1,4 +1,4 @@
-//! Forces of every kind, which built-in models have few of, derived twice.
+//! Forces of every kind, rare in the built-in models, derived twice.
 
 use pc_model::{Document, Model, Source};
 use pc_verify::{Options, verify};

@@ -1,4 +1,4 @@
-//! Large models, of which most states are compared along random virtual velocities only.
+//! Large models, compared at most states along random virtual velocities only.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -8,7 +8,7 @@ use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, Source, Variables};
 use pc_verify::{Options, Second, verify};
 
-/// A chain of pendulums, all on one thread; `more` says what else there is.
+/// A chain of pendulums, each hanging on the one before; `more` is further text of the model.
 fn chain(links: usize, more: &str) -> Model {
     let mut text = "[coordinates]\n".to_owned();
     let sum = |function: &str, i: usize| {
@@ -35,7 +35,7 @@ fn equations_of_large_models_are_compared_along_random_virtual_velocities() {
     }
 }
 
-/// The same along the motion of another model is seen: the equations of both differ by one small force.
+/// A small additional force, along the motion of a model without it, shows in the comparison.
 #[test]
 fn an_equation_that_differs_shows_along_random_virtual_velocities() {
     let (one, other) = (chain(24, ""), chain(24, "[forces]\nq17 = \"1e-6\"\n"));

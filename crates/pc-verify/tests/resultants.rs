@@ -10,7 +10,8 @@ fn agreement(text: &str) -> Agreement {
     verify(&model, &Options { states: 30, ..Options::default() }).unwrap()
 }
 
-/// A door on a hinge that pulls and turns, a weight on a thread from its edge, and kinetic energy of no body.
+/// A door on a hinge with forces and torques, a weight on a thread from its edge, and kinetic energy that
+/// belongs to no body.
 const DOOR: &str = r#"
 [coordinates]
 x = 0.0

@@ -84,8 +84,8 @@ impl<'g> Frame<'g> {
 }
 
 impl<'g> Frame<'g> {
-    /// The change to the quasi-velocities η' = A η + A_0, with A of k × k and A_0 of length k; whatever the rank of the
-    /// frame.
+    /// The change to the quasi-velocities η' = A η + A_0, with A of k × k and A_0 of length k, for a frame of
+    /// any rank.
     ///
     /// # Errors
     /// [`AlgebraError::Shape`]; [`AlgebraError::SingularDefinitions`] if A is singular everywhere.
@@ -120,7 +120,7 @@ impl<'g> Frame<'g> {
     }
 }
 
-/// Whether η' = A η + A_0 is η: of many quasi-velocities much is multiplied for that, and nothing found.
+/// Whether η' = A η + A_0 is η: the expensive products are then superfluous.
 fn is_identity(a: &Matrix<Expr<'_>>, a0: &[Expr<'_>]) -> bool {
     let entry = |i: usize, j: usize| a[(i, j)] == if i == j { Expr::ONE } else { Expr::ZERO };
     a0.iter().all(|a0| a0.is_zero()) && (0..a.rows()).all(|i| (0..a.columns()).all(|j| entry(i, j)))

@@ -19,9 +19,10 @@ impl<'g> Frame<'g> {
     /// The structure coefficients of the frame (6), found from b and b_0 alone.
     ///
     /// Where rank b = k they solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs = (bᵀb)⁻¹bᵀ[X_r,
-    /// X_s]. Where rank b < k that would lose the part of c along ker b, so coefficients are looked for that
-    /// hold at all points, functions of parameters and time only; the frame determines them if no combination of
-    /// the operators with such coefficients vanishes. Either way the result must reproduce every commutator.
+    /// X_s]. Where rank b < k that would lose the part of c along ker b; there the coefficients sought hold
+    /// at all points, as functions of parameters and time only, and the frame determines them if no
+    /// combination of the operators with such coefficients vanishes. In both cases the result reproduces
+    /// every commutator.
     ///
     /// `near` says where the expressions of the frame are regular.
     ///
@@ -133,7 +134,7 @@ impl<'g> Frame<'g> {
         Ok(())
     }
 
-    /// That there are as many operators as structure coefficients are made for.
+    /// An error unless there are as many operators as the structure coefficients have.
     fn check_dimension(&self, structure: &StructureCoefficients<'g>) -> Result<(), AlgebraError> {
         let (algebra, operators) = (structure.operators(), self.operators());
         if algebra == operators { Ok(()) } else { Err(AlgebraError::Dimension { algebra, operators }) }
@@ -172,10 +173,12 @@ impl<'g> Frame<'g> {
         defects
     }
 
-    /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ where b is square; `None` if rank b < k.
+    /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ where b is square; `None`
+    /// if rank b < k.
     ///
-    /// Coordinates that only [follow](Self::followers) others have no part in it: b⁻¹ is the rest where that is square, known
-    /// to the rounding of b, while bᵀb squares the condition of b and hides in rounded constants what cancels in it.
+    /// Coordinates that [follow](Self::followers) others are left out: if the remaining b is square, b⁻¹ is
+    /// accurate to the rounding of b, while bᵀb squares the condition of b and, with rounded constants, hides
+    /// cancellations.
     pub(crate) fn left_inverse(&self) -> Option<Matrix<Expr<'g>>> {
         let (graph, b, k) = (self.graph(), self.b(), self.operators());
         if b.rows() == k {
@@ -199,8 +202,8 @@ impl<'g> Frame<'g> {
         }))
     }
 
-    /// 1, but powers of 2 for the coordinates in whose units velocities are small numbers: in bᵀb they would be lost beside
-    /// the others. 0 for those of which nothing but rounding moves.
+    /// 1, except powers of 2 for coordinates in whose units the velocities are so small that bᵀb loses them
+    /// beside the others, and 0 for those that move by rounding errors only.
     fn weights(&self) -> Vec<Expr<'g>> {
         const SMALL: f64 = 1e-3;
         let (b, k) = (self.b(), self.operators());
@@ -233,7 +236,8 @@ impl<'g> Frame<'g> {
         (0..b.rows()).map(weight).collect()
     }
 
-    /// Largest component of Y − c^m X_m relative to its terms, for an operator Y such as [X_r, X_s] whose components are sums.
+    /// Largest component of Y − c^m X_m relative to its terms, for an operator Y such as [X_r, X_s] whose
+    /// components are sums.
     pub(crate) fn residual<const N: usize>(
         &self,
         y: &[[Expr<'g>; N]],
@@ -241,7 +245,7 @@ impl<'g> Frame<'g> {
         near: &Neighbourhood<'g>,
     ) -> f64 {
         let difference = |(i, terms): (usize, &[Expr<'g>; N])| -> Vec<Expr<'g>> {
-            // There are fewer c^m than operators where some of these are combinations of others.
+            // There are fewer c^m than operators if some of these are combinations of others.
             let combination = self.b().nonzero(i).filter_map(|(s, b)| Some(-(b * *c.get(s)?)));
             terms.iter().copied().chain(combination).filter(|term| !term.is_zero()).collect()
         };

@@ -1,9 +1,9 @@
 //! Constant structure coefficients, of frames whose operators are dependent at each point.
 //!
-//! Where rank b < k, b c_rs = [X_r, X_s] has many solutions c_rs at each point, and so many with coefficients that
-//! change from point to point. With coefficients that are the same at all points, functions of parameters and time
-//! only, there is at most one if no combination of the operators with such coefficients vanishes; if there are
-//! several, none of them may be taken as the brackets.
+//! Where rank b < k, b c_rs = [X_r, X_s] has many solutions c_rs at each point, and so many solutions that
+//! change from point to point. Solutions that are the same at all points, functions of parameters and time
+//! only, are unique if no combination of the operators with such coefficients vanishes; otherwise no one of
+//! them is the bracket.
 
 use nalgebra::{DMatrix, DVector};
 use pc_expr::{Expr, Graph, Number};
@@ -15,17 +15,17 @@ use crate::identity::sample::Neighbourhood;
 use crate::linear_algebra::inverse::inverse;
 use crate::linear_algebra::matrix::Matrix;
 
-/// Operators whose singular values spread more than this are not seen to be independent in numbers.
+/// Operators whose singular values spread more than this may be dependent, as far as numbers show.
 const DEPENDENT: f64 = 1e-9;
-/// Points tried for each operator before it is given up to find as many equations as unknowns.
+/// The most points tried for each operator to find as many equations as unknowns.
 const POINTS: usize = 8;
 
 impl<'g> Frame<'g> {
     /// The c_rs^m with b c_rs = [X_r, X_s] that do not depend on the coordinates.
     ///
     /// # Errors
-    /// [`AlgebraError::Undetermined`] if there may be several; [`AlgebraError::RankDeficient`] naming the first pair for
-    /// which there are none.
+    /// [`AlgebraError::Undetermined`] if there may be several; [`AlgebraError::RankDeficient`] naming the
+    /// first pair for which there are none.
     pub(crate) fn constant_coefficients(
         &self,
         rank: usize,
@@ -43,7 +43,7 @@ impl<'g> Frame<'g> {
         })
     }
 
-    /// That no combination of the operators with coefficients that do not depend on the coordinates vanishes.
+    /// An error if a combination of the operators with coefficients independent of the coordinates vanishes.
     ///
     /// # Errors
     /// [`AlgebraError::Undetermined`]
@@ -72,15 +72,16 @@ impl<'g> Frame<'g> {
         }
     }
 
-    /// The symbols that are no coordinates.
+    /// The symbols other than coordinates.
     fn constants(&self, columns: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let mut symbols = self.graph().symbols_of(&columns.concat());
         symbols.retain(|symbol| !self.coordinates().contains(symbol));
         symbols
     }
 
-    /// The coefficients a with Y = Σ a_s X_s for each Y of the `targets`, if there are any; the X_s are the first operators
-    /// and independent. Looked for as fractions, in terms of parameters and time, and in rounded numbers, and tried each time.
+    /// The coefficients a with Y = Σ a_s X_s for each Y of the `targets`, if there are any; the X_s are the
+    /// first operators and independent. They are sought as fractions, as expressions in parameters and time,
+    /// and as rounded numbers; each result is verified.
     fn combinations(
         &self,
         operators: &[Vec<Expr<'g>>],
@@ -124,7 +125,7 @@ impl<'g> Frame<'g> {
         Some((0..targets.len()).map(fraction).collect())
     }
 
-    /// The coefficients solved for, from as many of the equations Σ a_s X_s = Y at simple points as there are unknowns.
+    /// The coefficients from as many of the equations Σ a_s X_s = Y at simple points as there are unknowns.
     fn solved(
         &self,
         operators: &[Vec<Expr<'g>>],
@@ -154,7 +155,7 @@ impl<'g> Frame<'g> {
         None
     }
 
-    /// a of Σ a_s X_s = Y, k equations with as many left-hand sides, for each of the right-hand sides.
+    /// a of Σ a_s X_s = Y, k equations with the same left-hand sides, for each of the right-hand sides.
     fn solution<'h>(
         &self,
         equations: &[Vec<Expr<'h>>],
@@ -176,8 +177,8 @@ impl<'g> Frame<'g> {
         (0..targets).map(solve).collect()
     }
 
-    /// The expressions with small numbers for coordinates that are arguments of no function, and other symbols for those
-    /// that are: what does not depend on them will forget them.
+    /// The expressions with small numbers for coordinates that are not arguments of functions, and other
+    /// symbols for the rest, which cancel from results that do not depend on them.
     fn at_simple_point<'h>(&self, entries: &[Expr<'g>], point: usize, page: &'h Graph) -> Vec<Expr<'h>> {
         let graph = self.graph();
         let value =
@@ -212,7 +213,7 @@ impl<'g> Frame<'g> {
             .collect()
     }
 
-    /// A combination of the operators that vanishes but for rounding, if there is one.
+    /// A combination of the operators that vanishes up to rounding, if there is one.
     fn vanishing_in_numbers(
         &self,
         operators: &[Vec<Expr<'g>>],
@@ -224,7 +225,7 @@ impl<'g> Frame<'g> {
             column /= if size > 0.0 { size } else { 1.0 };
         }
         if stacked.nrows() < operators.len() {
-            return Some(Vec::new()); // no values to judge by
+            return Some(Vec::new()); // no values to decide by
         }
         let svd = stacked.svd(false, true);
         let (least, &smallest) = (0..).zip(svd.singular_values.iter()).min_by(|a, b| a.1.total_cmp(b.1))?;
@@ -240,7 +241,7 @@ impl<'g> Frame<'g> {
         (smallest <= DEPENDENT * largest).then(|| present.into_iter().map(term).collect())
     }
 
-    /// The columns at points near the centre, one below the other; parameters and time have their values.
+    /// The columns at points near the centre, stacked; parameters and time have their values.
     fn stacked(&self, columns: &[Vec<Expr<'g>>], near: &Neighbourhood<'g>) -> DMatrix<f64> {
         let (graph, n) = (self.graph(), self.coordinates().len());
         let centre =
@@ -261,7 +262,7 @@ fn vanishing(a: &[Expr<'_>], last: usize) -> Vec<(usize, String)> {
     terms
 }
 
-/// The value of a coordinate: one after the other 1 with the others 0, then small pseudo-random numbers.
+/// The value of a coordinate: first each in turn is 1 and the others 0, then small pseudo-random numbers.
 fn simple(place: usize, salt: usize, point: usize, coordinates: usize) -> Number {
     if point < coordinates {
         return Number::integer(i32::from(point == place));

@@ -1,4 +1,4 @@
-//! The operators that are left when quasi-velocities are solved for, and their brackets.
+//! The operators that remain when quasi-velocities are solved for, and their brackets.
 
 use pc_expr::Expr;
 
@@ -8,7 +8,7 @@ use crate::frame::structure::{StructureCoefficients, pairs};
 use crate::identity::sample::Neighbourhood;
 use crate::linear_algebra::matrix::Matrix;
 
-/// Quasi-velocities of a frame solved for the others, η_D = A_DI η_I + A_D0: what is left are the operators
+/// Quasi-velocities of a frame solved for the others, η_D = A_DI η_I + A_D0; the remaining operators are
 ///
 ///   X'_I = X_I + A_DI X_D,   X'_0 = X_0 + A_D0 X_D.
 #[derive(Clone, Debug)]
@@ -25,8 +25,8 @@ pub struct Elimination<'g> {
 }
 
 impl<'g> Frame<'g> {
-    /// The frame with the operators `dependent`, numbered from 0, put in: η_D = A_DI η_I + A_D0, where I are the others in
-    /// their order, `matrix` is A_DI and `drift` A_D0.
+    /// The frame after elimination of the operators `dependent`, numbered from 0: η_D = A_DI η_I + A_D0,
+    /// where I are the others in their order, `matrix` is A_DI and `drift` A_D0.
     ///
     /// # Errors
     /// [`AlgebraError::Shape`]
@@ -61,7 +61,7 @@ impl<'g> Frame<'g> {
 }
 
 impl<'g> Elimination<'g> {
-    /// The frame of the operators that are left.
+    /// The frame of the remaining operators.
     pub fn frame(&self) -> &Frame<'g> {
         &self.frame
     }
@@ -121,7 +121,7 @@ impl<'g> Elimination<'g> {
         })
     }
 
-    /// The terms of Y^D − A_DI Y^I for a field given by those of its components.
+    /// The terms of Y^D − A_DI Y^I for a field given by the terms of its components.
     fn outside(&self, field: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
         let row = |(d, &m): (usize, &usize)| -> Vec<Expr<'g>> {
             let carried = self.matrix.nonzero(d).map(|(i, a)| (self.free[i], a));

@@ -1,19 +1,19 @@
-//! Coordinates that only follow others, as the height z of a point on a curve z = f(x) does.
+//! Coordinates that follow others, as the height z of a point on a curve z = f(x) does.
 
 use pc_expr::Expr;
 
 use crate::frame::frame::Frame;
 use crate::identity::sample::Neighbourhood;
 
-/// Points at which rows are seen to be no multiples of each other, before a quotient is made.
+/// Points at which rows are compared numerically before a quotient is formed.
 const POINTS: usize = 2;
 
-/// Entries of rows that are multiples of each other have the same quotients but for rounding.
+/// Quotients of the entries of two proportional rows agree to this, up to rounding.
 const SAME: f64 = 1e-9;
 
 impl<'g> Frame<'g> {
-    /// Whether coordinate i follows another: its row of b is f times that of a coordinate j that does not follow, where f has a
-    /// value wherever row i has one; or the row is zero. So ẋ_i says nothing of η that ẋ_j does not say.
+    /// Whether coordinate i follows another: its row of b is zero, or f times that of a coordinate j that
+    /// does not follow, with an f that is defined wherever row i is. So ẋ_i tells no more of η than ẋ_j.
     ///
     /// On the circle, x' = −y ω and y' = x ω, neither follows the other: −y/x has no value at x = 0.
     pub(crate) fn followers(&self) -> Vec<bool> {
@@ -30,7 +30,7 @@ impl<'g> Frame<'g> {
         follows
     }
 
-    /// Whether numbers allow that row i is a multiple of row j.
+    /// Whether row i is numerically a multiple of row j.
     fn may_follow(&self, i: usize, j: usize, samples: &[Vec<f64>]) -> bool {
         let (b, k) = (self.b(), self.operators());
         (0..k).all(|s| b[(i, s)].is_zero() == b[(j, s)].is_zero())
@@ -42,7 +42,7 @@ impl<'g> Frame<'g> {
             })
     }
 
-    /// Whether row i is a regular multiple of row j, which has its zeros at the same places.
+    /// Whether row i is a regular multiple of row j, with zeros at the same places.
     fn follows(&self, i: usize, j: usize, near: &Neighbourhood<'g>) -> bool {
         let (graph, b) = (self.graph(), self.b());
         let places = || (0..self.operators()).filter(|&s| !b[(j, s)].is_zero());
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_coordinates_that_follow_each_other_one_is_left() {
+    fn one_of_two_mutual_followers_is_kept() {
         let graph = Graph::new();
         let [x, y] = graph.symbols(["x", "y"]);
         assert_eq!(followers(&graph, &[x, y], &[&[x], &[3.0 * x]]), [false, true]);

@@ -21,7 +21,7 @@ pub struct Frame<'g> {
     coordinates: Vec<Expr<'g>>,
     b: Matrix<Expr<'g>>,
     b0: Vec<Expr<'g>>,
-    /// a, where b is a⁻¹ by definition.
+    /// a, where b is defined as a⁻¹.
     a: Option<Matrix<Expr<'g>>>,
 }
 
@@ -92,8 +92,8 @@ impl<'g> Frame<'g> {
         Frame { graph, time, coordinates, b, b0: vec![Expr::ZERO; n], a: None }
     }
 
-    /// The matrix a of η = a ẋ + a_0 where the frame was made [by definitions](Frame::from_definitions): where det a = 0 these
-    /// do not determine ẋ.
+    /// The matrix a of η = a ẋ + a_0 where the frame was made [by definitions](Frame::from_definitions):
+    /// where det a = 0 these do not determine ẋ.
     pub fn definition_matrix(&self) -> Option<&Matrix<Expr<'g>>> {
         self.a.as_ref()
     }
@@ -213,12 +213,12 @@ impl<'g> Frame<'g> {
         coupled.into_iter().collect()
     }
 
-    /// Whether all operators commute, X_0 among them, as far as the graph knows.
+    /// Whether all operators commute, X_0 among them, as far as the graph decides.
     pub fn commutes(&self) -> bool {
         self.coupled_pairs().into_iter().all(|(r, s)| self.commutator(r, s).iter().all(|c| c.is_zero()))
     }
 
-    /// Which operators move what.
+    /// Which operators move which coordinates.
     pub(crate) fn movers(&self) -> Movers<'g> {
         let mut by_name: HashMap<Option<String>, Vec<usize>> = HashMap::new();
         by_name.entry(self.time.symbol_name()).or_default().push(0);
@@ -282,7 +282,8 @@ impl<'g> Frame<'g> {
         }
     }
 
-    /// Rank of b at almost all points, as the graph knows it; less where numbers show that its operators are dependent.
+    /// Rank of b at almost all points, as decided by the graph; less where numbers show that its operators
+    /// are dependent.
     pub fn rank(&self) -> usize {
         let known = self.graph.generic_rank_of_entries(self.b.columns(), &self.b.nonzero_rows());
         let near = Neighbourhood::anywhere(self.graph, &self.b.nonzero_entries());

@@ -23,8 +23,8 @@ pub enum Integrability {
     NotIntegrable {
         /// The first such pair r < s.
         pair: (usize, usize),
-        /// Its largest distance from the span, relative to the terms of \[X_r, X_s\], each coordinate and each operator in
-        /// units of its own.
+        /// Its largest distance from the span, relative to the terms of \[X_r, X_s\], each coordinate and
+        /// each operator in units of its own.
         residual: f64,
     },
 }
@@ -73,7 +73,8 @@ impl<'g> Frame<'g> {
         Integrability::Integrable { dimension: rank }
     }
 
-    /// Largest distance from the span of X_1..X_k of an operator whose components are sums of two terms, relative to these.
+    /// Largest distance from the span of X_1..X_k of an operator whose components are sums of two terms,
+    /// relative to these.
     fn distance_from_span(&self, y: &[[Expr<'g>; 2]], near: &Neighbourhood<'g>) -> f64 {
         let (n, k) = (self.b().rows(), self.operators());
         let outputs: Vec<Expr<'g>> = self.b().entries().iter().chain(y.as_flattened()).copied().collect();
@@ -93,8 +94,8 @@ impl<'g> Frame<'g> {
     }
 }
 
-/// Distance of y from the span of the columns of b, relative to the `size` of the terms of y. Columns, y and then rows are
-/// brought to size one before, so that it depends on no unit.
+/// Distance of y from the span of the columns of b, relative to the `size` of the terms of y. Columns, y and
+/// then rows are first scaled to size one, which makes it independent of units.
 fn scaled_distance(mut b: DMatrix<f64>, y: &DVector<f64>, size: &DVector<f64>) -> f64 {
     let largest = size.amax();
     if largest == 0.0 {

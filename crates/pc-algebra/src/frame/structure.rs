@@ -11,15 +11,17 @@ use crate::lie_algebra::lie_algebra::LieAlgebra;
 #[derive(Clone, Debug)]
 pub struct StructureCoefficients<'g> {
     operators: usize,
-    /// The c_rs^m that are not 0, r < s, as (r, s, m, c_rs^m) in the order of (r, s, m): of k³ coefficients a frame has few.
+    /// The c_rs^m that are not 0, r < s, as (r, s, m, c_rs^m) in the order of (r, s, m): of k³ coefficients a
+    /// frame has few.
     nonzero: Vec<(usize, usize, usize, Expr<'g>)>,
 }
 
 impl<'g> StructureCoefficients<'g> {
-    /// The coefficients c_rs^m = `c(r, s, m)` for r < s ≤ k; r and s count from 0, which is time, and m from 0 to k − 1.
+    /// The coefficients c_rs^m = `c(r, s, m)` for r < s ≤ k; r and s count from 0, which is time, and m from
+    /// 0 to k − 1.
     ///
-    /// Nothing is checked: [`Frame::check`](crate::Frame::check) and [`Frame::check_jacobi`](crate::Frame::check_jacobi)
-    /// say whether a frame has them.
+    /// Nothing is checked: [`Frame::check`](crate::Frame::check) and
+    /// [`Frame::check_jacobi`](crate::Frame::check_jacobi) say whether a frame has them.
     ///
     /// ```
     /// # use pc_algebra::StructureCoefficients;
@@ -39,7 +41,8 @@ impl<'g> StructureCoefficients<'g> {
         StructureCoefficients::from_nonzero(operators, indices.map(|(r, s, m)| (r, s, m + 1, c(r, s, m))))
     }
 
-    /// The coefficients with c_rs^m for the (r, s, m) that are listed, r ≠ s from 0 and m from 1, none twice; the others are 0.
+    /// The coefficients with c_rs^m for the (r, s, m) that are listed, r ≠ s from 0 and m from 1, none twice;
+    /// the others are 0.
     pub(crate) fn from_nonzero(
         operators: usize,
         listed: impl IntoIterator<Item = (usize, usize, usize, Expr<'g>)>,
@@ -51,7 +54,8 @@ impl<'g> StructureCoefficients<'g> {
         StructureCoefficients { operators, nonzero }
     }
 
-    /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for the `pairs` r < s, r from 0; the others commute.
+    /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for the `pairs` r < s, r from 0; other pairs
+    /// commute.
     pub(crate) fn from_pairs<E>(
         operators: usize,
         pairs: impl IntoIterator<Item = (usize, usize)>,
@@ -97,8 +101,9 @@ impl<'g> StructureCoefficients<'g> {
 
     /// c_rs^m with r, s in 0..=k and m in 1..=k.
     ///
-    /// It is the Boltzmann–Hamel symbol γ_rs^m = (∂a_mi/∂x_j − ∂a_mj/∂x_i) b_ir b_js. Authors differ in its sign and in the
-    /// order of its indices: with d/dt ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m − ∂L/∂π_s = Q_s it is this one.
+    /// It is the Boltzmann–Hamel symbol γ_rs^m = (∂a_mi/∂x_j − ∂a_mj/∂x_i) b_ir b_js. Authors differ in its
+    /// sign and in the order of its indices: with d/dt ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m − ∂L/∂π_s = Q_s it is
+    /// this one.
     ///
     /// # Panics
     /// If an index is out of range.
@@ -129,7 +134,7 @@ impl<'g> StructureCoefficients<'g> {
         c
     }
 
-    /// The c_rs^m that are not 0, (s, r, m) as well as (r, s, m), in order.
+    /// The c_rs^m that are not 0, in order, both as (r, s, m) and as (s, r, m).
     pub(crate) fn both_ways(&self) -> Vec<(usize, usize, usize, Expr<'g>)> {
         let mut all: Vec<_> =
             self.nonzero.iter().flat_map(|&(r, s, m, c)| [(r, s, m, c), (s, r, m, -c)]).collect();

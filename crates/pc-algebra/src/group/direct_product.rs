@@ -34,7 +34,7 @@ impl<G: LieGroup, H: LieGroup> DirectProduct<G, H> {
         DirectProduct { first, second, coordinates, dim }
     }
 
-    /// What `f` and `h` give for the parts of an element, one after the other.
+    /// `f` and `h` of the two parts of an element, concatenated.
     fn joined<'a>(
         &self,
         g: &'a [f64],

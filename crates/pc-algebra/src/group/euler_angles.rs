@@ -76,8 +76,8 @@ impl EulerAngles {
         about_axis(self.axes[0], g[0]) * about_axis(self.axes[1], g[1]) * about_axis(self.axes[2], g[2])
     }
 
-    /// α and β from R, then γ from the row j of R_i(−α) R = R_j(β) R_k(γ), which β leaves alone: so the
-    /// product is right whatever α is where R does not determine it.
+    /// α and β from R, then γ from row j of R_i(−α) R = R_j(β) R_k(γ), which is independent of β: so the
+    /// product is right for any α where R does not determine it.
     fn angles(&self, r: &Matrix3<f64>) -> Vec<f64> {
         let ([i, j, _], (l, sign)) = (self.axes, self.third());
         let sign = f64::from(sign);

@@ -1,5 +1,4 @@
-//! The derivative of the exponential map where ad x has the eigenvalues 0 and ±iθ, each at most twice but for
-//! 0.
+//! The derivative of the exponential map where ad x has the eigenvalue 0 and at most double eigenvalues ±iθ.
 
 use nalgebra::DMatrix;
 

@@ -31,7 +31,7 @@ pub enum Side {
 /// Elements g are slices of length n, elements x of the algebra slices of length k in the basis of
 /// [`algebra`](LieGroup::algebra). The coordinates may be redundant (n > k, as a rotation matrix), several
 /// may stand for one element (angles), and the frame may be singular somewhere (Euler angles); each group
-/// says so.
+/// states this.
 ///
 /// # Panics
 /// The numerical functions, where a slice is shorter than that.

@@ -7,19 +7,19 @@ pub enum Identity {
     Proved,
     /// The graph does not, but the numerical residual is small enough to be rounding, or there are no numbers (∞).
     Open {
-        /// The part of the terms that is left.
+        /// The residual, as a part of the terms.
         rest: f64,
     },
     /// The numerical residual is larger than any rounding.
     Disproved {
-        /// The part of the terms that is left.
+        /// The residual, as a part of the terms.
         rest: f64,
     },
 }
 
 impl Identity {
-    /// What is left of the terms of a sum that differs from zero is of their order; rounding, even where derivatives of
-    /// roots enlarge it a million times, leaves less.
+    /// The greatest residual that rounding may leave, even where derivatives of roots magnify it a million
+    /// times; a sum that is not zero is of the order of its terms.
     const MARGIN: f64 = 1e-6;
 
     /// The verdict by the [residual](crate::Neighbourhood::residual) of an identity.

@@ -1,22 +1,23 @@
-//! Numbers with the size of the terms that they were made of, to distinguish a small number from the rounding error of zero.
+//! Numbers with the size of their terms, to distinguish a small number from the rounding error of zero.
 //!
-//! A weight decides once, at sample points of a derivation, so that its order of magnitude is enough; the bound that a motion
-//! compares residuals with at each of its states is derived as an expression, in `pc-mech/src/compiled/running_error.rs`.
+//! A weight is used once, at sample points of a derivation, so that its order of magnitude suffices; the
+//! bound with which a motion compares residuals at each state is an expression, in
+//! `pc-mech/src/compiled/running_error.rs`.
 
 use std::ops::{Add, Mul, Neg};
 
 use pc_expr::{Function, Number, Scalar};
 
-/// Relative change of an argument by which it is seen how a function enlarges errors: far above rounding.
+/// The relative change of an argument that shows how a function magnifies errors: far above rounding.
 const CHANGE: f64 = 1e-12;
 
-/// A number and its weight: the size of the terms that it was added up from, so that its rounding error is of the order of
-/// the weight times the unit of rounding. What is given exactly has weight 0.
+/// A number and its weight: the size of the terms that it was added up from, so that its rounding error is of
+/// the order of the weight times the unit of rounding. What is given exactly has weight 0.
 ///
 ///   w(a + b) = w(a) + w(b),   w(a b) = max(|a b|, |a| w(b), w(a) |b|),   w(f(a)) = max(|f|, |f'| w(a)),
 ///
-/// where in a sum w is at least the absolute value. It is a running error analysis \[N. J. Higham, *Accuracy and Stability of
-/// Numerical Algorithms*, 2002, § 3.3\] without the number of operations.
+/// where in a sum w is at least the absolute value. It is a running error analysis \[N. J. Higham, *Accuracy
+/// and Stability of Numerical Algorithms*, 2002, § 3.3\] without the number of operations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Weighed {
     pub(crate) value: f64,
@@ -34,7 +35,7 @@ impl Weighed {
         self.value.abs().max(self.weight)
     }
 
-    /// The part of its terms that is left in their sum, from 0 to 1; rounding leaves about 10⁻¹⁶.
+    /// The sum as a part of its terms, from 0 to 1; rounding leaves about 10⁻¹⁶.
     pub(crate) fn rest(self) -> f64 {
         if self.value == 0.0 { 0.0 } else { self.value.abs() / self.size() }
     }
@@ -43,7 +44,7 @@ impl Weighed {
         self.value.is_finite() && self.weight.is_finite()
     }
 
-    /// f(a), with the weight that it has by each of its arguments.
+    /// f(a), weighed by its change with each of its arguments.
     fn of<const N: usize>(args: [Weighed; N], f: impl Fn([f64; N]) -> f64) -> Weighed {
         let at = args.map(|arg| arg.value);
         let value = f(at);
@@ -52,7 +53,7 @@ impl Weighed {
             for change in [-CHANGE, CHANGE] {
                 let mut moved = at;
                 moved[i] += change * arg.size();
-                weight = weight.max((f(moved) - value).abs() / CHANGE); // outside of its domain f has no say
+                weight = weight.max((f(moved) - value).abs() / CHANGE); // outside its domain f gives no weight
             }
         }
         Weighed { value, weight }
@@ -87,7 +88,8 @@ impl Scalar for Weighed {
         Weighed { value, weight: 0.0 }
     }
 
-    /// A rounded constant of the size of rounding is taken for what is left of numbers of order one, as cos(π/2) is.
+    /// A constant of the size of rounding errors counts as the remainder of numbers of order one, like
+    /// cos(π/2).
     fn constant(value: Number) -> Weighed {
         const LEAST: f64 = f64::EPSILON / 16.0;
         const MOST: f64 = f64::EPSILON * 64.0;
@@ -107,7 +109,7 @@ impl Scalar for Weighed {
             [x] => Weighed::of([x], |args| f64::call(function, &args)),
             [x, y] => Weighed::of([x, y], |args| f64::call(function, &args)),
             [x, y, z] => Weighed::of([x, y, z], |args| f64::call(function, &args)),
-            _ => Weighed::from_f64(f64::NAN), // no function has another number of arguments
+            _ => Weighed::from_f64(f64::NAN), // all functions have one to three arguments
         }
     }
 }
@@ -127,7 +129,7 @@ mod tests {
         let third = exact(0.1) * exact(3.0);
         let rounding = third + -exact(0.3);
         assert!(rounding.value != 0.0 && rounding.rest() < 1e-15, "{rounding:?}");
-        // Multiplied by whatever, or passed through a function, it stays what it is.
+        // It stays a rounding error when multiplied, or passed through a function.
         let sine = Weighed::call(Function::Sin, &[rounding * exact(1e3)]);
         assert!(sine.value != 0.0 && sine.rest() < 1e-15, "{sine:?}");
         let sign = Weighed::call(Function::Sign, &[rounding]);

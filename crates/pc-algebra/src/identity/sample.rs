@@ -5,10 +5,10 @@ use pc_expr::{Expr, Function, Graph, Scalar, SymbolPlaces, independent_blocks};
 use crate::identity::running_error::Weighed;
 use crate::linear_algebra::matrix::Matrix;
 
-/// Points at which an identity that the graph cannot decide is tried numerically.
+/// The number of points at which an identity that the graph leaves open is tested.
 pub(crate) const TRIALS: usize = 8;
 
-/// What is left of the terms of a sum that vanishes identically, after some thousand roundings.
+/// The greatest part of its terms in a sum that vanishes identically, after some thousand roundings.
 pub(crate) const HIDDEN: f64 = 1e-12;
 
 /// Values of symbols near which an expression is regular; symbols that are not listed are taken near 1.
@@ -19,7 +19,7 @@ pub struct Neighbourhood<'g> {
 }
 
 impl<'g> Neighbourhood<'g> {
-    /// A sum smaller than this part of its terms counts as rounding, also of constants written with ten digits: a sum
+    /// A sum smaller than this part of its terms counts as rounding, even for constants of ten digits: a sum
     /// that does not vanish is of the order of its terms.
     pub const ROUNDING: f64 = 1e-9;
 
@@ -87,7 +87,7 @@ impl<'g> Neighbourhood<'g> {
         if samples.is_empty() {
             return f64::INFINITY;
         }
-        let mut worst = f64::EPSILON; // numbers prove nothing
+        let mut worst = f64::EPSILON; // numbers alone prove nothing
         for sample in &samples {
             let mut values = sample.iter().copied();
             for terms in &sums {
@@ -99,7 +99,8 @@ impl<'g> Neighbourhood<'g> {
         worst
     }
 
-    /// A neighbourhood in which the expressions have values, if one is found, without any values given for their symbols.
+    /// A neighbourhood in which the expressions have values, if one is found, without any values given for
+    /// their symbols.
     pub fn anywhere(graph: &'g Graph, expressions: &[Expr<'g>]) -> Neighbourhood<'g> {
         let symbols = graph.symbols_of(expressions);
         let about =
@@ -115,14 +116,14 @@ impl<'g> Neighbourhood<'g> {
             return expression.is_zero();
         }
         let samples = self.weighed(graph, &[expression], TRIALS);
-        // A piece of a function may be 0 here and something else elsewhere.
+        // A function of several pieces may be 0 on this piece only.
         let is_zero = |value: &Weighed| value.value == 0.0 && in_pieces(graph, &[expression]);
         let is_rounding = |value: &Weighed| value.rest() <= HIDDEN && !is_zero(value);
         !samples.is_empty() && samples.iter().flatten().all(is_rounding)
     }
 
-    /// The largest rank that a matrix has in numbers at points near by; `None` where it has no numbers, and where these are of one
-    /// piece only.
+    /// The greatest numerical rank of a matrix at nearby points; `None` where it has no values, or where
+    /// these belong to one piece of a function only.
     pub(crate) fn rank(&self, graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<usize> {
         let entries = matrix.nonzero_entries();
         if in_pieces(graph, &entries) {
@@ -143,7 +144,7 @@ impl<'g> Neighbourhood<'g> {
         self.finite(graph, outputs, count, |x: &f64| x.is_finite())
     }
 
-    /// The same with their weights.
+    /// Values with their weights; see [`samples`](Self::samples).
     pub(crate) fn weighed(&self, graph: &'g Graph, outputs: &[Expr<'g>], count: usize) -> Vec<Vec<Weighed>> {
         self.finite(graph, outputs, count, |x: &Weighed| x.is_finite())
     }
@@ -161,7 +162,7 @@ impl<'g> Neighbourhood<'g> {
     }
 }
 
-/// Whether expressions are functions of several pieces.
+/// Whether expressions contain functions of several pieces.
 fn in_pieces<'g>(graph: &'g Graph, expressions: &[Expr<'g>]) -> bool {
     let symbols = graph.symbols_of(expressions);
     let has_pieces = |f: Function| {
@@ -170,7 +171,7 @@ fn in_pieces<'g>(graph: &'g Graph, expressions: &[Expr<'g>]) -> bool {
     expressions.iter().any(|&expression| graph.applies(expression, &symbols, has_pieces))
 }
 
-/// The rank of a matrix whose entries that are not zero have these numbers, block by block.
+/// The rank of a matrix with these values of its nonzero entries, block by block.
 fn rank_of_sample(matrix: &Matrix<Expr<'_>>, sample: &[Weighed]) -> usize {
     let mut numbers = sample.iter().copied();
     let row = |i| matrix.nonzero(i).zip(numbers.by_ref()).map(|((j, _), number)| (j, number)).collect();
@@ -191,7 +192,8 @@ fn rank_of_sample(matrix: &Matrix<Expr<'_>>, sample: &[Weighed]) -> usize {
     blocks.iter().map(of_block).sum()
 }
 
-/// The rank of a matrix of that many columns, by elimination with complete pivoting; what is no more than rounding is zero.
+/// The rank of a matrix of that many columns, by elimination with complete pivoting; rounding errors count as
+/// zero.
 fn rank(mut rows: Vec<Vec<Weighed>>, columns: usize) -> usize {
     let mut open: Vec<usize> = (0..columns).collect();
     let total = rows.len();

@@ -9,9 +9,9 @@ use crate::lie_algebra::lie_algebra::LieAlgebra;
 
 /// An algebra of the catalogue.
 pub struct Entry {
-    /// The name that [`LieAlgebra::named`] knows.
+    /// Its name for [`LieAlgebra::named`].
     pub name: &'static str,
-    /// What it is, with the order and signs of its basis.
+    /// Its description, with the order and signs of its basis.
     pub description: &'static str,
     make: fn() -> LieAlgebra,
 }

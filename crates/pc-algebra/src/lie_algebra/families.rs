@@ -89,7 +89,7 @@ pub(crate) fn known(dim: usize, brackets: &[(usize, usize, usize, i32)]) -> LieA
     LieAlgebra::from_constants(dim, |r, s, m| (listed(r, s, m) - listed(s, r, m)).into())
 }
 
-/// so(n), with constants read off R_ij R_kl − R_kl R_ij.
+/// so(n), with constants from R_ij R_kl − R_kl R_ij.
 pub(crate) fn rotations(n: usize) -> LieAlgebra {
     let planes = planes(n);
     let entry = |(i, j): (usize, usize), a: usize, b: usize| {

@@ -1,4 +1,4 @@
-//! Forms that the adjoint action leaves alone.
+//! Forms that are invariant under the adjoint action.
 
 use num_rational::BigRational;
 use num_traits::Zero;

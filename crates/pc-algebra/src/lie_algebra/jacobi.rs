@@ -7,14 +7,15 @@ use pc_expr::{Number, Scalar};
 use crate::error::AlgebraError;
 use crate::identity::running_error::Weighed;
 
-/// The triple r < s < u of (a, b, c) where it is a cyclic permutation of it.
+/// The triple r < s < u of which (a, b, c) is a cyclic permutation, if it is one.
 pub(crate) fn cyclic(a: usize, b: usize, c: usize) -> Option<(usize, usize, usize)> {
     let rotated = [(a, b, c), (b, c, a), (c, a, b)];
     rotated.into_iter().find(|&(r, s, u)| r < s && s < u)
 }
 
-/// c_rs^p c_pu^m + c_su^p c_pr^m + c_ur^p c_ps^m = 0 for r < s < u among the operators 0..k, 0 for time: with the c_rs^m that
-/// are not 0, `nonzero` = (r, s, m, c_rs^m), (s, r, m) beside (r, s, m), in the order of (r, s, m), m from 1.
+/// c_rs^p c_pu^m + c_su^p c_pr^m + c_ur^p c_ps^m = 0 for r < s < u among the operators 0..k, 0 for time.
+/// `nonzero` lists the nonzero c_rs^m as (r, s, m, c_rs^m) in the order of (r, s, m), with (s, r, m) beside
+/// (r, s, m), m from 1.
 ///
 /// # Errors
 /// [`AlgebraError::Jacobi`].
@@ -49,7 +50,7 @@ mod tests {
 
     use super::*;
 
-    /// The identity as it is written, with all k³ coefficients.
+    /// The identity as written, with all k³ coefficients.
     fn written_out(
         k: usize,
         c: impl Fn(usize, usize, usize) -> i64,
@@ -65,7 +66,7 @@ mod tests {
     proptest! {
         #[test]
         fn nonzero_constants_determine_the_algebra(k in 1_usize..5, seeds in prop::collection::vec(-3_i64..4, 125)) {
-            // Mostly zeros, as in frames of mechanics: then some of them are Lie algebras.
+            // Mostly zeros, as in frames of mechanics: some of them are then Lie algebras.
             let c = |r: usize, s: usize, m: usize| {
                 let upper = |r: usize, s: usize| match seeds[(r * 5 + s) * 5 + m] {
                     large if large.abs() == 3 => large,

@@ -29,13 +29,14 @@ impl LieAlgebra {
         Ok(algebra)
     }
 
-    /// The algebra with constants that are known to be those of one.
+    /// The algebra with constants that are known to satisfy Jacobi's identity.
     pub(crate) fn from_constants(dim: usize, c: impl Fn(usize, usize, usize) -> Number) -> LieAlgebra {
         let all = indices(dim).map(|(r, s, m)| ((r, s, m), c(r, s, m)));
         LieAlgebra { dim, nonzero: all.filter(|(_, c)| !c.is_zero()).collect() }
     }
 
-    /// The algebra with the c_rs^m listed as (r, s, m, c_rs^m), r < s, that are known to be those of one; indices from 0.
+    /// The algebra with the c_rs^m listed as (r, s, m, c_rs^m), r < s, which are known to satisfy Jacobi's
+    /// identity; indices from 0.
     pub(crate) fn from_upper(
         dim: usize,
         upper: impl Iterator<Item = (usize, usize, usize, Number)>,

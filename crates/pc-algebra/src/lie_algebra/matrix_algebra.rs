@@ -54,7 +54,7 @@ fn commutator(x: &[Vec<BigRational>], y: &[Vec<BigRational>]) -> Vec<Vec<BigRati
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
-/// What expresses a matrix in a basis: the echelon form of the rows X_s | e_s.
+/// Coordinates of matrices in a basis: the echelon form of the rows X_s | e_s.
 struct Coordinates {
     echelon: Echelon,
     entries: usize,

@@ -1,4 +1,4 @@
-//! Rank and index: what holds for almost all elements of an algebra and of its dual.
+//! Rank and index: dimensions at almost all elements of an algebra and of its dual.
 
 use pc_expr::{Residue, ResidueEchelon};
 

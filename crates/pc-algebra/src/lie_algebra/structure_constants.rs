@@ -1,7 +1,8 @@
 //! Structure constants as rationals of any size.
 //!
 //! [`Number`] holds numerators and denominators up to 2⁵³ and rounds beyond; elimination soon leaves that
-//! range. Exact properties of an algebra are therefore computed with [`BigRational`] and converted back to [`Number`] at the end.
+//! range. Exact properties of an algebra are therefore computed with [`BigRational`] and converted back to
+//! [`Number`] at the end.
 
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -14,7 +15,7 @@ use crate::linear_algebra::matrix::Matrix;
 /// Largest numerator and denominator of an exact [`Number`].
 const LARGEST: i64 = 1 << 53;
 
-/// The rational that `value` is; `None` for a rounded real.
+/// `value` as a rational; `None` for a rounded real.
 pub(crate) fn exact(value: Number) -> Option<BigRational> {
     match value {
         Number::Rational { num, den } => Some(BigRational::new(num.into(), den.into())),
@@ -22,14 +23,14 @@ pub(crate) fn exact(value: Number) -> Option<BigRational> {
     }
 }
 
-/// The number that `value` is, if its numerator and denominator are small enough.
+/// `value` as a number, if its numerator and denominator are small enough.
 pub(crate) fn small(value: &BigRational) -> Option<Number> {
     let num: i64 = value.numer().to_i64()?;
     let den: i64 = value.denom().to_i64()?;
     (num.abs() <= LARGEST && den <= LARGEST).then(|| Number::ratio(num, den))
 }
 
-/// The number nearest to `value`: `value` itself where it is small.
+/// The number nearest to `value`, equal to it where it is small.
 pub(crate) fn rounded(value: &BigRational) -> Number {
     small(value).unwrap_or_else(|| Number::Real(value.to_f64().unwrap_or(f64::NAN)))
 }
@@ -42,7 +43,7 @@ pub(crate) fn primitive(vector: &[BigRational]) -> Vec<BigRational> {
     vector.iter().map(|x| x / &scale).collect()
 }
 
-/// The greatest rational of which both are whole multiples, by Euclid's algorithm.
+/// The greatest rational of which both are integer multiples, by Euclid's algorithm.
 fn common_divisor(a: &BigRational, b: &BigRational) -> BigRational {
     let (mut a, mut b) = (a.abs(), b.abs());
     while !b.is_zero() {
@@ -133,7 +134,7 @@ impl LieAlgebra {
         Ok(ExactConstants { dim: self.dim(), pairs })
     }
 
-    /// The algebra with rational constants that are known to be those of one.
+    /// The algebra with rational constants that are known to satisfy Jacobi's identity.
     ///
     /// # Errors
     /// [`AlgebraError::TooLarge`] naming the first that no [`Number`] holds exactly.

@@ -4,8 +4,8 @@ use pc_expr::{Expr, Folding, Graph};
 
 use crate::linear_algebra::matrix::Matrix;
 
-/// The coefficients f_s and the rest f_0 of an expression f = f_s z_s + f_0 that is affine in the `symbols` z; `None` for
-/// one that is not.
+/// The coefficients f_s and the rest f_0 of an expression f = f_s z_s + f_0 that is affine in the `symbols`
+/// z; `None` for one that is not.
 ///
 /// |z|, max(z, 0) and the sign of z are not affine, though their second derivatives vanish.
 ///
@@ -67,7 +67,8 @@ pub fn quadratic<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) ->
     (known || vanishes(graph, value - polynomial())).then_some(Quadratic { matrix, linear, constant })
 }
 
-/// The derivatives and the value at z = 0, if they have one: what does not depend on z may be written with quotients of z.
+/// The derivatives and the value at z = 0, if they are defined: an expression independent of z may still
+/// contain quotients by z.
 fn at_zero<'g>(
     graph: &'g Graph,
     derivatives: &[Expr<'g>],
@@ -81,8 +82,8 @@ fn at_zero<'g>(
     defined.then_some((parts, value))
 }
 
-/// Whether derivatives tell all of the value, as they do of polynomials with rounded coefficients, whose identities hold but
-/// for rounding: without corners and jumps, and without poles, beyond which a function may go on otherwise.
+/// Whether derivatives determine the value, up to rounding: functions without corners, jumps and poles,
+/// beyond which they may continue differently.
 fn smooth<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) -> bool {
     !graph.applies(value, symbols, |function| !function.is_smooth()) && !graph.divides_by(value, symbols)
 }
@@ -93,7 +94,7 @@ fn depend<'g>(graph: &'g Graph, values: &[Expr<'g>], symbols: &[Expr<'g>]) -> bo
     values.iter().any(|value| written.iter().any(|&symbol| value.depends_on(symbol)))
 }
 
-/// Whether an expression is zero by its value, also where the graph merges only what is written alike.
+/// Whether an expression is zero by its value, even in a graph that merges by structure only.
 fn vanishes<'g>(graph: &'g Graph, x: Expr<'g>) -> bool {
     if x.is_zero() || graph.folding() == Folding::ByValue {
         return x.is_zero();
@@ -108,7 +109,7 @@ fn vanishes<'g>(graph: &'g Graph, x: Expr<'g>) -> bool {
 mod tests {
     use super::*;
 
-    /// Their slopes do not change with z wherever there are any.
+    /// Their slopes are constant wherever they exist.
     #[test]
     fn piecewise_affine_functions_are_not_affine() {
         let graph = Graph::new();
@@ -146,7 +147,7 @@ mod tests {
         }
     }
 
-    /// Multiplied out in another order they differ in the last digits.
+    /// In another order of multiplication they differ in the last digits.
     #[test]
     fn rounded_coefficients_do_not_hide_a_polynomial() {
         let graph = Graph::new();

@@ -4,8 +4,9 @@
 //! (I. S. Duff, A. M. Erisman, J. K. Reid, *Direct Methods for Sparse Matrices*, 2017, ch. 6). The determinant is the
 //! product of theirs, so each is regular wherever the matrix is.
 
-/// The rows and columns of the diagonal blocks, so that the rows of each have entries in its own columns and in those of
-/// earlier ones only; `entries` are the columns of the entries of each row. `None` if no rows and columns can be matched.
+/// The rows and columns of the diagonal blocks, so that the rows of each have entries in its own columns and
+/// in those of earlier ones only; `entries` are the columns of the entries of each row. `None` if no rows and
+/// columns can be matched.
 pub(crate) fn block_triangular(entries: &[Vec<usize>]) -> Option<Vec<(Vec<usize>, Vec<usize>)>> {
     let n = entries.len();
     let mut row_of = vec![None; n];
@@ -29,7 +30,7 @@ pub(crate) fn block_triangular(entries: &[Vec<usize>]) -> Option<Vec<(Vec<usize>
     Some(components.into_iter().map(block).collect())
 }
 
-/// Finds a column for the row, if need be by giving others to the rows that have them.
+/// Finds a column for the row, if necessary by moving other rows to other columns.
 fn is_matched(row: usize, entries: &[Vec<usize>], tried: &mut [bool], row_of: &mut [Option<usize>]) -> bool {
     for &column in &entries[row] {
         if tried[column] {
@@ -64,9 +65,9 @@ fn components(next: &[Vec<usize>]) -> Vec<Vec<usize>> {
 
 struct Search<'a> {
     next: &'a [Vec<usize>],
-    /// When each node was met.
+    /// The order in which nodes are reached.
     number: Vec<Option<usize>>,
-    /// The first node of the path that it reaches.
+    /// The lowest node of the path that each one reaches.
     low: Vec<usize>,
     path: Vec<usize>,
     found: Vec<Vec<usize>>,
@@ -89,7 +90,7 @@ impl Search<'_> {
             }
         }
         if self.low[node] == number {
-            let start = self.path.iter().rposition(|&other| other == node).unwrap_or(0); // it is on the path
+            let start = self.path.iter().rposition(|&other| other == node).unwrap_or(0); // the node is on the path
             self.found.push(self.path.split_off(start));
         }
     }

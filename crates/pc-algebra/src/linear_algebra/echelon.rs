@@ -26,7 +26,7 @@ impl Echelon {
         echelon
     }
 
-    /// Adds a row to the span and tells whether it was outside.
+    /// Adds a row to the span. Returns whether it was outside.
     pub(crate) fn insert(&mut self, mut row: Vec<BigRational>) -> bool {
         self.reduce(&mut row);
         let Some(pivot) = row.iter().position(|x| !x.is_zero()) else { return false };
@@ -43,7 +43,7 @@ impl Echelon {
         true
     }
 
-    /// Subtracts from `row` what lies in the span, so that it is 0 in every pivot column.
+    /// Subtracts from `row` its part in the span, so that it is 0 in every pivot column.
     pub(crate) fn reduce(&self, row: &mut [BigRational]) {
         for (own, &pivot) in self.rows.iter().zip(&self.pivots) {
             subtract(row, own, pivot);

@@ -8,11 +8,11 @@ use crate::linear_algebra::matrix::Matrix;
 
 /// Blocks up to this size are inverted by cofactors, larger ones by elimination.
 const COFACTORS: usize = 4;
-/// A pivot by which rounding errors grow tenfold is taken as readily as the best one.
+/// Pivots down to this part of the largest are acceptable: rounding errors grow at most tenfold.
 const READILY: f64 = 0.1;
-/// Constants smaller than this against their row are no pivots: rounding errors would grow a thousandfold.
+/// Constants smaller than this part of their row are not pivots: rounding errors would grow a thousandfold.
 const TINY: f64 = 1e-3;
-/// Rounded constants smaller than this against the two that they are the difference of are zero: some hundred roundings.
+/// A difference of rounded constants that is smaller than this part of them is zero: some hundred roundings.
 const ROUNDING: f64 = 1e-13;
 
 /// The inverse of a square matrix; `None` if its determinant is identically zero.
@@ -89,7 +89,7 @@ pub fn determinant<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Ex
     (all.len() <= COFACTORS && matrix.columns() == all.len()).then(|| minor(graph, matrix, &all, &all))
 }
 
-/// Gauss–Jordan elimination of `left | right`, in whatever order pivots are chosen.
+/// Gauss–Jordan elimination of `left | right` with pivots in any order.
 struct Elimination<'g> {
     graph: &'g Graph,
     left: Matrix<Expr<'g>>,
@@ -116,7 +116,7 @@ impl<'g> Elimination<'g> {
         self.open_rows.iter().flat_map(|&i| self.open_columns.iter().map(move |&j| (i, j)))
     }
 
-    /// The first constant that is about as large as any against its row.
+    /// The first constant that is comparable to the largest entry of its row.
     fn constant_pivot(&self) -> Option<(usize, usize)> {
         let is_constant = |&at: &(usize, usize)| self.left[at].constant().is_some_and(|c| !c.is_zero());
         let constants: Vec<(usize, usize)> = self.open().filter(is_constant).collect();
@@ -128,8 +128,8 @@ impl<'g> Elimination<'g> {
         constants.into_iter().find(|&at| best > TINY && shares[at] >= READILY * best)
     }
 
-    /// The rows and columns of the diagonal blocks of what is open, each with zeros in the columns of all later ones;
-    /// one block if that is small; `None` if the zeros alone make the matrix singular.
+    /// The rows and columns of the diagonal blocks of the remaining matrix, each with zeros in the columns of
+    /// all later ones; one block if that is small; `None` if the zeros alone make the matrix singular.
     fn blocks(&self) -> Option<Vec<(Vec<usize>, Vec<usize>)>> {
         let (rows, columns) = (&self.open_rows, &self.open_columns);
         if rows.is_empty() {
@@ -149,8 +149,8 @@ impl<'g> Elimination<'g> {
         Some(blocks.into_iter().map(named).collect())
     }
 
-    /// The size of each entry, relative to the largest that is open in its row. That of an expression is tried at one point,
-    /// and counts as one where it has no value there.
+    /// The size of each entry relative to the largest remaining one in its row. An expression is evaluated at
+    /// one point, and counts as one where it has no value there.
     fn shares(&self) -> Matrix<f64> {
         let open: Vec<(usize, usize)> = self.open().collect();
         let entries: Vec<Expr<'g>> = open.iter().map(|&at| self.left[at]).collect();
@@ -206,7 +206,7 @@ fn difference<'g>(graph: &'g Graph, x: Expr<'g>, y: Expr<'g>) -> Expr<'g> {
 fn cofactor_inverse<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
     let m = a.rows();
     let all: Vec<usize> = (0..m).collect();
-    // Of links that are told by their directions these are sines of the angles between them.
+    // For links given by their directions these are sines of the angles between them.
     let short = |minor: Expr<'g>| graph.merged_angles(&[minor])[0];
     let determinant = short(minor(graph, a, &all, &all));
     if Neighbourhood::anywhere(graph, &[determinant]).vanishes(graph, determinant) {
@@ -220,8 +220,9 @@ fn cofactor_inverse<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Matrix
     }))
 }
 
-/// A⁻¹ = U⁻¹ D⁻¹ Qᵀ with A = Q U, the columns of Q orthogonal, D = QᵀQ and U unit upper triangular (Gram and Schmidt, without
-/// roots). The D_j are positive wherever A is regular; the rounding error is that of the square of its condition.
+/// A⁻¹ = U⁻¹ D⁻¹ Qᵀ with A = Q U, the columns of Q orthogonal, D = QᵀQ and U unit upper triangular (Gram and
+/// Schmidt, without roots). The D_j are positive wherever A is regular; the rounding error is that of the
+/// square of its condition.
 fn orthogonal_inverse<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
     let m = a.rows();
     let dot = |x: &[Expr<'g>], y: &[Expr<'g>]| graph.dot(x.iter().copied(), y.iter().copied());
@@ -302,7 +303,7 @@ mod tests {
         }
     }
 
-    /// Diagonally dominant matrices of any size are regular at every state, whatever minors of theirs vanish there.
+    /// Diagonally dominant matrices of any size are regular at every state, even where minors vanish.
     #[test]
     fn the_inverse_is_regular_wherever_the_matrix_is() {
         let graph = Graph::new();
@@ -330,7 +331,7 @@ mod tests {
         }
     }
 
-    /// log(xy) − log x − log y is zero, though nothing that the graph knows.
+    /// log(xy) − log x − log y is zero, though the graph does not know it.
     #[test]
     fn an_entry_that_is_rounding_everywhere_is_not_a_pivot() {
         let graph = Graph::new();
@@ -349,7 +350,7 @@ mod tests {
         assert!(inverse(&graph, &singular).is_none());
     }
 
-    /// x' = w − u whatever the rounding error of cos(π/2) is.
+    /// x' = w − u, for any rounding error of cos(π/2).
     #[test]
     fn a_rounding_error_is_not_a_pivot() {
         let graph = Graph::new();
@@ -377,7 +378,7 @@ mod tests {
         }
     }
 
-    /// Small constants are as good as others where the row has nothing larger: the unit of a quasi-velocity.
+    /// Small constants are pivots where the row has nothing larger, as with a small unit of a quasi-velocity.
     #[test]
     fn a_small_unit_is_not_a_rounding_error() {
         let graph = Graph::new();

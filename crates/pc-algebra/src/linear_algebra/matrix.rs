@@ -6,14 +6,14 @@ use std::ops::{Index, IndexMut};
 
 use pc_expr::{Expr, Graph, Number, Residue};
 
-/// What may stand in a [`Matrix`].
+/// An entry of a [`Matrix`].
 pub trait MatrixEntry: Copy + PartialEq {
     /// 0
     const ZERO: Self;
-    /// Whether a matrix holds only the entries that are not zero: n bodies that have little to do with each other have frames and
-    /// masses of n² expressions, of which all but some n are zero.
+    /// Whether a matrix stores only its nonzero entries: frames and masses of n independent bodies have n²
+    /// expressions, of which some n are not zero.
     const IS_SPARSE: bool;
-    /// Whether it need not be held.
+    /// Whether the entry is left out of a sparse matrix.
     fn is_nothing(&self) -> bool;
 }
 
@@ -43,9 +43,9 @@ held_whole!(f64: 0.0, Number: Number::ZERO, Residue: Residue::ZERO);
 pub struct Matrix<T> {
     rows: usize,
     columns: usize,
-    /// All entries, row after row, where all are held.
+    /// All entries, row after row, in a dense matrix.
     all: Vec<T>,
-    /// What is held of each row where zeros are not: column and entry, by ascending columns.
+    /// The stored entries of each row of a sparse matrix: column and entry, by ascending columns.
     held: Vec<Vec<(usize, T)>>,
     zero: T,
 }
@@ -64,8 +64,8 @@ impl<T: MatrixEntry> Matrix<T> {
         matrix
     }
 
-    /// The matrix of `columns` columns with these entries in each row, given with their columns in ascending order; the others
-    /// are zero.
+    /// The matrix of `columns` columns with these entries in each row, given with their columns in ascending
+    /// order; the others are zero.
     ///
     /// # Panics
     /// If a column is out of range.
@@ -93,7 +93,7 @@ impl<T: MatrixEntry> Matrix<T> {
         self.columns
     }
 
-    /// Row `i`, zeros and all.
+    /// Row `i`, zeros included.
     pub fn row(&self, i: usize) -> Cow<'_, [T]> {
         if !T::IS_SPARSE {
             return Cow::Borrowed(&self.all[i * self.columns..(i + 1) * self.columns]);
@@ -141,7 +141,7 @@ impl<T: MatrixEntry> Matrix<T> {
         (0..self.rows).map(move |i| self[(i, j)])
     }
 
-    /// All entries, row after row, zeros and all.
+    /// All entries, row after row, zeros included.
     pub fn entries(&self) -> Cow<'_, [T]> {
         if !T::IS_SPARSE {
             return Cow::Borrowed(&self.all);
@@ -221,7 +221,8 @@ impl<'g> Matrix<Expr<'g>> {
         Matrix::from_rows(n, (0..n).map(|i| vec![(i, Expr::ONE)]).collect())
     }
 
-    /// The product with another matrix of as many rows as this one has columns: it costs what is not zero.
+    /// The product with another matrix of as many rows as this one has columns, at the cost of its nonzero
+    /// terms.
     ///
     /// # Panics
     /// If that has fewer.
@@ -244,7 +245,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zeros_that_are_not_held_are_there() {
+    fn zeros_are_entries_of_a_sparse_matrix() {
         let graph = Graph::new();
         let [x, y] = graph.symbols(["x", "y"]);
         let entry = |i: usize, j: usize| match (i, j) {
@@ -261,7 +262,7 @@ mod tests {
         );
         assert_eq!(a.transpose(), Matrix::from_fn(3, 2, |i, j| entry(j, i)));
         assert_eq!(a.map(|entry| 2.0 * entry)[(1, 0)], 2.0 * y);
-        // Written and taken back: the same matrix as one in which it never stood.
+        // An entry written and cleared leaves the same matrix as one that never had it.
         let before = a.clone();
         a[(0, 0)] = y;
         assert_ne!(a, before);
@@ -283,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_held_whole() {
+    fn matrices_of_numbers_are_dense() {
         let a = Matrix::from_rows(2, vec![vec![(1, 3.0)], vec![(0, -1.0)]]);
         assert_eq!(*a.entries(), [0.0, 3.0, -1.0, 0.0]);
         assert_eq!(a.nonzero_rows(), [[(1, 3.0)], [(0, -1.0)]]);

@@ -29,8 +29,8 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.combinations(functions))
     }
 
-    /// Functionally independent Casimirs of the form of an ansatz, Σ a_jl m_j f_l with monomials m_j in those of the variables
-    /// that are `moving` and rational a_jl, and independent of those that the ansatz knows.
+    /// Functionally independent Casimirs of the form of an ansatz, Σ a_jl m_j f_l with monomials m_j in those
+    /// of the variables that are `moving` and rational a_jl, and independent of those known to the ansatz.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for an ansatz with functions of something else than variables and constants.

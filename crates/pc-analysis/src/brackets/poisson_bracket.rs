@@ -21,10 +21,10 @@ use crate::integrals::polynomials::independent;
 /// ∂f/∂y_s y_m that the source adds for other systems is left out: with it (f, g) is not −(g, f). For them use the
 /// [extended](PoissonBracket::extended) bracket.
 ///
-/// Besides the variables, functions may contain symbols that count as constants: the symbols that stand in the tensor, those of
-/// the system it is a bracket of but for its quasi-velocities, and those [declared](PoissonBracket::with_constants). Any
-/// other symbol in a function is an error, quasi-velocities too:
-/// [`Canonical::in_momenta`](pc_mech::Canonical::in_momenta) puts momenta in their place.
+/// Besides the variables, functions may contain symbols that count as constants: the symbols that stand in
+/// the tensor, those of the system it is a bracket of but for its quasi-velocities, and those
+/// [declared](PoissonBracket::with_constants). Any other symbol in a function is an error, quasi-velocities
+/// too: [`Canonical::in_momenta`](pc_mech::Canonical::in_momenta) puts momenta in their place.
 #[derive(Clone, Debug)]
 pub struct PoissonBracket<'g> {
     graph: &'g Graph,
@@ -34,9 +34,9 @@ pub struct PoissonBracket<'g> {
     constants: Vec<Expr<'g>>,
 }
 
-/// The symbols of the system that are neither among the variables of its bracket nor quasi-velocities: time unless it
-/// is a variable, parameters, and what else its equations contain. Where L is not quadratic, H is written with the
-/// quasi-velocities, at whose values its derivatives by the others are those of H(x, y).
+/// The symbols of the system that are neither variables of its bracket nor quasi-velocities: time unless it
+/// is a variable, parameters, and any others in its equations. Where L is not quadratic, H contains the
+/// quasi-velocities; at their values its derivatives by the other symbols are those of H(x, y).
 fn constants<'g>(system: &System<'g>, variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let closed = quadratic(system.graph(), system.lagrangian(), system.quasi_velocities()).is_some();
     let mut constants = system.symbols();
@@ -44,7 +44,7 @@ fn constants<'g>(system: &System<'g>, variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
     constants
 }
 
-/// The symbol of y_0: `p_t`, or one with more `p_` where that is taken.
+/// The symbol of y_0: `p_t`, or one with more `p_` if that is taken.
 fn time_momentum_symbol<'g>(system: &System<'g>, momenta: &[Expr<'g>]) -> Expr<'g> {
     let parameters = system.parameters().iter().map(|&(symbol, _)| symbol);
     let state = system.frame().coordinates().iter().chain(system.quasi_velocities()).chain(momenta).copied();
@@ -65,7 +65,7 @@ fn extended_tensor<'g>(
 ) -> Matrix<Expr<'g>> {
     let (n, k) = (frame.coordinates().len(), y.len());
     let (coordinate, momentum) = (|i: usize| 1 + i, |s: usize| 1 + n + s);
-    // Of thousands of momenta most pairs have no bracket.
+    // Of thousands of momenta, most pairs have no bracket.
     let mut contractions: BTreeMap<(usize, usize), Vec<Expr<'g>>> = BTreeMap::new();
     for (r, s, m, c) in structure.nonzero().filter(|&(r, s, m, _)| r.max(s).max(m) <= k) {
         contractions.entry((r, s)).or_default().push(c * y[m - 1]);
@@ -107,7 +107,7 @@ impl<'g> PoissonBracket<'g> {
         let y = system.momentum_symbols();
         let variables: Vec<Expr<'g>> = system.frame().coordinates().iter().chain(&y).copied().collect();
         let n = system.frame().coordinates().len();
-        // Of the rows (t, x, y_0, y) those of x and y.
+        // The rows of x and y among those of (t, x, y_0, y).
         let row = |i: usize| if i < n { i + 1 } else { i + 2 };
         let tensor = extended_tensor(system.frame(), system.structure(), &y);
         PoissonBracket {
@@ -194,7 +194,7 @@ impl<'g> PoissonBracket<'g> {
         &self.constants
     }
 
-    /// That functions contain nothing but variables and constants.
+    /// Checks that functions contain only variables and constants.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] naming the first other symbol.
@@ -299,25 +299,25 @@ impl<'g> PoissonBracket<'g> {
         Ok(all)
     }
 
-    /// [`of`](PoissonBracket::of) functions that are known to be such.
+    /// [`of`](PoissonBracket::of) for functions already checked.
     fn bracket(&self, f: Expr<'g>, g: Expr<'g>) -> Expr<'g> {
         self.along(&[f], g)[0]
     }
 
-    /// [`rates`](PoissonBracket::rates) likewise.
+    /// [`rates`](PoissonBracket::rates) for functions already checked.
     pub(crate) fn along(&self, functions: &[Expr<'g>], h: Expr<'g>) -> Vec<Expr<'g>> {
         let field = self.variables.iter().copied().zip(self.components(h)).collect::<Vec<_>>();
         self.graph.directional(functions, &field)
     }
 
-    /// [`field`](PoissonBracket::field) likewise.
+    /// [`field`](PoissonBracket::field) for functions already checked.
     fn components(&self, h: Expr<'g>) -> Vec<Expr<'g>> {
         let slope = self.graph.gradient(h, &self.variables);
         let component = |i: usize| self.graph.sum(self.tensor.nonzero(i).map(|(j, entry)| entry * slope[j]));
         (0..self.variables.len()).map(component).collect()
     }
 
-    /// [`jacobi_defect`](PoissonBracket::jacobi_defect) likewise.
+    /// [`jacobi_defect`](PoissonBracket::jacobi_defect) for functions already checked.
     fn defect(&self, f: Expr<'g>, g: Expr<'g>, h: Expr<'g>) -> Expr<'g> {
         let cycle = [(f, g, h), (g, h, f), (h, f, g)];
         self.graph.sum(cycle.map(|(f, g, h)| self.bracket(f, self.bracket(g, h))))

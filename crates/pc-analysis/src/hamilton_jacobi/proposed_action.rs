@@ -1,11 +1,11 @@
-//! Verdicts on a function that is claimed to solve Hamilton–Jacobi's equation.
+//! Verdicts on a function proposed as a solution of Hamilton–Jacobi's equation.
 
 use pc_mech::{Canonical, Expr, Graph, Identity, Neighbourhood};
 
 use crate::error::AnalysisError;
 use crate::hamilton_jacobi::{hamilton_jacobi, slopes};
 
-/// Points at which the residual is looked at, to show the one where it is largest.
+/// The number of points at which the residual is evaluated, to show the largest.
 const POINTS: u64 = 16;
 
 /// The verdict on an action S(t, x, α).
@@ -78,7 +78,7 @@ impl<'g> ProposedAction<'g> {
     }
 }
 
-/// The point, the centre or one of those about it, where the sum of two terms is the largest part of these.
+/// The point, the centre or one near it, where the sum of two terms is the largest part of these.
 fn largest<'g>(graph: &'g Graph, terms: [Expr<'g>; 2], near: &Neighbourhood<'g>) -> Option<Residual> {
     let symbols = graph.symbols_of(&terms);
     let centre =

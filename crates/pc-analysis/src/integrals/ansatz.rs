@@ -74,7 +74,7 @@ impl<'g> Rates<'g> {
         let places: Vec<Places> = self.coordinates.iter().map(|&x| Places::of(self, x, &rates)).collect();
         let generators = self.coordinates.iter().zip(places).flat_map(|(&x, places)| {
             let angle = places.in_circle && !places.elsewhere;
-            // sin² is 1 − cos².
+            // A higher power of the sine is unnecessary: sin² is 1 − cos².
             if angle { vec![(x.cos(), coefficients), (x.sin(), 1)] } else { vec![(x, coefficients)] }
         });
         let functions = monomials(&generators.collect::<Vec<_>>(), coefficients);
@@ -82,9 +82,10 @@ impl<'g> Rates<'g> {
     }
 }
 
-/// Where a symbol stands in an expression: in the argument of a sine or cosine, or elsewhere.
+/// Where a symbol occurs in an expression: in the argument of a sine or cosine, or elsewhere.
 ///
-/// Found by evaluating the expression over this type, the symbol standing elsewhere and all others nowhere.
+/// Found by evaluating the expression over this type, in which the symbol occurs elsewhere and all others
+/// nowhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Places {
     in_circle: bool,
@@ -95,7 +96,7 @@ impl Places {
     fn of<'g>(rates: &Rates<'g>, symbol: Expr<'g>, expressions: &[Expr<'g>]) -> Places {
         let place = |z: &Expr<'g>| (*z, Places { in_circle: false, elsewhere: *z == symbol });
         let values: Vec<_> = rates.graph.symbols_of(expressions).iter().map(place).collect();
-        // All symbols have a value: nothing is unbound.
+        // All symbols have a value, so none is unbound.
         let places = rates.graph.evaluate(expressions, &values).unwrap_or_default();
         places.into_iter().fold(Places::default(), Places::or)
     }

@@ -4,14 +4,14 @@ use pc_mech::{Equations, Expr, Number, System};
 
 use crate::integrals::rates::Rates;
 
-/// A function that may keep its value.
+/// A function that may be an integral.
 #[derive(Clone, Debug)]
 pub struct Integral<'g> {
     /// Its name: as declared, or `energy`, `momentum 1`, `Casimir 1`, `found 1`.
     pub name: String,
     /// The function of (t, x, η).
     pub value: Expr<'g>,
-    /// Where it comes from.
+    /// Its origin.
     pub origin: Origin,
     /// The verdict on its rate.
     pub verdict: ConservationVerdict<'g>,
@@ -21,7 +21,7 @@ pub struct Integral<'g> {
     pub dependent: bool,
 }
 
-/// Where an integral comes from.
+/// The origin of an integral.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Origin {
     /// It is declared with the system.
@@ -63,7 +63,7 @@ pub enum ConservationVerdict<'g> {
     },
 }
 
-/// The functions that the motion keeps, or may keep.
+/// The functions that are integrals, or may be.
 #[derive(Clone, Debug)]
 pub struct Integrals<'g> {
     pub(super) list: Vec<Integral<'g>>,
@@ -93,7 +93,8 @@ impl<'g> Integrals<'g> {
         }
     }
 
-    /// Marks the energy as proved to be conserved, by a theorem where its rate along the equations is not found to vanish.
+    /// Marks the energy as proved to be conserved, by a theorem where its rate along the equations is not
+    /// found to vanish.
     pub fn keep_energy(&mut self, equations: &Equations<'g>) {
         let open = |integral: &&mut Integral<'g>| {
             integral.is_energy() && matches!(integral.verdict, ConservationVerdict::Rate { .. })

@@ -7,9 +7,10 @@ use pc_mech::{Canonical, Expr, System};
 
 /// A field X = a_s X_s, a_s functions of (t, x), with whose momentum a_s y_s the motion keeps a_s y_s + f(t, x).
 ///
-/// It is a symmetry of L up to the rate of f. Where it [commutes](NoetherField::commutes) with all operators it is cyclic in
-/// Chetaev's sense: (9) of the frame with X among its operators has d/dt (a_s y_s) = X L + a_s Q_s. A coordinate that is cyclic
-/// in Lagrange's sense is X = ∂/∂x; the rotations in space of a body described in its own axes are others.
+/// It is a symmetry of L up to the rate of f. Where it [commutes](NoetherField::commutes) with all operators
+/// it is cyclic in Chetaev's sense: (9) of the frame with X among its operators has d/dt (a_s y_s) = X L +
+/// a_s Q_s. A coordinate that is cyclic in Lagrange's sense is X = ∂/∂x; the rotations in space of a body
+/// described in its own axes are others.
 #[derive(Clone, Debug)]
 pub struct NoetherField<'g> {
     /// a_1..a_k
@@ -21,7 +22,7 @@ pub struct NoetherField<'g> {
 }
 
 impl<'g> NoetherField<'g> {
-    /// That of an integral of (t, x, η), if it is linear in the momenta and the equations are
+    /// The field of an integral of (t, x, η), if it is linear in the momenta and the equations are
     /// [closed](Canonical::is_closed).
     ///
     /// ```

@@ -8,13 +8,13 @@ use crate::integrals::polynomials::{Generator, combination, monomials};
 use crate::integrals::rates::Rates;
 use crate::integrals::search::{Search, binomial};
 
-/// The most functions with unknown coefficients: some seconds.
+/// The most functions with unknown coefficients; these take some seconds.
 const MOST_FUNCTIONS: usize = 600;
 
 /// The longest accelerations along which they are differentiated, in operations written out.
 const LONGEST: u32 = 4_000;
 
-/// The most products of known integrals that are left out of what is found.
+/// The most products of known integrals that are excluded from the results.
 const MOST_PRODUCTS: usize = 400;
 
 /// The most factors without velocities in such a product.
@@ -23,7 +23,7 @@ const MOST_OF_PLACE: u32 = 2;
 /// The largest degree in the parameters that coefficients may have.
 const MOST_PARAMETER_DEGREE: u32 = 4;
 
-/// The most products of parameters and functions that have unknown coefficients for that.
+/// The most products of parameters and functions with unknown coefficients in such polynomials.
 const MOST_WITH_PARAMETERS: usize = 300;
 
 /// The form of the integrals to be found: Σ a_jlm m_j p_l f_m with rational a_jlm, monomials m_j in η, monomials p_l
@@ -43,12 +43,12 @@ pub enum AnsatzSearch {
     Made {
         /// The largest degree in the coordinates.
         coefficients: u32,
-        /// How many functions have had an unknown coefficient.
+        /// The number of functions with an unknown coefficient.
         functions: usize,
     },
     /// It was not searched: there are too many functions.
     TooMany {
-        /// How many there are with coefficients that are constant but for the f_m.
+        /// The number of functions with coefficients that contain no coordinates but those of the f_m.
         functions: usize,
     },
     /// It was not searched: the accelerations are too long.
@@ -60,8 +60,9 @@ impl<'g> Integrals<'g> {
     /// coefficients; those of low degree come first. Other functions of integrals before them are marked as dependent,
     /// such as the third component of the Runge–Lenz vector.
     ///
-    /// They are sought for the values that the parameters have. Where the coefficients are polynomials in the parameters, up to a
-    /// common factor, these stand in them and the integral is proved for all their values.
+    /// They are sought for the values that the parameters have. Where the coefficients are polynomials in the
+    /// parameters, up to a common factor, these stand in them and the integral is proved for all their
+    /// values.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of something that is not of the motion.
@@ -105,8 +106,8 @@ impl<'g> Integrals<'g> {
         if costs.fold(0, u32::saturating_add) > LONGEST {
             return Ok(AnsatzSearch::TooLong);
         }
-        // Components in space of what is said in axes of a body are of the third degree in sines and cosines, those of angles
-        // among them on which the equations do not depend.
+        // Space components of vectors given in body axes are of the third degree in sines and cosines,
+        // including those of angles on which the equations do not depend.
         let cyclic =
             rates.coordinates.iter().filter(|&&x| !rates.flow.iter().any(|(_, rate)| rate.depends_on(x)));
         let circular = cyclic.flat_map(|x| [x.cos(), x.sin()]);
@@ -142,7 +143,7 @@ impl<'g> Integrals<'g> {
         Ok(())
     }
 
-    /// Adds those of the relations, all of one degree, that are no polynomials of what is known.
+    /// Adds the relations, all of one degree, that are not polynomials in known integrals.
     fn add_new(&mut self, search: &Search<'_, 'g>, span: &Span<'g>, relations: &[&Vec<Number>], degree: u32) {
         let graph = search.graph;
         let known: Vec<Expr<'g>> = self.conserved().map(|integral| search.bind(integral.value)).collect();
@@ -152,7 +153,7 @@ impl<'g> Integrals<'g> {
         let candidate = |a: &&Vec<Number>| combination(graph, a, &span.functions);
         let new = relations.iter().filter(|a| !is_combination(graph, &all, candidate(a)));
         let new: Vec<(&Vec<Number>, Expr<'g>)> = new.map(|a| (*a, candidate(a))).collect();
-        // Energies of parts are combinations of each other and of the whole, and each is worth its line.
+        // Energies of parts are combinations of each other and of the whole; each is listed nevertheless.
         let values = products.iter().copied().chain(new.iter().map(|&(_, value)| value));
         let columns: Vec<Vec<Expr<'g>>> = values.map(|value| vec![value]).collect();
         let dependent: Vec<usize> =
@@ -179,19 +180,19 @@ impl<'g> Integrals<'g> {
     }
 }
 
-/// The functions that have unknown coefficients.
+/// The functions with unknown coefficients.
 struct Span<'g> {
-    /// Of low degree in η first.
+    /// In ascending degree in η.
     functions: Vec<Expr<'g>>,
-    /// How many of them are of degree ≤ 0, 1, ….
+    /// The number of functions of degree ≤ 0, 1, ….
     up_to_degree: Vec<usize>,
     /// The largest degree in the coordinates.
     coefficients: u32,
 }
 
 impl<'g> Span<'g> {
-    /// With coefficients of the largest degree up to `most` with which they can be tried; else their number with that
-    /// of degree 0.
+    /// The span with coefficients of the largest degree up to `most` that can be tried; otherwise the number
+    /// of functions at degree 0.
     fn new(
         graph: &'g Graph,
         rates: &Rates<'g>,
@@ -202,7 +203,7 @@ impl<'g> Span<'g> {
         let of_velocities = binomial(k + degree, degree);
         let times = 1 + ansatz.functions.len();
         for coefficients in (0..=most).rev() {
-            // Of an angle there are a sine and a cosine, and of these no fewer.
+            // An angle has a sine and a cosine, so it adds no fewer functions.
             let least = binomial(n + coefficients as usize, coefficients as usize);
             if of_velocities.saturating_mul(least).saturating_mul(times) > MOST_FUNCTIONS {
                 continue;
@@ -215,7 +216,7 @@ impl<'g> Span<'g> {
             let up_to_degree = (0..=degree).map(|d| binomial(k + d, d) * places.len() - 1).collect();
             let products = monomials(&moving, ansatz.degree).into_iter();
             let products = products.flat_map(|m| places.iter().map(move |&f| m * f));
-            // The first is the constant 1.
+            // The first function is the constant 1.
             return Ok(Span { functions: products.skip(1).collect(), up_to_degree, coefficients });
         }
         Err(of_velocities.saturating_mul(times))
@@ -243,13 +244,13 @@ fn place_functions<'g>(
             all.push(product);
         }
     }
-    // x²/r³ + y²/r³ is 1/r: a relation of functions is no integral.
+    // x²/r³ + y²/r³ is 1/r: a relation of functions is not an integral.
     let columns: Vec<Vec<Expr<'g>>> = all.iter().map(|&f| vec![f]).collect();
     let dependent: Vec<usize> = graph.dependent_columns(&columns, &[]).into_iter().map(|(j, _)| j).collect();
     (0..all.len()).filter(|j| !dependent.contains(j)).map(|j| all[j]).collect()
 }
 
-/// 1 and the products of at least two of the known integrals of degree ≤ `degree` in η.
+/// 1 and the products of at least two of the known integrals, of degree ≤ `degree` in η.
 fn products<'g>(graph: &'g Graph, known: &[Expr<'g>], eta: &[Expr<'g>], degree: u32) -> Vec<Expr<'g>> {
     let with_degree = |&f: &Expr<'g>| {
         let terms = graph.polynomial(f, eta)?.terms;
@@ -257,7 +258,7 @@ fn products<'g>(graph: &'g Graph, known: &[Expr<'g>], eta: &[Expr<'g>], degree: 
     };
     let known: Vec<(Expr<'g>, u32)> = known.iter().filter_map(with_degree).collect();
     let (mut all, mut last) = (vec![Expr::ONE], vec![(Expr::ONE, 0, 0)]);
-    // Beside those of degree in η there may be some of the place alone.
+    // In addition to those with a degree in η there may be some of the place alone.
     for factors in 1..=degree + MOST_OF_PLACE {
         let longer = last.iter().flat_map(|&(product, power, first)| {
             let rest = known.iter().enumerate().skip(first);
@@ -278,12 +279,12 @@ fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>) -> bool {
     graph.dependent_columns(&columns, &[]).iter().any(|&(j, _)| j == of.len())
 }
 
-/// The integral Σ a_i(p) f_i for all values of the parameters p that is Σ a_i f_i for those they have, up to a factor,
-/// if there is one whose coefficients are polynomials in p of low degree, of those p that its rates contain; that of
-/// the lowest degree.
+/// The integral Σ a_i(p) f_i for all values of the parameters p that equals Σ a_i f_i for the present ones,
+/// up to a factor, if there is one whose coefficients are polynomials of low degree in the parameters of its
+/// rates; the one of lowest degree.
 ///
-/// There is one at most but for its factor: relations of an echelon form are independent without their last function, for these
-/// values and so for almost all.
+/// It is unique up to its factor: relations in echelon form are independent without their last function, for
+/// these values and so for almost all.
 fn with_parameters<'g>(
     search: &Search<'_, 'g>,
     functions: &[Expr<'g>],
@@ -308,7 +309,7 @@ fn with_parameters<'g>(
         let all = scaled(&support);
         let relations = graph.linear_relations(&columns).into_iter();
         let mut found = relations.map(|a| combination(graph, &a, &all));
-        // One that vanishes for these values is another one.
+        // An integral that vanishes for these values is a different one.
         if let Some(found) = found.find(|&f| !search.bind(f).is_zero()) {
             return Some(found);
         }

@@ -1,8 +1,8 @@
-//! Products of powers, from which polynomials with unknown coefficients are made.
+//! Products of powers, the terms of polynomials with unknown coefficients.
 
 use pc_mech::{Expr, Graph, Number};
 
-/// A factor of monomials, and the largest power in which it stands there.
+/// A factor of monomials, and its largest power.
 pub(crate) type Generator<'g> = (Expr<'g>, u32);
 
 /// The products of powers of the generators of degree 0..=`degree`, simple ones first.
@@ -10,7 +10,7 @@ pub(crate) fn monomials<'g>(generators: &[Generator<'g>], degree: u32) -> Vec<Ex
     (0..=degree).flat_map(|degree| of_degree(generators, degree)).collect()
 }
 
-/// Those of one degree.
+/// The products of one degree.
 fn of_degree<'g>(generators: &[Generator<'g>], degree: u32) -> Vec<Expr<'g>> {
     let Some((&(z, largest), rest)) = generators.split_first() else {
         return if degree == 0 { vec![Expr::ONE] } else { Vec::new() };
@@ -28,8 +28,8 @@ pub(crate) fn combination<'g>(graph: &'g Graph, a: &[Number], functions: &[Expr<
     graph.dot(a.iter().map(|&a| a.into()), functions.iter().copied())
 }
 
-/// Those of `candidates` that are no functions of `known` and of candidates before them: each must raise the
-/// rank of ∂f/∂z at almost all points.
+/// Those of `candidates` that are independent of `known` and of earlier candidates: each raises the rank of
+/// ∂f/∂z at almost all points.
 pub(crate) fn independent<'g>(
     graph: &'g Graph,
     variables: &[Expr<'g>],

@@ -44,7 +44,7 @@ pub struct Rates<'g> {
     momenta: Vec<(Expr<'g>, Expr<'g>)>,
     /// Each symbol that changes, with its rate.
     pub(crate) flow: Vec<(Expr<'g>, Expr<'g>)>,
-    /// What counts as constant: parameters, external forces and any other symbol of the system.
+    /// The constants: parameters, external forces and any other symbol of the system.
     constants: Vec<Expr<'g>>,
 }
 
@@ -99,7 +99,7 @@ impl<'g> Rates<'g> {
         }
     }
 
-    /// That functions contain nothing but what has a rate and what counts as constant.
+    /// Checks that functions contain only symbols with a rate and constants.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] naming the first other symbol.
@@ -128,7 +128,7 @@ impl<'g> Rates<'g> {
         Ok(self.along(functions))
     }
 
-    /// [`of_all`](Rates::of_all) of functions that are known to be such.
+    /// [`of_all`](Rates::of_all) for functions already checked.
     pub(crate) fn along(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let functions = self.graph.substitute(functions, &self.accelerations);
         self.graph.substitute(&self.graph.directional(&functions, &self.flow), &self.momenta)

@@ -1,4 +1,4 @@
-//! The integrals of a motion: declared ones, the energy, momenta, Casimirs, and those that an ansatz finds.
+//! The integrals of a motion: declared ones, the energy, momenta, Casimirs, and those of an ansatz.
 
 use pc_mech::{Equations, Expr, Graph, Neighbourhood, System};
 
@@ -8,13 +8,13 @@ use crate::integrals::integral::{ConservationVerdict, Integral, Integrals, Origi
 use crate::integrals::polynomials::combination;
 use crate::integrals::rates::{Conservation, Rates};
 
-/// The most functions with unknown coefficients in an ansatz: some hundredths of a second.
+/// The most functions with unknown coefficients in an ansatz; these take some hundredths of a second.
 const MOST_FUNCTIONS: usize = 150;
 
 impl<'g> Integrals<'g> {
-    /// The declared integrals, the energy, and others that are found, each with a verdict: momenta of cyclic displacements,
-    /// Casimirs, and integrals linear in η with polynomials of low degree as coefficients. `near` has values of time,
-    /// state and parameters.
+    /// The declared integrals, the energy, and others that are found, each with a verdict: momenta of cyclic
+    /// displacements, Casimirs, and integrals linear in η with polynomials of low degree as coefficients.
+    /// `near` has values of time, state and parameters.
     ///
     /// ```
     /// use pc_analysis::Integrals;
@@ -36,7 +36,7 @@ impl<'g> Integrals<'g> {
         integrals
     }
 
-    /// The same without an ansatz.
+    /// As [`find`](Integrals::find), without an ansatz.
     pub fn known(equations: &Equations<'g>, near: &Neighbourhood<'g>) -> Integrals<'g> {
         let search = Search::new(equations, near);
         let mut list = search.declared();
@@ -46,7 +46,8 @@ impl<'g> Integrals<'g> {
         Integrals { list }
     }
 
-    /// Adds the energy of all velocities, which a run observes; y·η − L of the independent ones is then called Jacobi's.
+    /// Adds the energy of all velocities, which a run observes; y·η − L of the independent ones is then
+    /// called Jacobi's.
     pub fn add_energy_of_all(
         &mut self,
         equations: &Equations<'g>,
@@ -69,17 +70,17 @@ impl<'g> Integrals<'g> {
     }
 }
 
-/// Where integrals are looked for.
+/// The equations in which integrals are sought.
 pub(super) struct Search<'a, 'g> {
     pub(super) graph: &'g Graph,
     equations: &'a Equations<'g>,
-    /// With the parameters as numbers.
+    /// The system with numbers for parameters.
     bound: System<'g>,
     pub(super) rates: Rates<'g>,
     near: &'a Neighbourhood<'g>,
     /// (t, x, η, z)
     variables: Vec<Expr<'g>>,
-    /// Whether the brackets are those of all operators, so that the Lagrangian says everything.
+    /// Whether the brackets are those of all operators, so that the Lagrangian determines the motion.
     unconstrained: bool,
 }
 
@@ -190,7 +191,7 @@ impl<'a, 'g> Search<'a, 'g> {
         (1..).zip(new).map(with_parameters).collect()
     }
 
-    /// The verdict on what is proved to be conserved at least for these parameters.
+    /// The verdict on a function that is proved to be conserved at least for these parameters.
     pub(super) fn proved(&self, function: Expr<'g>) -> ConservationVerdict<'g> {
         match self.verdict(function) {
             known @ (ConservationVerdict::Conserved | ConservationVerdict::BetweenJumps) => known,
@@ -199,10 +200,10 @@ impl<'a, 'g> Search<'a, 'g> {
         }
     }
 
-    /// The Casimirs of the bracket (12) in terms of (x, η), those that are no functions of integrals in the
-    /// list; what in the list is a function of Casimirs is called one.
+    /// The Casimirs of the bracket (12) in terms of (x, η) that are independent of the integrals in the list;
+    /// functions of Casimirs in the list are marked as such.
     ///
-    /// Where b_0 = 0, c_0s = 0 and Q = 0, the motion keeps them whatever the Lagrangian.
+    /// Where b_0 = 0, c_0s = 0 and Q = 0, they are integrals for any Lagrangian.
     fn add_casimirs(&self, list: &mut Vec<Integral<'g>>) {
         let (frame, structure) = (self.bound.frame(), self.bound.structure());
         let stationary = frame.b0().iter().all(|b| b.is_zero()) && structure.nonzero().all(|(r, ..)| r > 0);
@@ -259,8 +260,7 @@ impl<'a, 'g> Search<'a, 'g> {
         }
     }
 
-    /// Integrals linear in η with coefficients of low degree in x, those that are no functions of integrals in
-    /// the list.
+    /// Integrals linear in η with coefficients of low degree in x that are independent of those in the list.
     fn add_found(&self, list: &mut Vec<Integral<'g>>) {
         let (n, k) = (self.bound.frame().coordinates().len(), self.bound.quasi_velocities().len());
         let largest = if n <= 4 { 2 } else { 1 };
@@ -285,18 +285,18 @@ impl<'a, 'g> Search<'a, 'g> {
         }
     }
 
-    /// Whether f is no function of the known ones.
+    /// Whether f is independent of the known functions.
     pub(super) fn is_new(&self, known: &[Expr<'g>], f: Expr<'g>) -> bool {
         self.rank(&[known, &[f]].concat()) > self.rank(known)
     }
 
-    /// How many of the functions are independent.
+    /// The number of independent functions.
     fn rank(&self, functions: &[Expr<'g>]) -> usize {
         rank_of_gradients(self.graph, functions, &self.variables)
     }
 }
 
-/// Rank of ∂f/∂z at almost all points: how many of the functions are independent.
+/// Rank of ∂f/∂z at almost all points: the number of independent functions.
 pub(crate) fn rank_of_gradients<'g>(
     graph: &'g Graph,
     functions: &[Expr<'g>],

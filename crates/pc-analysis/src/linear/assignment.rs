@@ -1,10 +1,10 @@
-//! The cheapest pairing.
+//! Pairing at the least cost.
 
-/// For each row of a square matrix of costs the column it is paired with, so that the sum of the costs is least: the method of
-/// H. W. Kuhn and J. Munkres with potentials, O(n³).
+/// For each row of a square matrix of costs the column it is paired with, such that the sum of the costs is
+/// least: the method of H. W. Kuhn and J. Munkres with potentials, O(n³).
 pub(super) fn cheapest(costs: &[Vec<f64>]) -> Vec<usize> {
     let n = costs.len();
-    // Row and column 0 are none; a column knows its row.
+    // Row and column 0 are placeholders; each column stores its row.
     let (mut of_row, mut of_column) = (vec![0.0; n + 1], vec![0.0; n + 1]);
     let (mut row_of, mut from) = (vec![0; n + 1], vec![0; n + 1]);
     for row in 1..=n {
@@ -51,7 +51,7 @@ pub(super) fn cheapest(costs: &[Vec<f64>]) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    /// Against all pairings.
+    /// Compared with all pairings.
     #[test]
     fn no_pairing_is_cheaper() {
         fn least(costs: &[Vec<f64>], row: usize, used: &mut Vec<usize>) -> f64 {

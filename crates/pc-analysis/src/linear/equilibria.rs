@@ -13,8 +13,8 @@ use crate::stability::steady_motion::SteadyOptions;
 use crate::stability::steady_motions::{SAME, periods, primes};
 use crate::stability::steady_search::{EnergyCriterion, Known, NearbySteadyMotion, Seeker, largest};
 
-/// A search for equilibria by Newton's method from many starts: those of a sequence of low discrepancy, multiples of roots of
-/// primes modulo 1 (R. Kronecker, H. Weyl), the same each time.
+/// A search for equilibria by Newton's method from many starts: those of a sequence of low discrepancy,
+/// multiples of roots of primes modulo 1 (R. Kronecker, H. Weyl), the same each time.
 ///
 /// ```
 /// use pc_analysis::{EquilibriumSearch, Leaf, Linearizer};
@@ -40,13 +40,14 @@ pub struct EquilibriumSearch {
 }
 
 impl Default for EquilibriumSearch {
-    /// Angles over a turn about the start, other coordinates and first-order states from it by 2 (1 + |x|) to both sides; 256 starts.
+    /// Angles over a turn about the start, other coordinates and first-order states from it by 2 (1 + |x|) to
+    /// both sides; 256 starts.
     fn default() -> EquilibriumSearch {
         EquilibriumSearch { bounds: Vec::new(), starts: 256 }
     }
 }
 
-/// What was found.
+/// The result of the search.
 #[derive(Clone, Debug)]
 pub struct Equilibria {
     /// The equilibria in ascending order of energy.
@@ -57,7 +58,7 @@ pub struct Equilibria {
     pub bounds: Vec<(String, f64, f64)>,
     /// The number of starts, and of those from which Newton's method converged.
     pub starts: usize,
-    /// Of these.
+    /// The number of starts from which it converged.
     pub converged: usize,
 }
 
@@ -70,25 +71,25 @@ pub struct FoundEquilibrium {
     pub energy: f64,
     /// The first approximation without cyclic coordinates.
     pub linearization: Linearization,
-    /// What is known of its stability.
+    /// The results on its stability.
     pub motion: NearbySteadyMotion,
     /// The dimension of the family of which it is one, beside what cyclic coordinates make of it; 0 if it is isolated.
     pub family: usize,
-    /// How many members of the family were found.
+    /// The number of members of the family that were found.
     pub members: usize,
 }
 
 /// Steps of Newton's method.
 const MOST_STEPS: usize = 60;
 
-/// Where rates are steeper than this many times those at the start, coordinates are singular.
+/// Where rates are steeper than at the start by this factor, coordinates are singular.
 const MOST_STEEPER: f64 = 1e6;
 
-/// A rate that is more than this part of what its slopes make of the state would vanish at another state only, such as a
-/// force that falls off with distance.
+/// A rate above this part of |∂f/∂y| (1 + |y|) is not near a zero: it is small by decay, such as a force at a
+/// distance.
 const FALLING: f64 = 1e-3;
 
-/// Energies of a family that agree so well are one.
+/// Relative differences of energy within one family.
 const SAME_ENERGY: f64 = 1e-9;
 
 impl EquilibriumSearch {
@@ -105,15 +106,15 @@ impl EquilibriumSearch {
         EquilibriumSearch { starts, ..self }
     }
 
-    /// The equilibria found, on the leaf of the start (t, y): all rates vanish. No two are the same modulo the periods of
-    /// angles; of a family with one energy there is one member. There may be others.
+    /// The equilibria found, on the leaf of the start (t, y): all rates vanish. No two are the same modulo
+    /// the periods of angles; of a family with one energy there is one member. There may be others.
     ///
-    /// `integrals` are those of the `equations` in independent quasi-velocities, by which the energy criterion judges; `linearizer` is
-    /// of these equations, or of those with multipliers.
+    /// `integrals` are those of the `equations` in independent quasi-velocities, by which the energy
+    /// criterion judges; `linearizer` is of these equations, or of those with multipliers.
     ///
     /// # Errors
-    /// [`AnalysisError::UnknownComponent`], [`AnalysisError::CyclicBox`] or [`AnalysisError::EmptyBox`] for a wrong box;
-    /// [`AnalysisError::DependsOnTime`], [`AnalysisError::LeafUnknown`].
+    /// [`AnalysisError::UnknownComponent`], [`AnalysisError::CyclicBox`] or [`AnalysisError::EmptyBox`] for a
+    /// wrong box; [`AnalysisError::DependsOnTime`], [`AnalysisError::LeafUnknown`].
     pub fn run<'g>(
         &self,
         equations: &Equations<'g>,
@@ -126,7 +127,7 @@ impl EquilibriumSearch {
         linearizer.check_searchable(t, start)?;
         let steepest = MOST_STEEPER * largest(&linearizer.at(t, start)?.state_matrix).max(1.0);
         let known = Known::of(equations, integrals);
-        // Of equations in other variables than those of the state only the energy is of use.
+        // If the equations are in variables other than the state, only their energy is used.
         let is_own = equations.system().state().len() == start.len();
         let seeker = if is_own { Seeker::new(equations, &mut motion, t, start, &known) } else { None };
         let keeps_energy = integrals.iter().any(|integral| integral.is_energy() && integral.is_conserved());
@@ -210,7 +211,8 @@ impl EquilibriumSearch {
     }
 }
 
-/// In a stable order; what is equal but for rounding is no order that the standard library may be given.
+/// A stable sort by an order with equality up to rounding, which is not transitive as the standard library
+/// requires.
 fn insertion_sorted<T>(list: &mut [T], order: impl Fn(&T, &T) -> std::cmp::Ordering) {
     for i in 1..list.len() {
         let mut j = i;
@@ -221,7 +223,7 @@ fn insertion_sorted<T>(list: &mut [T], order: impl Fn(&T, &T) -> std::cmp::Order
     }
 }
 
-/// Where it is searched.
+/// The domain of the search.
 struct Domain {
     edges: Vec<Edge>,
     periods: Vec<Option<f64>>,
@@ -235,7 +237,7 @@ struct Edge {
 }
 
 impl Domain {
-    /// Start number 0 is that of the model at rest, if it is in the box.
+    /// Start number 0 is the model at rest, if that is in the box.
     fn guess(&self, number: usize, start: &[f64], coordinates: usize, velocities: usize) -> Vec<f64> {
         let mut guess = start.to_vec();
         guess[coordinates..coordinates + velocities].fill(0.0);
@@ -249,19 +251,19 @@ impl Domain {
         guess
     }
 
-    /// Angles within a turn from the lower bound of their box, else nearest to zero.
+    /// Angles within a turn from the lower bound of their box, or nearest to zero.
     fn normalised(&self, mut state: Vec<f64>, start: &[f64]) -> Vec<f64> {
         for (i, period) in self.periods.iter().enumerate() {
             let Some(period) = period else { continue };
             let given = self.edges.iter().find(|edge| edge.place == i && edge.is_given);
             let turns = match given {
-                // At the bound, but for rounding, is in the box.
+                // On the bound, up to rounding, is inside the box.
                 Some(edge) => ((state[i] - edge.low + SAME) / period).floor(),
                 None if self.edges.iter().any(|edge| edge.place == i) => (state[i] / period).round(),
                 None => ((state[i] - start[i]) / period).round(),
             };
             state[i] -= turns * period;
-            // Half a turn back is half a turn on.
+            // Minus half a turn is half a turn.
             if given.is_none() && (state[i] + period / 2.0).abs() <= SAME {
                 state[i] += period;
             }
@@ -269,7 +271,7 @@ impl Domain {
         state
     }
 
-    /// Whether it is in the boxes that are given.
+    /// Whether a state is in the given boxes.
     fn contains(&self, state: &[f64]) -> bool {
         self.edges.iter().filter(|edge| edge.is_given).all(|edge| {
             let margin = SAME * (1.0 + edge.low.abs().max(edge.high.abs()));
@@ -290,12 +292,12 @@ impl Domain {
     }
 }
 
-/// Eigenvalues of a form that are a smaller part of the largest are zeros.
+/// Eigenvalues of a form that are a smaller part of the largest count as zero.
 const DEFINITE: f64 = 1e-10;
 
 impl FoundEquilibrium {
-    /// The energy criterion in independent coordinates: where nothing is lost or gained, a least potential energy, K > 0, is stable
-    /// (J. L. Lagrange, P. G. L. Dirichlet).
+    /// The energy criterion in independent coordinates: for a conservative system a minimum of the potential
+    /// energy, K > 0, is stable (J. L. Lagrange, P. G. L. Dirichlet).
     fn by_stiffness(&self) -> Result<Option<EnergyCriterion>, AnalysisError> {
         let Ok(second) = &self.linearization.second_order else { return Ok(None) };
         let k = &second.stiffness;
@@ -307,7 +309,8 @@ impl FoundEquilibrium {
         Ok(Some(EnergyCriterion { verdict, variables: None }))
     }
 
-    /// Whether both are members of what may be one family: energy is constant along one, and so is the kind of stability.
+    /// Whether two equilibria may belong to one family, along which the energy and the kind of stability are
+    /// constant.
     fn is_of_family(&self, other: &FoundEquilibrium) -> bool {
         self.family > 0
             && self.family == other.family
@@ -317,7 +320,7 @@ impl FoundEquilibrium {
 }
 
 impl Linearizer {
-    /// The state of an equilibrium near a guess, if there is one where coordinates are regular.
+    /// The equilibrium near a guess, if there is one where coordinates are regular.
     fn equilibrium(
         &mut self,
         t: f64,

@@ -5,12 +5,12 @@ use pc_mech::{Matrix, SingularValues};
 use crate::error::AnalysisError;
 use crate::numeric::dense::{norm, product};
 
-/// Singular values, and rows of an orthonormal basis, below this part of the largest are zeros. Entries of frames and slopes
-/// of constraints are known to some ten or hundred roundings.
+/// Singular values, and rows of an orthonormal basis, below this part of the largest are zeros. Entries of
+/// frames and slopes of constraints are accurate to some ten or hundred roundings.
 const ZERO: f64 = 1e-10;
 
-/// The directions δx in which coordinates can move: the image of b, which is tangent to the leaf of an integrable frame
-/// (Frobenius), within the kernel of the slopes of position constraints.
+/// The directions δx in which coordinates can move: the image of b, tangent to the leaf of an integrable
+/// frame (Frobenius), within the kernel of the slopes of position constraints.
 #[derive(Clone, Debug)]
 pub(super) struct Directions {
     /// An orthonormal basis as columns, n × d.
@@ -20,19 +20,19 @@ pub(super) struct Directions {
 /// Some coordinates in terms of independent ones among them, δx = T δξ.
 #[derive(Clone, Debug)]
 pub(super) struct Chart {
-    /// The places of the independent ones, ascending.
+    /// The indices of the independent ones, ascending.
     pub(super) independent: Vec<usize>,
     /// T, a row for each of the coordinates.
     pub(super) of_independent: Matrix<f64>,
 }
 
 impl Directions {
-    /// Of the frame b, n × k, and the slopes of the positions, m × n.
+    /// The directions for the frame b, n × k, and the slopes of the positions, m × n.
     pub(super) fn new(b: &Matrix<f64>, slopes: &Matrix<f64>) -> Result<Directions, AnalysisError> {
         let n = b.rows();
         let frame = SingularValues::of(b)?;
         let rank = frame.rank(ZERO * frame.values.first().copied().unwrap_or(0.0));
-        // Slopes in units of their own.
+        // Slopes are scaled to length one.
         let sizes: Vec<f64> = (0..slopes.rows()).map(|a| norm(&slopes.row(a))).collect();
         let across = |i: usize, j: usize| match i.checked_sub(n - rank) {
             None => frame.left[(j, rank + i)],
@@ -44,7 +44,7 @@ impl Directions {
         Ok(Directions { basis: factors.kernel(factors.rank(ZERO)) })
     }
 
-    /// Independent ones among these coordinates: those that move most freely, the first of equal ones.
+    /// Independent ones among these coordinates: those that move most freely, the first among equals.
     pub(super) fn chart(&self, coordinates: &[usize]) -> Result<Chart, AnalysisError> {
         let d = self.basis.columns();
         let all = Matrix::from_fn(coordinates.len(), d, |i, j| self.basis[(coordinates[i], j)]);
@@ -71,12 +71,12 @@ pub(super) struct Velocities {
     pub(super) independent: Vec<usize>,
     /// T, k × l.
     pub(super) of_independent: Matrix<f64>,
-    /// S, k × n, with no rows of the independent ones.
+    /// S, k × n, zero in the rows of the independent ones.
     pub(super) of_coordinates: Matrix<f64>,
 }
 
 impl Velocities {
-    /// Of the slopes of the conditions by n coordinates and k quasi-velocities.
+    /// From the slopes of the conditions by n coordinates and k quasi-velocities.
     pub(super) fn new(slopes: &Matrix<f64>, n: usize, k: usize) -> Result<Velocities, AnalysisError> {
         let by_velocities = Matrix::from_fn(slopes.rows(), k, |a, s| slopes[(a, n + s)]);
         let by_coordinates = Matrix::from_fn(slopes.rows(), n, |a, i| -slopes[(a, i)]);
@@ -91,18 +91,18 @@ impl Velocities {
     }
 }
 
-/// What some roundings of products of numbers up to 1 leave of a zero.
+/// The remainder of a zero after some roundings of products of numbers up to 1.
 const ROUNDING: f64 = 1e-14;
 
-/// Rows that are a basis of all rows, ascending: each time the one of which most is left beside those taken before, the first
-/// of equal ones; none of which less than `zero` is.
+/// Rows that are a basis of all rows, ascending: each time the row with the greatest remainder orthogonal to
+/// those taken, the first among equals, as long as it is at least `zero`.
 pub(super) fn independent_rows(matrix: &Matrix<f64>, zero: f64) -> Vec<usize> {
     let mut left: Vec<Vec<f64>> = matrix.to_rows();
     let mut picked = Vec::new();
     while picked.len() < matrix.columns() {
         let sizes: Vec<f64> = left.iter().map(|row| norm(row)).collect();
         let largest = sizes.iter().fold(0.0f64, |largest, &size| largest.max(size));
-        // Equal but for rounding is equal.
+        // Equality up to rounding counts.
         let Some(next) = sizes.iter().position(|&size| size >= largest * (1.0 - ZERO)) else { break };
         if largest <= zero {
             break;

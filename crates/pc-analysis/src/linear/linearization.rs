@@ -11,8 +11,9 @@ use crate::numeric::dense::{norm, product};
 use crate::stability::spectrum::Spectrum;
 use crate::stability::steady_motion::{SteadyOptions, first_approximation};
 
-/// δẏ = A δy + B δu, δh = C δy + D δu for small deviations of the reduced state: independent coordinates of the states that
-/// satisfy the constraints, independent quasi-velocities, and first-order states. Inputs deviate from the values they have.
+/// δẏ = A δy + B δu, δh = C δy + D δu for small deviations of the reduced state: independent coordinates of
+/// the states that satisfy the constraints, independent quasi-velocities, and first-order states. Inputs
+/// deviate from the values they have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearization {
     /// Time.
@@ -51,7 +52,7 @@ pub struct Linearization {
     pub second_order: Result<SecondOrder, NoSecondOrder>,
 }
 
-/// Which cyclic coordinates are components of the reduced state.
+/// The cyclic coordinates that are components of the reduced state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum CyclicCoordinates {
     /// None: stability is judged without them.
@@ -61,14 +62,15 @@ pub enum CyclicCoordinates {
     KeptAtRest,
 }
 
-/// The part of |∂f/∂y| (1 + |y|) up to which a rate counts as zero.
+/// A rate counts as zero up to this part of |∂f/∂y| (1 + |y|).
 const AT_REST: f64 = 1e-12;
 
 impl Linearizer {
     /// At the equilibrium or steady motion near a state, found by Newton's method; cyclic coordinates are left out.
     ///
     /// # Errors
-    /// [`AnalysisError::NoSteadyMotion`] with the residual; [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`].
+    /// [`AnalysisError::NoSteadyMotion`] with the residual; [`AnalysisError::DependsOnTime`];
+    /// [`AnalysisError::LeafUnknown`].
     pub fn steady(
         &mut self,
         t: f64,
@@ -78,7 +80,7 @@ impl Linearizer {
         self.steady_with(t, guess, options, CyclicCoordinates::LeftOut)
     }
 
-    /// The same with a choice about the cyclic coordinates.
+    /// As [`steady`](Linearizer::steady), with a choice about the cyclic coordinates.
     ///
     /// # Errors
     /// As there.
@@ -100,8 +102,8 @@ impl Linearizer {
         Ok(result)
     }
 
-    /// The Jacobian on the states that satisfy the constraints, at any of them, whether or not it is steady; with all cyclic
-    /// coordinates. The reduced state deviates from a solution that moves there.
+    /// The Jacobian on the states that satisfy the constraints, at any of them, whether or not it is steady;
+    /// with all cyclic coordinates. The reduced state deviates from a solution that moves there.
     ///
     /// # Errors
     /// [`ShapeError`](pc_mech::ShapeError); where f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
@@ -116,7 +118,7 @@ impl Linearizer {
         self.put_together(t, state, &[], is_steady)
     }
 
-    /// The cyclic coordinates that move, and those on whose rates these act.
+    /// The cyclic coordinates that move, and those on whose rates they act.
     fn moving(&mut self, t: f64, state: &[f64]) -> Result<Vec<usize>, AnalysisError> {
         let rates = self.motion.rates(t, state)?;
         let jacobian = first_approximation(&mut self.motion, t, state)?;
@@ -134,7 +136,7 @@ impl Linearizer {
         }
     }
 
-    /// The cyclic coordinates on whose rates some of these act.
+    /// The cyclic coordinates on whose rates these act.
     fn acted_on(&self, by: &[usize]) -> Vec<usize> {
         let pattern = self.motion.sparsity();
         let acts_on = |i: usize| by.iter().any(|&j| pattern.is_none_or(|all| all.column(j).contains(&i)));
@@ -195,7 +197,7 @@ impl Linearizer {
         })
     }
 
-    /// In the coordinates that are not cyclic, and as many cyclic ones as it takes.
+    /// In the coordinates that are not cyclic, and as many cyclic ones as needed.
     fn second_order(
         &self,
         evaluated: &Evaluated,
@@ -227,7 +229,7 @@ impl Linearizer {
 }
 
 impl Evaluated {
-    /// The reduced state with these coordinates of n, of a state of `all` components.
+    /// The reduced state with these of the n coordinates, for a state of `all` components.
     fn reduced(&self, coordinates: &[usize], n: usize, all: usize) -> Result<Reduced, AnalysisError> {
         let chart = self.directions.chart(coordinates)?;
         let Velocities { independent, of_independent, of_coordinates } = &self.velocities;

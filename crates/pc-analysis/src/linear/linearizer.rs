@@ -31,7 +31,7 @@ impl<'g> Leaf<'g> {
         Leaf { whole: system.clone(), positions: Vec::new(), kept: Vec::new() }
     }
 
-    /// How many functions of the coordinates the frame keeps, n − rank b.
+    /// The number of functions of the coordinates that the frame keeps, n − rank b.
     pub fn codimension(&self) -> usize {
         self.whole.frame().coordinates().len() - self.whole.frame().rank()
     }
@@ -66,29 +66,29 @@ impl<'g> Leaf<'g> {
 pub struct Linearizer {
     pub(super) motion: Motion,
     pub(super) cyclic: Vec<usize>,
-    /// Whether rates depend on time for the values of the parameters that the equations have, and for any.
+    /// Whether rates depend on time for the present parameters, and for any parameters.
     depends_on_time: bool,
     names_time: bool,
-    /// Names and places of the inputs among the parameters.
+    /// Names of the inputs and their places among the parameters.
     inputs: Vec<(String, usize)>,
     outputs: Vec<String>,
-    /// The positions, what is kept and the conditions on velocities, then their slopes.
+    /// The positions, the kept functions and the conditions on velocities, then their slopes.
     surface: Evaluator,
-    /// b, M, and of each output the derivatives by the state, the accelerations and the inputs.
+    /// b, M, and for each output its derivatives by the state, the accelerations and the inputs.
     parts: Evaluator,
     pub(super) sizes: Sizes,
     /// Whether as many functions are known as the frame keeps.
     is_leaf_known: bool,
 }
 
-/// How many there are of what.
+/// The numbers of all parts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sizes {
     pub(super) coordinates: usize,
-    /// Quasi-velocities of the state, and all.
+    /// Quasi-velocities of the state, and in total.
     pub(super) velocities: usize,
     whole: usize,
-    /// Rows of the mass matrix; none of a large tree.
+    /// Rows of the mass matrix; 0 for a large tree.
     mass: usize,
     positions: usize,
     kept: usize,
@@ -96,7 +96,7 @@ pub(super) struct Sizes {
     conditions: usize,
 }
 
-/// What the parts are at a state.
+/// The parts at a state.
 pub(super) struct Evaluated {
     /// ∂f/∂y
     pub(super) jacobian: Matrix<f64>,
@@ -111,7 +111,7 @@ pub(super) struct Evaluated {
 }
 
 impl Linearizer {
-    /// Of equations in independent quasi-velocities, with the parameters that are inputs.
+    /// Linearizes equations in independent quasi-velocities, with the parameters that are inputs.
     ///
     /// # Errors
     /// [`AnalysisError::UnknownComponent`] for an input that is no parameter; otherwise as
@@ -125,8 +125,8 @@ impl Linearizer {
         Linearizer::of(equations.compile_for(options)?, equations, leaf, &[], inputs)
     }
 
-    /// Of equations with multipliers, which are regular wherever the constraints are: no choice of independent velocities is, as
-    /// that of ẏ at the lowest point of a circle.
+    /// Linearizes equations with multipliers, which are regular wherever the constraints are: no choice of
+    /// independent velocities is, as that of ẏ at the lowest point of a circle.
     ///
     /// # Errors
     /// As [`new`](Linearizer::new).
@@ -140,7 +140,7 @@ impl Linearizer {
         Linearizer::of(motion, multipliers.equations(), leaf, multipliers.velocities(), inputs)
     }
 
-    /// `conditions` on the velocities hold.
+    /// As [`new`](Linearizer::new), with `conditions` on the velocities.
     fn of<'g>(
         motion: Motion,
         equations: &Equations<'g>,
@@ -220,7 +220,7 @@ impl Linearizer {
         self.motion.names()
     }
 
-    /// Where the quasi-velocities stand in the state.
+    /// The range of the quasi-velocities in the state.
     pub fn quasi_velocities(&self) -> Range<usize> {
         self.sizes.coordinates..self.sizes.coordinates + self.sizes.velocities
     }
@@ -253,12 +253,12 @@ impl Linearizer {
         let parameters = &mut self.motion.parameters_mut()[..values.len()];
         if parameters != values {
             parameters.copy_from_slice(values);
-            // A factor that was zero may be none now.
+            // A vanishing factor may have become nonzero.
             self.depends_on_time = self.names_time;
         }
     }
 
-    /// That there are equilibria that can be looked for.
+    /// Checks that equilibria can be searched for.
     ///
     /// # Errors
     /// [`AnalysisError::DependsOnTime`], [`AnalysisError::LeafUnknown`].
@@ -275,8 +275,9 @@ impl Linearizer {
     /// The equilibrium or steady motion near a state, on the leaf of that state.
     ///
     /// # Errors
-    /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`] where Newton's method would have to know functions of
-    /// the coordinates that are not among those kept, and the state is not steady itself; otherwise as [`SteadyMotion::near`].
+    /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`] where Newton's method would have to
+    /// know functions of the coordinates that are not among those kept, and the state is not steady itself;
+    /// otherwise as [`SteadyMotion::near`].
     pub(super) fn find(
         &mut self,
         t: f64,
@@ -286,7 +287,7 @@ impl Linearizer {
         if self.depends_on_time {
             return Err(AnalysisError::DependsOnTime);
         }
-        // Without all functions of the leaf no coordinate is moved.
+        // Unless all functions of the leaf are known, coordinates are not moved.
         let options = match self.is_leaf_known {
             true => options.clone(),
             false => options.clone().fixed(self.names()[..self.sizes.coordinates].to_vec()),
@@ -294,7 +295,7 @@ impl Linearizer {
         let residual = match self.find_on(t, guess, guess, &options) {
             Err(AnalysisError::NoSteadyMotion { residual, .. }) if !self.is_leaf_known => residual,
             Err(failure @ AnalysisError::NoSteadyMotion { .. }) => {
-                // From a start that moves fast the way may be shorter from the same place at rest.
+                // From a fast start the same place at rest may be closer.
                 let mut at_rest = guess.to_vec();
                 at_rest[self.quasi_velocities()].fill(0.0);
                 let is_free = !self.names()[self.quasi_velocities()].iter().any(|name| options.holds(name));
@@ -306,7 +307,7 @@ impl Linearizer {
         Err(AnalysisError::LeafUnknown { residual })
     }
 
-    /// That near a guess, on the leaf of a state.
+    /// The equilibrium or steady motion near a guess, on the leaf of a state.
     pub(super) fn find_on(
         &mut self,
         t: f64,
@@ -319,12 +320,13 @@ impl Linearizer {
         SteadyMotion::on_surface(&mut motion, t, guess, options, |y| self.surface_at(t, y, Some(&levels)))
     }
 
-    /// The values of what is kept, behind those of the positions.
+    /// The values of the kept functions, after those of the positions.
     pub(super) fn levels(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, AnalysisError> {
         Ok(self.surface_at(t, state, None)?.0)
     }
 
-    /// The positions, what is kept less its `levels`, and the conditions on velocities, with their slopes.
+    /// The positions, the kept functions minus their `levels`, and the conditions on velocities, with their
+    /// slopes.
     pub(super) fn surface_at(
         &mut self,
         t: f64,
@@ -399,8 +401,8 @@ impl Linearizer {
         })
     }
 
-    /// The dimension of the family of equilibria or steady motions on the leaf that a state is one of, as far as the first order
-    /// tells: that of the kernel of the slopes of the rates `kept`, by the components `free`.
+    /// The dimension of the family of equilibria or steady motions through a state on its leaf, to first
+    /// order: that of the kernel of the slopes of the rates `kept`, by the components `free`.
     pub(super) fn family(
         &mut self,
         t: f64,

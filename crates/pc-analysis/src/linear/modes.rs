@@ -11,8 +11,8 @@ use crate::stability::spectrum::{Eigenvalue, Spectrum};
 pub struct Mode {
     /// λ
     pub eigenvalue: Eigenvalue,
-    /// v, pairs of real and imaginary part of each component, the largest of them 1. None for a multiple zero beyond the kernel:
-    /// deviations grow with a power of t there.
+    /// v, pairs of real and imaginary part of each component, the largest of them 1. None for a multiple zero
+    /// beyond the kernel: deviations grow with a power of t there.
     pub vector: Option<Vec<(f64, f64)>>,
 }
 
@@ -22,7 +22,8 @@ pub(super) fn modes(matrix: &Matrix<f64>, spectrum: &Spectrum) -> Result<Vec<Mod
     let zeros = spectrum.zero_blocks().first().copied().unwrap_or(0);
     let mut kernel = kernel(matrix, zeros)?.into_iter();
     let is_zero = |value: &Eigenvalue| zeros > 0 && value.real == 0.0 && value.imaginary == 0.0;
-    // Zeros come out of the routine as small numbers: those farthest from all others are left for them.
+    // Zero eigenvalues are computed as small numbers: those farthest from all nonzero ones are left over for
+    // them.
     let mut taken = Vec::new();
     for value in spectrum.eigenvalues().iter().filter(|value| !is_zero(value)) {
         let distance =
@@ -44,7 +45,8 @@ pub(super) fn modes(matrix: &Matrix<f64>, spectrum: &Spectrum) -> Result<Vec<Mod
         .collect())
 }
 
-/// Vectors that span the kernel, of that dimension: in echelon form, so that they do not depend on a choice of basis.
+/// Vectors that span the kernel, of the given dimension, in echelon form: they are independent of the choice
+/// of a basis.
 fn kernel(matrix: &Matrix<f64>, dimension: usize) -> Result<Vec<Vec<f64>>, AnalysisError> {
     let n = matrix.rows();
     let basis = SingularValues::of(matrix)?.kernel(n - dimension);
@@ -78,10 +80,10 @@ fn real(vector: Vec<(f64, f64)>) -> Vec<f64> {
     vector.into_iter().map(|(re, _)| re).collect()
 }
 
-/// Parts of a vector of length about 1 that are rounding.
+/// Components this small, in a vector of length about 1, are rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// The same with its largest component, the first of equal ones, equal to 1.
+/// The vector scaled so that its largest component, the first among equals, is 1.
 fn normalised(vector: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let sizes: Vec<f64> = vector.iter().map(|&(re, im)| re.hypot(im)).collect();
     let largest = sizes.iter().fold(0.0f64, |largest, &size| largest.max(size));

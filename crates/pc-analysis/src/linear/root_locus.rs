@@ -5,8 +5,8 @@ use crate::stability::spectrum::Eigenvalue;
 
 /// The eigenvalues of a linearization for values of a parameter, each followed as a branch.
 ///
-/// From one value to the next those eigenvalues are taken for the same branch that are, in sum of the roots of the distances,
-/// nearest to where the branches lead; where two branches meet, either goes on as either.
+/// From one value to the next those eigenvalues are taken for the same branch that are, in sum of the roots
+/// of the distances, nearest to where the branches lead; where two branches meet, either goes on as either.
 ///
 /// ```
 /// use pc_analysis::{Eigenvalue, RootLocus};
@@ -60,8 +60,8 @@ impl RootLocus {
         }
         let expected: Vec<Option<Eigenvalue>> =
             self.branches.iter().map(|branch| self.leads_to(branch, value)).collect();
-        // The root of the distance: of real ones in a line all pairings have the same sum of distances, and one that stays where
-        // it was is to stay the same.
+        // The root of the distance: for real eigenvalues in line all pairings have the same sum of distances,
+        // and one that stays in place should keep its branch.
         let distance = |from: &Option<Eigenvalue>, to: &Eigenvalue| {
             from.map_or(0.0, |from| (from.real - to.real).hypot(from.imaginary - to.imaginary).sqrt())
         };
@@ -73,7 +73,7 @@ impl RootLocus {
         Ok(())
     }
 
-    /// Along a straight line through the last two, or beside the last.
+    /// Extrapolated along the line through the last two, or equal to the last one.
     fn leads_to(&self, branch: &[Option<Eigenvalue>], value: f64) -> Option<Eigenvalue> {
         let mut known = branch.iter().zip(&self.values).rev();
         let (last, at) = known.find_map(|(lambda, &p)| Some(((*lambda)?, p)))?;
@@ -101,7 +101,7 @@ impl RootLocus {
 mod tests {
     use super::*;
 
-    /// Real branches p and 1 − p cross without taking each other's place, and a gap is bridged.
+    /// Real branches p and 1 − p cross and keep their identity, and a gap is bridged.
     #[test]
     fn branches_cross() {
         let mut locus = RootLocus::default();

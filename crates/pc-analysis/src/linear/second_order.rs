@@ -64,37 +64,37 @@ pub enum NoSecondOrder {
     },
 }
 
-/// A row of which less than this part is left beside others depends on them.
+/// A row depends on others if less than this part of it is independent of them.
 const ZERO: f64 = 1e-10;
 
-/// The reduced state: which components of the state it has, and all of these in terms of them.
+/// The reduced state: its components, and all components of the state in terms of them.
 pub(super) struct Reduced {
-    /// The places of its components: coordinates, quasi-velocities, first-order states.
+    /// The indices of its components: coordinates, quasi-velocities, first-order states.
     pub(super) kept: Vec<usize>,
-    /// How many coordinates and quasi-velocities they are.
+    /// The numbers of coordinates and quasi-velocities among them.
     pub(super) coordinates: usize,
     pub(super) velocities: usize,
     /// E in δy = E δ(reduced).
     pub(super) extension: Matrix<f64>,
 }
 
-/// What equations of the second order are made of.
+/// The data for equations of the second order.
 pub(super) struct Parts<'a> {
-    /// The names of the state.
+    /// The names of the components of the state.
     pub(super) names: &'a [String],
-    /// Where its quasi-velocities stand.
+    /// The range of its quasi-velocities.
     pub(super) quasi_velocities: Range<usize>,
-    /// ∂f/∂y, and the same by the reduced state.
+    /// ∂f/∂y, and the derivative by the reduced state.
     pub(super) jacobian: &'a Matrix<f64>,
     pub(super) moved: &'a Matrix<f64>,
     /// ∂f/∂u
     pub(super) by_inputs: &'a Matrix<f64>,
     /// M of all quasi-velocities of the state.
     pub(super) mass: &'a Matrix<f64>,
-    /// The cyclic coordinates, and those of them on whose rates some that move act.
+    /// The cyclic coordinates, and those on whose rates moving ones act.
     pub(super) cyclic: &'a [usize],
     pub(super) acted_on: &'a [usize],
-    /// That without cyclic coordinates.
+    /// The reduced state without cyclic coordinates.
     pub(super) reduced: &'a Reduced,
 }
 
@@ -116,7 +116,7 @@ impl Parts<'_> {
             coordinates: self.with_own_velocities(),
             velocities: l,
         })?;
-        // What the rates of components `rows` make of q at rest: of cyclic ones nothing.
+        // The rates of components `rows` by q at rest; zero by cyclic ones.
         let by_coordinates = |rows: &[usize]| {
             let column = |j: usize| independent.iter().position(|&known| known == q[j]);
             let entry = |i: usize, j: usize| column(j).map_or(0.0, |column| moved[(rows[i], column)]);
@@ -141,7 +141,7 @@ impl Parts<'_> {
         let k = Matrix::from_fn(l, l, |i, j| through_d[(i, j)] - from_positions[(i, j)]);
         Ok(SecondOrder {
             coordinates: q.iter().map(|&i| self.names[i].clone()).collect(),
-            // A zero has no sign.
+            // Zero without a sign.
             velocity: product(&mass, &g).map(|x| x + 0.0),
             stiffness: product(&mass, &k).map(|x| x + 0.0),
             input: product(&mass, &product(&b, &of_u)).map(|x| x + 0.0),
@@ -149,11 +149,11 @@ impl Parts<'_> {
         })
     }
 
-    /// The independent coordinates with as many cyclic ones as there are velocities more, in the order of the state, if their
-    /// velocities are independent.
+    /// The independent coordinates and enough cyclic ones to match the velocities, in the order of the state,
+    /// if their velocities are independent.
     fn completed(&self, independent: &[usize]) -> Option<Vec<usize>> {
         let (l, jacobian) = (self.reduced.velocities, self.jacobian);
-        // One whose rate depends on where another cyclic one is has no equation with constant coefficients.
+        // A coordinate whose rate depends on another cyclic one has no equation with constant coefficients.
         let is_free =
             |&i: &usize| self.cyclic.iter().all(|&j| jacobian[(i, j)] == 0.0) && !self.acted_on.contains(&i);
         let more: Vec<usize> = self.cyclic.iter().copied().filter(is_free).collect();
@@ -164,7 +164,7 @@ impl Parts<'_> {
         if independent_rows(&matrix(&own), ZERO * size).len() < own.len() {
             return None;
         }
-        // What the cyclic ones add: their rows beside those of the others.
+        // The cyclic ones add the parts of their rows that are independent of the others.
         let mut left: Vec<Vec<f64>> = more.iter().map(|&i| row(i)).collect();
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for own in own {
@@ -187,7 +187,7 @@ impl Parts<'_> {
         Some(q)
     }
 
-    /// How many coordinates have independent velocities.
+    /// The number of coordinates with independent velocities.
     fn with_own_velocities(&self) -> usize {
         let rows: Vec<Vec<f64>> = (0..self.quasi_velocities.start).map(|i| self.velocity_row(i)).collect();
         let all = Matrix::from_fn(rows.len(), self.reduced.velocities, |i, s| rows[i][s]);
@@ -195,14 +195,14 @@ impl Parts<'_> {
         independent_rows(&all, ZERO * size).len()
     }
 
-    /// What the rate of a coordinate makes of the independent quasi-velocities.
+    /// The rate of a coordinate by the independent quasi-velocities.
     fn velocity_row(&self, i: usize) -> Vec<f64> {
         let first = self.reduced.coordinates;
         (first..first + self.reduced.velocities).map(|column| self.moved[(i, column)]).collect()
     }
 }
 
-/// Takes from a row what it has of a direction of length 1.
+/// Removes from a row its component along a direction of length 1.
 fn remove(row: &mut [f64], direction: &[f64]) {
     let along: f64 = row.iter().zip(direction).map(|(a, b)| a * b).sum();
     row.iter_mut().zip(direction).for_each(|(x, d)| *x -= along * d);

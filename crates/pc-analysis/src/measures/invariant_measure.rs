@@ -17,13 +17,14 @@ impl<'g> InvariantMeasure<'g> {
         self.density_to(Number::ONE)
     }
 
-    /// That of growths ψ̇_i/ψ_i c_i, a column each, which cancel the last column.
+    /// The measure of a relation between growths ψ̇_i/ψ_i, a column each, and the divergence in the last
+    /// column.
     pub(crate) fn of_relation(
         graph: &'g Graph,
         factors: &[Expr<'g>],
         columns: &[Vec<Expr<'g>>],
     ) -> Option<InvariantMeasure<'g>> {
-        // A relation in which the last column stands gives the powers.
+        // A relation that contains the last column gives the powers.
         let last = factors.len();
         let relation = graph.linear_relations(columns).into_iter().find(|c| !c[last].is_zero())?;
         let scale = relation[last].recip();
@@ -51,8 +52,9 @@ fn states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
     system.states().iter().map(|&(z, _)| z).collect()
 }
 
-/// The divergence ∂ẋ_i/∂x_i + ∂ẏ_s/∂y_s + ∂ż/∂z of the motion (10), (11): the rate at which phase volume dx dy grows, in
-/// terms of (t, x, y). Under constraints, (34), that of their [free system](pc_nonholo::Constrained::free_system).
+/// The divergence ∂ẋ_i/∂x_i + ∂ẏ_s/∂y_s + ∂ż/∂z of the motion (10), (11): the rate at which phase volume dx
+/// dy grows, in terms of (t, x, y). Under constraints, (34), that of their [free
+/// system](pc_nonholo::Constrained::free_system).
 ///
 /// # Errors
 /// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if the equations have no closed form.
@@ -69,11 +71,12 @@ pub fn divergence<'g>(free: &System<'g>) -> Result<Expr<'g>, AnalysisError> {
     Ok(graph.shorten(&[graph.sum(x.into_iter().chain(y).chain(z))], canonical.momenta())[0])
 }
 
-/// The invariant measure of the motion (10), (11) of a system whose density is a product of powers of `factors`, functions of
-/// (t, x, y) that are not zero, if there is one: ψ̇_i/ψ_i c_i + divergence = 0, solved for rational c_i and proved.
-/// Without `factors` the coordinates, their sines and cosines, det b, the entries of the mass matrix and its determinant are tried: with n = k and forces that have a
-/// potential dx dy/det b is Liouville's dx dp, by the momenta p = ∂L/∂ẋ, y = bᵀp. Under constraints, (34), it is that of their
-/// [free system](pc_nonholo::Constrained::free_system).
+/// The invariant measure of the motion (10), (11) of a system whose density is a product of powers of
+/// `factors`, functions of (t, x, y) that are not zero, if there is one: ψ̇_i/ψ_i c_i + divergence = 0,
+/// solved for rational c_i and proved. Without `factors` the coordinates, their sines and cosines, det b, the
+/// entries of the mass matrix and its determinant are tried: with n = k and forces that have a potential dx
+/// dy/det b is Liouville's dx dp, by the momenta p = ∂L/∂ẋ, y = bᵀp. Under constraints, (34), it is that of
+/// their [free system](pc_nonholo::Constrained::free_system).
 ///
 /// # Errors
 /// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if the equations have no closed form.
@@ -145,8 +148,8 @@ pub(crate) fn simple_factors<'g>(system: &System<'g>, parts: &[Expr<'g>]) -> Vec
     moving.flat_map(|&x| [x, x.sin(), x.cos()]).collect()
 }
 
-/// Simple factors, those of det b where b is square, the diagonal of the mass matrix and its determinant, as far as they are not
-/// constant.
+/// Simple factors, those of det b where b is square, the diagonal of the mass matrix and its determinant, as
+/// far as they are not constant.
 pub(crate) fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, AnalysisError> {
     let graph = system.graph();
     let equations = system.poincare()?;
@@ -163,8 +166,8 @@ pub(crate) fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, Analy
     Ok(candidates)
 }
 
-/// The determinants of the blocks into which rows and columns of a matrix fall by its zeros, up to signs; none for blocks
-/// that are not square, and of which they are no short expressions.
+/// The determinants of the blocks into which the zeros of a matrix divide its rows and columns, up to signs;
+/// `None` for blocks that are not square or whose determinant is not a short expression.
 pub(crate) fn determinants_of_blocks<'g>(
     graph: &'g Graph,
     matrix: &Matrix<Expr<'g>>,
@@ -184,7 +187,7 @@ pub(crate) fn determinants_of_blocks<'g>(
             }
         }
         if rows.is_empty() {
-            determinants.push(None); // a row of zeros: no determinant is a factor of a density
+            determinants.push(None); // a row of zeros: no determinant
             break;
         }
         open.retain(|i| !rows.contains(i));

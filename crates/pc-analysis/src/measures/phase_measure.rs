@@ -1,4 +1,4 @@
-//! The measure that a motion is known to keep: Liouville's, or one that is found.
+//! The invariant measure of a motion: Liouville's, or one that is found.
 
 use pc_mech::{Expr, Graph, Matrix, System};
 
@@ -7,13 +7,13 @@ use crate::measures::invariant_measure::{
     InvariantMeasure, candidates, determinants_of_blocks, invariant_measure, simple_factors,
 };
 
-/// The most free quasi-velocities of motions of which a measure is looked for, where no theorem has one.
+/// The most free quasi-velocities of motions for which a measure is searched, if no theorem gives one.
 const MOST_VELOCITIES: usize = 6;
 
 /// The most factors of a density that are tried together.
 const MOST_FACTORS: usize = 60;
 
-/// The longest equations of such motions, in operations written out: some tenths of a second.
+/// The longest equations of such motions, in operations written out; these take some tenths of a second.
 const LONGEST: u32 = 4_000;
 
 /// The result of a search for an invariant measure.
@@ -48,13 +48,14 @@ impl<'g> MeasureSearch<'g> {
     /// The measure of the motion (10), (11) of a system; under constraints, of their [free
     /// system](pc_nonholo::Constrained::free_system).
     ///
-    /// Where forces other than those of L are functions of the place, or gyroscopic, phase volume grows at the rate
-    /// η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: by (10) what H adds cancels, that of c_rs^m by its
-    /// antisymmetry. N = 1 is a density if this vanishes; with n = k, rank b = k, it is N = 1/det b, by which dx dy is
-    /// Liouville's dx dp: y = bᵀp; and where n − k conditions f(t, x) = 0 are kept, with any choice of as many dependent
-    /// coordinates x_D and the others x_I, N = det(∂f/∂x_D)/det b_I: that of Liouville on each surface f = const. Where no f are
-    /// known N is tried as a product of powers of coordinates, their sines and cosines. For dx dη it is multiplied by det M.
-    /// `positions` are f of a holonomic system, declared integrals of the place are others; `None` says that it is not
+    /// Where forces other than those of L are functions of the place, or gyroscopic, phase volume grows at
+    /// the rate η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: by (10) what H adds cancels, that
+    /// of c_rs^m by its antisymmetry. N = 1 is a density if this vanishes; with n = k, rank b = k, it is N =
+    /// 1/det b, by which dx dy is Liouville's dx dp: y = bᵀp; and where n − k conditions f(t, x) = 0 are
+    /// kept, with any choice of as many dependent coordinates x_D and the others x_I, N = det(∂f/∂x_D)/det
+    /// b_I: that of Liouville on each surface f = const. Where no f are known N is tried as a product of
+    /// powers of coordinates, their sines and cosines. For dx dη it is multiplied by det M. `positions` are f
+    /// of a holonomic system, declared integrals of the place are others; `None` says that it is not
     /// holonomic.
     ///
     /// Else one with these and the factors of [`invariant_measure`] is looked for, then one that has momenta among its
@@ -137,7 +138,8 @@ fn jumps(system: &System<'_>) -> bool {
     parts.iter().any(|&part| system.graph().applies(part, &state, |function| !function.is_continuous()))
 }
 
-/// The density by which (10), (11) keep phase volume whatever the Lagrangian; `Some(None)` for one that is no short expression.
+/// The density by which (10), (11) keep phase volume for any Lagrangian; `Some(None)` if it is not a short
+/// expression.
 fn of_the_frame<'g>(system: &System<'g>, positions: &[Expr<'g>]) -> Option<Option<Expr<'g>>> {
     if !system.states().is_empty() || has_resistance(system) {
         return None;
@@ -153,8 +155,8 @@ fn of_the_frame<'g>(system: &System<'g>, positions: &[Expr<'g>]) -> Option<Optio
     of_surfaces(system, positions, &growth).or_else(|| of_factors(system, growth).map(Some))
 }
 
-/// det(∂f/∂x_D)/det b_I of the first functions f that no motion changes, those of `positions` and integrals of the place;
-/// `Some(None)` where it is no short expression.
+/// det(∂f/∂x_D)/det b_I for the first functions f that motions keep, those of `positions` and integrals of
+/// the place; `Some(None)` if it is not a short expression.
 fn of_surfaces<'g>(
     system: &System<'g>,
     positions: &[Expr<'g>],
@@ -223,11 +225,11 @@ fn has_resistance(system: &System<'_>) -> bool {
     (0..k).any(|s| (0..=s).any(|r| !(slopes[s][r] + slopes[r][s]).is_zero()))
 }
 
-/// ∂b_ir/∂x_i + c_rs^s, r = 0..k: what X_r N/N cancels for a density N.
+/// ∂b_ir/∂x_i + c_rs^s, r = 0..k, which X_r N/N cancels for a density N.
 fn growth<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
     let (graph, frame, structure) = (system.graph(), system.frame(), system.structure());
     let mut traces = vec![Vec::new(); frame.operators() + 1];
-    // Of c_rs^m and c_sr^m only that with r < s stands in the list.
+    // Of c_rs^m and c_sr^m only the one with r < s is listed.
     for (r, s, m, c) in structure.nonzero() {
         if m == s {
             traces[r].push(c);
@@ -247,15 +249,15 @@ fn growth<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
     traces.into_iter().enumerate().map(of).collect()
 }
 
-/// The determinant of a square matrix up to its sign, as the product of those of its blocks; none if one is no short
-/// expression.
+/// The determinant of a square matrix up to its sign, as the product of those of its blocks; `None` if one is
+/// not a short expression.
 fn product_of_blocks<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
     let blocks = determinants_of_blocks(graph, matrix);
     let product = blocks.iter().try_fold(Expr::ONE, |product, block| Some(product * (*block)?))?;
     (!product.is_zero()).then_some(product)
 }
 
-/// One that is found, of positive density if there is such a one.
+/// A measure that is found, preferably with positive density.
 fn found<'g>(system: &System<'g>) -> Result<Option<InvariantMeasure<'g>>, AnalysisError> {
     let known = |error| match error {
         AnalysisError::Mech(error) if error.is_not_quadratic() => Ok(None),
@@ -271,7 +273,7 @@ fn found<'g>(system: &System<'g>) -> Result<Option<InvariantMeasure<'g>>, Analys
     }
 }
 
-/// The density without factors that never change, positive at the values `at`.
+/// The density without constant factors, positive at the values `at`.
 fn positive<'g>(system: &System<'g>, density: Expr<'g>, at: &[(Expr<'g>, f64)]) -> Expr<'g> {
     let graph = system.graph();
     let variables: Vec<Expr<'g>> = [system.frame().time()]

@@ -5,10 +5,10 @@ use pc_mech::{Matrix, SingularValues};
 use crate::error::AnalysisError;
 use crate::numeric::dense::norm;
 
-/// How often a step is halved before the iteration is taken to have ended.
+/// The most halvings of a step before the iteration ends.
 const HALVINGS: usize = 40;
 
-/// Where an iteration ended.
+/// The end of an iteration.
 #[derive(Clone, Debug)]
 pub(crate) struct Iterate {
     /// z
@@ -22,7 +22,7 @@ pub(crate) struct Iterate {
 }
 
 impl Iterate {
-    /// |F| against what the rounding of z to one part would make of it, |∂F/∂z| (1 + |z|).
+    /// |F| relative to the effect of rounding z, |∂F/∂z| (1 + |z|).
     pub(crate) fn relative_residual(&self) -> f64 {
         let residual = norm(&self.values);
         if residual == 0.0 { 0.0 } else { residual / (norm(&self.slopes.entries()) * self.scale()) }
@@ -58,10 +58,10 @@ impl Iterate {
     }
 }
 
-/// Lessens |F(z)| from `start` on, until it does not become less or `most` steps are made. The caller says
-/// whether what is left counts as nothing.
+/// Reduces |F(z)| from `start` on, until it no longer decreases or `most` steps are made. The caller decides
+/// whether the residual counts as zero.
 ///
-/// `f` answers F(z) and ∂F/∂z; where it fails on the way, a shorter step is tried.
+/// `f` returns F(z) and ∂F/∂z; where it fails on the way, a shorter step is tried.
 ///
 /// # Errors
 /// Those of `f` at `start`.

@@ -27,12 +27,12 @@ pub struct Routhian<'g> {
 }
 
 impl<'g> Routhian<'g> {
-    /// That of a system, in the velocities of its coordinates whatever its quasi-velocities are. Cyclic are coordinates on which
-    /// neither L nor any force depends and along which no force acts. The p_c have their values where time and state have
-    /// those `at` which the motion starts.
+    /// The Routhian of a system, in the velocities of its coordinates for any quasi-velocities. Cyclic are
+    /// coordinates on which neither L nor any force depends and along which no force acts. The p_c have their
+    /// values where time and state have those `at` which the motion starts.
     ///
-    /// None if no coordinate is cyclic, if there are not as many quasi-velocities as coordinates, for systems with first-order
-    /// states or forces that are computed outside, and where L is not quadratic in the ẋ_c.
+    /// None if no coordinate is cyclic, if there are not as many quasi-velocities as coordinates, for systems
+    /// with first-order states or forces that are computed outside, and where L is not quadratic in the ẋ_c.
     ///
     /// # Errors
     /// Those of the change to velocities; [`ExprError`](pc_mech::ExprError) where p_c has no value.
@@ -89,7 +89,7 @@ impl<'g> Routhian<'g> {
         let routhian = short(routhian);
         let rates: Vec<Expr<'g>> = rates.into_iter().map(short).collect();
         if cyclic.iter().any(|&i| routhian.depends_on(x[i])) {
-            return Ok(None); // what cancels is still written
+            return Ok(None); // terms that cancel are still written
         }
 
         let x_dot = frame.velocities(system.quasi_velocities());
@@ -122,7 +122,7 @@ impl<'g> Routhian<'g> {
     }
 }
 
-/// The velocities for which affine functions of them have the values `symbols`, if they determine them.
+/// The velocities for which affine functions have the values `symbols`, if these determine them.
 fn solved<'g>(
     graph: &'g pc_mech::Graph,
     functions: &[Expr<'g>],

@@ -4,17 +4,16 @@ use pc_mech::{Matrix, MechError};
 
 use crate::numeric::dense::{norm, symmetric_eigenvalues};
 
-/// Steps of the search for each pair of forms: a step lessens the volume by e^(−1/(2K + 2)).
+/// Steps of the search for each pair of forms; each reduces the volume by the factor e^(−1/(2K + 2)).
 const STEPS: usize = 1000;
 
 /// Numbers c, not all zero, for which W(c) = Σ c_i W_i is positive definite, with a least eigenvalue above
 /// `tolerance` |c|; `None` if there are none.
 ///
-/// The least eigenvalue φ(c) is concave, and vᵀ W_i v with its eigenvector v a slope of it, since φ(c') ≤ vᵀ
-/// W(c') v for all c'. So half of what is left of the unit ball is cut off at each step (the ellipsoid method
-/// of D. B. Yudin and A. S. Nemirovski), until a c is found or the slope shows that φ is nowhere above the
-/// tolerance.
-///
+/// The least eigenvalue φ(c) is concave, and vᵀ W_i v with its eigenvector v is a slope of it, since φ(c') ≤
+/// vᵀ W(c') v for all c'. So each step cuts off half of the remaining part of the unit ball (the ellipsoid
+/// method of D. B. Yudin and A. S. Nemirovski), until a c is found or the slope shows that φ nowhere exceeds
+/// the tolerance.
 /// # Errors
 /// [`MatrixError::NoEigenvalues`](pc_mech::MatrixError::NoEigenvalues) if an entry is not finite.
 pub(crate) fn definite_combination(

@@ -59,7 +59,7 @@ impl SecondVariation {
         SecondVariation::under(equations, equations.system().integrals(), state)
     }
 
-    /// The same under the given integrals with their names, functions of (x, η) and parameters.
+    /// The second variation under the given integrals with their names, functions of (x, η) and parameters.
     ///
     /// # Errors
     /// As [`at`](SecondVariation::at).
@@ -95,7 +95,7 @@ impl SecondVariation {
     }
 }
 
-/// That H and the integrals are kept and free of time.
+/// Checks that H and the integrals are conserved and independent of time.
 fn check_conserved<'g>(
     equations: &Equations<'g>,
     integrals: &[(String, Expr<'g>)],
@@ -131,7 +131,7 @@ fn expand<'g>(
     Ok(Expansion { gradient: graph.evaluate(&slopes, values)?, hessian })
 }
 
-/// The solutions λ + μ of d(H + λ_j I_j) = 0, and the deviations that they are tried on.
+/// The solutions λ + μ of d(H + λ_j I_j) = 0, and the deviations on which they are tested.
 struct Multipliers {
     /// λ by least squares.
     lambda: Vec<f64>,
@@ -141,12 +141,12 @@ struct Multipliers {
     residual: f64,
     /// The common kernel of the dI_j, as columns.
     kernel: Matrix<f64>,
-    /// The relative size of what counts as zero.
+    /// The relative size that counts as zero.
     rounding: f64,
 }
 
 impl Multipliers {
-    /// `size` is that of the state, whose rounding alone makes of dH what d²H makes of it.
+    /// `size` is that of the state, whose rounding changes dH by d²H times as much.
     fn of(energy: &Expansion, integrals: &[Expansion], size: f64) -> Result<Multipliers, MechError> {
         let (n, count) = (energy.gradient.len(), integrals.len());
         let factors = SingularValues::of(&Matrix::from_fn(n, count, |i, j| integrals[j].gradient[i]))?;
@@ -175,11 +175,11 @@ fn decide(expansions: &[Expansion], size: f64) -> Result<SecondVariation, MechEr
     let rounding = critical.rounding;
     let hessians: Vec<Matrix<f64>> =
         expansions.iter().map(|expansion| restricted(&expansion.hessian, &critical.kernel)).collect();
-    // Against the whole forms: what they leave on the kernel may be rounding alone.
+    // Relative to the full forms: their restriction to the kernel may be rounding.
     let whole = expansions.iter().map(|expansion| norm(&expansion.hessian.entries()));
     let largest = whole.fold(0.0, f64::max);
 
-    // The form of λ, and those by which the free multipliers change it.
+    // The form of λ, and the forms by which free multipliers change it.
     let mut forms = vec![combination(&hessians, &with_energy(1.0, &critical.lambda))];
     let mut multipliers = vec![critical.lambda];
     for l in 0..critical.free.columns() {
@@ -207,7 +207,7 @@ fn decide(expansions: &[Expansion], size: f64) -> Result<SecondVariation, MechEr
     })
 }
 
-/// Numbers 1, c_1, c_2, … for which the combination of `forms` is definite, if there are any.
+/// Numbers 1, c_1, c_2, … for which the combination of `forms` is definite, if they exist.
 fn definite(forms: &[Matrix<f64>], largest: f64, tolerance: f64) -> Result<Option<Vec<f64>>, MechError> {
     let least_size = if largest > 0.0 { tolerance * largest } else { 1.0 };
     let sizes: Vec<f64> = forms.iter().map(|form| norm(&form.entries()).max(least_size)).collect();
@@ -215,7 +215,7 @@ fn definite(forms: &[Matrix<f64>], largest: f64, tolerance: f64) -> Result<Optio
         forms.iter().zip(&sizes).map(|(form, size)| form.map(|entry| entry / size)).collect();
     let found = definite_combination(&scaled, tolerance)?;
     Ok(found.map(|c| {
-        // Definite also with a little of the first form where none was needed.
+        // A small multiple of the first form keeps the combination definite.
         let first = if c[0] == 0.0 { tolerance / 2.0 * norm(&c) } else { c[0] };
         c.iter()
             .zip(&sizes)

@@ -15,7 +15,8 @@ pub enum Verdict {
     Stable,
     /// Some neighbouring motion leaves: a real part is positive (Lyapunov's first method).
     Unstable,
-    /// The method does not decide: the case is critical, as for the first approximation of every stable conservative system.
+    /// The method does not decide: the case is critical, as for the first approximation of every stable
+    /// conservative system.
     Undecided,
 }
 

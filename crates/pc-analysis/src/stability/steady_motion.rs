@@ -101,8 +101,9 @@ impl SteadyMotion {
     /// system what is found is an equilibrium of the rates at that time.
     ///
     /// # Errors
-    /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::NotSmooth`] where the rates have no
-    /// derivatives; [`AnalysisError::UnknownComponent`], [`AnalysisError::NotCyclic`] for unsuitable names; otherwise as [`first_approximation`].
+    /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::NotSmooth`] where the
+    /// rates have no derivatives; [`AnalysisError::UnknownComponent`], [`AnalysisError::NotCyclic`] for
+    /// unsuitable names; otherwise as [`first_approximation`].
     pub fn near(
         motion: &mut Motion,
         t: f64,
@@ -115,9 +116,9 @@ impl SteadyMotion {
         })
     }
 
-    /// The same among the states with g(y) = 0, for coordinates that are not independent: γ² = 1, say.
+    /// The steady motion among the states with g(y) = 0, for coordinates that are not independent: γ² = 1, say.
     ///
-    /// `surface` answers g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Only
+    /// `surface` returns g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Only
     /// functions g that the motion keeps leave steady motions steady.
     ///
     /// # Errors
@@ -183,8 +184,8 @@ impl SteadyMotion {
 /// Its [`Spectrum`] is that of all components, cyclic coordinates among them.
 ///
 /// # Errors
-/// [`ShapeError`](pc_mech::ShapeError); [`EvaluationError::NotCompiled`] without the Jacobian; where f is not defined, as
-/// [`rhs`](VectorField::rhs).
+/// [`ShapeError`](pc_mech::ShapeError); [`EvaluationError::NotCompiled`] without the Jacobian; where f is not
+/// defined, as [`rhs`](VectorField::rhs).
 pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Matrix<f64>, AnalysisError> {
     let n = motion.dim();
     shape("the state", y.len(), n)?;
@@ -193,13 +194,14 @@ pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Mat
     Ok(Matrix::from_fn(n, n, |i, j| entries[i + j * n]))
 }
 
-/// So near, relative to 1 + |y|, derivatives are as at the state, but for this part of what they are there or somewhat farther,
-/// unless rates have none there: Newton's method ends some roundings beside a pole of the coordinates.
+/// At the distance `BESIDE`, relative to 1 + |y|, derivatives differ by at most `AS_THERE` of their size
+/// there or at `FARTHER`, unless rates have none at the state: Newton's method ends some roundings beside a
+/// pole of the coordinates.
 const BESIDE: f64 = 1e-7;
 const FARTHER: f64 = 1e-2;
 const AS_THERE: f64 = 1e-3;
 
-/// That the slopes of the rates change continuously at the state.
+/// Checks that the slopes of the rates are continuous at the state.
 fn check_smooth(
     motion: &mut Motion,
     t: f64,
@@ -207,7 +209,7 @@ fn check_smooth(
     kept: &[usize],
     slopes: &Matrix<f64>,
 ) -> Result<(), AnalysisError> {
-    // All components to one side, no two by as much.
+    // All components shifted to one side, each by a different amount.
     let mut at = |distance: f64| {
         let step = |i: usize| distance * (1.0 + norm(state)) * (1.0 + 0.3 * (1.0 + i as f64).sqrt().fract());
         let there: Vec<f64> = state.iter().enumerate().map(|(i, y)| y + step(i)).collect();
@@ -227,7 +229,7 @@ fn check_smooth(
     Err(AnalysisError::NotSmooth { state })
 }
 
-/// Where the components with those names stand.
+/// The indices of the components with these names.
 fn components(motion: &Motion, names: &[String]) -> Result<Vec<usize>, AnalysisError> {
     let find = |name: &String| motion.names().iter().position(|known| known == name);
     names
@@ -241,7 +243,7 @@ fn components(motion: &Motion, names: &[String]) -> Result<Vec<usize>, AnalysisE
         .collect()
 }
 
-/// The cyclic coordinates, those named or all.
+/// The cyclic coordinates: the named ones, or all.
 fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>, AnalysisError> {
     let pattern =
         motion.sparsity().ok_or(MechError::Evaluation(EvaluationError::NotCompiled { what: "Jacobian" }))?;

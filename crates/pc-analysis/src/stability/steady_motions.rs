@@ -9,22 +9,22 @@ use crate::numeric::newton;
 use crate::stability::steady_motion::{SteadyMotion, SteadyOptions};
 use crate::stability::steady_search::{Known, NearbySteadyMotion, Seeker, Surface, is_autonomous};
 
-/// How many starts there are of each kind, for systems of few components.
+/// The number of starts of each kind, for systems of few components.
 const STARTS: usize = 64;
 
-/// That many starts times the square of the number of components are enough work.
+/// The greatest product of the number of starts and the square of the number of components.
 const MOST_WORK: usize = 20_000;
 
 /// Steps of Newton's method to the integrals of the start.
 const MOST_STEPS: usize = 50;
 
-/// The residual that counts as having them: what follows is exact.
+/// The residual at which the integrals count as attained; the search that follows is exact.
 const ON_SURFACE: f64 = 1e-6;
 
-/// The most components of a state: of more each step of Newton's method takes some tenths of a second.
+/// The most components of a state: beyond, each step of Newton's method takes some tenths of a second.
 const MOST_COMPONENTS: usize = 150;
 
-/// Steady motions that agree so well are one.
+/// The relative difference within which steady motions are the same.
 pub(crate) const SAME: f64 = 1e-6;
 
 /// Singular values below this part of the largest are zeros.
@@ -35,7 +35,7 @@ const ZERO: f64 = 1e-8;
 pub struct SteadyMotions {
     /// The motions, the nearest to the start of the model first, no two with the same state.
     pub list: Vec<FoundSteadyMotion>,
-    /// How many starts there were.
+    /// The number of starts.
     pub starts: usize,
 }
 
@@ -116,7 +116,7 @@ impl SteadyMotions {
             let options = SteadyOptions::default();
             for guess in &guesses {
                 found.look(&seeker, motion, start, (guess, &options), (&surface, same));
-                // From far away the way to the integrals and the way to rest are better gone one after the other.
+                // From far away it is better to attain the integrals first, and rest after that.
                 if let Some(guess) = onto(&surface, guess) {
                     found.look(&seeker, motion, start, (&guess, &options), (&surface, same));
                 }
@@ -130,17 +130,17 @@ impl SteadyMotions {
     }
 }
 
-/// What is found until now.
+/// The results so far.
 struct Found {
-    /// With the state in full.
+    /// Each with its full state.
     list: Vec<(Vec<f64>, FoundSteadyMotion)>,
     starts: usize,
-    /// Of each component, if it has one.
+    /// The period of each component that has one.
     periods: Vec<Option<f64>>,
 }
 
 impl Found {
-    /// Looks from one guess, and adds what is found there if it is new.
+    /// Searches from one guess, and adds a result that is new.
     fn look<'g>(
         &mut self,
         seeker: &Seeker<'_, 'g>,
@@ -175,7 +175,7 @@ impl Found {
         self.list.push((steady.state, FoundSteadyMotion { motion: described, family }));
     }
 
-    /// The nearest first, of families of each dimension and kind of stability only the nearest.
+    /// The nearest first; of families of each dimension and kind of stability only the nearest member.
     fn without_families(mut self) -> Vec<FoundSteadyMotion> {
         self.list.sort_by(|(_, a), (_, b)| a.motion.distance.total_cmp(&b.motion.distance));
         let mut list: Vec<FoundSteadyMotion> = Vec::new();
@@ -191,14 +191,14 @@ impl Found {
     }
 }
 
-/// A state near the guess that has the integrals of the start.
+/// A state near the guess with the integrals of the start.
 fn onto(surface: &Surface<'_>, guess: &[f64]) -> Option<Vec<f64>> {
     let end = newton::solve(guess.to_vec(), MOST_STEPS, |y| Ok(surface.at(y)?)).ok()?;
     (end.iterations > 0 && end.is_solution(ON_SURFACE)).then_some(end.point)
 }
 
-/// The dimension of the kernel of the first approximation on the surface: so many directions lead to other steady motions, as far
-/// as the first order tells.
+/// The dimension of the kernel of the first approximation on the surface: the number of directions that lead
+/// to other steady motions, to first order.
 fn family(steady: &SteadyMotion, surface: &Surface<'_>, kept: &[usize]) -> Option<usize> {
     let (_, normals) = surface.at(&steady.state).ok()?;
     let a = &steady.first_approximation;

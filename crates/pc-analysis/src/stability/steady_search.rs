@@ -8,16 +8,17 @@ use crate::stability::second_variation::SecondVariation;
 use crate::stability::spectrum::{Eigenvalue, Verdict};
 use crate::stability::steady_motion::{SteadyMotion, SteadyOptions, first_approximation};
 
-/// Where rates are steeper than this many times those at the start, the coordinates are singular.
+/// Where rates are steeper than at the start by this factor, the coordinates are singular.
 const MOST_STEEPER: f64 = 1e6;
 
-/// A differential of which more than this part is left beside others is independent of them.
+/// A differential is independent of others if more than this part of it is orthogonal to them.
 const INDEPENDENT: f64 = 1e-8;
 
 /// Steps of Newton's method.
 const MOST_STEPS: usize = 50;
 
-/// Components of the state: each step decomposes a full matrix of as many rows, which takes some tenths of a second with more.
+/// The most components of the state: each step decomposes a full matrix of that size; more take some tenths
+/// of a second.
 const MOST_COMPONENTS: usize = 200;
 
 /// An equilibrium or a steady motion of an autonomous system near its start.
@@ -37,8 +38,8 @@ pub struct NearbySteadyMotion {
     pub tolerance: f64,
     /// The verdict of the first approximation.
     pub first_approximation: Verdict,
-    /// How many directions are neutral, where neighbouring motions approach steady ones: λ = 0 so many times, once for each of
-    /// as many independent integrals, and all other real parts negative.
+    /// The number of neutral directions, if neighbouring motions approach steady ones: λ = 0 with this
+    /// multiplicity, once for each of as many independent integrals, and all other real parts negative.
     pub neutral: Option<usize>,
     /// The verdict of the second variation, if the energy and the integrals are conserved.
     pub second_variation: Option<EnergyCriterion>,
@@ -86,7 +87,7 @@ pub enum SteadySearch {
     Nonlinear,
     /// The state has too many components.
     TooLarge {
-        /// So many.
+        /// Their number.
         components: usize,
     },
     /// Newton's method did not converge, or converged far from the start.
@@ -96,8 +97,9 @@ pub enum SteadySearch {
 }
 
 impl SteadySearch {
-    /// The steady motion of `equations` near the start (t, y), among the states in which coordinates that are not
-    /// independent keep their relations; `positions` are the relations that constraints imply, `integrals` the known integrals.
+    /// The steady motion of `equations` near the start (t, y), among the states in which coordinates that are
+    /// not independent keep their relations; `positions` are the relations that constraints imply,
+    /// `integrals` the known integrals.
     pub fn near<'g>(
         equations: &Equations<'g>,
         motion: &mut Motion,
@@ -123,7 +125,7 @@ impl SteadySearch {
             let options = SteadyOptions::default();
             let Some(found) = seeker.steady_motion(motion, start, &options, &surface) else { continue };
             let steady = seeker.described(&found, start, same.into_iter().map(|(name, _)| name).collect());
-            // One that is farther from the start than the start is large is none near it.
+            // A result farther from the start than the size of the start is not near it.
             if steady.distance <= 1.0 + seeker.size(&found, start) {
                 return SteadySearch::Found(Box::new(steady));
             }
@@ -132,13 +134,13 @@ impl SteadySearch {
     }
 }
 
-/// Whether nothing in the equations depends on time or on inputs, for the values that the parameters have.
+/// Whether the equations are independent of time and inputs, for the present parameters.
 pub(crate) fn is_autonomous(equations: &Equations<'_>) -> bool {
     let system = equations.system();
     !timed(equations).any(|x| moves(system, x) && moves(system, bind(system, x)))
 }
 
-/// Whether something in the equations depends on time or on inputs for some values of the parameters.
+/// Whether the equations depend on time or inputs for some values of the parameters.
 pub(crate) fn names_time(equations: &Equations<'_>) -> bool {
     timed(equations).any(|x| moves(equations.system(), x))
 }
@@ -147,7 +149,7 @@ fn moves<'g>(system: &System<'g>, x: Expr<'g>) -> bool {
     x.depends_on(system.frame().time()) || system.signals().iter().any(|&u| x.depends_on(u))
 }
 
-/// What rates are made of.
+/// The expressions in the rates.
 fn timed<'g>(equations: &Equations<'g>) -> impl Iterator<Item = Expr<'g>> {
     let all =
         [equations.velocities(), &equations.mass_matrix().nonzero_entries(), equations.right_hand_side()];
@@ -156,18 +158,18 @@ fn timed<'g>(equations: &Equations<'g>) -> impl Iterator<Item = Expr<'g>> {
         .chain(equations.system().states().iter().map(|&(_, rate)| rate).collect::<Vec<_>>())
 }
 
-/// What a search has in hand at each of its starts.
+/// The data that a search shares between its starts.
 pub(crate) struct Seeker<'a, 'g> {
     equations: &'a Equations<'g>,
     bound: Equations<'g>,
     integrals: Vec<(String, Expr<'g>)>,
     t: f64,
-    /// Coordinates are singular where rates are steeper.
+    /// Rates that are steeper indicate singular coordinates.
     steepest: f64,
 }
 
 impl<'a, 'g> Seeker<'a, 'g> {
-    /// None where the motion has no derivatives at the start.
+    /// `None` if the motion has no derivatives at the start.
     pub(crate) fn new(
         equations: &'a Equations<'g>,
         motion: &mut Motion,
@@ -180,7 +182,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         Some(Seeker { equations, bound, integrals, t, steepest: MOST_STEEPER * largest(&slopes) })
     }
 
-    /// The functions with those of the positions that say something new of coordinates.
+    /// The functions, and those of the positions that are independent of them.
     pub(super) fn with_positions(
         &self,
         mut same: Vec<(String, Expr<'g>)>,
@@ -199,7 +201,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         same
     }
 
-    /// That near a guess, if there is one where coordinates are regular.
+    /// The steady motion near a guess, if there is one where coordinates are regular.
     pub(super) fn steady_motion(
         &self,
         motion: &mut Motion,
@@ -212,7 +214,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         (largest(&found.first_approximation) <= self.steepest).then_some(found)
     }
 
-    /// The motion in names and numbers, with what is known of its stability.
+    /// The motion in names and numbers, with the results on its stability.
     pub(crate) fn described(
         &self,
         found: &SteadyMotion,
@@ -252,10 +254,10 @@ impl<'a, 'g> Seeker<'a, 'g> {
     }
 }
 
-/// The number k of neutral directions of a steady motion that is one of a family: the first approximation has λ = 0 in k
-/// blocks of size 1 and negative real parts else, and there are k integrals whose differentials are independent there, so that
-/// on each level near by the steady motion is one alone, and approached (I. G. Malkin's theorem of the critical case of k
-/// zeros).
+/// The number k of neutral directions of a member of a family of steady motions: the first approximation has
+/// λ = 0 in k blocks of size 1 and otherwise negative real parts, and there are k integrals with independent
+/// differentials, so that on each level near by the steady motion is isolated and asymptotically stable (I.
+/// G. Malkin's theorem of the critical case of k zeros).
 fn neutral_directions(
     equations: &Equations<'_>,
     found: &SteadyMotion,
@@ -272,7 +274,7 @@ fn neutral_directions(
     let kept: Vec<Expr<'_>> =
         symbols.iter().copied().filter(|y| found.components.contains(&y.to_string())).collect();
     let at: Vec<(Expr<'_>, f64)> = symbols.into_iter().zip(found.state.iter().copied()).collect();
-    // One of a cyclic coordinate is none of the other components alone.
+    // An integral with a cyclic coordinate is not one of the other components alone.
     let of_kept = |f: &Expr<'_>| {
         graph
             .symbols_of(&[*f])
@@ -307,7 +309,7 @@ fn constant_rates(equations: &Equations<'_>, found: &SteadyMotion) -> Vec<(Strin
         .filter(|(_, rate)| !cyclic.iter().any(|&x| rate.depends_on(x)))
         .map(|(x, _)| x.to_string())
         .collect();
-    // A velocity that is a component of the state is known already.
+    // The rate of a coordinate whose velocity is a component of the state is already listed.
     let is_component = |name: &str| found.components.iter().any(|known| *known == format!("{name}'"));
     let rates = found.rates.iter().filter(|(name, _)| constant.contains(name) && !is_component(name));
     rates.cloned().collect()
@@ -318,12 +320,12 @@ pub(crate) fn largest(matrix: &Matrix<f64>) -> f64 {
     matrix.entries().iter().fold(0.0, |largest, entry| entry.abs().max(largest))
 }
 
-/// The integrals that do not contain the time, independent of the energy and of each other; parameters are numbers.
+/// The integrals without time, independent of the energy and of each other; parameters are numbers.
 pub(crate) struct Known<'g> {
     integrals: Vec<(String, Expr<'g>)>,
-    /// Those of them that are Casimirs.
+    /// The Casimirs among them.
     casimirs: Vec<(String, Expr<'g>)>,
-    /// Those of them that are functions of the coordinates.
+    /// The functions of the coordinates among them.
     of_coordinates: Vec<(String, Expr<'g>)>,
 }
 
@@ -355,8 +357,8 @@ impl<'g> Known<'g> {
         known
     }
 
-    /// What a steady motion may have in common with the start, most first: a motion is compared with the steady
-    /// ones of the same integrals, if there are any (E. J. Routh).
+    /// The integrals that a steady motion may share with the start, the largest set first: a motion is
+    /// compared with the steady ones of the same integrals, if there are any (E. J. Routh).
     pub(super) fn choices(self) -> Vec<Vec<(String, Expr<'g>)>> {
         let mut choices = vec![self.integrals, self.casimirs, self.of_coordinates];
         choices.dedup_by_key(|choice| choice.len());
@@ -374,7 +376,8 @@ pub(super) struct Surface<'g> {
 }
 
 impl<'g> Surface<'g> {
-    /// If n − rank b of them are functions of the coordinates, as many as the frame keeps.
+    /// The surface, if n − rank b of the functions depend on the coordinates alone, as many as the frame
+    /// keeps.
     pub(super) fn new(
         equations: &Equations<'g>,
         same: &[(String, Expr<'g>)],
@@ -386,7 +389,7 @@ impl<'g> Surface<'g> {
         let functions: Vec<Expr<'g>> = same.iter().map(|&(_, f)| f).collect();
         let of_coordinates = |f: &Expr<'g>| !eta.iter().any(|&eta| f.depends_on(eta));
         let relations: Vec<Expr<'g>> = functions.iter().copied().filter(of_coordinates).collect();
-        // Where velocities are bound the frame keeps no function that is not said to be a position.
+        // With bound velocities, the frame keeps only the functions given as positions.
         let is_bound = system.structure().operators() != eta.len();
         if !is_bound && rank_of_gradients(graph, &relations, x) != x.len() - system.frame().rank() {
             return None;
@@ -400,7 +403,7 @@ impl<'g> Surface<'g> {
 
     /// g(y) − g(start) and ∂g/∂y
     pub(super) fn at(&self, y: &[f64]) -> Result<(Vec<f64>, Matrix<f64>), ExprError> {
-        // Newton's method asks here at each step whether it may go on.
+        // A check at each step of Newton's method whether to continue.
         self.graph.check_budget()?;
         let state: Vec<_> = self.symbols.iter().copied().zip(y.iter().copied()).collect();
         let numbers = self.graph.evaluate(&self.expressions, &state)?;

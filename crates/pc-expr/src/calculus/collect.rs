@@ -11,9 +11,9 @@ use crate::graph::number::Number;
 use crate::graph::places::SymbolPlaces;
 use crate::identity::blocks::independent_blocks;
 
-/// Most terms of a polynomial in several variables.
+/// The most terms of a polynomial in several variables.
 const MOST_TERMS: usize = 10_000;
-/// A sum of more terms is looked at for groups of terms that have nothing to do with each other.
+/// A sum of more terms is searched for groups of terms without common variables.
 const MANY_TERMS: usize = 64;
 /// Expressions longer than this when written out are left as they are.
 const TOO_LONG: u32 = 20_000;
@@ -29,7 +29,7 @@ impl Graph {
         expressions.iter().map(|&e| self.collect(e, (variables, &places), 0)).collect()
     }
 
-    /// e collected by the variables from place `first` on.
+    /// e collected by the variables from number `first` on.
     fn collect<'g>(
         &'g self,
         e: Expr<'g>,
@@ -60,8 +60,9 @@ impl Graph {
         if collected.tree_cost() <= e.tree_cost() { collected } else { self.forget(e, places) }
     }
 
-    /// A long sum whose terms fall into groups without common variables, each group collected by itself: to go through all its
-    /// variables in turn takes the square of their number. `None` where that is no shorter, or the sum is none.
+    /// A long sum whose terms fall into groups without common variables, each group collected on its own: the
+    /// cost of collecting by all variables in turn is quadratic in their number. `None` if the result is not
+    /// shorter, or e is no sum.
     fn collect_apart<'g>(
         &'g self,
         e: Expr<'g>,
@@ -73,7 +74,7 @@ impl Graph {
             let mut factor = Number::ONE;
             loop {
                 match dag.node(node) {
-                    // A common factor stands before the sum.
+                    // A common factor is kept in front of the sum.
                     Node::Sum { constant, terms } if constant.is_zero() && dag.terms(terms).len() == 1 => {
                         let (inner, q) = dag.terms(terms)[0];
                         (node, factor) = (inner, factor * q);
@@ -131,7 +132,7 @@ impl Graph {
                 }
             }
             if next.len() > MOST_TERMS {
-                return None; // nobody would read it
+                return None; // too long to be read
             }
             (terms, first) = (next, place + 1);
         }

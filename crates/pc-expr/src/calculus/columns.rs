@@ -1,4 +1,4 @@
-//! How long expressions are in print, about.
+//! The approximate length of expressions in print.
 
 use rustc_hash::FxHashMap;
 
@@ -6,12 +6,12 @@ use crate::graph::dag::Dag;
 use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 
-/// What is so many levels below an expression counts as a name.
+/// A subexpression at this depth counts as one name.
 const DEPTH: u32 = 5;
 const NAME: usize = 3;
 
 impl Dag {
-    /// Columns of an expression in print, about.
+    /// The approximate number of columns of an expression in print.
     pub(super) fn columns(&self, atom: Atom) -> usize {
         match atom {
             Atom::Constant(c) => c.to_string().len(),
@@ -20,7 +20,7 @@ impl Dag {
     }
 }
 
-/// The same node stands in many places of an expression: its columns are counted once for each level.
+/// Columns by node and depth: a node that occurs many times is measured once for each depth.
 struct Columns<'d> {
     dag: &'d Dag,
     known: FxHashMap<(NodeId, u32), usize>,

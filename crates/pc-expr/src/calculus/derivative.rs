@@ -1,8 +1,8 @@
 //! Derivatives: reverse sweeps for gradients, forward sweeps along a direction.
 //!
-//! Of `step`, min and max only the branch that is taken counts. The other one may have no value or no slope there, and
-//! 0 times that would be NaN: a branch that is not defined everywhere is differentiated by itself, and the choice is
-//! between the derivatives.
+//! Of `step`, min and max only the branch that is taken counts. The other one may have no value or no slope
+//! there, and 0 times that would be NaN. A branch that is not defined everywhere is therefore differentiated
+//! separately, and the choice is made between the derivatives.
 
 use rustc_hash::FxHashMap;
 
@@ -15,7 +15,7 @@ use crate::graph::number::Number;
 use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::{Assignment, Cone};
 
-/// A node that is the first of the branches where the condition is not negative, and the second elsewhere.
+/// A node that equals the first branch where the condition is not negative, and the second elsewhere.
 struct Choice {
     condition: Atom,
     branches: [NodeId; 2],
@@ -27,7 +27,7 @@ impl Dag {
         self.gradient_with(output, symbols, &mut FxHashMap::default())
     }
 
-    /// The same, with the gradients of branches that are known.
+    /// As [`gradient`](Self::gradient), with the gradients of branches that are known.
     fn gradient_with(
         &mut self,
         output: Atom,
@@ -106,14 +106,14 @@ impl Dag {
         Some(Choice { condition, branches })
     }
 
-    /// What is not negative where the first argument is taken for the smaller, or the larger: at a tie the one whose node was
-    /// made first.
+    /// An expression that is not negative where the first argument is the smaller, or the larger; at a tie
+    /// the first one counts, whose node is older.
     fn lead(&mut self, function: Function, [first, second]: [NodeId; 2]) -> Atom {
         let q = if function == Function::Min { Number::ONE } else { Number::MINUS_ONE };
         self.sum(Number::ZERO, &[(second, q), (first, -q)])
     }
 
-    /// Whether some expressions, and their derivatives, have values at all states, none of them beyond all bounds.
+    /// Whether the expressions and their derivatives are defined and finite at all states.
     fn is_defined_everywhere(&self, expressions: [NodeId; 2]) -> bool {
         use Function::{Abs, Atan, Cos, Max, Min, Sign, Sin, Step, Tanh};
         let is_bounded = |&node: &NodeId| match self.node(node) {
@@ -282,8 +282,8 @@ impl Graph {
         self.build_all(|dag| dag.gradient(output, &nodes))
     }
 
-    /// The ∂`output`/∂`symbol` that are not 0 for each of `outputs`, with the place of the symbol: what [gradients](Graph::gradient)
-    /// are, without the zeros, of which n functions of few symbols each have n².
+    /// The ∂`output`/∂`symbol` that are not 0 for each of `outputs`, with the place of the symbol: the
+    /// [gradients](Graph::gradient) as a sparse matrix.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -293,7 +293,7 @@ impl Graph {
     /// ```
     ///
     /// # Panics
-    /// If one of `symbols` is not a symbol, or stands there twice.
+    /// If one of `symbols` is not a symbol, or occurs twice.
     pub fn jacobian<'g>(&'g self, outputs: &[Expr<'g>], symbols: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
         let nodes: Vec<NodeId> = symbols.iter().map(|s| s.symbol_in(self)).collect();
         let places = SymbolPlaces::of(symbols);

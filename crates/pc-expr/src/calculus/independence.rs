@@ -1,6 +1,6 @@
 //! Expressions written without the symbols that they do not depend on.
 //!
-//! A symbol that cancels is put to a number at which the value stays the same, which its fingerprint decides.
+//! A symbol that cancels is replaced by a number at which, by its fingerprint, the value stays the same.
 
 use std::collections::HashSet;
 
@@ -19,8 +19,8 @@ use crate::graph::subgraph::Cone;
 const ODD: Number = Number::Rational { num: 355, den: 452 };
 
 impl Graph {
-    /// e written without the symbols and angles that it contains but does not depend on: they are put to a regular
-    /// value, `variables` to 0 if that is one.
+    /// e written without the symbols and angles on which it does not depend: they are replaced by regular
+    /// values, `variables` by 0 if that is regular.
     pub(super) fn forget<'g>(&'g self, e: Expr<'g>, variables: &SymbolPlaces) -> Expr<'g> {
         let mut short = e;
         for z in self.repeated_symbols(e) {
@@ -43,26 +43,26 @@ impl Graph {
         if !form.is_undefined() && self.is_same_value(form, e) { form } else { e }
     }
 
-    /// e with sin z and cos z at a point of the circle, and z at a number, that do not change its value; e itself if there
-    /// are none. The first point is taken at which no new divisor comes in, else the first.
+    /// e with sin z and cos z at a point of the circle, and z at a number, that leave its value unchanged; e
+    /// itself if there are none. The first point that adds no new divisor is taken, else the first.
     fn at_regular_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
         self.most_regular(e, self.forms_without(e, z, true))
     }
 
-    /// The same with sin z and cos z only.
+    /// The same for sin z and cos z alone.
     fn at_regular_angle<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
         self.most_regular(e, self.forms_without(e, z, false))
     }
 
-    /// The first of the forms of e in which no new divisor comes in, else the first, else e.
+    /// The first of the forms of e without a new divisor, else the first form, else e.
     fn most_regular<'g>(&'g self, e: Expr<'g>, forms: impl Iterator<Item = Expr<'g>>) -> Expr<'g> {
         let mut forms = forms.peekable();
         let first = forms.peek().copied();
         forms.find(|&form| self.is_as_regular(form, e)).or(first).unwrap_or(e)
     }
 
-    /// e, which does not depend on the symbol z, written without it: so that no new divisor comes in, or else one
-    /// that only vanishes at odd places.
+    /// e, which does not depend on the symbol z, written without it: without new divisors, or with one that
+    /// vanishes only at unlikely places.
     pub(crate) fn without_symbol<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
         let is_without = |form: &Expr<'g>| !form.is_undefined() && !self.symbols_of(&[*form]).contains(&z);
         let mut odd = None;
@@ -72,15 +72,16 @@ impl Graph {
             }
             odd = Some(form);
         }
-        // Where constants are rounded, every form has a value a little different.
+        // Where constants are rounded, every form has a slightly different value.
         let rounded = || {
             [ODD, Number::ONE, Number::ZERO].into_iter().map(|value| self.at(e, z, value)).find(is_without)
         };
         odd.or_else(rounded).unwrap_or(e)
     }
 
-    /// `outputs` written without symbols other than `known`, as far as they do not depend on them. Such a symbol
-    /// cancels; it appears where a result has the value of an older and cheaper expression that contains it.
+    /// `outputs` written without symbols other than `known`, as far as they do not depend on them. Such a
+    /// symbol cancels; it appears where a result has the value of an older and cheaper expression that
+    /// contains it.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -108,14 +109,14 @@ impl Graph {
         outputs.iter().map(|&e| foreign(&[e]).into_iter().fold(e, without)).collect()
     }
 
-    /// e at those points of z, from simple to odd ones, that do not change its value.
+    /// e at those points of z, from simple to odd ones, that leave its value unchanged.
     fn forms_without<'g>(
         &'g self,
         e: Expr<'g>,
         z: Expr<'g>,
         whole: bool,
     ) -> impl Iterator<Item = Expr<'g>> + 'g {
-        // A form with a vanishing denominator or another value is not taken: try the next point.
+        // A form with a vanishing denominator or another value is passed over for the next point.
         let oblique = [Number::ratio(3, 5), Number::ratio(4, 5)];
         [
             (Number::ZERO, [Number::ZERO, Number::ONE]),
@@ -129,7 +130,7 @@ impl Graph {
         .filter(move |&form| self.is_same_value(form, e))
     }
 
-    /// The angles that are no symbols, of which e contains both sine and cosine: Ω t in sin Ω t and cos Ω t.
+    /// The composite angles, such as Ω t in sin Ω t and cos Ω t, of which e contains both sine and cosine.
     fn composite_angles<'g>(&'g self, e: Expr<'g>) -> Vec<Expr<'g>> {
         let Atom::Node(root) = e.atom_in(self) else { return Vec::new() };
         let angles: Vec<NodeId> = self.with(|dag| {
@@ -152,7 +153,7 @@ impl Graph {
         angles.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
     }
 
-    /// The symbols that occur more than once when e is written out: what occurs once does not cancel.
+    /// The symbols that occur more than once when e is written out: only these can cancel.
     fn repeated_symbols<'g>(&'g self, e: Expr<'g>) -> Vec<Expr<'g>> {
         let Atom::Node(root) = e.atom_in(self) else { return Vec::new() };
         let repeated: Vec<NodeId> = self.with(|dag| {
@@ -197,7 +198,7 @@ impl Graph {
         self.trial(e, &[(z.symbol_in(self), Atom::Constant(value))])
     }
 
-    /// e with nodes replaced; a division by zero that it leads to is forgotten.
+    /// e with nodes replaced; a division by zero on the way is not reported.
     fn trial<'g>(&'g self, e: Expr<'g>, replacements: &[(NodeId, Atom)]) -> Expr<'g> {
         let output = e.atom_in(self);
         self.build(|dag| {
@@ -208,7 +209,8 @@ impl Graph {
         })
     }
 
-    /// Whether no divisor of the first expression vanishes where the second has a value, judged by the factors of their divisors.
+    /// Whether the divisors of the first expression vanish only where those of the second do, judged by their
+    /// factors.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -221,7 +223,7 @@ impl Graph {
         self.with(|dag| dag.is_as_regular(some, other))
     }
 
-    /// Whether a form has the fingerprint of an expression, and its numbers.
+    /// Whether a form has the fingerprint of e, and its numerical values.
     fn is_same_value<'g>(&'g self, form: Expr<'g>, e: Expr<'g>) -> bool {
         (form - e).is_zero() && self.has_numbers_of(form, e)
     }

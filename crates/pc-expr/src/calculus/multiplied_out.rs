@@ -17,7 +17,8 @@ const MOST_PRODUCTS: usize = 24;
 const MOST_NODES: usize = 4000;
 
 impl Graph {
-    /// The expressions with their brackets multiplied out where sines and cosines then merge to less than there was.
+    /// The expressions with their brackets multiplied out where sines and cosines then merge to a shorter
+    /// form.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -52,7 +53,7 @@ impl Graph {
 }
 
 impl Dag {
-    /// A node with what its children have become, merged itself if it is a sum.
+    /// A node with its children replaced by their merged forms, merged itself if it is a sum.
     fn with_children_merged(&mut self, node: NodeId, merged: &FxHashMap<NodeId, Atom>) -> Atom {
         let same = |child: &NodeId| merged[child] == Atom::Node(*child);
         match self.node(node) {
@@ -103,7 +104,7 @@ impl Dag {
         }
     }
 
-    /// c + Σ with all brackets multiplied out, if it has terms that cancel or merge then.
+    /// c + Σ with all brackets multiplied out, if terms then cancel or merge.
     pub(super) fn multiplied_out(&mut self, constant: Number, terms: &[Term]) -> Option<(Number, Vec<Term>)> {
         let (mut open, mut constant) = (terms.to_vec(), constant);
         let mut done: Vec<Term> = Vec::new();
@@ -155,7 +156,7 @@ impl Dag {
     }
 }
 
-/// Powers of each node once, by ascending node.
+/// The factors by ascending node, each node once.
 fn gathered(mut factors: Factors) -> Factors {
     factors.sort_unstable_by_key(|&(node, _)| node);
     factors.dedup_by(|next, kept| {

@@ -1,20 +1,20 @@
-//! Whether two forms of one function have the same numbers.
+//! Whether two forms of one function have the same numerical values.
 //!
-//! Constants are rounded, and a fingerprint takes them as exact. So a divisor that vanishes up to their rounding is
-//! not zero to it: 1.19² − 1.4161 divided by itself is 1, but its numbers are noise.
+//! Fingerprints take rounded constants as exact: a divisor that is zero but for their rounding is not zero to
+//! them. So (1.19² − 1.4161) divided by itself is 1 by fingerprint, but noise in numbers.
 
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
 
-/// Points that are tried.
+/// The number of points at which values are compared.
 const POINTS: u32 = 4;
 
-/// Relative differences of two forms that rounding may make, also where much cancels in one of them; what is divided by no more
-/// than rounding differs by its own order.
+/// Relative differences of two forms that rounding may cause, even with much cancellation in one of them; a
+/// quotient of rounding errors differs by its own order.
 const DIFFERENCE: f64 = 1e-6;
 
 impl Graph {
-    /// Whether the values of a form are those of `other`, too, at some points where both have any.
+    /// Whether the values of a form agree with those of `other` at some points where both have values.
     pub(crate) fn has_numbers_of<'g>(&'g self, form: Expr<'g>, other: Expr<'g>) -> bool {
         let symbols = self.symbols_of(&[form, other]);
         (0..POINTS).all(|point| {

@@ -6,7 +6,7 @@ use crate::graph::graph::Graph;
 use crate::graph::node::Atom;
 use crate::graph::number::Number;
 
-/// Brackets that save fewer columns are not opened.
+/// Brackets are kept unless opening them saves this many columns.
 const WORTH_A_BRACKET: usize = 4;
 
 /// A polynomial Σ c·z_1^e_1 z_2^e_2 ….
@@ -19,8 +19,8 @@ pub struct Polynomial<'g> {
 }
 
 impl<'g> Polynomial<'g> {
-    /// The polynomial written out in another graph, coefficients in front of their monomials, not nested; monomials that have
-    /// the same coefficient are collected behind it where that is shorter.
+    /// The polynomial written out in another graph, not nested, coefficients in front of their monomials;
+    /// monomials with the same coefficient are collected behind it where that is shorter.
     pub fn expanded<'h>(&self, from: &'g Graph, into: &'h Graph) -> Expr<'h> {
         let terms = self.terms.iter().map(|(exponents, coefficient)| {
             let monomial = self.variables.iter().zip(exponents).fold(Expr::ONE, |product, (z, &e)| {
@@ -34,7 +34,7 @@ impl<'g> Polynomial<'g> {
 }
 
 impl Dag {
-    /// Σ c z
+    /// Σ c z, terms of equal coefficient collected.
     fn collected_by_coefficient(&mut self, terms: &[(Atom, Atom)]) -> Atom {
         let mut groups: Vec<(Atom, Vec<(Atom, Number)>)> = Vec::new();
         for &(coefficient, monomial) in terms {
@@ -73,7 +73,7 @@ impl Dag {
         self.sum_of(&all)
     }
 
-    /// A sum of products with what all have in common before it.
+    /// A sum of products with their common factors in front.
     fn common_factors_first(&mut self, sum: Atom) -> Atom {
         let Some((scale, constant, terms)) = self.terms_of(sum) else { return sum };
         let Some(product) = self.before_brackets(constant, &terms) else { return sum };

@@ -12,10 +12,10 @@ use crate::graph::number::Number;
 /// The most products into which one component is multiplied out.
 const MOST_PRODUCTS: usize = 64;
 
-/// The most functions that are combined: some hundredths of a second.
+/// The most functions that are combined; as many take some hundredths of a second.
 const MOST_FUNCTIONS: usize = 200;
 
-/// The longest components, in operations written out; how deep they are nested is bounded by that, too.
+/// The longest components, in operations written out; this bounds their depth, too.
 const LONGEST: u32 = 1_000;
 
 /// The greatest power of a sum that is multiplied out.
@@ -25,8 +25,8 @@ const MOST_POWER: i32 = 4;
 type Product<'g> = Vec<(Expr<'g>, i32)>;
 
 impl Graph {
-    /// F with ∂F/∂z_i = f_i, if the `form` f_i dz_i is exact and F is found: a combination with rational coefficients of
-    /// products of powers, sines, cosines, exponentials and logarithms like those in the f_i.
+    /// F with ∂F/∂z_i = f_i, if the `form` f_i dz_i is exact and F is found: a combination with rational
+    /// coefficients of products of powers, sines, cosines, exponentials and logarithms like those in the f_i.
     ///
     /// That F has this gradient is proved. An exact form may go unrecognised.
     ///
@@ -59,7 +59,7 @@ impl Graph {
                 }
             }
         }
-        functions.sort_by_key(|function| function.tree_cost()); // the simplest are combined
+        functions.sort_by_key(|function| function.tree_cost()); // simple ones are preferred
         let gradients = functions.iter().map(|&function| self.gradient(function, variables));
         let columns: Vec<Vec<Expr<'g>>> = gradients.chain([form.to_vec()]).collect();
         let last = functions.len();
@@ -68,7 +68,7 @@ impl Graph {
         Some(self.dot(relation[..last].iter().map(|&c| Expr::from(c * scale)), functions))
     }
 
-    /// The products of which f is the sum, unless they are too many.
+    /// The products whose sum is f, unless they are too many.
     fn products<'g>(&'g self, f: Expr<'g>) -> Option<Vec<Product<'g>>> {
         let Atom::Node(id) = f.atom_in(self) else {
             let constant = |c: Number| vec![rounded(c).collect()];
@@ -191,7 +191,7 @@ impl Graph {
     }
 }
 
-/// A factor that is no rational number.
+/// A factor that is not a rational number.
 fn rounded<'g>(c: Number) -> impl Iterator<Item = (Expr<'g>, i32)> {
     matches!(c, Number::Real(_)).then(|| (Expr::from(c), 1)).into_iter()
 }
@@ -208,7 +208,8 @@ fn over<'g>(f: Expr<'g>, u: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
     if slope.is_zero() || slope.depends_on(z) { f } else { f / slope }
 }
 
-/// The products of the degree of s^i c^j, or, of quotients, those whose exponents differ by one at most.
+/// The products s^i' c^j' of the degree of s^i c^j, or, for quotients, those whose exponents differ by at
+/// most one.
 fn circular<'g>(s: Expr<'g>, c: Expr<'g>, i: i32, j: i32) -> Vec<Expr<'g>> {
     if i >= 0 && j >= 0 {
         return (0..=i + j).map(|p| s.powi(p) * c.powi(i + j - p)).collect();
@@ -221,7 +222,7 @@ fn circular<'g>(s: Expr<'g>, c: Expr<'g>, i: i32, j: i32) -> Vec<Expr<'g>> {
 mod tests {
     use super::*;
 
-    /// The gradient of a function leads back to it, but for a constant.
+    /// A function is recovered from its gradient up to a constant.
     #[test]
     fn gradients_are_integrated() {
         let graph = Graph::new();
@@ -256,9 +257,9 @@ mod tests {
         assert_eq!(graph.potential(&[0.into(), 0.into(), 0.into()], &[x, y, z]), Some(0.into()));
     }
 
-    /// Deep ones are given up, not descended into for ever.
+    /// A deeply nested form is refused instead of being descended into.
     #[test]
-    fn deep_forms_are_given_up() {
+    fn deeply_nested_forms_are_refused() {
         let graph = Graph::new();
         let [x, y] = graph.symbols(["x", "y"]);
         let nested = |depth: usize| (0..depth).fold(y, |f, _| (f * x + 1.0) * y + 2.0);

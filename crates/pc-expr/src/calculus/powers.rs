@@ -9,7 +9,7 @@ use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
-/// Greatest degree that is looked for.
+/// The greatest degree that is tried.
 const MAX_DEGREE: usize = 4;
 
 impl Graph {
@@ -29,7 +29,7 @@ impl Graph {
             if next.is_zero() {
                 break;
             }
-            // The derivatives of a polynomial become shorter; where they grow, or are past counting, there is none to be found.
+            // The derivatives of a polynomial become shorter: where they grow, the expression is not one.
             let most = derivatives[derivatives.len() - 1].tree_cost().saturating_mul(2).checked_add(8);
             let growing = most.is_none_or(|most| next.tree_cost() > most);
             if derivatives.len() > MAX_DEGREE || growing {
@@ -51,7 +51,7 @@ impl Graph {
     }
 }
 
-/// What is seen of an expression's powers of a symbol without differentiating.
+/// The powers of a symbol in an expression, as far as they are seen without differentiating.
 enum Powers {
     /// The coefficients.
     Coefficients(Vec<Atom>),

@@ -1,4 +1,4 @@
-//! Powers of roots, so that what is one is seen to be one.
+//! Powers of roots, made so that later expressions of the same value are recognised as such powers.
 
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
@@ -7,12 +7,13 @@ use crate::graph::node::{Atom, Node};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
-/// Up to w^3.
+/// The highest exponent p of w^(p/2).
 const HIGHEST: i32 = 6;
 
 impl Graph {
-    /// Makes the powers w^(p/2), |p| ≤ 6, of what stands under the square roots in some expressions: what is built later and has
-    /// the value of one is that power, as it is the shorter form. Answers whether there are roots.
+    /// Makes the powers w^(p/2), |p| ≤ 6, of the radicands w of all square roots in some expressions. An
+    /// expression built later with the value of such a power becomes that power, which is the shorter form.
+    /// Returns whether there are roots.
     ///
     /// ```
     /// # use pc_expr::Graph;

@@ -10,7 +10,8 @@ use crate::graph::number::Number;
 use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::{Assignment, Cone};
 
-/// Symbols with what to put in their places: to put it into many short expressions costs what these have, however long the list.
+/// Symbols with their replacements. Applied to a short expression, it costs what that expression has, however
+/// long the list.
 #[derive(Clone, Debug)]
 pub struct Substitution<'g> {
     graph: &'g Graph,
@@ -40,8 +41,8 @@ impl<'g> Substitution<'g> {
 
     /// Writes results without the symbols that were replaced.
     ///
-    /// Such a symbol comes back where it cancels: the result then has the value of an older and cheaper expression
-    /// that is written with it.
+    /// Such a symbol comes back where it cancels, as the result then has the value of an older and cheaper
+    /// expression that contains it.
     fn drop_returned(&self, results: &mut [Expr<'g>]) {
         let graph = self.graph;
         let is_replaced = |symbol: &Expr<'g>| match symbol.atom() {

@@ -1,7 +1,7 @@
 //! Expressions as a book prints them: short to read, whatever they cost to compute.
 //!
-//! Sums are rewritten from the inside outwards by identities that hold wherever both sides have values: cos a cos b + sin a sin b
-//! is cos(a − b), p/d + q/d is (p + q)/d, and common factors are taken out of sums.
+//! Sums are rewritten from the inside outwards by identities that hold wherever both sides have values: cos a
+//! cos b + sin a sin b is cos(a − b), p/d + q/d is (p + q)/d, and common factors are taken out of sums.
 
 use rustc_hash::FxHashMap;
 
@@ -13,7 +13,7 @@ use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
-/// Sums of more terms are left as they are: nobody compares so many with each other.
+/// Sums of more terms are left as they are: all pairs of terms would be compared.
 const MOST_TERMS: usize = 60;
 
 /// Powers of nodes, by ascending node.
@@ -48,7 +48,7 @@ impl Graph {
                         Node::Call { function, args } => {
                             let args: Vec<Atom> =
                                 Dag::args(function, &args).iter().map(|arg| set[arg]).collect();
-                            // What is a call of numbers here is so on purpose.
+                            // A call of numbers is kept: it was not evaluated, on purpose.
                             match args.iter().all(|arg| matches!(arg, Atom::Constant(_))) {
                                 true => paper.call_unfolded(function, &args),
                                 false => paper.call(function, &args),
@@ -90,7 +90,7 @@ impl Dag {
         self.rewritten(sum)
     }
 
-    /// A sum rewritten, if it becomes shorter by it; anything else as it is.
+    /// A sum rewritten, if that makes it shorter; anything else unchanged.
     fn rewritten(&mut self, sum: Atom) -> Atom {
         let Some((scale, constant, mut terms)) = self.terms_of(sum) else { return sum };
         if terms.len() < 2 && constant.is_zero() || terms.len() > MOST_TERMS {
@@ -112,7 +112,8 @@ impl Dag {
         if self.columns(other) < self.columns(sum) { other } else { sum }
     }
 
-    /// A product with what all terms of a sum have in common with its divisors cancelled: (a² + a b)/a is a + b.
+    /// A product in which factors common to all terms of a sum and its divisors are cancelled: (a² + a b)/a
+    /// is a + b.
     fn cancelled(&mut self, product: Atom) -> Atom {
         let Atom::Node(node) = product else { return product };
         let Node::Product { factors } = self.node(node) else { return product };
@@ -168,7 +169,8 @@ impl Dag {
         self.sum_of(&all)
     }
 
-    /// Puts sines and cosines of sums of angles for sums of their products, as long as there are any.
+    /// Merges products of sines and cosines into sines and cosines of sums of angles, as often as possible.
+    /// Returns whether any merged.
     pub(super) fn merge_angles(&mut self, terms: &mut Vec<Term>) -> bool {
         let mut merged = false;
         'again: loop {
@@ -259,7 +261,7 @@ impl Dag {
         Some(Term { q: q * sign, factors })
     }
 
-    /// The sum with terms that divide by the same as one quotient, if there are such.
+    /// The sum with terms of equal divisor as one quotient, if there are such terms.
     fn over_common_divisors(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
         let mut groups: Vec<(Factors, Vec<Term>)> = Vec::new();
         for term in terms {
@@ -272,7 +274,7 @@ impl Dag {
         }
         let is_quotient =
             |(divisors, numerators): &(Factors, Vec<Term>)| !divisors.is_empty() && numerators.len() > 1;
-        // One quotient alone is what common factors are taken from.
+        // A single quotient is left to the extraction of common factors.
         if !groups.iter().any(is_quotient) || groups.len() == 1 && constant.is_zero() {
             return None;
         }
@@ -293,7 +295,7 @@ impl Dag {
         Some(self.sum_of(&all))
     }
 
-    /// The sum as a product of what all its terms have in common and the rest, if they have something in common.
+    /// The sum with its common factors in front of a bracket, if there are any.
     pub(super) fn before_brackets(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
         let (first, rest) = terms.split_first().filter(|_| constant.is_zero())?;
         let common = rest.iter().fold(first.factors.clone(), |common, term| shared(&common, &term.factors));
@@ -314,7 +316,7 @@ impl Dag {
 }
 
 impl Dag {
-    /// The sum with those terms in brackets that have a function or a sum in common: the one that most terms have.
+    /// The sum with some terms in brackets behind the function or sum that most of them have in common.
     fn in_groups(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
         let is_long = |node: NodeId| matches!(self.node(node), Node::Call { .. } | Node::Sum { .. });
         let has = |term: &Term, node: NodeId| term.factors.iter().any(|&(factor, e)| factor == node && e > 0);
@@ -335,7 +337,7 @@ impl Dag {
     }
 }
 
-/// What two products have in common, and what each has besides.
+/// The common factors of two products, and the remaining factors of each.
 fn split(one: &Factors, other: &Factors) -> (Factors, [Factors; 2]) {
     let common = shared(one, other);
     let besides = |factors: &Factors| -> Factors {
@@ -349,7 +351,8 @@ fn split(one: &Factors, other: &Factors) -> (Factors, [Factors; 2]) {
     (common, both)
 }
 
-/// The powers that two products have in common: of a factor in both the smaller one, if both are above or below the line.
+/// The powers that two products have in common: of each factor the smaller one, if both are above or both
+/// below the line.
 fn shared(one: &Factors, other: &Factors) -> Factors {
     let power = |&(node, e): &(NodeId, i32)| {
         let &(_, f) = other.iter().find(|(known, _)| *known == node)?;

@@ -146,7 +146,7 @@ pub(crate) fn is_reserved(name: &str) -> bool {
         || prefixes.iter().any(|prefix| name.starts_with(prefix))
 }
 
-/// The name in `<math.h>`, if it is there.
+/// The name in `<math.h>`, if the function is there.
 fn library_name(function: Function) -> Option<&'static str> {
     match function {
         Function::Abs => Some("fabs"),
@@ -177,7 +177,7 @@ pub(crate) fn string(text: &str) -> String {
     for c in text.chars() {
         match c {
             '"' | '\\' => literal.extend(['\\', c]),
-            // as in ??/, which is a backslash
+            // a trigraph such as ??/ is a backslash
             '?' => literal += "\\?",
             c if is_hidden(c) => literal.push(' '),
             c => literal.push(c),

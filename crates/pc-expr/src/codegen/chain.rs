@@ -12,7 +12,7 @@ use crate::program::program::{Instruction, Program, Register};
 
 /// Columns of a Jacobian that are computed together.
 const LANES: usize = 4;
-/// Lines of the table are broken there.
+/// The greatest width of a line of the table.
 const WIDTH: usize = 110;
 
 /// The names in the source of a table.
@@ -42,7 +42,7 @@ pub struct Chain {
 /// The derivative of a function of the argument `x` and the value `r`, if it has a rule.
 fn derivative(function: Function, language: Language, [x, r]: [&str; 2]) -> Option<String> {
     let call = |f: Function, x: &str| match language {
-        Language::C => c::call(f, x, ""), // all of them are in the library
+        Language::C => c::call(f, x, ""), // the library has all of them
         Language::Rust => rust::call(f, x),
     };
     Some(match function {
@@ -61,7 +61,7 @@ fn derivative(function: Function, language: Language, [x, r]: [&str; 2]) -> Opti
     })
 }
 
-/// What the derivative of a function calls.
+/// The function that the derivative of a function calls.
 fn called(function: Function) -> Option<Function> {
     match function {
         Function::Sin => Some(Function::Cos),
@@ -124,7 +124,7 @@ fn entry(instruction: &Instruction, functions: &[Function]) -> (usize, Register,
         Instruction::MultiplyAdd(a, b, _)
         | Instruction::MultiplySubtract(a, b, _)
         | Instruction::NegateMultiplyAdd(a, b, _)
-        | Instruction::NegateMultiplySubtract(a, b, _) => (2, a, b), // there is none in a chain
+        | Instruction::NegateMultiplySubtract(a, b, _) => (2, a, b), // a chain has no fused operations
     }
 }
 
@@ -283,7 +283,7 @@ impl Chain {
         text
     }
 
-    /// The body of a function that writes outputs from `from` on, so many of them, to an array.
+    /// The body of a function that writes `count` outputs, from number `from` on, to an array.
     pub fn values(&self, array: &str, from: usize, count: usize) -> String {
         let upto = self.places[from..from + count].iter().max().map_or(0, |last| last + 1);
         let (values, compute, places) = (self.values, self.name("compute"), self.name("places"));
@@ -315,8 +315,8 @@ impl Chain {
         }
     }
 
-    /// The body of a function that writes the derivatives of the first outputs by the state, as many as there are components,
-    /// column after column.
+    /// The body of a function that writes the derivatives of the first outputs by the state, as many as there
+    /// are components, column by column.
     pub fn jacobian(&self, program: &Program, array: &str) -> String {
         let functions = &self.calls.functions;
         let (first, values, n) = (program.first_result(), self.values, program.state_len());

@@ -1,16 +1,16 @@
 //! Programs as source text: the statements of one straight-line function.
 //!
-//! The source computes what the [interpreter](crate::Interpreter) computes, operation by operation: a value used
-//! once is written where it is used, with brackets wherever the order of operations needs them, any other becomes a
-//! local constant.
+//! The source computes what the [interpreter](crate::Interpreter) computes, operation by operation. A value
+//! used once is written in place, with brackets wherever the order of operations needs them; any other value
+//! becomes a local constant.
 
 use crate::codegen::function_body::Printer;
 use crate::codegen::layout::{FunctionBody, Language, Layout};
 use crate::program::program::Program;
 
 impl Program {
-    /// The program as the body of a function; multiply-adds are fused only where they are so in a
-    /// [fused](Program::fused) program.
+    /// The program as the body of a function. Multiply-adds are fused only in a [fused](Program::fused)
+    /// program.
     ///
     /// ```
     /// use pc_expr::{Graph, Inputs, Language, Layout, Place, Program, Slot};

@@ -1,6 +1,6 @@
-//! Text that stands in comments and strings.
+//! Text for comments and strings.
 
-/// `text` on one line and without what would end or break a comment.
+/// `text` on one line, without anything that ends or breaks a comment.
 pub(crate) fn comment(text: &str) -> String {
     let visible = |c: char| if c.is_whitespace() || is_hidden(c) { ' ' } else { c };
     let mut text: String = text.chars().map(visible).collect();
@@ -14,7 +14,7 @@ pub(crate) fn comment(text: &str) -> String {
     text.trim().trim_end_matches('\\').trim_end().to_owned()
 }
 
-/// Control characters and those that change the direction of writing.
+/// Whether this is a control character or changes the direction of writing.
 pub(crate) fn is_hidden(c: char) -> bool {
     !matches!(c, '\'' | '"' | '\\') && c.escape_debug().len() > 1
 }

@@ -7,17 +7,17 @@ use crate::codegen::layout::{Calls, FunctionBody, Language, Layout, Place};
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
-/// Text longer than this is not put into another expression, but given a name.
+/// Longer text gets a name instead of being written inside another expression.
 const LONG: usize = 80;
-/// A sum may become this long, in several lines, before its beginning is given a name.
+/// A sum of several lines may become this long before its beginning gets a name.
 const LONG_SUM: usize = 320;
-/// In functions of more operations the words of declarations are a tenth of the text.
+/// In functions of more operations, declarations are a tenth of the text.
 const MANY: usize = 2000;
-/// Comments are cut there.
+/// Longer comments are cut.
 const LONGEST_COMMENT: usize = 60;
-/// Brackets within brackets within brackets are enough.
+/// The deepest nesting of brackets.
 const DEEP: u32 = 3;
-/// Lines are broken where they would be longer.
+/// Longer lines are broken.
 const WIDTH: usize = 110;
 /// Comments of neighbouring lines are aligned up to this column.
 const ALIGNED: usize = 64;
@@ -33,7 +33,7 @@ enum Binding {
 /// The text of a value.
 #[derive(Clone, Debug)]
 struct Piece {
-    /// The terms of a sum, each but the first with its sign and a space before it; else a single one.
+    /// The terms of a sum, each but the first with its sign and a space before it; otherwise one term.
     terms: Vec<String>,
     binding: Binding,
     /// How deep brackets are nested.
@@ -61,7 +61,8 @@ impl Piece {
         self.terms[0].starts_with('-')
     }
 
-    /// The text, and how deep its brackets are, where an operator stands to its left: no sign may follow that.
+    /// The text, and the depth of its brackets, to the right of an operator: there it cannot begin with a
+    /// sign.
     fn right(&self, least: Binding) -> (String, u32) {
         if self.binding >= least && !self.is_negative() {
             (self.text(), self.depth)
@@ -70,7 +71,7 @@ impl Piece {
         }
     }
 
-    /// The text, and how deep its brackets are, at the beginning of an expression.
+    /// The text, and the depth of its brackets, at the beginning of an expression.
     fn left(&self, least: Binding) -> (String, u32) {
         if self.binding >= least { (self.text(), self.depth) } else { self.bracketed() }
     }
@@ -79,9 +80,9 @@ impl Piece {
         (format!("({})", self.text()), self.depth + 1)
     }
 
-    /// This with one term more.
+    /// This sum with one more term.
     fn and(mut self, sign: char, term: &Piece) -> Piece {
-        // What is subtracted or added as a whole keeps its brackets.
+        // A term added or subtracted as a whole keeps its brackets.
         let (text, depth) = term.right(Binding::Product);
         if self.binding != Binding::Sum {
             self = Piece::new(self.text(), Binding::Sum, self.depth);
@@ -97,12 +98,12 @@ pub(crate) struct Printer<'a> {
     language: Language,
     layout: &'a Layout,
     uses: Vec<u32>,
-    /// Text of each register: its name, or the whole expression if that is to be written where it is used.
+    /// The text of each register: its name, or the expression that is written in place.
     pieces: Vec<Piece>,
     /// Names that are taken.
     names: FxHashSet<String>,
     locals: usize,
-    /// A name for the value of a register, from the slot of an output.
+    /// A name for the value of each register, from the slot of an output.
     hints: Vec<Option<&'a str>>,
     statements: Lines,
     calls: Calls,
@@ -117,14 +118,14 @@ impl Lines {
         self.0.push((code.into(), comment));
     }
 
-    /// The text, comments of neighbouring lines one below the other.
+    /// The text, with comments of neighbouring lines aligned.
     fn text(&self, language: Language) -> String {
         let mut text = String::new();
         let run = |(code, comment): &(String, String)| !comment.is_empty() && code.len() <= ALIGNED;
         for lines in self.0.chunk_by(|a, b| run(a) && run(b)) {
             let width = lines.iter().map(|(code, _)| code.len()).max().unwrap_or(0);
             for (code, comment) in lines {
-                // The width of a format ends at 65 535, a line of code does not.
+                // A format width is at most 65 535, a line of code may be longer.
                 let gap = " ".repeat(width - code.len());
                 text += &match language {
                     _ if comment.is_empty() => format!("    {code}\n"),
@@ -173,7 +174,7 @@ impl<'a> Printer<'a> {
         FunctionBody { inputs, statements: self.statements.text(self.language), calls: self.calls }
     }
 
-    /// Writes the outputs, in their order, whose registers are before `known`.
+    /// Writes the outputs, in their order, whose registers are below `known`.
     fn write_outputs(&mut self, done: &mut usize, known: usize) {
         while let Some(output) = self.program.outputs().get(*done).filter(|output| output.index() < known) {
             let slot = &self.layout.slots[*done];
@@ -225,7 +226,7 @@ impl<'a> Printer<'a> {
             }
             Multiply(a, b) => {
                 let (a, b) = (self.operand(a), self.operand(b));
-                // a·b is b·a to the last bit: a factor that is itself a product comes first, without brackets.
+                // a·b is b·a to the last bit: a factor that is a product comes first and needs no brackets.
                 let is_product = |piece: &Piece| piece.binding == Binding::Product && !piece.is_negative();
                 let is_number =
                     |piece: &Piece| piece.terms[0].starts_with(|c: char| c.is_ascii_digit() || c == '-');
@@ -261,8 +262,8 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// a + b is b + a to the last bit: a part that is itself a sum comes first, without brackets, and one that
-    /// begins with a sign comes last, and is subtracted.
+    /// a + b is b + a to the last bit: a summand that is a sum comes first and needs no brackets; one that
+    /// begins with a sign comes last and is subtracted.
     fn sum(&mut self, a: Register, b: Register) -> Piece {
         let is_sum = |printer: &Self, r: Register| printer.pieces[r.index()].binding == Binding::Sum;
         let (a, b) = if is_sum(self, b) && !is_sum(self, a) { (b, a) } else { (a, b) };
@@ -287,13 +288,13 @@ impl<'a> Printer<'a> {
         Piece::new(format!("{name}({}, {}, {})", a.text(), b.text(), c.text()), Binding::Atom, depth)
     }
 
-    /// The text of a register for use in an expression; what is too long or too deep for that gets a name first.
+    /// The text of a register for use in an expression; text too long or too deep gets a name first.
     fn operand(&mut self, register: Register) -> Piece {
         let piece = &self.pieces[register.index()];
         if piece.len() > LONG || piece.depth >= DEEP { self.name_now(register) } else { piece.clone() }
     }
 
-    /// The same at the beginning of a sum.
+    /// The text of a register at the beginning of a sum; see [`operand`](Self::operand).
     fn first_term(&mut self, register: Register) -> Piece {
         let piece = &self.pieces[register.index()];
         let limit = if piece.binding == Binding::Sum { LONG_SUM } else { WIDTH };
@@ -305,11 +306,11 @@ impl<'a> Printer<'a> {
         let Some(&instruction) =
             index.checked_sub(self.program.first_result()).map(|i| &self.program.code()[i])
         else {
-            return self.pieces[index].clone(); // a long name of an input
+            return self.pieces[index].clone(); // the long name of an input
         };
         let piece = self.pieces[index].clone();
         if self.uses[index] > 1 {
-            return piece; // it has one
+            return piece; // it already has a name
         }
         let named = self.named(index, instruction, &piece);
         self.pieces[index] = named.clone();
@@ -328,7 +329,8 @@ impl<'a> Printer<'a> {
         Piece::atom(name)
     }
 
-    /// A name that says what the value is, if there is one: `sin_theta`, `omega1_dot`; else a number.
+    /// A name that says what the value is, such as `sin_theta` or `omega1_dot`, if there is one; otherwise a
+    /// number.
     fn local(&mut self, register: usize, instruction: Instruction) -> String {
         let inputs = self.program.first_input() + 1..self.program.first_result();
         let of_input = match instruction {
@@ -352,7 +354,7 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Declares the inputs that are read, and passes over the arguments that are not.
+    /// Declares the inputs that are read, and discards the other arguments.
     fn inputs(&self) -> Lines {
         let first = self.program.first_input();
         let read = |i: usize| self.uses[first + i] > 0;

@@ -27,14 +27,14 @@ fn greek(letter: char) -> Option<String> {
     }
 }
 
-/// What `name` is spelt with: ASCII letters, digits and single `_`, the first a letter; empty for an empty name.
+/// `name` spelt in ASCII letters, digits and single `_`, beginning with a letter; empty for an empty name.
 fn spelt(name: &str) -> String {
     let stem = name.trim_end_matches('\'');
     let mut text = String::new();
     let mut after_greek = false;
     for letter in stem.chars() {
         let word = greek(letter);
-        // A word ends where the next letter begins, but a digit is its index.
+        // A letter begins a new word; a digit is an index of the word before it.
         let joined = text.ends_with(|c: char| c.is_ascii_alphanumeric());
         if joined && (word.is_some() || after_greek && letter.is_ascii_alphabetic()) {
             text.push('_');
@@ -54,7 +54,7 @@ fn spelt(name: &str) -> String {
         2 => text += "_ddot",
         order => text += &format!("_d{order}"),
     }
-    // C++ keeps double underscores to itself, C those at the beginning.
+    // C++ reserves double underscores, C leading ones.
     let mut text = text.split('_').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_");
     if text.starts_with(|c: char| c.is_ascii_digit()) {
         text.insert_str(0, "n_");

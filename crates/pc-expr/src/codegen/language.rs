@@ -18,7 +18,7 @@ impl Language {
         identifier::distinct(self, names, reserved)
     }
 
-    /// A literal that is read back as the same bits.
+    /// A literal that reads back as the same bits.
     pub fn constant(self, value: f64) -> String {
         match self {
             Language::C => c::constant(value),
@@ -34,13 +34,13 @@ impl Language {
         }
     }
 
-    /// `text` on one line, without anything that would end or break a comment.
+    /// `text` on one line, without anything that ends or breaks a comment.
     pub fn comment(self, text: &str) -> String {
         comment::comment(text)
     }
 
-    /// Definitions that the code which makes these calls needs: in C the functions that `<math.h>` lacks, their names
-    /// beginning with `prefix`; in Rust the module `math`.
+    /// Definitions that these calls need: in C the functions that `<math.h>` lacks, with names that begin
+    /// with `prefix`; in Rust the module `math`.
     pub fn helpers(self, calls: &Calls, prefix: &str) -> String {
         match self {
             Language::C => c::helpers(calls, prefix),

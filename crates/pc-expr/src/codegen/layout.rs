@@ -1,4 +1,4 @@
-//! The request and the result: the language, the places of inputs and outputs in a function, its text.
+//! The request for source text, which is the language and the places of inputs and outputs, and the result.
 
 use crate::graph::function::Function;
 
@@ -14,24 +14,24 @@ pub enum Language {
 /// Where a printed function puts one output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// It is assigned to this, for instance `ydot[0]`.
+    /// An entry to be assigned, for instance `ydot[0]`.
     Entry(String),
-    /// It is what the function returns; there is no other output then.
+    /// The function returns it as its only output.
     Returned,
 }
 
 /// One output of a printed function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slot {
-    /// Where it goes.
+    /// Where the output is put.
     pub place: Place,
     /// Its meaning, as a comment after the statement; may be empty.
     pub comment: String,
-    /// A name for its value where that is needed again, an identifier of the language; may be empty.
+    /// A name for its value if that is used again, an identifier of the language; may be empty.
     pub local: String,
 }
 
-/// How a program is put into a function of the arguments `t`, `y` (the state) and `p` (the parameters).
+/// How a program becomes a function of the arguments `t`, `y` (the state) and `p` (the parameters).
 #[derive(Clone, Debug)]
 pub struct Layout {
     /// Identifiers of the state and the parameters, from [`Language::identifiers`].
@@ -49,11 +49,11 @@ pub struct Layout {
 /// The text of a function body, lines indented by four spaces.
 #[derive(Clone, Debug, Default)]
 pub struct FunctionBody {
-    /// Declares the inputs that are read, and marks the arguments that are not as unused.
+    /// Declarations of the inputs that are read, and marks of the unused arguments.
     pub inputs: String,
-    /// Computes the outputs.
+    /// Statements that compute the outputs.
     pub statements: String,
-    /// The functions it calls.
+    /// The functions that they call.
     pub calls: Calls,
 }
 

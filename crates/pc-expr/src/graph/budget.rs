@@ -1,4 +1,4 @@
-//! The budget of memory and time for making expressions.
+//! The budget of memory and time for building expressions.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use crate::graph::deadline::Deadline;
 use crate::graph::limits::{Limits, Spent};
 
-/// The remainder of the limits; clones are the same budget, and graphs [within](crate::Graph::within) it share it.
-/// Once it is spent no graph makes expressions any more, and derivations in them end in
+/// What remains of some limits. Clones are the same budget, and graphs [within](crate::Graph::within) it
+/// share it. Once it is spent, no graph makes further expressions, and derivations in them end in
 /// [`ExprError::Spent`](crate::ExprError::Spent).
 ///
 /// ```
@@ -28,7 +28,7 @@ impl Budget {
         Budget(Arc::new(Meter::new(limits, deadline)))
     }
 
-    /// A new budget of the same memory that ends when this one does.
+    /// A new budget with the same limit of memory that ends when this one does.
     pub fn beside(&self) -> Budget {
         Budget(Arc::new(Meter::new(self.0.limits.clone(), self.0.deadline.clone())))
     }
@@ -43,7 +43,7 @@ impl Budget {
         &self.0.deadline
     }
 
-    /// The limit that is reached, if one is, and the stage of the work in which it was.
+    /// The limit that has been reached, if any, and the stage of the work at that moment.
     pub fn spent(&self) -> Option<(Spent, &'static str)> {
         self.0.spent()
     }
@@ -59,19 +59,19 @@ impl Default for Budget {
     }
 }
 
-/// A node with its values and its places in tables, in bytes.
+/// The bytes of a node, with its values and its entries in tables.
 const NODE: usize = 256;
-/// An operand of a sum or of a product, or a term of a value with roots.
+/// The bytes of an operand of a sum or product, or of a term of a value with roots.
 const OPERAND: usize = 64;
 
-/// What is left of a budget; graphs that work for one another share it.
+/// The remainder of a budget, shared by graphs that work together.
 #[derive(Debug)]
 pub(crate) struct Meter {
     limits: Limits,
     deadline: Deadline,
     used: AtomicU64,
     stage: Mutex<&'static str>,
-    /// What was spent first, and in which stage.
+    /// The limit that was reached first, and the stage.
     spent: OnceLock<(Spent, &'static str)>,
 }
 
@@ -86,12 +86,12 @@ impl Meter {
         }
     }
 
-    /// Names the stage of the work; answers with the one before.
+    /// Names the stage of the work and returns the previous one.
     pub(crate) fn enter(&self, stage: &'static str) -> &'static str {
         std::mem::replace(&mut *self.stage.lock().unwrap_or_else(PoisonError::into_inner), stage)
     }
 
-    /// Takes a node of so many operands and terms from what is left; answers with its bytes.
+    /// Takes the bytes of a node with this many operands and terms from the remainder, and returns them.
     pub(crate) fn take(&self, operands: usize) -> u64 {
         let bytes = (NODE + OPERAND * operands) as u64;
         let used = self.used.fetch_add(bytes, Ordering::Relaxed) + bytes;
@@ -101,12 +101,12 @@ impl Meter {
         bytes
     }
 
-    /// Gives back the bytes of nodes that are no more.
+    /// Gives back the bytes of dropped nodes.
     pub(crate) fn give_back(&self, bytes: u64) {
         self.used.fetch_sub(bytes, Ordering::Relaxed);
     }
 
-    /// Whether there is nothing left; of the clock and the handle as far as was seen when they were last looked at.
+    /// Whether the budget is spent; the clock and the handle are read only if `looks`.
     pub(crate) fn is_spent(&self, looks: bool) -> bool {
         if looks {
             self.look();
@@ -125,7 +125,7 @@ impl Meter {
         self.spent.get_or_init(|| (what, stage));
     }
 
-    /// What is spent by now, if anything is, and in which stage it was.
+    /// The limit that has been reached by now, if any, and the stage at that moment.
     fn spent(&self) -> Option<(Spent, &'static str)> {
         self.look();
         self.spent.get().copied()

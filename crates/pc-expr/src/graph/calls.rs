@@ -47,7 +47,7 @@ impl Dag {
         }
     }
 
-    /// √x, a root also where x is a number that is no square: rounded, its square would not be x.
+    /// √x, kept as a root where x is not a perfect square: the square of a rounded root is not x.
     pub(crate) fn exact_root(&mut self, x: Atom) -> Atom {
         match x {
             Atom::Constant(c) if !c.is_negative() && c.exact_sqrt().is_none() => {
@@ -81,7 +81,7 @@ impl Dag {
         self.admit(&Candidate::Call(function, ids))
     }
 
-    /// The constant that a node of a constant stands for.
+    /// The constant that a node of a constant holds.
     pub(crate) fn constant_of(&self, atom: Atom) -> Atom {
         match atom {
             Atom::Node(id) => match self.node(id) {

@@ -18,26 +18,26 @@ use crate::identity::roots::{Roots, Terms, Value};
 #[derive(Debug)]
 pub(crate) struct Dag {
     pub(super) folding: Folding,
-    /// None where constants are combined without a graph.
+    /// `None` where constants are combined without a graph.
     meter: Option<Arc<Meter>>,
-    /// Bytes taken from it.
+    /// Bytes taken from the meter.
     taken: u64,
-    /// Questions asked: the clock and the handle to cancel are looked at once in so many.
+    /// Counts queries: the clock and the handle for cancelling are read only once in so many.
     asked: u8,
     nodes: Vec<Node>,
     fingerprints: Vec<Fingerprint>,
-    /// The values of nodes with roots, as sums of products of these.
+    /// The values of nodes with roots, as sums of products of roots.
     expansions: FxHashMap<NodeId, Terms>,
     roots: Roots,
     /// Whether the node is known not to be negative where it has a value.
     pub(super) nonnegative: Vec<bool>,
     /// Operations of the node written out as a tree, saturating: decides which of two nodes of equal value is kept.
     costs: Vec<u32>,
-    /// A bit for each symbol that the node is written with, the same bit for every sixty-fourth.
+    /// A bit for each symbol in the node; symbols 64 apart share a bit.
     symbols: Vec<u64>,
-    /// Nodes that sums and products above them do not open.
+    /// Nodes that sums and products above them leave closed.
     kept: FxHashSet<NodeId>,
-    /// What the node divides by.
+    /// The divisors in the node.
     pub(super) divisors: Vec<Divisors>,
     /// The arguments of roots and the like in the node, which bound the region where it has a value.
     pub(super) limits: Vec<Divisors>,
@@ -49,7 +49,7 @@ pub(crate) struct Dag {
     names: Vec<String>,
     by_structure: HashTable<NodeId>,
     pub(super) by_value: HashTable<NodeId>,
-    /// Numerators of the quotients by zero met so far.
+    /// Numerators of the divisions by zero so far.
     pub(super) zero_divisions: Vec<Atom>,
 }
 
@@ -105,7 +105,7 @@ impl Dag {
         self.fingerprints[id.index()]
     }
 
-    /// Whether there is no root in the value of a node.
+    /// Whether the value of a node is free of roots.
     pub(crate) fn is_plain(&self, id: NodeId) -> bool {
         self.expansions.is_empty() || !self.expansions.contains_key(&id)
     }
@@ -138,7 +138,7 @@ impl Dag {
         &self.zero_divisions
     }
 
-    /// Forgets the divisions by zero past the first `kept`: those of a trial whose result was not taken.
+    /// Forgets the divisions by zero after the first `kept`: those of a trial whose result is not used.
     pub(crate) fn forget_zero_divisions(&mut self, kept: usize) {
         self.zero_divisions.truncate(kept);
     }
@@ -168,7 +168,7 @@ impl Dag {
         })
     }
 
-    /// Has sums and products that are made of this node from now on leave it closed.
+    /// Leaves this node closed in sums and products built from now on.
     pub(crate) fn keep(&mut self, atom: Atom) {
         if let Atom::Node(node) = atom {
             let (node, _) = self.split_coefficient(node, Number::ONE);
@@ -180,7 +180,7 @@ impl Dag {
         !self.kept.is_empty() && self.kept.contains(&node)
     }
 
-    /// Whether two expressions are the same node; by value too where that is switched on.
+    /// Whether two expressions are the same node, or have the same value where folding by value is on.
     pub(crate) fn same(&self, a: Atom, b: Atom) -> bool {
         match (a, b) {
             (Atom::Node(a), Atom::Node(b)) => {
@@ -200,14 +200,15 @@ impl Dag {
         (node, sign)
     }
 
-    /// Interns a candidate; by value too where that is switched on: constants are recognised, and a node of equal
-    /// value up to sign is answered if it is at least as good.
+    /// Interns a candidate. Where folding by value is on, constants are recognised, and an existing node of
+    /// equal value up to sign is returned if it is at least as good.
     ///
-    /// Of two forms of one function the better is the one that divides by less, as (x² − 1)/(x − 1) has no value at
-    /// x = 1 and x + 1 has, and takes fewer roots, as (√x − 1)² + 2√x has none below 0; where neither is worse, the shorter.
-    /// A form that divides by what the other does not, and conversely, stays a node of its own.
+    /// Of two forms of one function the better one divides by less, as x + 1 has a value at x = 1 and (x² −
+    /// 1)/(x − 1) has none, and takes fewer roots, as (√x − 1)² + 2√x is undefined below 0; where neither is
+    /// worse, the shorter one is better. Two forms each with a divisor that the other lacks stay separate
+    /// nodes.
     ///
-    /// Where the budget is spent the answer is undefined, so that what goes on ends soon.
+    /// Once the budget is spent the result is undefined, so that the work ends soon.
     pub(super) fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
         self.asked = self.asked.wrapping_add(1);
         let looks = self.asked == 0;
@@ -258,7 +259,7 @@ impl Dag {
         by_value.insert_unique(hash(&id), id, hash);
     }
 
-    /// ±n; a negative is interned as it is, without asking for its value again.
+    /// ±n; a negative is interned by structure, without computing its value again.
     pub(super) fn signed(&mut self, node: NodeId, sign: Number) -> Atom {
         if sign.is_one() {
             return Atom::Node(node);
@@ -351,7 +352,7 @@ impl Dag {
         id
     }
 
-    /// Whether a candidate costs less than a node, or as much without some of its symbols.
+    /// Whether a candidate costs less than a node, or as much with fewer symbols.
     fn is_shorter(&self, candidate: &Candidate<'_>, node: NodeId) -> bool {
         let (ours, theirs) = (self.symbols_of(candidate), self.symbols[node.index()]);
         let without = ours & theirs == ours && ours != theirs;
@@ -372,8 +373,8 @@ impl Dag {
         }
     }
 
-    /// Operations of a candidate written out as a tree: n − 1 additions or multiplications for n operands, and
-    /// what their coefficients and powers take; a division counts four, a call ten.
+    /// Operations of a candidate written out as a tree: n − 1 additions or multiplications for n operands,
+    /// plus those of coefficients and powers; a division counts four, a call ten.
     fn cost_of(&self, candidate: &Candidate<'_>) -> u32 {
         let sum = |costs: &mut dyn Iterator<Item = u32>| costs.fold(0u32, u32::saturating_add);
         match *candidate {

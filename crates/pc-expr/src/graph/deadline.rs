@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use crate::graph::limits::{Cancel, Limits, Spent};
 
-/// When work has to end: after some time, or when somebody [says so](Cancel). What makes no expressions, and so takes nothing from
-/// a [`Budget`](crate::Budget), looks at it now and then.
+/// When work has to end: after some time, or when it is [cancelled](Cancel). Work that makes no expressions,
+/// and so takes nothing from a [`Budget`](crate::Budget), checks a deadline now and then.
 ///
 /// ```
 /// use std::time::Duration;
@@ -19,19 +19,19 @@ use crate::graph::limits::{Cancel, Limits, Spent};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deadline {
-    /// How much time there was, and when it is over; none where that is beyond what a clock shows.
+    /// The time allowed and the instant at which it is over; `None` beyond the range of the clock.
     time: Option<(Duration, Instant)>,
     cancel: Cancel,
 }
 
 impl Deadline {
-    /// The end of what begins now within these limits.
+    /// The deadline of work that begins now within these limits.
     pub fn new(limits: &Limits) -> Deadline {
         let end = |time: Duration| Some((time, Instant::now().checked_add(time)?));
         Deadline { time: limits.time.and_then(end), cancel: limits.cancel.clone() }
     }
 
-    /// Gives as much time as there was at first, from now on.
+    /// Allows the full time again, from now on.
     pub fn renew(&mut self) {
         if let Some((time, end)) = &mut self.time
             && let Some(later) = Instant::now().checked_add(*time)
@@ -40,7 +40,7 @@ impl Deadline {
         }
     }
 
-    /// Why work has to end by now, if it has.
+    /// Why work has to end by now, if it has to.
     pub fn passed(&self) -> Option<Spent> {
         if self.cancel.is_cancelled() {
             return Some(Spent::Cancelled);

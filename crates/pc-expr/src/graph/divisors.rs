@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use crate::graph::node::NodeId;
 
-/// Sets of more divisors than this are not kept apart.
+/// A set of more divisors counts as the set of all.
 const MOST: usize = 64;
 
 /// A set of divisors, by its index.

@@ -45,7 +45,7 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// Whether this is 0 or folded to 0.
+    /// Whether this is 0 exactly.
     pub fn is_zero(self) -> bool {
         self.atom.is_zero()
     }
@@ -125,13 +125,13 @@ impl<'g> Expr<'g> {
         Expr::combined(args, |dag, atoms| dag.call(function, &atoms[..function.arity()]))
     }
 
-    /// What `f` makes of some expressions, in their graph.
+    /// `f` of some expressions, in their graph.
     fn combined(operands: &[Expr<'g>], f: impl FnOnce(&mut Dag, &[Atom]) -> Atom) -> Expr<'g> {
         if let Some(graph) = operands.iter().find_map(|x| x.graph) {
             let atoms: Vec<Atom> = operands.iter().map(|x| x.atom_in(graph)).collect();
             return graph.build(|dag| f(dag, &atoms));
         }
-        // Constants that belong to no graph: any graph gives the same number, if there is one.
+        // Constants belong to no graph, and combine to the same number in every graph.
         let atoms: Vec<Atom> = operands.iter().map(|x| x.atom).collect();
         match f(&mut Dag::new(Folding::Structural, None), &atoms) {
             Atom::Constant(c) => c.into(),

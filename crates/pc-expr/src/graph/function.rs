@@ -2,7 +2,7 @@
 
 /// A function of one, two or three arguments.
 ///
-/// tan, cot and small integer powers are not here: they are written with these and with products.
+/// tan, cot and small integer powers are written with these and with products.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)] // each variant is the function of its name
 pub enum Function {

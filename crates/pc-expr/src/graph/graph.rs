@@ -54,7 +54,7 @@ impl Graph {
         Graph { dag: RefCell::new(Dag::new(folding, Some(budget.meter()))), budget }
     }
 
-    /// An empty graph like this one that draws on a budget, which others may share.
+    /// An empty graph with the folding of this one, on a budget that others may share.
     #[must_use]
     pub fn within(self, budget: &Budget) -> Graph {
         Graph::of(self.folding(), budget.clone())
@@ -65,8 +65,8 @@ impl Graph {
         Graph::of(folding, self.budget.clone())
     }
 
-    /// Does some work in this graph. If its budget is spent, before or during the work, the result is incomplete and
-    /// is replaced by an error that names the stage of the work.
+    /// Does some work in this graph. If its budget is spent before or during the work, the incomplete result
+    /// is replaced by an error that names the stage.
     ///
     /// # Errors
     /// [`ExprError::Spent`], and those of the work.

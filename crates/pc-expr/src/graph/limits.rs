@@ -28,7 +28,7 @@ impl Default for Limits {
 pub struct Cancel(Arc<AtomicBool>);
 
 impl Cancel {
-    /// Ends the work, for good.
+    /// Ends the work for good.
     pub fn cancel(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
@@ -45,7 +45,7 @@ impl PartialEq for Cancel {
     }
 }
 
-/// Which of the [limits](Limits) is reached.
+/// The [limit](Limits) that is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spent {
     /// The memory.
@@ -55,10 +55,10 @@ pub enum Spent {
     },
     /// The time.
     Time {
-        /// All there was.
+        /// The time that was allowed.
         limit: Duration,
     },
-    /// Somebody [cancelled](Cancel::cancel) the work.
+    /// The work was [cancelled](Cancel::cancel).
     Cancelled,
 }
 

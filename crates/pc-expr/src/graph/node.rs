@@ -19,7 +19,7 @@ impl NodeId {
     }
 }
 
-/// What an expression is: a constant, or a node.
+/// An expression: a constant, or a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Atom {
     Constant(Number),
@@ -67,7 +67,7 @@ pub(crate) enum Node {
     },
 }
 
-/// A node that is asked for and perhaps not there yet.
+/// The description of a node, which may or may not exist yet.
 #[derive(Clone, Copy)]
 pub(crate) enum Candidate<'a> {
     Constant(Number),

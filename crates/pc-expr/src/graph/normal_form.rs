@@ -11,9 +11,9 @@ use crate::graph::number::Number;
 /// Sums of at most this many terms are merged into the sums that contain them. A bound keeps an accumulation
 /// `s = s + x` of n terms from costing n² memory.
 const MERGED_TERMS: usize = 24;
-/// The same for products.
+/// The same bound for products.
 const MERGED_FACTORS: usize = 64;
-/// Collecting the terms of one operand opens sums inside sums up to so many terms, factors likewise.
+/// Nested sums below one operand are opened up to this many terms, products likewise.
 const GATHERED: usize = 1024;
 /// Larger integer powers stay calls of `pow`.
 pub(super) const MAX_EXPONENT: u32 = 1 << 16;
@@ -43,7 +43,7 @@ impl Dag {
             &[(node, q)] if constant.is_zero() => self.scaled(q, node),
             _ => {
                 let content = content(constant, &gathered);
-                // On paper it is 1 − x that stands under a root, not −(x − 1).
+                // Printed forms have 1 − x under a root rather than −(x − 1).
                 let turned = self.folding == Folding::Structural && (constant * content).is_negative();
                 let content = if turned { -content } else { content };
                 if content.is_one() {
@@ -86,7 +86,7 @@ impl Dag {
         }
     }
 
-    /// q·n of a node that is not itself a scaled one.
+    /// q·n of a node that is not itself a number times a node.
     fn scaled(&mut self, q: Number, node: NodeId) -> Atom {
         if q.is_one() {
             return Atom::Node(node);
@@ -108,7 +108,7 @@ impl Dag {
         }
     }
 
-    /// Writes q·n as q'·n' with n' not a scaled node (unless q' would overflow or underflow).
+    /// Writes q·n as q'·n' where n' is not a number times a node (unless q' overflows or underflows).
     pub(crate) fn split_coefficient(&self, node: NodeId, q: Number) -> (NodeId, Number) {
         let (mut node, sign) = self.representative(node);
         let mut q = q * sign;
@@ -135,7 +135,7 @@ impl Dag {
         }
         let square_parts = self.collect_exponents(&mut gathered, &mut coefficient);
         if square_parts {
-            let flat = gathered.clone(); // a radicand may be a product or scaled: gather once more
+            let flat = gathered.clone(); // a radicand may be a product or a multiple: gather once more
             return self.product(coefficient, &flat);
         }
         match gathered.as_slice() {
@@ -188,8 +188,8 @@ impl Dag {
         }
     }
 
-    /// Adds exponents of equal factors and takes (√e)² to e, e/√e to √e and |e|² to e², signs to `coefficient`;
-    /// answers whether the factors may be gathered once more.
+    /// Adds the exponents of equal factors and turns (√e)² into e, e/√e into √e and |e|² into e², signs into
+    /// `coefficient`. Returns whether the factors may be gathered once more.
     fn collect_exponents(&self, factors: &mut Vec<(NodeId, i32)>, coefficient: &mut Number) -> bool {
         factors.sort_unstable_by_key(|&(node, _)| node);
         factors.dedup_by(|next, kept| {
@@ -282,8 +282,8 @@ impl Dag {
     }
 }
 
-/// The greatest common content of a linear combination, with the sign of its first term; a sum with coefficients
-/// that are not rational, or would not be exact, only gives up its sign.
+/// The greatest common content of a linear combination, with the sign of its first term; of a sum whose
+/// content is not an exact rational only the sign.
 fn content(constant: Number, terms: &[(NodeId, Number)]) -> Number {
     let sign = if terms[0].1.is_negative() { Number::MINUS_ONE } else { Number::ONE };
     let coefficients = || terms.iter().map(|&(_, q)| q).chain((!constant.is_zero()).then_some(constant));
@@ -292,7 +292,7 @@ fn content(constant: Number, terms: &[(NodeId, Number)]) -> Number {
         Some(content) if !content.is_one() => {
             let divisor = content.recip();
             let exact = coefficients().all(|q| matches!(q * divisor, Number::Rational { .. }));
-            // To clear denominators is worth it only where all coefficients become one.
+            // Denominators are cleared only if all coefficients become one.
             let simple = matches!(content, Number::Rational { den: 1, .. })
                 || terms.iter().all(|&(_, q)| (q * divisor).abs().is_one());
             if exact && simple { content * sign } else { sign }

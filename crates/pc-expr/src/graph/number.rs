@@ -58,7 +58,7 @@ impl Number {
         }
     }
 
-    /// `num / den` for `den ≠ 0`, if that is a small rational.
+    /// `num / den` for `den ≠ 0`, if it is a small rational.
     fn small(num: i128, den: i128) -> Option<Number> {
         let divisor = gcd(num.unsigned_abs(), den.unsigned_abs()).cast_signed();
         let (num, den) =

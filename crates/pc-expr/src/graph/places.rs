@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::graph::expr::Expr;
 use crate::graph::node::{Atom, NodeId};
 
-/// Where each symbol of a list stands in it. To look all of n symbols up in the list itself takes n² comparisons.
+/// The place of each symbol of a list: without it, looking up all n symbols takes n² comparisons.
 ///
 /// ```
 /// # use pc_expr::{Graph, SymbolPlaces};
@@ -20,7 +20,8 @@ pub struct SymbolPlaces {
 }
 
 impl SymbolPlaces {
-    /// Those of a list; of a symbol that stands there twice the first. What is no symbol has no place.
+    /// The places in a list; of a symbol that occurs twice the first one. An expression that is not a symbol
+    /// has no place.
     pub fn of(symbols: &[Expr<'_>]) -> SymbolPlaces {
         let mut by_node = FxHashMap::default();
         for (place, symbol) in symbols.iter().enumerate() {

@@ -28,8 +28,9 @@ impl Graph {
         }
     }
 
-    /// The expression x, which sums and products made of it from now on do not open: the result of a step of a recursion, to be
-    /// computed once and used as it is. Without that a sum of sums is one sum, which is shorter to read and longer to compute.
+    /// The expression x, which sums and products made of it from now on leave closed: the result of a step of
+    /// a recursion, computed once and used as a unit. Otherwise a sum of sums becomes one sum, which is
+    /// shorter to read and longer to compute.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -61,13 +62,13 @@ impl Graph {
         self.build(|dag| dag.exact_root(x))
     }
 
-    /// The number of different nodes of the expressions: about their length where each is written once.
+    /// The number of different nodes in the expressions: about their length when each node is written once.
     pub fn size<'g>(&'g self, expressions: &[Expr<'g>]) -> usize {
         let roots: Vec<Atom> = expressions.iter().map(|expression| expression.atom_in(self)).collect();
         self.with(|dag| Cone::below(dag, roots).order.len())
     }
 
-    /// The symbols that `outputs` contain, in order of creation.
+    /// The symbols in `outputs`, in order of creation.
     pub fn symbols_of<'g>(&'g self, outputs: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let atoms: Vec<Atom> = outputs.iter().map(|x| x.atom_in(self)).collect();
         let nodes: Vec<NodeId> = self.with(|dag| {
@@ -77,7 +78,7 @@ impl Graph {
         nodes.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
     }
 
-    /// Whether each of the expressions contains no symbols but these: in one pass, however many there are.
+    /// Whether each of the expressions contains no symbols but these; one pass decides it for all of them.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -121,8 +122,8 @@ impl Graph {
         )
     }
 
-    /// Whether fingerprints decide every identity between the values: no constant in them is rounded, and no function is
-    /// applied but sine, cosine and the exponential, circular and hyperbolic.
+    /// Whether fingerprints decide every identity between the values: no constant in them is rounded, and the
+    /// only functions are sine, cosine and the exponential, circular and hyperbolic.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -174,7 +175,8 @@ impl Graph {
         })
     }
 
-    /// Whether a node of the value that depends on one of the symbols is one; it is told all those.
+    /// Whether `is_one` holds for a node of the value that depends on one of the symbols; it is given the set
+    /// of those nodes.
     fn finds<'g>(
         &'g self,
         value: Expr<'g>,

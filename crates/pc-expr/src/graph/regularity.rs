@@ -1,4 +1,4 @@
-//! What nodes divide by, as they are written: two forms of one function differ at points where a divisor vanishes.
+//! The divisors of nodes as written: two forms of one function differ at points where a divisor vanishes.
 
 use crate::graph::dag::Dag;
 use crate::graph::divisors::Divisors;
@@ -8,7 +8,8 @@ use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 
 impl Dag {
-    /// What a candidate divides by, in itself or below. Where nodes are merged by structure alone nobody asks.
+    /// The divisors of a candidate, its own and those below it; none where nodes are merged by structure
+    /// alone.
     pub(crate) fn divisors_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
         if self.folding == Folding::Structural {
             return Divisors::NONE;
@@ -36,8 +37,8 @@ impl Dag {
         all
     }
 
-    /// The arguments that bound where a candidate has a value, in itself or below. Where nodes are merged by structure alone
-    /// nobody asks.
+    /// The arguments that bound the region where a candidate has a value, its own and those below it; none
+    /// where nodes are merged by structure alone.
     pub(crate) fn limits_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
         if self.folding == Folding::Structural {
             return Divisors::NONE;
@@ -90,8 +91,8 @@ impl Dag {
         self.are_within(divisors(some), divisors(other))
     }
 
-    /// Whether each divisor of the first set vanishes only where one of the second does, as far as is seen from
-    /// their factors.
+    /// Whether each divisor of the first set vanishes only where one of the second does, judged by their
+    /// factors.
     pub(crate) fn are_within(&self, some: Divisors, others: Divisors) -> bool {
         if some == others || some == Divisors::NONE || others == Divisors::ALL {
             return true;
@@ -106,8 +107,8 @@ impl Dag {
         self.irreducible(some).iter().all(is_within)
     }
 
-    /// Whether the first of two values is a factor of the second: whether the quotient is a constant, or known without
-    /// division.
+    /// Whether the first of two values is a factor of the second: the quotient is a constant, or known
+    /// without division.
     fn divides(&self, factor: Fingerprint, product: Fingerprint) -> bool {
         let quotient = product.times(factor.powi(-1)).up_to_sign();
         if quotient.small_rational().is_some() {
@@ -138,7 +139,7 @@ impl Dag {
         values
     }
 
-    /// False for what is positive everywhere.
+    /// Whether a node may be zero: false if it is positive everywhere.
     fn may_vanish(&self, node: NodeId) -> bool {
         !matches!(self.node(node), Node::Call { function: Function::Exp | Function::Cosh, .. })
     }

@@ -1,4 +1,4 @@
-//! What is known not to be negative wherever it has a value, as it is written.
+//! Which nodes are known, from their form, to be nonnegative wherever they have a value.
 
 use crate::graph::dag::Dag;
 use crate::graph::function::Function;
@@ -6,12 +6,12 @@ use crate::graph::node::{Candidate, Node, NodeId};
 use crate::graph::number::Number;
 
 impl Dag {
-    /// Whether a node is known not to be negative where it has a value.
+    /// Whether a node is known to be nonnegative where it has a value.
     pub(crate) fn is_nonnegative(&self, id: NodeId) -> bool {
         self.nonnegative[id.index()]
     }
 
-    /// The same of a sum and above 0.
+    /// Whether a node is known to be zero or negative where it has a value.
     pub(crate) fn is_nonpositive(&self, id: NodeId) -> bool {
         let Node::Sum { constant, terms } = self.node(id) else { return false };
         self.is_sum_nonnegative(-constant, self.terms(terms).iter().map(|&(node, q)| (node, -q)))
@@ -29,7 +29,7 @@ impl Dag {
         }
     }
 
-    /// c + Σ q n, where every n with q > 0 is none below 0, and c outweighs the others, which do not exceed 1.
+    /// c + Σ q n, where every n with q > 0 is nonnegative, and c outweighs the other terms, whose |n| ≤ 1.
     fn is_sum_nonnegative(&self, constant: Number, terms: impl Iterator<Item = (NodeId, Number)>) -> bool {
         let mut least = constant;
         for (node, q) in terms {
@@ -68,7 +68,7 @@ impl Dag {
             Function::Max => known(0) || known(1),
             Function::Min => known(0) && known(1),
             Function::Step => known(1) && known(2),
-            // A power with a fraction for its exponent has no value below 0.
+            // A power with a fractional exponent has no value below 0.
             Function::Pow => {
                 let is_fraction =
                     matches!(self.node(args[1]), Node::Constant(Number::Rational { den, .. }) if den != 1);

@@ -13,7 +13,7 @@ pub(crate) struct Cone {
 impl Cone {
     /// Everything below `roots`; iterative, so that no depth overflows the stack.
     pub(crate) fn below(dag: &Dag, roots: impl IntoIterator<Item = Atom>) -> Cone {
-        // A bit for each node of the graph: cheaper than hashing those of the cone.
+        // One bit for each node of the graph is cheaper than a hash set.
         let mut seen = vec![0_u64; dag.len() / 64 + 1];
         let mut open: Vec<NodeId> = Vec::new();
         let mut order = Vec::new();

@@ -12,8 +12,8 @@ use crate::graph::number::Number;
 
 /// Writes expressions of one graph in another, with symbols of the same names.
 ///
-/// In what order the operands of sums and products stand in a graph depends on what was made in it before, and so do the last
-/// digits of what is computed. In an empty graph it depends on the expressions alone, and on the order in which they are written.
+/// The order of operands in a graph depends on what was built in it before, and with it the last digits of
+/// values. In an empty graph it depends only on the expressions and the order in which they are written.
 ///
 /// ```
 /// # use pc_expr::{Graph, Transcription};
@@ -51,7 +51,7 @@ impl<'g, 'n> Transcription<'g, 'n> {
     }
 }
 
-/// Children first, in an order that does not depend on their numbers.
+/// Children first, in an order independent of their numbers.
 fn write(source: &Dag, target: &mut Dag, root: NodeId, written: &mut FxHashMap<NodeId, Atom>) -> Atom {
     let mut open = vec![(root, false)];
     while let Some((node, children_done)) = open.pop() {
@@ -69,7 +69,7 @@ fn write(source: &Dag, target: &mut Dag, root: NodeId, written: &mut FxHashMap<N
         open.push((node, true));
         let first = open.len();
         source.for_each_child(node, |child| open.push((child, false)));
-        // The last is written first. Arguments of a call stand in their order whatever is written first.
+        // The last one is written first. Arguments of a call keep their order in any case.
         open[first..].sort_by_key(|&(child, _)| source.fingerprint(child).up_to_sign());
     }
     written[&root]
@@ -81,7 +81,7 @@ fn written_node(source: &Dag, target: &mut Dag, node: NodeId, written: &FxHashMa
         Node::Symbol(index) => Atom::Node(target.symbol(source.symbol_name(index))),
         Node::Call { function, args } => {
             let args: Vec<Atom> = Dag::args(function, &args).iter().map(|arg| written[arg]).collect();
-            // What is a call of numbers here is so on purpose.
+            // A call of numbers is kept: it was not evaluated, on purpose.
             match args.iter().all(|arg| matches!(arg, Atom::Constant(_))) {
                 true => target.call_unfolded(function, &args),
                 false => target.call(function, &args),
@@ -104,9 +104,10 @@ fn written_node(source: &Dag, target: &mut Dag, node: NodeId, written: &FxHashMa
 mod tests {
     use super::*;
 
-    /// The same expressions made after others, and in another order, are the same nodes of an empty graph.
+    /// The same expressions, built after others and in another order, become the same nodes of an empty
+    /// graph.
     #[test]
-    fn what_is_written_does_not_depend_on_what_was_made_before() {
+    fn transcription_does_not_depend_on_earlier_nodes() {
         let names = ["a", "b", "c", "d"];
         let expressions = |graph: &'_ Graph| {
             let [a, b, c, d] = graph.symbols(names);
@@ -122,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_stays_closed() {
+    fn kept_nodes_stay_closed() {
         let (graph, other) = (Graph::new(), Graph::new());
         let [a, b, c] = graph.symbols(["a", "b", "c"]);
         let sum = graph.keep(a - b) + c;

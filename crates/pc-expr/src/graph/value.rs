@@ -8,11 +8,12 @@ use crate::identity::circle_point::CirclePoint;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::roots::Value;
 
-/// sin, cos and exp of q·z are composed from those of z/FRACTION where that is an integer multiple.
+/// sin, cos and exp of q·z are composed from those of z/FRACTION where q·FRACTION is an integer.
 const FRACTION: i32 = 12;
-/// Largest such multiple.
+/// The largest such integer.
 const MAX_MULTIPLE: i32 = 100 * FRACTION;
-/// Sums inside the argument of a sine or exponential are opened up to so many terms; what is left counts as one term.
+/// Sums inside the argument of a sine or exponential are opened up to this many terms; the remainder counts
+/// as one term.
 const MAX_TERMS: usize = 1 << 14;
 
 /// A term m/12·z of the argument of a sine or exponential.
@@ -23,8 +24,8 @@ struct LinearTerm {
     m: i32,
 }
 
-/// An expression as a product of powers, each of something that is not negative wherever the root or logarithm of all is
-/// real, and of a rest of unknown sign.
+/// An expression as a product of powers, each of a factor that is nonnegative wherever the root or logarithm
+/// of the whole is real, and of a remaining factor of unknown sign.
 struct PowerProduct {
     known: Vec<(Value, i32)>,
     rest: Option<Value>,
@@ -33,7 +34,7 @@ struct PowerProduct {
 const SALT_CIRCLE: u64 = 0x5ca1_ab1e;
 const SALT_EXP: u64 = 0xe4b0_4e47;
 const SALT_ORDER: u64 = 0x0bde_500f;
-/// Larger denominators of exponents are no orders of roots.
+/// The largest denominator of an exponent that counts as the order of a root.
 const MAX_ORDER: i64 = 1000;
 /// Exponents up to this size are taken out of powers.
 const MAX_EXPONENT: i32 = 1 << 10;
@@ -168,7 +169,7 @@ impl Dag {
         product
     }
 
-    /// Writes u as c·Π f^e, not further than its node is.
+    /// u as c·Π f^e, factored only as far as its node is.
     fn factors_of(&self, u: NodeId) -> (Number, Vec<(NodeId, i32)>) {
         let (inner, c) = self.split_coefficient(u, Number::ONE);
         match self.node(inner) {
@@ -178,8 +179,8 @@ impl Dag {
         }
     }
 
-    /// The powers of which u = c·Π f^e is the product. Where the root of u is real, u ≥ 0; if but one factor is of unknown
-    /// sign, that sign is known.
+    /// The powers of which u = c·Π f^e is the product. Where the root of u is real, u ≥ 0; so if only one
+    /// factor is of unknown sign, its sign follows.
     fn power_product(&mut self, c: Number, factors: Vec<(NodeId, i32)>) -> PowerProduct {
         let mut known = Vec::with_capacity(factors.len() + 1);
         let mut open = Vec::new();
@@ -243,7 +244,7 @@ impl Dag {
         self.roots_mut().plus(&sum)
     }
 
-    /// u^y: a root for a fraction y, otherwise u^n times an unknown for the part of y that is constant and whole.
+    /// u^y: a root for a fraction y, otherwise u^n, with n the constant integer part of y, times an unknown.
     fn general_power(&mut self, u: NodeId, y: NodeId) -> Value {
         let constant = match self.node(y) {
             Node::Constant(c) => c,

@@ -1,8 +1,9 @@
 //! Independent blocks of a matrix.
 
-/// The rows and columns of each block of a matrix that is block diagonal but for the order of its rows and columns, by their
-/// first row: `entries` are the columns of the entries of each row that are not zero. Rows and columns without entries
-/// are in no block. The blocks of a matrix of 1000 rows are often small, and the work on them with it.
+/// The rows and columns of each block of a matrix that is block diagonal up to the order of its rows and
+/// columns, by their first row. `entries` holds the columns of the nonzero entries of each row; rows and
+/// columns without entries are in no block. The blocks of large matrices are often small, which shortens work
+/// on them.
 ///
 /// ```
 /// let blocks = pc_expr::independent_blocks(3, &[vec![2], vec![0], vec![], vec![2, 1]]);

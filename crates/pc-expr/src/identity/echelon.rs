@@ -21,7 +21,7 @@ pub struct ResidueEchelon {
 }
 
 impl ResidueEchelon {
-    /// No rows, of that many columns.
+    /// No rows yet, for this many columns.
     pub fn new(columns: usize) -> ResidueEchelon {
         ResidueEchelon { columns, leading: vec![None; columns] }
     }

@@ -1,12 +1,13 @@
 //! Fingerprints: the value of a node at a random point of each of two prime fields, GF(2⁶¹−1) and GF(2⁶¹−45).
 //!
-//! Equal fingerprints mean equal as rational functions of the symbols, of e^{z/12} and of the points
-//! (cos z/12, sin z/12) of the circle, with an error probability of about 2⁻¹²⁰ times the degree (Schwartz 1980,
-//! Zippel 1979). There are two primes because constants are not random: in the first field 2⁶¹·x is x, while no two
-//! of our rationals agree in both. Of roots, |x| and x^(p/q) it is known what their powers are, and what they are of
-//! products as far as signs are known: (√x + 1)(√x − 1) = x − 1, √(x²y) = |x| √y for y ≥ 0, but √(x²) never becomes x.
-//! Logarithms and inverse functions of angles keep the laws that hold wherever both sides have values. Every other function
-//! is an unknown keyed by its arguments. A fingerprint depends on names and structure only, so two graphs agree on it.
+//! Equal fingerprints mean equal as rational functions of the symbols, of e^{z/12} and of the points (cos
+//! z/12, sin z/12) of the circle, with an error probability of about 2⁻¹²⁰ times the degree (Schwartz 1980,
+//! Zippel 1979). There are two primes because constants are not random: in the first field 2⁶¹·x is x, while
+//! no two of our rationals agree in both. Roots, |x| and x^(p/q) obey the laws of their powers, and of
+//! products as far as signs are known: (√x + 1)(√x − 1) = x − 1, √(x²y) = |x| √y for y ≥ 0, but √(x²) never
+//! becomes x. Logarithms and inverse functions of angles obey the laws that hold wherever both sides have
+//! values. Every other function is an unknown keyed by its arguments. A fingerprint depends on names and
+//! structure only, so two graphs agree on it.
 
 use crate::graph::number::Number;
 use crate::identity::prime_field::{Residue, mix};
@@ -49,7 +50,7 @@ impl Fingerprint {
         self.0
     }
 
-    /// The fingerprint as the key of something else.
+    /// A key derived from the fingerprint.
     pub(crate) fn key(self, salt: u64) -> u64 {
         mix(mix(salt ^ self.0.to_bits()) ^ self.1.to_bits())
     }
@@ -63,7 +64,7 @@ impl Fingerprint {
         self.0.is_canonical_sign()
     }
 
-    /// The same for x and −x.
+    /// The same value for x and −x.
     pub(crate) fn up_to_sign(self) -> Fingerprint {
         if self.has_canonical_sign() { self } else { self.negated() }
     }

@@ -15,21 +15,21 @@ use crate::identity::echelon::ResidueEchelon;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::prime_field::Residue;
 
-/// Points that must say nothing new before no more are tried.
+/// This many points in a row without a new equation end the search.
 const IDLE_POINTS: usize = 2;
 
 impl Graph {
     /// A basis of the rational relations Σ_j a_j f_j = 0 between the columns f_1..f_N, each of them m
     /// expressions.
     ///
-    /// What comes out is a list of vectors (a_1, …, a_N) with whole coprime entries, the first of them
-    /// positive. The last one stands where all other vectors have zero, and in ascending order: simple
-    /// columns should come first.
+    /// The result is a list of vectors (a_1, …, a_N) with coprime integer entries, the first nonzero one
+    /// positive. The last nonzero entry of each is in a column where all other vectors have zero, in
+    /// ascending order: simple columns should come first.
     ///
-    /// Every relation is certified: Σ_j a_j f_ji is folded to zero for each i, so that with
-    /// [`Folding::Structural`] few are found. Relations are not found if their coefficients, divided by the last, are
-    /// not rational or are p/q with p·q beyond about 2⁵⁰; those that constants beyond the range of exact [`Number`]s
-    /// have blurred; and those that fingerprints do not see, as between logarithms.
+    /// Every relation is certified: Σ_j a_j f_ji folds to zero for each i, so that [`Folding::Structural`]
+    /// finds few. Missed are relations whose coefficients, divided by the last, are not rational or are p/q
+    /// with p·q beyond about 2⁵⁰; those blurred by constants beyond the range of exact [`Number`]s; and those
+    /// invisible to fingerprints, as between logarithms.
     ///
     /// # Panics
     /// If the columns have different lengths.
@@ -52,15 +52,16 @@ impl Graph {
         self.echelon(columns, &[]).null_space().into_iter().map(proposal).filter(holds).collect()
     }
 
-    /// The columns that are combinations of those before them with coefficients a that do not change with the symbols of
-    /// the columns but for `constants`: f_j = Σ_{i<j} a_ji f_i at almost all values, where the a_ji are functions of the
-    /// `constants`.
+    /// The columns that are combinations of those before them with coefficients a that do not change with the
+    /// symbols of the columns but for `constants`: f_j = Σ_{i<j} a_ji f_i at almost all values, where the
+    /// a_ji are functions of the `constants`.
     ///
     /// Each comes with a_j1..a_j,j−1 as fractions, which are 0 for columns that are combinations themselves. They are a
     /// proposal, and right only where the coefficients are rational numbers.
     ///
-    /// The other columns are independent over the functions of the `constants`, for certain; that a column is a combination
-    /// may be missed where functions stand in it of which fingerprints know no identities, or rounded constants.
+    /// The other columns are independent over the functions of the `constants`, for certain; that a column is
+    /// a combination may be missed where functions stand in it of which fingerprints know no identities, or
+    /// rounded constants.
     ///
     /// # Panics
     /// If the columns have different lengths.
@@ -86,7 +87,7 @@ impl Graph {
         vectors.map(|v| (last(&v), v[..last(&v)].iter().map(|&x| fraction(-x)).collect())).collect()
     }
 
-    /// The values of the columns at so many points that more say nothing new.
+    /// The values of the columns at random points, until further points add no equation.
     fn echelon<'g>(&'g self, columns: &[Vec<Expr<'g>>], constants: &[Expr<'g>]) -> ResidueEchelon {
         let components = columns.first().map_or(0, Vec::len);
         assert!(columns.iter().all(|column| column.len() == components), "columns of one length");
@@ -128,7 +129,7 @@ impl<'g> Sampler<'g> {
         let symbols = graph.symbols_of(outputs);
         let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(graph)).collect();
         let cone = graph.with(|dag| Cone::below(dag, outputs.iter().copied()));
-        // Roots keep their laws in a graph only: where there are some, every node is written once more.
+        // Roots keep their laws in a graph only: where there are any, every node is written once more.
         let rooted = graph.with(|dag| cone.order.iter().any(|&id| !dag.is_plain(id)));
         let called = |&&id: &&NodeId| rooted || graph.with(|dag| matches!(dag.node(id), Node::Call { .. }));
         let calls = cone.order.iter().filter(called).map(|&id| graph.expr(Atom::Node(id))).collect();
@@ -176,7 +177,7 @@ impl<'g> Sampler<'g> {
             false => page.symbol(&format!("{symbol}@{point}")),
         };
         let renamed: Vec<_> = self.symbols.iter().map(|symbol| (*symbol, renamed(symbol))).collect();
-        // Every symbol below a call is in the list, so that none is unbound.
+        // Every symbol below a call is in the list, so all are bound.
         let calls = self.graph.evaluate(&self.calls, &renamed).unwrap_or_default();
         let calls = self.calls.iter().copied().zip(calls);
         renamed

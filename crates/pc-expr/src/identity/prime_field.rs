@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn fractions_multiply_as_they_should() {
+    fn fractions_multiply_exactly() {
         let residue = |num, den| Residue::<1>::of_number(Number::ratio(num, den)).expect("rational");
         assert_eq!(residue(-2, 3) * residue(9, 4), residue(-3, 2));
         assert_eq!(residue(-2, 3) + residue(1, 6), residue(-1, 2));

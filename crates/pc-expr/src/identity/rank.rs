@@ -20,7 +20,8 @@ impl Graph {
         self.generic_rank_of_entries(columns, &rows.iter().map(entries).collect::<Vec<_>>())
     }
 
-    /// The same of a matrix of which each row is given by its entries that are not zero, with their columns in ascending order.
+    /// Rank of a matrix whose rows are given by their nonzero entries, with columns
+    /// in ascending order.
     pub fn generic_rank_of_entries<'g>(&'g self, columns: usize, rows: &[Vec<(usize, Expr<'g>)>]) -> usize {
         let places = |row: &Vec<(usize, Expr<'g>)>| row.iter().map(|&(j, _)| j).collect();
         let blocks = independent_blocks(columns, &rows.iter().map(places).collect::<Vec<_>>());

@@ -1,9 +1,9 @@
 //! Sums of products of roots, Σ_S c_S Π_R R^{k_R}, with coefficients in the two prime fields.
 //!
-//! A root is an unknown R of which R^q is known, as it is of √e and |e| (q = 2) and of e^{1/q}. The powers R^k with k < q are
-//! kept apart and R^q is replaced by its value, so that what follows from these laws alone is seen, and nothing else: no
-//! sign is ever chosen, √(x²) is neither x nor −x. As long as roots are few, that is: beyond [`MOST_TERMS`] a value is
-//! just the number that it has where the roots are random.
+//! A root is an unknown R of which R^q is known, as it is of √e and |e| (q = 2) and of e^{1/q}. The powers
+//! R^k with k < q are kept apart and R^q is replaced by its value, so that what follows from these laws alone
+//! is seen, and nothing else: no sign is ever chosen, √(x²) is neither x nor −x. As long as roots are few,
+//! that is: beyond [`MOST_TERMS`] a value is just the number that it has where the roots are random.
 
 use std::sync::Arc;
 

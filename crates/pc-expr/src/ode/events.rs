@@ -43,17 +43,17 @@ impl Event {
         Event { name: name.into(), direction: Direction::Both, terminal: false, resets: false }
     }
 
-    /// The same with a direction.
+    /// The event with a direction.
     pub fn direction(self, direction: Direction) -> Event {
         Event { direction, ..self }
     }
 
-    /// Where its function rises through zero.
+    /// The event where its function rises through zero.
     pub fn rising(self) -> Event {
         self.direction(Direction::Rising)
     }
 
-    /// Where its function falls through zero.
+    /// The event where its function falls through zero.
     pub fn falling(self) -> Event {
         self.direction(Direction::Falling)
     }
@@ -91,11 +91,10 @@ impl Event {
 
 /// Events of a motion: functions g(t, y), evaluated all at once, and resets y⁺ = R(t, y⁻).
 ///
-/// An event occurs where its function passes through zero in its direction: where it changes its sign, or comes to zero to
-/// stay there. A function that touches zero, and is back on its side within the resolution of time, causes none. A
-/// function that is zero at the
-/// start, or is brought to zero by a reset, has to leave zero first. A reset that carries a function from one sign to
-/// the other is no passage through zero.
+/// An event occurs where its function passes through zero in its direction: where it changes its sign, or
+/// comes to zero to stay there. A function that touches zero, and is back on its side within the resolution
+/// of time, causes none. A function that is zero at the start, or is brought to zero by a reset, has to leave
+/// zero first. A reset that carries a function from one sign to the other is no passage through zero.
 pub trait Events {
     /// The events, in the order in which simultaneous ones are handled.
     fn events(&self) -> &[Event];
@@ -106,8 +105,8 @@ pub trait Events {
     /// [`Failure`] where one is not defined; it ends the integration.
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
 
-    /// The program whose outputs are the first functions, of (t, y) and parameters, with the values of these, if there is one. Methods
-    /// that know the motion as a function of time find all roots of those.
+    /// The program whose outputs are the first functions, of (t, y) and parameters, with the values of these,
+    /// if there is one. Methods that know the motion as a function of time find all roots of those.
     fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
         None
     }
@@ -117,8 +116,9 @@ pub trait Events {
         false
     }
 
-    /// Returns ∂g/∂pⱼ of event number `event` for the parameter number `parameter` of the vector field, and writes ∂R/∂pⱼ of its
-    /// reset, as long as the state: zeros where nothing is reset or does not depend on pⱼ.
+    /// Returns ∂g/∂pⱼ of event number `event` for the parameter number `parameter` of the vector field, and
+    /// writes ∂R/∂pⱼ of its reset, as long as the state: zeros where nothing is reset or does not depend on
+    /// pⱼ.
     ///
     /// Called only if there [are such](Events::has_parameter_derivatives), for sensitivities.
     ///
@@ -135,8 +135,8 @@ pub trait Events {
         Err(Failure::fatal(NoParameterDerivatives))
     }
 
-    /// Whether [`gradient`](Events::gradient) and [`reset_along`](Events::reset_along) are implemented; if not, integrators take
-    /// difference quotients.
+    /// Whether [`gradient`](Events::gradient) and [`reset_along`](Events::reset_along) are implemented; if
+    /// not, integrators take difference quotients.
     fn has_derivatives(&self) -> bool {
         false
     }

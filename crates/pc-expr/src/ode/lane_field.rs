@@ -15,11 +15,11 @@ pub struct LaneField {
     pub watched: Watched,
 }
 
-/// Pivots that must not vanish, as far as they do not depend on the state, and how those are found among the outputs of a
-/// [`LaneField`] that do.
+/// Pivots that must not vanish, as far as they do not depend on the state, and how those are found among the
+/// outputs of a [`LaneField`] that do.
 ///
-/// A state is regular where each pivot is larger than `vanishing` times the largest of all sizes. Where not, the member is
-/// integrated alone, for which that may be looked at closer.
+/// A state is regular where each pivot is larger than `vanishing` times the largest of all sizes. Where not,
+/// the member is integrated alone, where it is examined more closely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Watched {
     /// The number of pivots after the rates.
@@ -28,7 +28,7 @@ pub struct Watched {
     pub smallest: f64,
     /// The largest of such sizes.
     pub largest: f64,
-    /// What is small against them.
+    /// The bound of what is small against them.
     pub vanishing: f64,
 }
 

@@ -21,7 +21,8 @@ pub trait VectorField {
     /// [`Failure`] where f is not defined; a recoverable one lets an integrator try a smaller step.
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
 
-    /// Whether [`rhs`](VectorField::rhs) fails where it would write a number that is not finite; if not, integrators check each.
+    /// Whether [`rhs`](VectorField::rhs) fails where it would write a number that is not finite; if not,
+    /// integrators check each.
     fn checks_rates(&self) -> bool {
         false
     }
@@ -34,7 +35,7 @@ pub trait VectorField {
 
     /// Writes ∂f_i/∂y_j to `jacobian[i + j * dim]` (column-major, dim × dim, every entry written).
     ///
-    /// Called only if [`has_jacobian`](VectorField::has_jacobian) answers true.
+    /// Called only if [`has_jacobian`](VectorField::has_jacobian) returns true.
     ///
     /// # Errors
     /// [`Failure`], as for [`rhs`](VectorField::rhs).
@@ -67,7 +68,7 @@ pub trait VectorField {
 
     /// Writes the product (∂f/∂y) v to `product`; all slices have length [`dim`](VectorField::dim).
     ///
-    /// Called only if [`has_jvp`](VectorField::has_jvp) answers true.
+    /// Called only if [`has_jvp`](VectorField::has_jvp) returns true.
     ///
     /// # Errors
     /// [`Failure`], as for [`rhs`](VectorField::rhs).
@@ -82,7 +83,7 @@ pub trait VectorField {
 
     /// Writes the product (∂f/∂y)ᵀ w to `product`; all slices have length [`dim`](VectorField::dim).
     ///
-    /// Called only if [`has_vjp`](VectorField::has_vjp) answers true.
+    /// Called only if [`has_vjp`](VectorField::has_vjp) returns true.
     ///
     /// # Errors
     /// [`Failure`], as for [`rhs`](VectorField::rhs).
@@ -103,7 +104,7 @@ pub trait VectorField {
 
     /// Writes ∂f_i/∂p_j to `jacobian[i + j * dim]` (column-major, dim × parameters, every entry written).
     ///
-    /// Called only if [`has_parameter_jacobian`](VectorField::has_parameter_jacobian) answers true.
+    /// Called only if [`has_parameter_jacobian`](VectorField::has_parameter_jacobian) returns true.
     ///
     /// # Errors
     /// [`Failure`], as for [`rhs`](VectorField::rhs).
@@ -123,7 +124,7 @@ pub trait VectorField {
 
     /// Moves `y` to the surface of the states at time t, by no more than the error of the method.
     ///
-    /// Called only if [`has_projection`](VectorField::has_projection) answers true.
+    /// Called only if [`has_projection`](VectorField::has_projection) returns true.
     ///
     /// # Errors
     /// [`Failure`] where no state of the surface is found near `y`.
@@ -131,24 +132,27 @@ pub trait VectorField {
         Ok(())
     }
 
-    /// The explicit dependence of f on t, which an integrator must not step over. It is queried when an integration begins.
+    /// The explicit dependence of f on t, which an integrator must not step over. It is queried when an
+    /// integration begins.
     fn time_dependence(&self) -> TimeDependence {
         TimeDependence::Unknown
     }
 
-    /// The Taylor series of the motion, ready to be expanded, with what has to keep its sign along it and what it costs.
+    /// The Taylor series of the motion, ready to be expanded, with what has to keep its sign along it and
+    /// what it costs.
     ///
     /// # Errors
-    /// [`Failure`] that says why there is none: f has to be a program.
+    /// [`Failure`] with the reason why there is none: f has to be a program.
     fn series(&mut self) -> Result<&TaylorSeries, Failure> {
         Err(Failure::fatal(NoSeries))
     }
 
-    /// Expands the motion through y at time t to an order, at least 1, on the branch of these [sides](TaylorSeries::expand).
-    /// Coefficients need not be finite.
+    /// Expands the motion through y at time t to an order, at least 1, on the branch of these
+    /// [sides](TaylorSeries::expand). Coefficients need not be finite.
     ///
     /// # Errors
-    /// [`Failure`] where f is not defined, as for [`rhs`](VectorField::rhs), and where there is no [series](VectorField::series).
+    /// [`Failure`] where f is not defined, as for [`rhs`](VectorField::rhs), and where there is no
+    /// [series](VectorField::series).
     fn expand(
         &mut self,
         _t: f64,
@@ -159,17 +163,18 @@ pub trait VectorField {
         Err(Failure::fatal(NoSeries))
     }
 
-    /// f as a program to be evaluated at many states at once, with the parameters as they are; none where it is more than
-    /// that, or is to be interpreted.
+    /// f as a program to be evaluated at many states at once, with the parameters as they are; none where it
+    /// is more than that, or is to be interpreted.
     fn lanes(&mut self) -> Option<LaneField> {
         None
     }
 
-    /// Announces that the motion continues from `y` at time t, a state that it did not reach by itself, such as one
+    /// Announces that the motion continues from `y` at time t, a state that it did not reach on its own, such as one
     /// after an impact: conserved quantities may have new values.
     fn restart(&mut self, _t: f64, _y: &[f64]) {}
 
-    /// The times, in ascending order, at which f is not smooth in t, such as those of a table that it reads: no step crosses one.
+    /// The times, in ascending order, at which f is not smooth in t, such as those of a table that it reads:
+    /// no step crosses one.
     fn breaks(&self) -> &[f64] {
         &[]
     }

@@ -5,13 +5,13 @@ use thiserror::Error;
 use crate::parse::syntax_tree::{MAX_DEPTH, Span};
 use crate::parse::vocabulary::{FUNCTIONS, Function};
 
-/// What is wrong with the text of an expression, and where.
+/// An error in the text of an expression, with its place.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{kind}")]
 pub struct ParseError {
     /// The offending text; empty at the end of the expression.
     pub span: Span,
-    /// What is wrong with it.
+    /// The error.
     pub kind: ParseErrorKind,
 }
 
@@ -24,7 +24,7 @@ pub enum ParseErrorKind {
     /// An operand is missing.
     #[error("expected an expression, found {found}")]
     ExpectedExpression {
-        /// What stands there, in words.
+        /// The token found there, in words.
         found: String,
         /// Whether it is the second star of `**`.
         power: bool,
@@ -52,7 +52,7 @@ pub enum ParseErrorKind {
     /// A call of something that is not a function.
     #[error("unknown function `{name}`")]
     UnknownFunction {
-        /// What was called.
+        /// The name that was called.
         name: String,
         /// A function with nearly that name.
         nearest: Option<&'static str>,
@@ -65,7 +65,7 @@ pub enum ParseErrorKind {
     ArgumentCount {
         /// The function called.
         function: Function,
-        /// How many arguments were given.
+        /// The number of arguments given.
         found: usize,
     },
     /// A number beyond the largest floating-point number.
@@ -121,7 +121,7 @@ impl ParseError {
     }
 }
 
-/// What to write in place of a character that has no meaning.
+/// The replacement of a character that has no meaning.
 fn replacement(character: char) -> String {
     match character {
         '−' | '–' | '—' => "minus is written `-`".into(),

@@ -15,9 +15,9 @@ pub struct Span {
 /// An expression as written, with its place in the text; parentheses around it belong to the span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ast {
-    /// Where it stands.
+    /// Its place.
     pub span: Span,
-    /// What it is.
+    /// Its kind.
     pub kind: AstKind,
 }
 
@@ -53,7 +53,7 @@ pub enum Sign {
     Minus,
 }
 
-/// Side of the fraction bar on which a factor of a product stands.
+/// The side of the fraction bar on which a factor of a product is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Factor {
     /// `*`

@@ -5,9 +5,9 @@
 pub struct Function {
     /// Its name, which is reserved.
     pub name: &'static str,
-    /// How many arguments it takes.
+    /// The number of its arguments.
     pub arguments: usize,
-    /// How a call is written.
+    /// The form of a call.
     pub usage: &'static str,
 }
 

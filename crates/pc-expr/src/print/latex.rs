@@ -1,4 +1,4 @@
-//! The words of LaTeX for the pieces of an expression.
+//! The pieces of an expression in LaTeX.
 
 use crate::graph::function::Function;
 use crate::graph::number::Number;
@@ -44,8 +44,8 @@ fn letters(text: &str) -> String {
     format!("\\mathrm{{{spelt}}}")
 }
 
-/// A character that means itself in mathematics: the names of reactions have those of constraints in them, which may be any
-/// text.
+/// A character as itself in mathematics mode: names of reactions contain those of constraints, which may be
+/// any text.
 fn character(c: char) -> String {
     match c {
         '_' | '{' | '}' | '$' | '%' | '&' | '#' => format!("\\{c}"),
@@ -80,7 +80,7 @@ pub(super) fn call(function: Function, args: Vec<Piece>) -> Piece {
         Function::Sqrt => format!("\\sqrt{{{listed}}}"),
         Function::Abs => format!("\\left|{listed}\\right|"),
         Function::Exp => {
-            // upright, as no symbol of one letter is
+            // upright, unlike a symbol of one letter
             return Piece { text: format!("\\mathrm{{e}}^{{{listed}}}"), binding: Binding::Power };
         }
         Function::Step => format!("\\operatorname{{step}}\\left({listed}\\right)"),
@@ -95,10 +95,10 @@ pub(super) fn call(function: Function, args: Vec<Piece>) -> Piece {
     Piece::atom(text)
 }
 
-/// Functions whose argument may stand without brackets.
+/// Functions whose argument may follow without brackets.
 const BARE: [&str; 6] = ["\\sin", "\\cos", "\\sinh", "\\cosh", "\\tanh", "\\log"];
 
-/// A single symbol needs no brackets behind \sin.
+/// Whether an argument is a single symbol, which needs no brackets behind \sin.
 fn is_simple(argument: &str) -> bool {
     !argument.contains([' ', '+', '-', '(']) && !argument.contains("\\frac")
 }
@@ -136,7 +136,7 @@ fn closed(factor: &str) -> String {
     }
 }
 
-/// Where the text goes on behind the brace that closes what was opened before it.
+/// The position after the brace that closes a group opened before the text.
 fn end_of_group(text: &str) -> Option<usize> {
     let mut depth = 1;
     for (i, c) in text.char_indices() {
@@ -152,8 +152,8 @@ fn end_of_group(text: &str) -> Option<usize> {
     None
 }
 
-/// Factors side by side, two numbers kept apart by a dot. As usual the argument of \sin x \cos y ends before the next
-/// function.
+/// Factors side by side, two numbers separated by a dot. As usual, the argument of \sin x \cos y ends before
+/// the next function.
 pub(super) fn juxtaposed(factors: &[String]) -> String {
     let mut text = String::new();
     let ends_argument = |factor: &String| BARE.iter().any(|function| factor.starts_with(function));
@@ -162,7 +162,7 @@ pub(super) fn juxtaposed(factors: &[String]) -> String {
         if digit(text.chars().last()) && digit(factor.chars().next()) {
             text.push_str(" \\cdot ");
         } else if !text.is_empty() {
-            // Names of several letters and those with indices do not run into each other.
+            // A space separates names of several letters and names with indices from each other.
             let is_name = |factor: &str| {
                 let word = factor.starts_with("\\mathrm{") && !factor.starts_with("\\mathrm{e}^");
                 word || factor.contains("_{") && !factor.contains(' ')
@@ -182,7 +182,7 @@ pub(super) fn juxtaposed(factors: &[String]) -> String {
     text
 }
 
-/// What stands above or below a fraction bar: a single sum needs no brackets there.
+/// Factors above or below a fraction bar, where a single sum needs no brackets.
 pub(super) fn alone(mut factors: Vec<Piece>) -> String {
     if factors.len() == 1 {
         let text = factors.remove(0).text;

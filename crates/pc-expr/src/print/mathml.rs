@@ -1,7 +1,7 @@
-//! The elements of presentation MathML for the pieces of an expression.
+//! The pieces of an expression in presentation MathML.
 //!
-//! A piece is a row: elements side by side. What needs one element in its place, such as a base or a numerator, is put into
-//! an `mrow`. Invisible operators say to readers of the page by voice what stands side by side.
+//! A piece is a row: elements side by side. Where one element is required, such as a base or a numerator, the
+//! row is put into an `mrow`. Invisible operators tell screen readers how neighbours are joined.
 
 use crate::graph::function::Function;
 use crate::graph::number::Number;
@@ -12,7 +12,7 @@ pub(super) const PLUS: &str = "<mo>+</mo>";
 pub(super) const MINUS: &str = "<mo>−</mo>";
 /// Brackets that do not grow, so that a line may end between them.
 pub(super) const BRACKETS: [&str; 2] = ["<mo stretchy=\"false\">(</mo>", "<mo stretchy=\"false\">)</mo>"];
-/// What stands in a sentence before names, between a name and its meaning, and between two of them.
+/// The words of a sentence: before names, between a name and its meaning, and between two of them.
 pub(super) const WORDS: [&str; 3] = ["<mtext> where </mtext>", "<mo>=</mo>", "<mo>,</mo>"];
 
 const APPLY: &str = "<mo>&#x2061;</mo>";
@@ -24,8 +24,8 @@ const BARE: &str = "<mo>&#x2061;</mo><mspace width=\"0.17em\"/>";
 const RAISED: [Function; 6] =
     [Function::Sin, Function::Cos, Function::Sinh, Function::Cosh, Function::Tanh, Function::Log];
 
-/// `ω1` has the index 1, `x'` a dot, `x''` two; a name of several letters is set upright, unless it is that of a Greek
-/// letter.
+/// `ω1` has the index 1, `x'` a dot, `x''` two; a name of several letters is upright, unless it is that of a
+/// Greek letter.
 pub(super) fn symbol(name: &str) -> String {
     let Symbol { stem, dots, index } = Symbol::of(name);
     let stem = letters(stem);
@@ -51,7 +51,7 @@ fn letters(text: &str) -> String {
     }
 }
 
-/// A character as text of a page: the names of reactions have those of constraints in them, which may be any text.
+/// A character as text of a page: names of reactions contain those of constraints, which may be any text.
 fn character(c: char) -> String {
     match c {
         '<' => "&lt;".to_owned(),
@@ -60,7 +60,7 @@ fn character(c: char) -> String {
         '"' => "&quot;".to_owned(),
         '\'' => "&#39;".to_owned(),
         c if c.is_whitespace() => " ".to_owned(),
-        // Not among the characters of XML.
+        // These are not characters of XML.
         c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => '\u{fffd}'.to_string(),
         c => c.to_string(),
     }
@@ -110,7 +110,7 @@ pub(super) fn call(function: Function, args: Vec<Piece>) -> Piece {
 }
 
 pub(super) fn power(base: &Piece, exponent: &str) -> String {
-    // Whole exponents come as digits.
+    // Integer exponents are plain digits.
     let exponent = if exponent.contains('<') { one(exponent) } else { format!("<mn>{exponent}</mn>") };
     // (sin x)² is written sin² x
     for function in RAISED {
@@ -122,7 +122,7 @@ pub(super) fn power(base: &Piece, exponent: &str) -> String {
             return format!("<msup>{name}{exponent}</msup>{rest}");
         }
     }
-    // An atom in an index is a symbol: the exponent stands above its index.
+    // A base with an index takes its exponent above the index.
     match (base.binding, base.text.strip_prefix("<msub>")) {
         (Binding::Atom, Some(rest)) if rest.ends_with("</msub>") => {
             format!("<msubsup>{}{exponent}</msubsup>", &rest[..rest.len() - "</msub>".len()])
@@ -132,8 +132,8 @@ pub(super) fn power(base: &Piece, exponent: &str) -> String {
     }
 }
 
-/// Factors side by side, two numbers kept apart by a dot. The argument of sin x cos y ends before the next function;
-/// before another factor it needs brackets, as sin x y would be sin(x y).
+/// Factors side by side, two numbers separated by a dot. The argument of sin x cos y ends before the next
+/// function; before another factor it needs brackets, as sin x y is read as sin(x y).
 pub(super) fn juxtaposed(factors: &[String]) -> String {
     let mut text = String::new();
     for (i, factor) in factors.iter().enumerate() {
@@ -157,7 +157,7 @@ pub(super) fn juxtaposed(factors: &[String]) -> String {
     text
 }
 
-/// A quotient, above and below which nothing needs brackets that stands alone.
+/// A quotient; a lone sum above or below the bar needs no brackets.
 pub(super) fn fraction(above: Vec<Piece>, below: Vec<Piece>) -> String {
     over(&alone(above), &alone(below))
 }
@@ -189,18 +189,18 @@ fn over(above: &str, below: &str) -> String {
 
 /// The row as one element.
 fn one(row: &str) -> String {
-    let is_token = row.matches('<').count() == 2; // it opens and closes
+    let is_token = row.matches('<').count() == 2; // one opening and one closing tag
     if is_token { row.to_owned() } else { format!("<mrow>{row}</mrow>") }
 }
 
-/// A single symbol needs no brackets behind sin.
+/// Whether the row is a single symbol, which needs no brackets behind sin.
 fn is_symbol(row: &str) -> bool {
     let inner = row.strip_prefix("<msub>").and_then(|inner| inner.strip_suffix("</msub>"));
     let tokens = inner.unwrap_or(row).matches("</m").count();
     row.starts_with("<m") && row.matches("<mo").count() == 0 && tokens == if inner.is_some() { 2 } else { 1 }
 }
 
-/// A function with its argument.
+/// Whether the factor is a function with its argument.
 fn is_call(factor: &str) -> bool {
     RAISED.iter().any(|function| {
         let rest = factor.strip_prefix("<msup>").unwrap_or(factor);
@@ -210,8 +210,8 @@ fn is_call(factor: &str) -> bool {
     })
 }
 
-/// The name of a function, with its power, and its argument, if that has no brackets; those of calls in the argument do not
-/// count.
+/// The name of a function, with its power, and its argument, if that is without brackets; calls inside the
+/// argument do not count.
 fn bare_call(factor: &str) -> Option<(&str, &str)> {
     let is_outermost = |before: &str| {
         let closed = before.matches("</m").count() + before.matches("/>").count();
@@ -222,7 +222,7 @@ fn bare_call(factor: &str) -> Option<(&str, &str)> {
     Some((&factor[..place], &factor[place + BARE.len()..]))
 }
 
-/// Names of several letters and those with indices do not run into each other.
+/// Whether the factor is a name of several letters or with an index, which needs a space beside another.
 fn is_name(factor: &str) -> bool {
     if factor.starts_with("<msub>") || factor.starts_with("<msubsup>") {
         return true;

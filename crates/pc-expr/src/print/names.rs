@@ -1,8 +1,8 @@
 //! Names for long or repeated parts of a page of expressions.
 //!
-//! Expressions share their parts, so that a page which writes all of them out may be as long as 2 to the power of their
-//! depth. Here such parts are named, each once, before it is used: as few as needed for every piece between two signs
-//! to fit a line, and those that make the page shorter.
+//! Expressions share their parts, so that a page which writes all of them out may be as long as 2 to the
+//! power of their depth. Here such parts are named, each once, before their use: as few as let every piece
+//! between two signs fit a line, and those that shorten the page.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -16,15 +16,15 @@ use crate::print::piece::Piece;
 use crate::print::style::Style;
 use crate::print::writer::{Writer, signed};
 
-/// What comes again is named if it has at least so many columns: that width is taken which makes the shortest page.
+/// Widths from which a repeated part is named; the one that gives the shortest page is taken.
 const WORTH_A_NAME: [usize; 7] = [usize::MAX, 80, 48, 32, 24, 16, 12];
-/// A name costs its reader as much as so many characters.
+/// The cost of a name to its reader, in characters.
 const PRICE: usize = 24;
-/// A shorthand stands for what has at least so many columns.
+/// The least width of a value replaced by a shorthand.
 const WORTH_A_SHORTHAND: usize = 20;
-/// What is a line and comes again in one other is named if it has at least so many columns.
+/// The least width of a line that is named because it recurs in one other line.
 const WIDE_LINE: usize = 80;
-/// A name as wide as those that are given at last.
+/// Stands for a name while widths are measured.
 const PLACEHOLDER: &str = "z10";
 
 /// An existing name for the value of an expression.
@@ -32,9 +32,9 @@ const PLACEHOLDER: &str = "z10";
 pub struct Given<'g> {
     /// The name.
     pub name: String,
-    /// What it stands for.
+    /// Its value.
     pub value: Expr<'g>,
-    /// Whether the value is printed anyway, so that the name is taken for long values only.
+    /// Whether the value is printed in any case; then the name replaces long values only.
     pub shorthand: bool,
 }
 
@@ -61,11 +61,11 @@ impl<'g> Side<'g> {
 pub struct Name<'g> {
     /// The name.
     pub name: String,
-    /// What it stands for.
+    /// Its value.
     pub value: Expr<'g>,
     /// Whether it is one of those [`Given`] as a shorthand.
     pub shorthand: bool,
-    /// The number of the first line that needs it.
+    /// The number of the first line that uses it.
     pub line: usize,
 }
 
@@ -78,8 +78,8 @@ pub struct Names<'g> {
 }
 
 impl Graph {
-    /// Names for parts of `lines`, so that the text between two signs of a line has at most `room` columns, with those
-    /// that are `given`.
+    /// Names for parts of `lines`, besides those `given`, so that the text between two signs of a line has at
+    /// most `room` columns.
     ///
     /// ```
     /// # use pc_expr::{Graph, Side, Style};
@@ -125,7 +125,7 @@ impl<'g> Names<'g> {
         Names { graph, lines, list: list.into_iter().map(name).collect() }
     }
 
-    /// The names in the order in which they are needed; the meaning of each uses only names before it.
+    /// The names in order of first use; the meaning of each uses only earlier names.
     pub fn list(&self) -> &[Name<'g>] {
         &self.list
     }
@@ -181,7 +181,7 @@ impl<'g> Names<'g> {
 /// The text of lines, and of the meanings of the names on their page.
 pub struct Written {
     style: Style,
-    /// The terms of lines and of what names stand for.
+    /// The terms of lines and of the meanings of names.
     terms: FxHashMap<Atom, Vec<String>>,
     pieces: FxHashMap<NodeId, Piece>,
     named: FxHashSet<Atom>,
@@ -204,7 +204,7 @@ impl Written {
         self.terms.get(&value.atom()).cloned().unwrap_or_else(|| vec![value.display(self.style)])
     }
 
-    /// An expression on the page as it appears in others.
+    /// An expression on the page as part of another one.
     pub fn text(&self, expression: Expr<'_>) -> String {
         match expression.atom() {
             Atom::Node(node) if self.pieces.contains_key(&node) => self.pieces[&node].text.clone(),
@@ -212,7 +212,7 @@ impl Written {
         }
     }
 
-    /// A name as it stands in a sentence: in that of LaTeX as it is read back.
+    /// A name in a sentence: in a LaTeX sentence as text that can be read back.
     fn sentence_name(&self, name: &str) -> String {
         if self.style == Style::MathMl { self.name(name) } else { name.to_owned() }
     }
@@ -227,11 +227,11 @@ impl Written {
 struct Page<'d, 'g> {
     dag: &'d Dag,
     roots: Vec<Atom>,
-    /// The nodes that lines are multiples of.
+    /// The nodes of which lines are multiples.
     lines: FxHashSet<NodeId>,
     factors: FxHashSet<Atom>,
     order: Vec<NodeId>,
-    /// How often each node stands in those that are written.
+    /// How often each node occurs in those that are written.
     uses: FxHashMap<NodeId, usize>,
     given: &'d FxHashMap<NodeId, &'d Given<'g>>,
     room: usize,
@@ -274,8 +274,8 @@ impl<'d, 'g> Page<'d, 'g> {
         pages.chain([plain]).min_by_key(|named| self.length(named).0).unwrap_or_default()
     }
 
-    /// The nodes that are named if shorthands are, and what comes again from a width on; those that must be, if there is no
-    /// such width.
+    /// The named nodes: shorthands, parts that recur and have at least this width, and those needed to fit
+    /// the lines; the last alone if there is no such width.
     fn named(&self, least: Option<usize>) -> FxHashSet<NodeId> {
         let mut writer = Writer::new(self.dag, Style::Book);
         let mut named = FxHashSet::default();
@@ -297,7 +297,7 @@ impl<'d, 'g> Page<'d, 'g> {
             Some(_) => true,
             None if is_scaled(self.dag, node) => false,
             None => {
-                // What a line is already said there: a name for it would leave the line empty.
+                // A name for the value of a line would leave that line empty.
                 let lines = usize::from(self.lines.contains(&node) && columns < WIDE_LINE);
                 let again = self.uses[&node] > 1 + lines && least.is_some_and(|least| columns >= least);
                 again || self.factors.contains(&Atom::Node(node)) && columns > self.room
@@ -305,12 +305,12 @@ impl<'d, 'g> Page<'d, 'g> {
         }
     }
 
-    /// Names the widest parts of what is between two signs of a node, until it fits.
+    /// Names the widest parts of a piece between two signs of a node, until it fits.
     fn narrow(&self, writer: &mut Writer<'_>, node: NodeId, named: &mut FxHashSet<NodeId>) {
         let parts: Vec<NodeId> = match self.dag.node(node) {
             Node::Constant(_) | Node::Symbol(_) => return,
             Node::Sum { terms, .. } => {
-                // Products have been made to fit before.
+                // Products already fit.
                 for &(term, q) in self.dag.terms(terms) {
                     let is_sum = matches!(self.dag.node(term), Node::Sum { .. });
                     if is_sum && writer.opened(term, q).is_none() && writer.columns(term) > self.room {
@@ -325,7 +325,7 @@ impl<'d, 'g> Page<'d, 'g> {
                 parts
             }
         };
-        // What is a line and nothing else may go on in the next within its bracket.
+        // A product that is a line of its own may continue on the next line within its bracket.
         if self.lines.contains(&node) && self.uses[&node] == 1 && writer.bracketed(node).is_some() {
             return;
         }
@@ -335,7 +335,7 @@ impl<'d, 'g> Page<'d, 'g> {
                     && !writer.is_named(**part)
                     && writer.columns(**part) > PLACEHOLDER.len()
             };
-            // Of equally wide parts the first, so that the choice is always the same.
+            // Of equally wide parts the first is named, so that the choice is unique.
             let widest = parts
                 .iter()
                 .filter(nameable)
@@ -350,7 +350,7 @@ impl<'d, 'g> Page<'d, 'g> {
         named.insert(part);
     }
 
-    /// Characters of the page with names, and those of its widest line.
+    /// The number of characters of the page with names, and of its widest line.
     fn length(&self, named: &FxHashSet<NodeId>) -> (usize, usize) {
         let mut writer = Writer::new(self.dag, Style::Book);
         let mut length = 0;
@@ -370,7 +370,7 @@ impl<'d, 'g> Page<'d, 'g> {
         (length + self.roots.iter().map(columns).sum::<usize>(), widest)
     }
 
-    /// Names, what they stand for, whether that is printed anyway, and the first line that needs them.
+    /// Names, their meanings, whether these are printed in any case, and the first line that uses each.
     fn in_order(&self, named: &FxHashSet<NodeId>, given: &[Given<'g>]) -> Vec<(String, NodeId, bool, usize)> {
         let letter = self.letter(given);
         let (mut seen, mut count) = (FxHashSet::default(), 0);
@@ -392,7 +392,7 @@ impl<'d, 'g> Page<'d, 'g> {
                 }
                 self.dag.for_each_child(node, |child| reach(child, &mut open));
             }
-            new.sort_unstable(); // parts before what they are parts of
+            new.sort_unstable(); // parts before the nodes that contain them
             list.extend(new.into_iter().map(|node| match self.given.get(&node) {
                 Some(given) => (given.name.clone(), node, given.shorthand, line),
                 None => {
@@ -404,7 +404,7 @@ impl<'d, 'g> Page<'d, 'g> {
         list
     }
 
-    /// A letter that no symbol and no given name has before a number.
+    /// A letter that, followed by a number, begins no symbol and no given name.
     fn letter(&self, given: &[Given<'g>]) -> String {
         let symbols = self.order.iter().filter_map(|&node| match self.dag.node(node) {
             Node::Symbol(index) => Some(self.dag.symbol_name(index)),
@@ -428,7 +428,7 @@ fn is_composite(dag: &Dag, node: NodeId) -> bool {
     !matches!(dag.node(node), Node::Constant(_) | Node::Symbol(_))
 }
 
-/// Whether a node is a multiple of another, which is named in its place.
+/// Whether a node is a multiple of another, which is named instead.
 fn is_scaled(dag: &Dag, node: NodeId) -> bool {
     matches!(dag.node(node), Node::Sum { constant, terms } if constant.is_zero() && dag.terms(terms).len() == 1)
 }

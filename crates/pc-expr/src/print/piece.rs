@@ -50,11 +50,11 @@ pub(crate) fn number(c: Number) -> Piece {
     Piece { text, binding }
 }
 
-/// The numerator and denominator of q if a number is the double next to q π, q > 0 a simple fraction.
+/// The numerator and denominator of q if a number is the double nearest to q π, q > 0 a simple fraction.
 pub(crate) fn multiple_of_pi(c: Number) -> Option<(i32, i32)> {
     let value = match c {
         Number::Real(value) => value,
-        // The double has as many digits as that.
+        // A double nearest to a multiple of π has this many digits.
         Number::Rational { den, .. } if den > 1 << 30 => c.to_f64(),
         Number::Rational { .. } => return None,
     };

@@ -14,7 +14,7 @@ pub enum Style {
     Book,
     /// LaTeX for mathematics mode: Greek letters by name, `x'` as ẋ, digits of names as indices.
     Latex,
-    /// MathML, for pages of a browser: elements that stand side by side in a row.
+    /// MathML for web pages: elements side by side in a row.
     MathMl,
 }
 
@@ -27,12 +27,12 @@ impl Style {
         }
     }
 
-    /// What stands before a term that is subtracted.
+    /// The sign before a term that is subtracted.
     pub(super) fn minus(self) -> &'static str {
         if self == Style::MathMl { mathml::MINUS } else { "-" }
     }
 
-    /// What stands in a sentence before names, between a name and its meaning, and between two of them.
+    /// The words of a sentence: before names, between a name and its meaning, and between two of them.
     pub(super) fn words(self) -> [&'static str; 3] {
         match self {
             Style::MathMl => mathml::WORDS,
@@ -40,7 +40,7 @@ impl Style {
         }
     }
 
-    /// What stands between two terms.
+    /// The sign between two terms.
     pub(super) fn sign(self, negative: bool) -> &'static str {
         match (self, negative) {
             (Style::MathMl, false) => mathml::PLUS,

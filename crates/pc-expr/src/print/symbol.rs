@@ -1,6 +1,6 @@
 //! Names of symbols taken apart: `ω1'` is ω with the index 1 and one dot.
 
-/// Greek letters by the names that LaTeX has for them.
+/// Greek letters with their names in LaTeX.
 pub(super) const GREEK: &[(char, &str)] = &[
     ('α', "alpha"),
     ('β', "beta"),
@@ -42,17 +42,17 @@ pub(super) const GREEK: &[(char, &str)] = &[
 /// A name in its parts.
 pub(super) struct Symbol<'a> {
     pub(super) stem: &'a str,
-    /// The number of primes behind it.
+    /// The number of primes at its end.
     pub(super) dots: usize,
     pub(super) index: Index<'a>,
 }
 
-/// What stands below a symbol.
+/// The index of a symbol.
 pub(super) enum Index<'a> {
     None,
     /// Set as it is.
     Plain(&'a str),
-    /// A symbol itself: that of p_ω1.
+    /// A symbol itself: ω1 in p_ω1.
     Symbol(&'a str),
 }
 

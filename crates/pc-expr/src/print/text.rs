@@ -9,15 +9,15 @@ use crate::print::names::{Names, Side};
 use crate::print::style::Style;
 use crate::print::writer::Writer;
 
-/// Expressions of more operations than this, when written out, are written with names for their parts.
+/// Expressions that take more operations when written out get names for their parts.
 const LONG: u32 = 20_000;
-/// So are those whose parts have more bytes together: nested one in the other these are the square of the whole.
+/// So do those whose parts have more bytes in total: nested parts add up to the square of the whole.
 const LARGE: usize = 16 << 20;
-/// Columns of what stands between two signs there.
+/// The columns between two signs in such an expression.
 const ROOM: usize = 80;
 
 impl Expr<'_> {
-    /// The text in another style than [`Display`](fmt::Display)'s.
+    /// The text in a style other than [`Display`](fmt::Display)'s.
     ///
     /// It is complete: parts of a long expression are named after it, `z1 + 1/z1 where z1 = …`.
     /// [`Graph::names`](crate::Graph::names) prints several expressions with common names.

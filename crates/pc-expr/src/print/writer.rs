@@ -1,4 +1,4 @@
-//! The text of each node below some expressions, made of the texts of its children.
+//! The text of each node below some expressions, built from the texts of its children.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -9,17 +9,17 @@ use crate::graph::number::Number;
 use crate::print::piece::{Binding, Piece, number};
 use crate::print::style::Style;
 
-/// Sums that open in sums that open … are opened so often.
+/// The deepest nesting of sums that open into each other.
 const DEEP: usize = 60;
 
-/// What no name contains.
+/// A character that no name contains.
 const GAP: &str = "\u{0}";
 
-/// Writes nodes one by one: those below a node before it, so that no depth overflows the stack.
+/// Writes nodes one by one, children before parents, so that no depth overflows the stack.
 pub(super) struct Writer<'d> {
     pub(super) dag: &'d Dag,
     style: Style,
-    /// How nodes stand in those above them: written out, or as their names.
+    /// How nodes appear in their parents: written out, or as their names.
     pieces: FxHashMap<NodeId, Piece>,
     named: FxHashSet<NodeId>,
 }
@@ -29,19 +29,19 @@ impl<'d> Writer<'d> {
         Writer { dag, style, pieces: FxHashMap::default(), named: FxHashSet::default() }
     }
 
-    /// Lets a node stand written out in those above it.
+    /// Has a node appear written out in its parents.
     pub(super) fn write(&mut self, id: NodeId) {
         let piece = self.composed(id);
         self.pieces.insert(id, piece);
     }
 
-    /// Lets a node stand as a name.
+    /// Has a node appear as a name.
     pub(super) fn name(&mut self, id: NodeId, name: &str) {
         self.pieces.insert(id, self.style.symbol(name));
         self.named.insert(id);
     }
 
-    /// All that was written, as it stands.
+    /// All pieces written.
     pub(super) fn into_pieces(self) -> FxHashMap<NodeId, Piece> {
         self.pieces
     }
@@ -50,23 +50,23 @@ impl<'d> Writer<'d> {
         self.named.contains(&id)
     }
 
-    /// Bytes of a node as it stands in those above it.
+    /// Bytes of a node as part of its parents.
     pub(super) fn size(&self, id: NodeId) -> usize {
         self.pieces.get(&id).map_or(0, |piece| piece.text.len())
     }
 
-    /// Columns of a node as it stands in those above it.
+    /// Columns of a node as part of its parents.
     pub(super) fn columns(&self, id: NodeId) -> usize {
         self.pieces.get(&id).map_or(1, Piece::columns)
     }
 
-    /// How a node stands in those above it.
+    /// A node as part of its parents.
     fn piece(&self, id: NodeId) -> Piece {
-        // The order of writing leaves none out.
+        // The order of writing is complete: every piece is there.
         self.pieces.get(&id).cloned().unwrap_or_else(|| Piece::atom("?"))
     }
 
-    /// A node written out, the nodes below it as they stand.
+    /// A node written out, its children as they appear in it.
     pub(super) fn composed(&self, id: NodeId) -> Piece {
         match self.dag.node(id) {
             Node::Constant(c) => self.style.number(c),
@@ -87,8 +87,8 @@ impl<'d> Writer<'d> {
         }
     }
 
-    /// The terms of a line, those that are subtracted marked, one that is added first. Between the terms in a bracket a line
-    /// may end, too.
+    /// The terms of a line with marks on those that are subtracted, an added one first. A line may also end
+    /// between the terms in a bracket.
     pub(super) fn line(&self, id: NodeId) -> Vec<(bool, Piece)> {
         let (product, q) = match self.dag.node(id) {
             Node::Sum { constant, terms } => match *self.dag.terms(terms) {
@@ -116,7 +116,7 @@ impl<'d> Writer<'d> {
         positive_first(signed)
     }
 
-    /// An expression as it stands in others.
+    /// An expression as part of others.
     pub(super) fn atom(&self, atom: Atom) -> Piece {
         match atom {
             Atom::Constant(c) => self.style.number(c),
@@ -153,7 +153,7 @@ impl<'d> Writer<'d> {
         }
     }
 
-    /// The sum that a product ends with, if a line may end between the terms in its bracket.
+    /// The sum at the end of a product, if a line may end between the terms in its bracket.
     pub(super) fn bracketed(&self, product: NodeId) -> Option<NodeId> {
         let Node::Product { factors } = self.dag.node(product) else { return None };
         let is_sum = |&(node, _): &(NodeId, i32)| {
@@ -166,10 +166,10 @@ impl<'d> Writer<'d> {
         (whole && self.style != Style::Text).then_some(sum)
     }
 
-    /// The terms of q x (a + b + …), what stands before the bracket with the first, what stands behind it with the last.
+    /// The terms of q x (a + b + …); the first carries what precedes the bracket, the last what follows it.
     fn bracket(&self, q: Number, product: NodeId) -> Option<Vec<(bool, Piece)>> {
         let sum = self.bracketed(product)?;
-        // Set as a whole, so that what is before the bracket knows that something follows.
+        // The product is set with a placeholder for its bracket, so that the factor before it is closed.
         let whole = self.monomial(q.abs(), product, Some(&(sum, Piece::atom(GAP)))).text;
         let (before, behind) = whole.split_once(GAP)?;
         let [open, close] = self.style.large_brackets();
@@ -240,7 +240,7 @@ impl<'d> Writer<'d> {
         }
     }
 
-    /// q·n as it stands in a sum.
+    /// q·n as part of a sum.
     fn term(&self, q: Number, node: NodeId) -> Piece {
         match self.dag.node(node) {
             Node::Product { .. } if !self.named.contains(&node) => self.monomial(q, node, None),
@@ -248,7 +248,7 @@ impl<'d> Writer<'d> {
         }
     }
 
-    /// q·n of a product n, one of its factors perhaps written as given.
+    /// q·n of a product n, with one of its factors written as `given`, if there is one.
     fn monomial(&self, q: Number, node: NodeId, given: Option<&(NodeId, Piece)>) -> Piece {
         match self.dag.node(node) {
             Node::Product { factors } => self.quotient(q, self.dag.factors(factors), given),
@@ -300,7 +300,8 @@ impl<'d> Writer<'d> {
     }
 }
 
-/// Whether q·(c + Σ…) is shorter with q multiplied in: −(a − b) is b − a, +(a − b) is a − b, and (2·a − 1)/2 is a − 1/2.
+/// Whether q·(c + Σ…) is shorter with q multiplied in: −(a − b) is b − a, +(a − b) is a − b, and (2·a − 1)/2
+/// is a − 1/2.
 fn opens(q: Number, constant: Number, terms: &[(NodeId, Number)]) -> bool {
     let whole = |c: Number| matches!(c, Number::Rational { num, den: 1 } if num != 0);
     let fraction = matches!(q, Number::Rational { den, .. } if den > 1);
@@ -336,7 +337,7 @@ fn join(style: Style, terms: Vec<(bool, Piece)>) -> Piece {
     }
 }
 
-/// Terms that stand side by side, all but the first with their sign before them.
+/// Terms side by side, all but the first with their sign before them.
 pub(super) fn signed(style: Style, terms: Vec<(bool, Piece)>) -> Vec<String> {
     let term = |(i, (negative, text)): (usize, (bool, String))| {
         let sign = match (i, negative) {
@@ -349,7 +350,7 @@ pub(super) fn signed(style: Style, terms: Vec<(bool, Piece)>) -> Vec<String> {
     bracketed(style, terms).into_iter().enumerate().map(term).collect()
 }
 
-/// Terms with brackets where they need them, those that are subtracted marked.
+/// Terms with brackets where they need them, and marks on those that are subtracted.
 fn bracketed(style: Style, terms: Vec<(bool, Piece)>) -> Vec<(bool, String)> {
     let alone = terms.len() == 1;
     let text = |(negative, piece): (bool, Piece)| {
@@ -359,7 +360,7 @@ fn bracketed(style: Style, terms: Vec<(bool, Piece)>) -> Vec<(bool, String)> {
     terms.into_iter().map(text).collect()
 }
 
-/// Symbols in the order of their making, then calls, then sums.
+/// Symbols in order of creation, then calls, then sums.
 fn factor_key(dag: &Dag, id: NodeId) -> (u8, u32) {
     match dag.node(id) {
         Node::Constant(_) => (0, 0),
@@ -370,7 +371,7 @@ fn factor_key(dag: &Dag, id: NodeId) -> (u8, u32) {
     }
 }
 
-/// Terms are ordered as their lists of factors are.
+/// Terms are ordered by their lists of factors.
 fn order_key(dag: &Dag, id: NodeId) -> Vec<(u8, u32, i32)> {
     match dag.node(id) {
         Node::Product { factors } => {

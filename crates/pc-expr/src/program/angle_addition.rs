@@ -1,10 +1,11 @@
 //! Sines and cosines of sums of two angles, computed from those of the angles where that takes fewer calls.
 //!
-//! The N(N − 1)/2 differences of N absolute angles of a chain need no calls of their own beside those of the N angles:
+//! The N(N − 1)/2 differences of N absolute angles of a chain follow from the sines and cosines of the N
+//! angles:
 //!
 //!   cos(σa ± τb) = cos a cos b ∓ στ sin a sin b and so on.
 //!
-//! What rounding this costs is that of moving each angle by a unit of its last place.
+//! The rounding error is that of a shift of each angle by a unit in its last place.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -19,7 +20,7 @@ pub(crate) type SignedAngle = (NodeId, bool);
 /// The sums ±a ± b whose sines and cosines are computed from those of a and b.
 pub(crate) type Compositions = FxHashMap<NodeId, [SignedAngle; 2]>;
 
-/// Finds them: of sums that share angles with each other, all or none.
+/// The compositions of a cone: of sums that share angles, all or none are composed.
 pub(crate) fn compositions(dag: &Dag, cone: &Cone) -> Compositions {
     let mut called = FxHashSet::default();
     let mut sums: Vec<(NodeId, [SignedAngle; 2])> = Vec::new();
@@ -35,7 +36,7 @@ pub(crate) fn compositions(dag: &Dag, cone: &Cone) -> Compositions {
     for (_, [(a, _), (b, _)]) in &sums {
         families.join(*a, *b);
     }
-    // By family: the calls its sums take as they are, and those its angles would take.
+    // For each family the number of calls that its sums take directly, and the angles it would need instead.
     let mut balance: FxHashMap<NodeId, (usize, FxHashSet<NodeId>)> = FxHashMap::default();
     for (_, angles) in &sums {
         let (direct, composed) = balance.entry(families.head(angles[0].0)).or_default();

@@ -1,10 +1,10 @@
-//! Parameters put into programs as numbers.
+//! Programs with numbers in place of parameters.
 
 use rustc_hash::FxHashMap;
 
 use crate::program::program::{Instruction, Program, Register};
 
-/// What a register of the free program is in the bound one.
+/// What a register of the free program becomes in the bound one.
 #[derive(Clone, Copy)]
 enum Value {
     Number(f64),
@@ -13,13 +13,14 @@ enum Value {
 }
 
 impl Program {
-    /// The same program with these values of the parameters, which it no longer reads: what they alone determine is
-    /// computed here, and what a 0 or a 1 among them makes superfluous is left out. It takes no more operations, and
-    /// its results are the same to the last bit where they are finite, up to the sign of zero.
+    /// The same program with these values of the parameters, which it no longer reads: operations on them
+    /// alone are computed here, and those that a 0 or a 1 among them makes superfluous are left out. It takes
+    /// no more operations, and its results are the same to the last bit where they are finite, up to the sign
+    /// of zero.
     ///
-    /// Numbers put into expressions before these become a program may make it shorter or longer: the normal form of
-    /// sums multiplies numbers out, so a sum that is computed once in the free program and multiplied by several
-    /// parameters becomes a different sum for each number.
+    /// Numbers put into expressions before these become a program may make it shorter or longer: the normal
+    /// form multiplies them into sums, so a sum that is computed once in the free program and multiplied by
+    /// several parameters becomes a different sum for each number.
     ///
     /// ```
     /// use pc_expr::{Graph, Inputs, Program};
@@ -42,7 +43,7 @@ impl Program {
         self.binding(&values)
     }
 
-    /// The same with values only for the parameters for which `value` gives one.
+    /// As [`bound`](Self::bound), for those parameters for which `value` gives a number.
     #[must_use]
     pub fn bound_where(&self, value: impl Fn(&str) -> Option<f64>) -> Program {
         let names = &self.names[self.names.len() - self.parameters..];
@@ -70,7 +71,7 @@ impl Program {
         self.rebuilt(&values, &kept)
     }
 
-    /// The program of the instructions that are kept and needed, their operands being `values`.
+    /// The program of those `kept` instructions that are needed, with `values` for their operands.
     fn rebuilt(&self, values: &[Value], kept: &[Option<Instruction>]) -> Program {
         let first_result = self.first_result();
         let mut needed = vec![false; values.len()];
@@ -125,7 +126,7 @@ impl Program {
     }
 }
 
-/// What an instruction comes to without being computed at run time.
+/// The result of an instruction, if it is known without computation at run time.
 fn known(instruction: Instruction, value: impl Fn(Register) -> Value) -> Option<Value> {
     use Value::Number as N;
     let number = |r| match value(r) {

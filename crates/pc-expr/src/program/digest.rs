@@ -35,7 +35,7 @@ impl Digest {
         for constant in program.constants() {
             let _ = write!(self, "{:x} ", constant.to_bits());
         }
-        // As they are written down, which knows no sizes of words.
+        // The printed form is the same for every word size.
         let _ = write!(self, "{:?} {:?}", program.code(), program.outputs());
     }
 }

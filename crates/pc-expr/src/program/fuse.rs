@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::program::program::{Instruction, Program, Register};
 
-/// How many operations of each kind one evaluation takes; fused multiply-adds count as one.
+/// The number of operations of each kind in one evaluation; fused multiply-adds count as one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cost(BTreeMap<&'static str, usize>);
 
@@ -123,7 +123,7 @@ impl Program {
         uses
     }
 
-    /// The program with another code of the same numbering, less the instructions marked.
+    /// The program with the given code, numbered as before, without the marked instructions.
     fn without(&self, code: &[Instruction], marked: &[bool]) -> Program {
         let first = self.first_result();
         let mut places = Vec::with_capacity(code.len());

@@ -1,15 +1,16 @@
-//! What a program computes of parameters alone, as a program of its own.
+//! The part of a program that depends on parameters alone, as a program of its own.
 
 use rustc_hash::FxHashMap;
 
 use crate::program::program::{Instruction, Program, Register};
 
-/// Operations that have to be saved, for reading their results takes time too.
+/// The least number of operations to save: reading their results takes time, too.
 const WORTH_IT: usize = 4;
 
 impl Program {
-    /// This program in two: the first computes of the parameters in the `fixed` places alone what the second reads after its
-    /// parameters, so that it need be run only where these have changed. None if that saves next to nothing.
+    /// This program in two: the first computes, from the parameters in the `fixed` places alone, values that
+    /// the second reads after its parameters; it runs only when these have changed. `None` if that saves next
+    /// to nothing.
     ///
     /// ```
     /// # use pc_expr::{Graph, Inputs, Interpreter, Kernel, Program};
@@ -30,7 +31,7 @@ impl Program {
         assert_eq!(fixed.len(), self.parameters, "one for each parameter");
         let (first_input, first_result) = (self.first_input(), self.first_result());
         let first_parameter = first_result - self.parameters;
-        // Constants, fixed parameters, and what is made of them.
+        // Constants, fixed parameters, and results of these alone.
         let mut is_fixed: Vec<bool> = vec![true; first_input];
         is_fixed.resize(first_parameter, false);
         is_fixed.extend(fixed);
@@ -39,7 +40,7 @@ impl Program {
         }
         let (hoisted, left): (Vec<usize>, Vec<usize>) =
             (0..self.code.len()).partition(|i| is_fixed[first_result + i]);
-        // In the order in which they are first read.
+        // In order of first use.
         let mut read: FxHashMap<Register, usize> = FxHashMap::default();
         let mut registers: Vec<Register> = Vec::new();
         let operands = left.iter().flat_map(|&i| self.code[i].operands()).chain(self.outputs.iter().copied());
@@ -83,8 +84,8 @@ impl Program {
         Some((first, second.with_code(self, &left, inputs)))
     }
 
-    /// The same with the instructions of another program in these places, and its own outputs named as there; `input` is where
-    /// it has what those read that are not among them.
+    /// This program with the instructions of `other` in these places; its outputs are given as registers of
+    /// `other`, and `input` maps the registers that they read from outside.
     fn with_code(
         mut self,
         other: &Program,
@@ -119,7 +120,7 @@ mod tests {
     use crate::program::program::Inputs;
     use std::sync::Arc;
 
-    /// Outputs that are fixed, moving, inputs and constants, with a parameter that is not fixed between others.
+    /// Fixed and moving outputs, inputs and constants, with a parameter that is not fixed between others.
     #[test]
     fn both_parts_together_are_the_whole_to_the_last_bit() {
         let graph = Graph::new();

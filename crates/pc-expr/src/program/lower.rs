@@ -63,7 +63,7 @@ struct Lowering<'a> {
     products: SharedProducts,
     compositions: Compositions,
     factors: FxHashMap<FactorId, Register>,
-    /// Results are numbered from here on once all constants are known.
+    /// The results so far; they are renumbered once all constants are known.
     results: Vec<Instruction>,
 }
 
@@ -170,7 +170,7 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// The sine or cosine of a sum of two angles, if it is to be computed from those of the angles.
+    /// The sine or cosine of a sum of two angles, if it is composed from those of the angles.
     fn composition(&self, id: NodeId) -> Option<(Function, [SignedAngle; 2])> {
         match self.dag.node(id) {
             Node::Call { function, args } if matches!(function, Function::Sin | Function::Cos) => {
@@ -266,7 +266,7 @@ impl<'a> Lowering<'a> {
 
     fn lower_sum(&mut self, constant: Number, terms: &[(NodeId, Number)]) -> Register {
         let mut sum = (!constant.is_zero()).then(|| self.constant(constant));
-        // Positive terms first, so that a sum begins with a negation only if all its terms are negative.
+        // Positive terms first: a sum then begins with a negation only if all its terms are negative.
         let (negative, positive): (Vec<_>, Vec<_>) = terms.iter().partition(|(_, q)| q.is_negative());
         for (node, q) in positive {
             let term = self.scaled(node, q);
@@ -290,7 +290,7 @@ impl<'a> Lowering<'a> {
         sum.unwrap_or_else(|| self.constant(Number::ZERO))
     }
 
-    /// q·node, q not negative if the node has taken up its size.
+    /// q·node, with q ≥ 0 if the node already contains its size.
     fn scaled(&mut self, node: NodeId, q: Number) -> Register {
         let register = self.registers[&node];
         if q.is_one() || self.products.is_scaled(node) {

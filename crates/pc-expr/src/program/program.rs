@@ -77,7 +77,7 @@ impl Instruction {
     }
 }
 
-/// What a program reads: time, a state and parameters, in this order.
+/// The inputs of a program: time, a state and parameters, in this order.
 #[derive(Clone, Debug, Default)]
 pub struct Inputs<'g> {
     /// The symbol of time, if there is one.

@@ -1,4 +1,4 @@
-//! Common factors of products: reciprocals and pairs that are worth computing once.
+//! Common factors of products: reciprocals and pairs that are computed once.
 
 use std::collections::BTreeMap;
 
@@ -10,14 +10,14 @@ use crate::graph::subgraph::Cone;
 
 /// Products of more factors than this are not searched for pairs.
 const LONG: usize = 32;
-/// Pairs of pairs of pairs …: deeper sharing is rare.
+/// The most rounds of pairing; deeper sharing is rare.
 const ROUNDS: usize = 8;
 
 /// Index of a factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct FactorId(u32);
 
-/// Something products are made of.
+/// A factor of products.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Factor {
     /// n^e
@@ -26,16 +26,16 @@ pub(crate) enum Factor {
     Reciprocal(NodeId, u32),
     /// Two factors that several products have in common.
     Pair(FactorId, FactorId),
-    /// The bits of a number, from the sum that alone uses the product.
+    /// The bits of the coefficient from the only sum that uses the product.
     Constant(u64),
 }
 
-/// A product, its factors over its divisors.
+/// A product: its factors over its divisors.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SharedProduct {
     pub(crate) factors: Vec<FactorId>,
     pub(crate) divisors: Vec<FactorId>,
-    /// Whether the size of its coefficient in the one sum that uses it is among the factors.
+    /// Whether the factors contain the size of its coefficient in the only sum that uses it.
     pub(crate) scaled: bool,
 }
 
@@ -49,7 +49,7 @@ pub(crate) struct SharedProducts {
 }
 
 impl SharedProducts {
-    /// Those of the cone below `outputs`.
+    /// The products of the cone below `outputs`.
     pub(crate) fn of(dag: &Dag, cone: &Cone, outputs: &[Atom]) -> SharedProducts {
         let mut shared = SharedProducts::default();
         let products = || {
@@ -90,7 +90,7 @@ impl SharedProducts {
         shared
     }
 
-    /// Whether the node is a product that has taken up the size of its coefficient in a sum.
+    /// Whether the node is a product that contains the size of its coefficient in a sum.
     pub(crate) fn is_scaled(&self, id: NodeId) -> bool {
         self.positions.get(&id).is_some_and(|&position| self.products[position].scaled)
     }
@@ -111,7 +111,7 @@ impl SharedProducts {
         })
     }
 
-    /// Makes factors of the pairs that most products have; answers whether there were any.
+    /// Makes factors of the pairs that most products share. Returns whether there were any.
     fn extract_pairs(&mut self) -> bool {
         let mut occurrences: BTreeMap<(FactorId, FactorId), Vec<usize>> = BTreeMap::new();
         for (position, product) in self.products.iter().enumerate() {
@@ -127,7 +127,7 @@ impl SharedProducts {
             }
         }
         let mut pairs: Vec<_> = occurrences.into_iter().filter(|(_, products)| products.len() > 1).collect();
-        pairs.sort_by_key(|(_, products)| std::cmp::Reverse(products.len())); // stable: ties stay ordered
+        pairs.sort_by_key(|(_, products)| std::cmp::Reverse(products.len())); // stable: ties keep their order
         let mut extracted = false;
         for ((first, second), products) in pairs {
             let has_both = |product: &SharedProduct| {
@@ -150,7 +150,7 @@ impl SharedProducts {
     }
 }
 
-/// The sizes of coefficients, by their bits, of what one sum uses and nothing else.
+/// The sizes of coefficients, by their bits, of nodes whose only use is in one sum.
 fn coefficients(dag: &Dag, cone: &Cone, outputs: &[Atom]) -> FxHashMap<NodeId, u64> {
     let mut uses: FxHashMap<NodeId, u32> = FxHashMap::default();
     for output in outputs {

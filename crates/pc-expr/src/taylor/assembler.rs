@@ -1,26 +1,26 @@
-//! Writing a program instruction by instruction.
+//! Programs written instruction by instruction.
 
 use rustc_hash::FxHashMap;
 
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
-/// While a program is written, constants are numbered from 0, the state from `STATE`, what follows it in the state from
-/// `SUM`, parameters from `PARAMETER` and results from `RESULT`.
+/// While a program is written, constants are numbered from 0, the state from `STATE`, the sums that follow it
+/// in the state from `SUM`, parameters from `PARAMETER` and results from `RESULT`.
 const TIME: u32 = 1 << 27;
 const STATE: u32 = TIME + 1;
 const SUM: u32 = 1 << 28;
 const PARAMETER: u32 = 1 << 29;
 const RESULT: u32 = 1 << 30;
 
-/// A program that is being written; what is written twice is computed once.
+/// A program being written; a repeated instruction is computed once.
 #[derive(Default)]
 pub(super) struct Assembler {
     constants: Vec<f64>,
     numbers: FxHashMap<u64, Register>,
     code: Vec<Instruction>,
     known: FxHashMap<Instruction, u32>,
-    /// How many operations lead to each result.
+    /// The depth of each result, in operations.
     depths: Vec<u32>,
 }
 
@@ -33,7 +33,7 @@ impl Assembler {
         Register(STATE + i as u32)
     }
 
-    /// A component of the state after those of [`state`](Assembler::state), however many these are.
+    /// Component `i` of the state after those of [`state`](Assembler::state).
     pub(super) fn sum(i: usize) -> Register {
         Register(SUM + i as u32)
     }
@@ -50,7 +50,7 @@ impl Assembler {
         })
     }
 
-    /// The number that a register is, if it is one.
+    /// The number in a register, if it is a constant.
     pub(super) fn value(&self, register: Register) -> Option<f64> {
         self.constants.get(register.index()).copied()
     }
@@ -66,7 +66,7 @@ impl Assembler {
         Register(RESULT + index)
     }
 
-    /// How many operations lead to a register.
+    /// The depth of a register, in operations.
     pub(super) fn depth(&self, register: Register) -> u32 {
         register.0.checked_sub(RESULT).map_or(0, |i| self.depths[i as usize])
     }
@@ -108,13 +108,13 @@ impl Assembler {
         self.emit(Instruction::Call(function, [0, 1, 2].map(argument)))
     }
 
-    /// c + a b, of which what takes longest to come to is fused last.
+    /// c + a b, with the operand of greatest depth added last.
     pub(super) fn multiply_add(&mut self, a: Register, b: Register, c: Register) -> Register {
         let product = self.multiply(a, b);
         self.add(c, product)
     }
 
-    /// The program, of so many components of the state, what follows them and parameters.
+    /// The finished program, for the given numbers of components of the state, of sums, and of parameters.
     pub(super) fn finish(
         self,
         (state, sums, parameters): (usize, usize, usize),

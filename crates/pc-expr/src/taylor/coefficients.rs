@@ -32,10 +32,10 @@ pub struct TaylorSeries {
     zeroth: Box<dyn Kernel>,
     next: Box<dyn Kernel>,
     sum: fn(Rows<'_>, usize, &mut [f64]),
-    /// What order 0 gives, then a row for each order, from a place on that suits vectors.
+    /// The results of order 0, then a row for each order, from an offset aligned for vectors.
     memory: Vec<f64>,
     begin: usize,
-    /// The length of what order 0 gives, and that of a row.
+    /// The length of the results of order 0, and that of a row.
     head: usize,
     stride: usize,
     order: usize,
@@ -61,8 +61,8 @@ impl Clone for TaylorSeries {
 }
 
 impl TaylorSeries {
-    /// The series of the solutions of a program whose first outputs are ẏ, as many as its state has components; the others
-    /// are [watched](TaylorSeries::watched).
+    /// The series of the solutions of a program whose first outputs are ẏ, one for each component of its
+    /// state; the others are [watched](TaylorSeries::watched).
     ///
     /// # Panics
     /// If there are fewer outputs than components.
@@ -104,7 +104,7 @@ impl TaylorSeries {
         self.recurrences.dim
     }
 
-    /// What has to keep its sign along the series, in words.
+    /// The functions that keep their sign along the series, in words.
     pub fn branches(&self) -> &[String] {
         &self.recurrences.branches
     }
@@ -131,7 +131,7 @@ impl TaylorSeries {
         for k in 1..order {
             let (known, row) = rows.split_at_mut((k - 1) * stride);
             let input = if k == 1 {
-                &head[outputs - dim..][..input.len()] // no sums yet
+                &head[outputs - dim..][..input.len()] // order 1 has no sums
             } else {
                 let last = (k - 2) * stride;
                 let (factors, sums) = known.split_at_mut(last + written + EXTRA);
@@ -175,7 +175,8 @@ impl TaylorSeries {
         }
     }
 
-    /// The coefficients of the [branch functions](TaylorSeries::branches), of an order below that of the last expansion.
+    /// The coefficients of the [branch functions](TaylorSeries::branches), of an order below that of the last
+    /// expansion.
     ///
     /// # Panics
     /// If k is not below it.
@@ -192,11 +193,12 @@ impl TaylorSeries {
         &self.memory[self.begin..][..self.recurrences.watched]
     }
 
-    /// What an expansion to order p takes by machine code, in about a nanosecond: (a, b, c) of a + b p + c p².
+    /// The time of an expansion to order p by machine code, in about nanoseconds: (a, b, c) of a + b p + c
+    /// p².
     pub fn cost(&self) -> [f64; 3] {
         let Recurrences { ref zeroth, ref next, sums, .. } = *self.recurrences;
         let vectors = (sums / LANES) as f64;
-        // As measured for tops and disks; only ratios matter.
+        // Measured for tops and disks; only ratios matter.
         [150.0 + 2.0 * zeroth.code().len() as f64, 10.0 + 0.3 * next.code().len() as f64, 0.4 * vectors]
     }
 
@@ -210,17 +212,17 @@ impl TaylorSeries {
         Layout { watched, branches: branches.len(), dim, width }
     }
 
-    /// Makes room for this order, with the numbers in it that do not change.
+    /// Makes room for this order and fills in its constants.
     fn make_room(&mut self, order: usize) {
         let Layout { branches, dim, width, .. } = self.layout();
         let length = self.head + order * self.stride;
         self.memory = vec![0.0; length + LANES];
-        // Vectors that lie in one line of the cache each are read twice as fast.
+        // Vectors within one cache line each are read twice as fast.
         self.begin = self.memory.as_ptr().align_offset(size_of::<f64>() * LANES).min(LANES);
         self.order = order;
         let numbers = &mut self.memory[self.begin..];
         let first = self.recurrences.zeroth.outputs_len();
-        numbers[first..first + EXTRA].copy_from_slice(&[1.0, 1.0, 0.0]); // k, the coefficient of t and what 1/k lacks, of order 1
+        numbers[first..first + EXTRA].copy_from_slice(&[1.0, 1.0, 0.0]); // order 1: k, t, error of 1/k
         let place = 2 * width + dim + branches + dim;
         for k in 1..order {
             let row = &mut numbers[self.head + (k - 1) * self.stride..];
@@ -230,7 +232,7 @@ impl TaylorSeries {
     }
 }
 
-/// How many numbers there are of each kind.
+/// The number of values of each kind.
 struct Layout {
     watched: usize,
     branches: usize,

@@ -6,7 +6,7 @@ use crate::graph::function::Function;
 use crate::program::program::Register;
 
 impl Writer {
-    /// w with ẇ = u̇/v, from its value.
+    /// w with ẇ = u̇/v, from its value w₀.
     fn integral(&mut self, zero: Register, u: Register, v: Term) -> Term {
         let inverse = self.reciprocal(v.zero);
         let Some(series) = v.next else {
@@ -36,7 +36,7 @@ impl Writer {
         Term { zero, next }
     }
 
-    /// w with ẇ = w u̇, from its value.
+    /// w with ẇ = w u̇, from its value w₀.
     fn exponential(&mut self, zero: Register, u: Register) -> Term {
         let rising = self.rising(u);
         let sum = self.open_sum(Some(rising));
@@ -47,7 +47,7 @@ impl Writer {
         Term { zero, next: Some(next) }
     }
 
-    /// The first of the pair (sin, cos) or (sinh, cosh), and the second, of an argument that changes.
+    /// The pair (sin, cos) or (sinh, cosh) of an argument that changes.
     fn circle(&mut self, functions: [Function; 2], a: Term, u: Register) -> [Term; 2] {
         if let Some(&pair) = self.circles.get(&(functions[0], a.zero)) {
             return pair;
@@ -166,7 +166,7 @@ impl Writer {
         Term { zero, next: Some(next) }
     }
 
-    /// The sign of what changes.
+    /// The sign of a term that changes.
     fn side(&mut self, of: Term, name: impl Fn() -> String) -> Register {
         let (branches, names) = (&mut self.branches, &mut self.names);
         Assembler::sum(*self.branch_of.entry(of.zero).or_insert_with(|| {
@@ -203,7 +203,7 @@ impl Writer {
                 Function::Atan2 if !fixed => self.atan2(a, b),
                 Function::Min | Function::Max if !fixed => self.lesser(function, a, b, name),
                 Function::Step if !fixed => {
-                    // The condition does not change.
+                    // The condition is constant.
                     let zero = self.zero.call(function, &args);
                     let none = self.next.number(0.0);
                     let condition = self.factor(a.zero);

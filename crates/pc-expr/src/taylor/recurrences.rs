@@ -13,8 +13,8 @@
 //! w = ∫ du/v       w_k = (u_k − S(Dw, v)/k)/v₀      arctan: v = 1 + u²;  arcsin: v = √(1 − u²)
 //! w = arg(x + iy)  w_k = (x₀ y_k − y₀ x_k + (S(Dy, x) − S(Dx, y) − S(Dw, r²))/k)/r₀²
 //! ```
-//! All sums of one order are known before its coefficients are: they are computed together. What has corners or jumps is taken
-//! on the branch that holds, which a factor σ says: |u| = σ u.
+//! All sums of one order are known before its coefficients are: they are computed together. Functions with
+//! corners or jumps are taken on the present branch, by a factor σ: |u| = σ u.
 
 use std::sync::Arc;
 
@@ -28,41 +28,43 @@ use crate::program::program::{Instruction, Program, Register};
 /// f and its recurrences.
 #[derive(Debug)]
 pub(super) struct Recurrences {
-    /// Of (t, (y, σ), parameters): what is watched, the factors, the functions whose signs are σ, ẏ.
+    /// From (t, (y, σ), parameters): the watched outputs, the factors, the functions whose signs are σ, and
+    /// ẏ.
     pub(super) zeroth: Arc<Program>,
-    /// The coefficients of order k of (1/k, (those of order k − 1 of ẏ, k, that of t, what the number 1/k lacks, the sums), factors): the first and the
-    /// second factors of all sums, y, the functions whose signs are σ, ẏ.
+    /// From (1/k, (those of order k − 1 of ẏ, k, the coefficient of t, the error of the double 1/k, the
+    /// sums), factors): the coefficients of order k of the first and second factors of all sums, of y, of the
+    /// functions whose signs are σ, and of ẏ.
     pub(super) next: Arc<Program>,
     pub(super) dim: usize,
     pub(super) watched: usize,
     pub(super) factors: usize,
-    /// The sums, up to a whole number of vectors.
+    /// The number of sums, rounded up to whole vectors.
     pub(super) sums: usize,
-    /// What has a sign that matters, in words.
+    /// The functions whose signs select the branch, in words.
     pub(super) branches: Vec<String>,
 }
 
-/// Numbers that a row has between the rates and the sums.
+/// The numbers of a row between the rates and the sums.
 pub(super) const EXTRA: usize = 3;
 
-/// A value as computed for order 0 and for an order above; none there if it does not change with time.
+/// A value as computed for order 0 and for an order above; the latter is absent if the value is constant.
 #[derive(Clone, Copy)]
 pub(super) struct Term {
     pub(super) zero: Register,
     pub(super) next: Option<Register>,
 }
 
-/// What has been written so far.
+/// The programs as written so far.
 pub(super) struct Writer {
     pub(super) zero: Assembler,
     pub(super) next: Assembler,
     pub(super) dim: usize,
     pub(super) factors: Vec<Register>,
     pub(super) places: FxHashMap<Register, usize>,
-    /// Both factors of each sum.
+    /// The two factors of each sum.
     pub(super) sums: Vec<[Option<Register>; 2]>,
     pub(super) products: FxHashMap<[Register; 2], usize>,
-    /// (sin, cos) and (sinh, cosh) of what is known of an argument.
+    /// (sin, cos) and (sinh, cosh) of arguments met so far.
     pub(super) circles: FxHashMap<(Function, Register), [Term; 2]>,
     pub(super) branches: Vec<Term>,
     pub(super) branch_of: FxHashMap<Register, usize>,
@@ -70,7 +72,8 @@ pub(super) struct Writer {
 }
 
 impl Recurrences {
-    /// Those of the solutions of a program whose first `dim` outputs are ẏ; others are watched at order 0.
+    /// The recurrences of the solutions of a program whose first `dim` outputs are ẏ; the other outputs are
+    /// watched at order 0.
     pub(super) fn new(program: &Program, dim: usize) -> Recurrences {
         let mut w = Writer {
             zero: Assembler::default(),
@@ -137,7 +140,7 @@ impl Writer {
         }
     }
 
-    /// A value of order 0 as a factor of later orders.
+    /// A value of order 0 for use as a factor in later orders.
     pub(super) fn factor(&mut self, zero: Register) -> Register {
         if let Some(value) = self.zero.value(zero) {
             return self.next.number(value);
@@ -166,7 +169,7 @@ impl Writer {
         }))
     }
 
-    /// S(u, w) of what is computed with it.
+    /// S(u, w) where w is a result that itself needs this sum.
     pub(super) fn open_sum(&mut self, u: Option<Register>) -> usize {
         self.sums.push([u, None]);
         self.sums.len() - 1
@@ -184,7 +187,8 @@ impl Writer {
         self.next.multiply(order, u)
     }
 
-    /// x/k, by what is nearest to 1/k and what that lacks: the rounding of 1/k alone, the same in every step, would add up.
+    /// x/k, by the double nearest to 1/k and its error: the rounding of 1/k, the same in every step, would
+    /// accumulate.
     pub(super) fn over_order(&mut self, x: Register) -> Register {
         let lacking = self.next.multiply(x, Assembler::state(self.dim + 2));
         self.next.multiply_add(x, Assembler::time(), lacking)
@@ -235,7 +239,7 @@ impl Writer {
             (Some(u), Some(v)) => {
                 let sum = self.sum(u, v);
                 let [u0, v0] = [self.factor(a.zero), self.factor(b.zero)];
-                // What is known last is added last.
+                // The factor known last is added last.
                 let (first, last) = match self.next.depth(u) <= self.next.depth(v) {
                     true => ((v0, u), (u0, v)),
                     false => ((u0, v), (v0, u)),

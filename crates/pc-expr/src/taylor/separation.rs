@@ -1,8 +1,8 @@
 //! Times between which a function along a motion has at most one root.
 //!
-//! Over an interval of time the functions and their first two derivatives are enclosed by interval arithmetic [Moore 1966], the motion
-//! being a polynomial. A function whose values there exclude zero has no root, one whose rates exclude zero at most one; other intervals
-//! are halved.
+//! Over an interval of time the functions and their first two derivatives are enclosed by interval arithmetic
+//! [Moore 1966], the motion being a polynomial. A function whose enclosure excludes zero has no root there;
+//! one whose rate excludes zero has at most one; other intervals are halved.
 
 use std::sync::Arc;
 
@@ -10,9 +10,10 @@ use crate::program::program::{Instruction, Program};
 use crate::time_profile::interval::Interval;
 use crate::time_profile::jet::Jet;
 
-/// Parts of the whole that are told apart.
+/// The shortest interval that is resolved, as a part of the whole.
 const RESOLVED: f64 = 1e-14;
-/// Most intervals that are looked at: enough for hundreds of roots, not for a function that is nothing but rounding.
+/// The most intervals examined: enough for hundreds of roots, and a bound for a function that consists of
+/// rounding errors.
 const MOST: usize = 4096;
 
 /// A polynomial motion y(t₀ + s) = Σ_k c_k sᵏ.
@@ -52,7 +53,7 @@ pub struct RootSeparation {
 }
 
 impl RootSeparation {
-    /// That of the outputs of a program.
+    /// The separation for the outputs of a program.
     pub fn new(program: Arc<Program>) -> RootSeparation {
         let mut used = vec![false; program.state_len()];
         let operands = program.code().iter().flat_map(Instruction::operands);
@@ -71,8 +72,8 @@ impl RootSeparation {
         &self.program
     }
 
-    /// Adds places s, in order from the first to the last of these, between which each output has at most one root along the motion; the
-    /// last of them is one.
+    /// Appends places s, from the first to the last of these, between which each output has at most one root
+    /// along the motion; the last place is among them.
     ///
     /// # Panics
     /// If the motion or the parameters are not those of the program.
@@ -94,7 +95,7 @@ impl RootSeparation {
             *register = Jet::constant(value);
         }
         let mut open = vec![(first, last)];
-        // Where the last root may have been.
+        // The end of the last interval that may contain a root.
         let (mut looked, mut run) = (0, first);
         while let Some((a, b)) = open.pop() {
             looked += 1;
@@ -107,7 +108,7 @@ impl RootSeparation {
                 continue;
             }
             if !clear {
-                // What is near a root at both ends is told from zero in the middle of what is between.
+                // The gap between two intervals that may contain roots is divided in its middle.
                 if a != run {
                     places.push(0.5 * (run + a));
                 }
@@ -141,7 +142,7 @@ impl RootSeparation {
             let excludes = |interval: Interval| interval.lo > 0.0 || interval.hi < 0.0;
             let values =
                 [jet.value, at.value + jet.rate * around, at.value + at.rate * around + jet.bend * squares];
-            // What is 0 all along has no root to be found.
+            // A function that is identically 0 counts as free of roots.
             if values.into_iter().any(excludes) || jet.value == Interval::ZERO {
                 continue;
             }
@@ -151,7 +152,7 @@ impl RootSeparation {
         (clear, single)
     }
 
-    /// Sets time and state to what they are within a radius of a place.
+    /// Encloses time and state within a radius of a place.
     fn set_motion(&mut self, motion: PolynomialMotion<'_>, middle: f64, radius: f64) {
         let time = self.program.first_input();
         let around = |value: f64, spread: f64| Interval { lo: value - spread, hi: value + spread };

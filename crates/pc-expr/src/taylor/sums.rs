@@ -1,10 +1,10 @@
-//! Sums of products of coefficients, many at a time.
+//! Sums of products of coefficients, computed in vectors.
 
-/// Sums in a vector; tables of them are that many numbers wide, or a multiple of it.
+/// The sums in a vector; tables are a multiple of it wide.
 pub(crate) const LANES: usize = 8;
 
-/// Coefficients of orders 1, 2, …: each order a row of so many numbers, which begins with the first factors of all sums, followed by
-/// the second factors.
+/// Coefficients of orders 1, 2, …: each order is a row that begins with the first factors of all sums,
+/// followed by the second factors.
 #[derive(Clone, Copy)]
 pub(crate) struct Rows<'a> {
     pub(crate) numbers: &'a [f64],
@@ -14,19 +14,20 @@ pub(crate) struct Rows<'a> {
 
 #[cfg(all(feature = "jit", target_arch = "x86_64"))]
 impl Rows<'_> {
-    /// Whether there are rows for the sums of order k, and room for these.
+    /// Whether the rows reach to order k − 1 and `out` has room for its sums.
     pub(crate) fn hold(self, k: usize, out: &[f64]) -> bool {
         k >= 2 && self.numbers.len() >= (k - 2) * self.stride + 2 * self.sums && out.len() >= self.sums
     }
 }
 
-/// The order in which the terms j = 1, …, k − 1 are added, four sums in turn: those with the coefficients that have just been written
-/// come last, so that the others need not wait for them.
+/// The order in which the terms j = 1, …, k − 1 are added, four sums in turn: those with the newest
+/// coefficients come last, so that the others need not wait for them.
 pub(crate) fn order_of_terms(k: usize) -> impl Iterator<Item = usize> {
     (2..k.max(3) - 1).chain(1..2).chain((k > 2).then(|| k - 1))
 }
 
-/// Writes Σ_{j=1}^{k−1} a_j b_{k−j} of all sums, for k ≥ 2; products and sums are rounded one by one, as the interpreter does.
+/// Writes Σ_{j=1}^{k−1} a_j b_{k−j} for all sums, k ≥ 2; products and sums are rounded one by one, as in the
+/// interpreter.
 ///
 /// # Panics
 /// If there are too few rows.
@@ -34,7 +35,7 @@ pub(crate) fn sums(rows: Rows<'_>, k: usize, out: &mut [f64]) {
     sums_by(rows, k, out, |a, b, sum| a * b + sum);
 }
 
-/// The same with another way to add a product.
+/// As [`sums`], with another way to add a product.
 pub(crate) fn sums_by(rows: Rows<'_>, k: usize, out: &mut [f64], add: impl Fn(f64, f64, f64) -> f64) {
     let Rows { numbers, stride, sums: width } = rows;
     for (place, sums) in (0..width).step_by(LANES).zip(out.chunks_exact_mut(LANES)) {

@@ -1,7 +1,7 @@
 //! Enclosures of real functions over intervals [Moore 1966].
 //!
-//! Ends are rounded to nearest, not outwards: they are off by a few units of rounding, which is negligible for the
-//! features sought here, and they decide nothing by themselves.
+//! Ends are rounded to nearest instead of outwards: they are off by a few units of rounding, which is
+//! negligible for the features sought here.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::{Add, Mul, Neg, Sub};
@@ -22,7 +22,7 @@ impl Interval {
         Interval { lo: x, hi: x }
     }
 
-    /// The interval between two numbers; everything if one of them is none.
+    /// The interval between two numbers; the whole line if one of them is NaN.
     pub(crate) fn between(a: f64, b: f64) -> Interval {
         if a.is_nan() || b.is_nan() { Interval::ALL } else { Interval { lo: a.min(b), hi: a.max(b) } }
     }
@@ -44,7 +44,7 @@ impl Interval {
         Interval { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
-    /// 1, −1 or 0 where all of it has that sign, ends at zero aside.
+    /// 1, −1 or 0 if the whole interval has that sign, zero ends allowed.
     pub(crate) fn sign(self) -> Option<i8> {
         match (self.lo >= 0.0, self.hi <= 0.0) {
             (true, true) => Some(0),
@@ -127,7 +127,7 @@ impl Interval {
             return Interval { lo: -1.0, hi: 1.0 };
         }
         let mut values = self.monotone(f64::cos);
-        // Whole multiples of π inside: even ones are maxima, odd ones minima.
+        // Multiples of π inside: even ones are maxima, odd ones minima.
         let (first, last) = ((self.lo / PI).ceil(), (self.hi / PI).floor());
         let mut k = first;
         while k <= last {
@@ -147,7 +147,7 @@ impl Interval {
     }
 }
 
-/// An end of a sum or product; ∞ − ∞ and such leave nothing known.
+/// An interval by its computed ends; where one is NaN, as ∞ − ∞ is, the whole line.
 fn ends(lo: f64, hi: f64) -> Interval {
     Interval {
         lo: if lo.is_nan() { f64::NEG_INFINITY } else { lo },

@@ -17,12 +17,12 @@ impl Jet {
         Jet::line(Interval::point(x), 0.0)
     }
 
-    /// What goes through `value` at this rate.
+    /// A function that goes through `value` at this rate.
     pub(crate) fn line(value: Interval, rate: f64) -> Jet {
         Jet { value, rate: Interval::point(rate), bend: Interval::ZERO }
     }
 
-    /// Values of which nothing more is known: where a function jumps or has a corner.
+    /// Values with unknown derivatives: where a function jumps or has a corner.
     fn rough(value: Interval) -> Jet {
         Jet { value, rate: Interval::ALL, bend: Interval::ALL }
     }
@@ -150,7 +150,7 @@ impl Jet {
         if on_cut || r2.value.lo <= 0.0 {
             return Jet::rough(Interval { lo: -std::f64::consts::PI, hi: std::f64::consts::PI });
         }
-        // Away from the cut its extremes are at corners.
+        // Away from the cut the extremes are at corners.
         let corners = [(y.value.lo, x.value.lo), (y.value.lo, x.value.hi), (y.value.hi, x.value.lo)];
         let value = corners.iter().fold(Interval::point(y.value.hi.atan2(x.value.hi)), |hull, (y, x)| {
             hull.hull(Interval::point(y.atan2(*x)))
@@ -197,7 +197,7 @@ impl Jet {
         }
     }
 
-    /// What an instruction makes of the jets of its operands.
+    /// The jet of an instruction from those of its operands.
     pub(crate) fn of(instruction: &Instruction, jet: impl Fn(Register) -> Jet) -> Jet {
         match *instruction {
             Instruction::Add(a, b) => jet(a).add(jet(b)),

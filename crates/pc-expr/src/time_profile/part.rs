@@ -1,18 +1,18 @@
-//! The part of a program that is watched along time, and what it needs.
+//! The watched part of a program, and its inputs.
 
 use super::interval::Interval;
 use super::jet::Jet;
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
-/// How the value of a register moves with time.
+/// How the value of a register changes with time.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 struct Motion {
     /// Contains t.
     time: bool,
     /// Contains components of the state.
     state: bool,
-    /// Contains t otherwise than in a linear function a t + b with fixed a and b.
+    /// Contains t other than in a linear function a t + b with fixed a and b.
     bent: bool,
 }
 
@@ -25,25 +25,25 @@ impl Motion {
         self.time && self.state
     }
 
-    /// A function of t alone, and not a linear one.
+    /// Whether this is a nonlinear function of t alone.
     fn is_forcing(self) -> bool {
         self.time && !self.state && self.bent
     }
 }
 
-/// The registers that are watched, and the instructions that lead to them.
+/// The watched registers, and the instructions that compute them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Part {
     pub(crate) watched: Vec<usize>,
     code: Vec<(usize, Instruction)>,
-    /// Jets of constants, time, state and parameters, and room for the results.
+    /// Jets of constants, time, state and parameters, followed by the results.
     registers: Vec<Jet>,
-    /// The register of time; the components of the state follow, so many.
+    /// The register of time; the components of the state follow.
     time: usize,
     dim: usize,
 }
 
-/// What a program does with time.
+/// How a program depends on time.
 pub(crate) struct Analysis {
     /// Whether an output contains t.
     pub(crate) explicit: bool,
@@ -104,7 +104,7 @@ fn motions(program: &Program) -> Vec<Motion> {
     motions
 }
 
-/// Whether a function of time is another one, shifted and scaled: where one turns, both do.
+/// Whether a function of time is another one shifted or scaled: both turn at the same times.
 fn is_copy(instruction: &Instruction, motions: &[Motion]) -> bool {
     let moving = || instruction.operands().filter(|operand| !motions[operand.index()].is_fixed());
     let same_steepness = match *instruction {
@@ -164,7 +164,7 @@ impl Part {
         self.code.len()
     }
 
-    /// What is watched between the times `a` and `b`, along the line through (t, y) at the rate ẏ.
+    /// The watched functions between the times `a` and `b`, along the line through (t, y) at the rate ẏ.
     pub(crate) fn over(&mut self, (a, b): (f64, f64), line: Line<'_>) -> impl Iterator<Item = Jet> + '_ {
         let span = Interval::between(a, b);
         self.registers[self.time] = Jet::line(span, 1.0);
@@ -180,7 +180,7 @@ impl Part {
     }
 }
 
-/// A motion as far as its direction tells: y + (· − t) ẏ. Empty for what does not contain the state.
+/// A motion to first order: y + (· − t) ẏ. Empty for functions that do not contain the state.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Line<'a> {
     pub(crate) t: f64,

@@ -1,10 +1,10 @@
 //! The explicit dependence of a vector field on time.
 //!
-//! An integrator evaluates f at the ends of its steps. What f does between them because it contains t itself (a pulse,
-//! a switch) leaves no trace there, and a body at rest is carried over it in one step. But a program of f shows where
-//! that may be: over any interval of time its parts are enclosed, with their first two derivatives, by interval
-//! arithmetic [Moore 1966]. Where the enclosures say that a part rises, or falls, and bends one way, nothing is
-//! hidden; else the interval is halved. So no pulse is missed for being short.
+//! An integrator evaluates f at the ends of its steps. A pulse or a switch between them, from t in f itself,
+//! leaves no trace there, and a body at rest is carried over it in one step. But a program of f shows where
+//! that is possible: over any interval of time its parts and their first two derivatives are enclosed by
+//! interval arithmetic [Moore 1966]. Where the enclosures show that a part is monotonic and bends one way,
+//! nothing is hidden; otherwise the interval is halved. So no pulse is missed, however short.
 
 use crate::program::program::Program;
 use crate::time_profile::part::{Analysis, Line, Part};
@@ -15,14 +15,15 @@ use crate::time_profile::scan::{Feature, Kind, Scan};
 pub enum TimeDependence {
     /// f does not depend on t explicitly.
     Absent,
-    /// It does, as the profile shows.
+    /// f depends on t, in the way shown by the profile.
     Known(Box<TimeProfile>),
-    /// Only evaluations can show it.
+    /// f may depend on t in ways that only evaluations show.
     #[default]
     Unknown,
 }
 
-/// More instructions than these between t, the state and a steep function of both are not looked at on each step.
+/// The greatest number of instructions, leading to steep functions of t and the state, that are examined on
+/// each step.
 const LONGEST: usize = 256;
 
 impl TimeDependence {
@@ -91,19 +92,19 @@ impl TimeDependence {
 pub struct TimeProfile {
     parts: Vec<Watched>,
     mixed: Vec<Watched>,
-    /// Whether there are functions of t and the state that are not followed.
+    /// Whether there are steep functions of t and the state that are only sampled.
     sampled: bool,
-    /// Room for what is seen of each function of a part, and for what is answered.
+    /// Storage for the counts of features of each function of a part, and for the result.
     room: Vec<Seen>,
     times: Surprises,
 }
 
-/// Times of features that the two ends of an interval would not show, in order.
+/// Times of features that are invisible at the two ends of an interval, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surprises {
-    /// Those of functions with at most 32 of them.
+    /// Features of functions with at most 32 of them.
     pub few: Vec<f64>,
-    /// Those of functions with more, such as fast oscillations.
+    /// Features of functions with more, such as fast oscillations.
     pub many: Vec<f64>,
     /// The time up to which they are known, if it is not the end of the interval.
     pub until: Option<f64>,
@@ -112,14 +113,14 @@ pub struct Surprises {
 }
 
 impl Surprises {
-    /// For another interval.
+    /// Clears the list for another interval.
     fn forget(&mut self) {
         self.few.clear();
         self.many.clear();
         (self.until, self.noise) = (None, false);
     }
 
-    /// Takes note of what a scan finds.
+    /// Records what a scan finds.
     fn add(
         &mut self,
         part: &mut Part,
@@ -135,7 +136,7 @@ impl Surprises {
         self.noise |= scan.is_noise();
     }
 
-    /// Takes note that of the interval not all is known.
+    /// Records that only a part of the interval is known.
     fn limit(&mut self, known: f64, (t, to): (f64, f64)) {
         if known != to && self.until.is_none_or(|until| (known - t).abs() < (until - t).abs()) {
             self.until = Some(known);
@@ -143,10 +144,10 @@ impl Surprises {
     }
 }
 
-/// So many are few.
+/// The most features of a function that count as few.
 const FEW: usize = 32;
 
-/// Functions, and how far they are known.
+/// Watched functions, and how far they are known.
 #[derive(Clone, Debug)]
 struct Watched {
     part: Part,
@@ -154,21 +155,21 @@ struct Watched {
 }
 
 impl TimeProfile {
-    /// Whether only evaluations can show what some steep functions of t and the state do.
+    /// Whether there are steep functions of t and the state that only evaluations show.
     pub fn is_partial(&self) -> bool {
         self.sampled
     }
 
-    /// Whether it has to be queried along the motion, because there are steep functions of t and the state.
+    /// Whether the profile has to be queried along the motion, because of steep functions of t and the state.
     pub fn follows_states(&self) -> bool {
         !self.mixed.is_empty()
     }
 
-    /// The times between `t` and `to`, in order, of features that the two ends of that interval would not show: jumps
-    /// and corners, and the turns and bends of functions that may rise and fall in between.
+    /// The times between `t` and `to`, in order, of features that are invisible at the two ends of that
+    /// interval: jumps and corners, and the turns and bends of functions that may rise and fall in between.
     ///
-    /// `at` is (y, ẏ) at t. Where there are thousands, they are given up to one of them; with `enough`, the rest is
-    /// examined coarsely. Later calls continue from `to` or before, up to `end` and beyond.
+    /// `at` is (y, ẏ) at t. Where there are thousands, the list ends at one of them; with `enough`, the
+    /// remaining time is examined coarsely. Later calls continue from `to` or before, up to `end` and beyond.
     pub fn surprises(
         &mut self,
         (t, to): (f64, f64),
@@ -181,7 +182,7 @@ impl TimeProfile {
         times.forget();
         for Watched { part, scan } in parts {
             if !scan.covers(t, to) {
-                // Where no end is in sight, a window that is not outrun at once.
+                // Where `end` lies behind, the window is sixteen such intervals long.
                 let far = if (end - to) * direction >= 0.0 { end } else { t + 16.0 * (to - t) };
                 scan.begin(part, t, far, Line::default());
             }
@@ -200,8 +201,8 @@ impl TimeProfile {
     }
 }
 
-/// The features between `t` and `to` of each function that has a sharp one, rises or falls steeply, or turns and does not
-/// bend one way all along.
+/// The features between `t` and `to` of each function that has a sharp one, rises or falls steeply, or turns
+/// without bending one way throughout.
 fn choose<'a>(
     features: impl Iterator<Item = &'a Feature> + Clone,
     (t, to): (f64, f64),
@@ -225,7 +226,7 @@ fn choose<'a>(
     }
 }
 
-/// How often a function does what.
+/// How often a function shows each kind of feature.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
     places: usize,
@@ -241,14 +242,14 @@ impl Seen {
         match kind {
             Kind::Sharp => self.sharp += 1,
             Kind::Turn => self.turns += 1,
-            // What rises so steeply may come to an end with another function that does.
+            // So steep a rise may end together with that of another function.
             Kind::Bend(time) if time < length => self.sharp += 1,
             Kind::Bend(_) => self.bends += 1,
             Kind::Unsure => self.unsure += 1,
         }
     }
 
-    /// Whether its values at both ends, and the way it comes to one and leaves the other, need not tell what is between.
+    /// Whether the values and rates at both ends may fail to show what happens between.
     fn hides(self) -> bool {
         self.sharp > 0 || self.turns > 1 || self.bends > 1 || self.turns == 1 && self.bends + self.unsure > 0
     }

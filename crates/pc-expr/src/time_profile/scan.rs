@@ -6,26 +6,26 @@ use super::interval::Interval;
 use super::jet::Jet;
 use super::part::{Line, Part};
 
-/// Pieces of a window over which the range of a function is first looked at.
+/// The pieces of a window over which the range of a function is first estimated.
 const PIECES: u32 = 32;
-/// A function that neither rises or falls all through a piece, nor bends one way all through it, may vary there by this
-/// part of its range without being looked at more closely.
+/// A function that is neither monotonic on a piece nor bends one way may vary there by this part of its range
+/// without closer examination.
 const FLAT: f64 = 1.0 / 64.0;
-/// The same if it does one of both: it turns or changes its bend there once.
+/// The same for a function with one of the two properties: it has one turn or one inflection there.
 const TURN: f64 = 0.25;
-/// Turns and bends by less than this part of the range since the last one are none.
+/// Turns and inflections within this part of the range of the last one do not count.
 const SWING: f64 = 1e-3;
-/// Rounding of a value, with a margin.
+/// The rounding of a value, with a margin.
 const ROUNDING: f64 = 1e-12;
-/// Pieces are not halved below this part of a window.
+/// The shortest piece, as a part of a window.
 const SHORTEST: f64 = 1e-13;
-/// Evaluations for one question.
+/// The most evaluations in one query.
 const MOST: u32 = 20_000;
-/// So many of the shortest pieces that all show nothing are no jumps, each of which takes some forty evaluations to find: what
-/// is watched turns faster than time is told.
+/// With this many shortest pieces without a jump, the function turns faster than floating-point times
+/// resolve: finding a jump takes some forty evaluations.
 const NOISE: u32 = MOST / 4;
 
-/// A place where a function of time does not go on as before.
+/// A place where a function of time changes its behaviour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Feature {
     pub(crate) t: f64,
@@ -34,23 +34,23 @@ pub(crate) struct Feature {
     pub(crate) kind: Kind,
 }
 
-/// What a function does at a place.
+/// The kinds of change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
-    /// It has a jump or a corner, as far as can be seen.
+    /// A jump or a corner, at the resolution of the scan.
     Sharp,
-    /// It begins to fall, or to rise.
+    /// A local extremum.
     Turn,
-    /// It begins to bend the other way. At the rate there it would go through its range in this time.
+    /// An inflection; at its rate there the function crosses its range in this time.
     Bend(f64),
-    /// Perhaps it does so.
+    /// A possible extremum or inflection.
     Unsure,
 }
 
 /// What is known of one function so far.
 #[derive(Clone, Debug)]
 struct Track {
-    /// Its values over the window, as far as they are finite, and how much it varies there.
+    /// Its values over the window where they are finite, and how much it varies there.
     values: Option<Interval>,
     range: f64,
     rate: Sign,
@@ -64,7 +64,7 @@ struct Track {
     sharp: Option<f64>,
 }
 
-/// The last sign of a derivative other than zero, and up to where it was known.
+/// The last nonzero sign of a derivative, and up to where it is known.
 #[derive(Clone, Copy, Debug)]
 struct Sign {
     sign: i8,
@@ -72,7 +72,8 @@ struct Sign {
 }
 
 impl Sign {
-    /// Takes note of a sign from `a` to `b`. If the last one was the opposite, where it changed, and whether just at `a`.
+    /// Records a sign from `a` to `b`. Returns where it changed, if the last one was opposite, and whether
+    /// that is exactly at `a`.
     fn pass(&mut self, (a, b): (f64, f64), sign: Option<i8>) -> Option<(f64, bool)> {
         let sign = sign?;
         let changed = sign != 0 && self.sign == -sign;
@@ -85,26 +86,27 @@ impl Sign {
     }
 }
 
-/// The features of what is watched along a window, found as far as asked for. What it holds serves for the next window, too: it is
-/// asked at each step.
+/// The features of watched functions along a window, found as far as queried. Its buffers serve for later
+/// windows, too, as there is one at each step.
 #[derive(Clone, Debug)]
 pub(crate) struct Scan {
     /// From where the features are kept.
     from: f64,
     end: f64,
     shortest: f64,
-    /// Pieces yet to be looked at, the next one last; each in the direction of travel.
+    /// Pieces yet to be examined, the next one last; each in the direction of travel.
     pieces: Vec<(f64, f64)>,
     tracks: Vec<Track>,
     features: VecDeque<Feature>,
-    /// What is watched over a piece.
+    /// The watched functions over a piece.
     jets: Vec<Jet>,
-    /// Whether what is watched turns faster than time is told. It is not looked at closely any more.
+    /// Whether a function turns faster than floating-point times resolve; the window is then no longer
+    /// examined closely.
     noise: bool,
 }
 
 impl Scan {
-    /// Of no window yet.
+    /// A scan without a window.
     pub(crate) fn new() -> Scan {
         Scan {
             from: f64::NAN,
@@ -153,12 +155,12 @@ impl Scan {
         self.noise = false;
     }
 
-    /// Whether what is watched turns faster than time is told, as far as has been seen.
+    /// Whether a function is known to turn faster than floating-point times resolve.
     pub(crate) fn is_noise(&self) -> bool {
         self.noise
     }
 
-    /// Whether what is asked for lies ahead in the window.
+    /// Whether the interval lies ahead in the window.
     pub(crate) fn covers(&self, t: f64, to: f64) -> bool {
         let direction = if self.end < self.from { -1.0 } else { 1.0 };
         (t - self.from) * direction >= 0.0
@@ -166,8 +168,8 @@ impl Scan {
             && (self.end - to) * direction >= 0.0
     }
 
-    /// Forgets the features up to `t` and finds those up to `to`, or as far as so many evaluations show them; beyond, pieces
-    /// are taken as they are if that is `enough`. Returns up to where they are known.
+    /// Forgets the features up to `t` and finds those up to `to`, or as far as the allowed evaluations reach;
+    /// beyond, pieces are not halved if that is `enough`. Returns the time up to which features are known.
     pub(crate) fn between(
         &mut self,
         part: &mut Part,
@@ -181,7 +183,7 @@ impl Scan {
         let (enough, mut left) = if self.noise { (true, 0) } else { (enough, MOST) };
         let mut sharp = 0;
         while let Some(&(a, b)) = self.pieces.last() {
-            // A sign that is not known yet may show a change before.
+            // A sign that is still unknown may reveal an earlier change.
             let open = self.tracks.iter().any(|track| track.is_open(a));
             if (a - to) * direction > 0.0 && (!open || left == 0) {
                 break;
@@ -216,13 +218,13 @@ impl Scan {
 }
 
 impl Track {
-    /// Whether a sign is not known yet up to a place, so that what follows may show a change before; one where the function has
-    /// been found to be sharp is no news.
+    /// Whether a sign is unknown up to a place, so that a later one may reveal an earlier change; signs up to
+    /// a sharp feature are settled.
     fn is_open(&self, place: f64) -> bool {
         self.sharp != Some(place) && (self.rate.until != place || self.bend.until != place)
     }
 
-    /// Whether a piece shows all that there is to be seen.
+    /// Whether a piece needs no closer examination.
     fn is_plain(&self, jet: &Jet) -> bool {
         let known = (jet.rate.sign().is_some(), jet.bend.sign().is_some());
         let part = match known {
@@ -233,7 +235,7 @@ impl Track {
         jet.value.width() <= (part * self.range).max(ROUNDING * jet.value.size())
     }
 
-    /// Takes note of a piece.
+    /// Records a piece.
     fn pass(&mut self, (a, b): (f64, f64), jet: &Jet, shortest: bool, mut found: impl FnMut(f64, Kind)) {
         if shortest && !self.is_plain(jet) {
             self.sharp = Some(b);

@@ -31,7 +31,7 @@ fn a_field_without_time_has_no_profile() {
     assert!(matches!(TimeDependence::of(&[&program], 1, &[]), TimeDependence::Absent));
 }
 
-/// Whatever its form and however short, a pulse has a place near its middle at which it is seen.
+/// A pulse of any form and length is noticed near its middle.
 #[test]
 fn pulses_are_found_however_short() {
     for width in [1e-1, 1e-3, 1e-5, 1e-8] {
@@ -76,7 +76,7 @@ fn pulses_are_found_however_short() {
                 let background = value(at + 0.5e4 * width.max(1e-4));
                 for (from, to) in [(0.0, 10.0), (10.0, 0.0), (at - 10.0 * width, at + 5.0 * width)] {
                     let times = found(&program, from, to);
-                    // What acts at an end is seen there.
+                    // Values at an end are visible there.
                     let mut at_ends = [from, to].into_iter().map(&mut value);
                     let seen = at_ends.any(|end| (end - background).abs() > 0.1)
                         || times.iter().any(|&t| (value(t) - background).abs() > 0.3);
@@ -88,7 +88,7 @@ fn pulses_are_found_however_short() {
     }
 }
 
-/// A step that does not outrun an oscillation is not looked at.
+/// An oscillation resolved by the steps is not examined.
 #[test]
 fn features_resolved_by_steps_are_not_examined() {
     let program = program(|_, t, y| t.sin() + (0.3 * t).cos() * y - t * t);
@@ -104,7 +104,7 @@ fn features_resolved_by_steps_are_not_examined() {
     assert!(profile.surprises((t, t + 20.0), (&[0.0], &[0.0]), 200.0, false).few.len() >= 10);
 }
 
-/// Where there are thousands, it is known up to where they are known.
+/// Among thousands of features, all are known up to a stated time.
 #[test]
 fn a_fast_oscillation_is_known_piece_by_piece() {
     let program = program(|_, t, y| (1e6 * t).sin() + y);
@@ -116,8 +116,8 @@ fn a_fast_oscillation_is_known_piece_by_piece() {
     assert_eq!(profile.surprises((0.0, 10.0), (&[0.0], &[0.0]), 10.0, true).until, None);
 }
 
-/// What turns faster than numbers tell times apart is said to, and looked at no closer from then on. Jumps are no such thing,
-/// however many.
+/// A function that turns faster than floating-point times resolve is reported as noise and no longer examined
+/// closely. Any number of jumps is not noise.
 #[test]
 fn features_beyond_the_resolution_of_time_are_noise() {
     let noise = program(|_, t, y| (1e21 * t).sin() + y);

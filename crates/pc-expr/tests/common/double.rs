@@ -98,7 +98,8 @@ pub(crate) fn exp(x: f64) -> (Double, i32) {
     (sum, n as i32)
 }
 
-/// log x for a normal x, from an approximation y that is right to 1e-10: y + log (x e^{−y}), two terms of whose series are enough.
+/// log x for a normal x, from an approximation y that is right to 1e-10: y + log (x e^{−y}), with two terms
+/// of the series.
 pub(crate) fn log(x: f64) -> Double {
     let y = x.ln();
     let (power, n) = exp(-y);

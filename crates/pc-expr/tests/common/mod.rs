@@ -7,7 +7,7 @@ use std::ops::{Add, Mul, Neg};
 use pc_expr::{Expr, Function, Scalar};
 use proptest::prelude::*;
 
-/// An expression as it is written, before any graph has seen it.
+/// An expression as written, independent of any graph.
 #[derive(Clone, Debug)]
 pub(crate) enum Tree {
     Symbol(usize),
@@ -99,8 +99,8 @@ pub(crate) fn trees(symbols: usize) -> impl Strategy<Value = Tree> {
     })
 }
 
-/// A value with a bound of its rounding error: running error analysis, which answers how well a result can be
-/// known however its terms are arranged.
+/// A value with a bound of its rounding error: running error analysis shows how well a result can be known,
+/// whatever the arrangement of its terms.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounded {
     pub(crate) value: f64,
@@ -129,7 +129,7 @@ impl Bounded {
         if change.iter().any(|c| c.is_nan()) { f64::INFINITY } else { change[0].max(change[1]) }
     }
 
-    /// What 10⁻¹² is relative to: the size of the terms that the value was computed from.
+    /// The scale of the tolerance 10⁻¹²: the size of the terms from which the value was computed.
     pub(crate) fn size(self) -> f64 {
         self.error / f64::EPSILON + self.value.abs()
     }

@@ -1,4 +1,4 @@
-//! Where quasi-velocities that are defined by velocities no longer determine these, or these them.
+//! Places where velocities and the quasi-velocities defined by them no longer determine each other.
 
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
@@ -7,27 +7,28 @@ use crate::error::MechError;
 use crate::numeric::singular_values::SingularValues;
 use crate::system::system::System;
 
-/// A part of the velocities that is rounding: what the motion is without it is what it is with it.
+/// A part of the velocities this small is rounding: the motion is the same without it.
 const AT_REST: f64 = 1e-9;
 
-/// Where the slope of the determinant is taken, as a part of the step from either end.
+/// The distance from either end of a step, as a part of it, at which the slope of the determinant is
+/// estimated.
 const SLOPE: f64 = 1e-4;
 
-/// A determinant that falls to this part of its values at both ends of a step vanishes between them: no step that resolves
-/// the motion passes such a change.
+/// A determinant that falls to this part of its values at both ends of a step vanishes between them: a step
+/// that resolves the motion contains no such dip otherwise.
 const VANISHES: f64 = 1e-6;
 
-/// Halvings, or golden sections, of a step: down to about 1e-9 of it.
+/// The number of halvings or golden sections of a step: they end at about 1e-9 of it.
 const SECTIONS: usize = 45;
 
 /// The matrix a of η = a ẋ + a_0 along a motion.
 ///
-/// Where det a = 0 the state (x, η) says nothing of ẋ along ker a. All motions that come there have the same state, whatever
-/// this part of ẋ was, so that what follows is an accident of rounding. Where det a is infinite η is lost in the same way.
-/// Between the ends of a step the states are taken on the line that joins them: it crosses each surface that separates its
-/// ends.
+/// Where det a = 0 the state (x, η) leaves ẋ undetermined along ker a: motions with different ẋ share that
+/// state, and rounding decides how they continue. Where det a is infinite, η is undetermined in the same way.
+/// Between the ends of a step, states are taken on the straight line, which crosses each surface that
+/// separates the ends.
 ///
-/// Frames that are given by b are not watched: the determinant of b would take as long as a step of a small system does.
+/// Frames given by b are not watched: the determinant of b would cost as much as a step of a small system.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
     coordinates: usize,
@@ -37,23 +38,23 @@ pub(crate) struct Chart {
     size: usize,
     of_velocities: bool,
     room: Vec<f64>,
-    /// A place between the ends of a step.
+    /// A state between the ends of a step.
     between: Vec<f64>,
     /// Time, coordinates, parameters and determinant at the end of the last step: the start of the next one.
     last: Vec<f64>,
 }
 
-/// How a determinant passes from one end of a step to the other.
+/// How a determinant behaves between the ends of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Passage {
-    /// Through zero, or touching it.
+    /// It vanishes, with or without a change of sign.
     Zero,
-    /// Through infinity, or touching it.
+    /// It becomes infinite, with or without a change of sign.
     Pole,
 }
 
 impl Chart {
-    /// That of a system; none where its quasi-velocities are not defined so, or a is constant.
+    /// The chart of a system; `None` if its quasi-velocities are not defined by velocities, or a is constant.
     ///
     /// # Errors
     /// [`MechError`] for a symbol without a value.
@@ -64,8 +65,8 @@ impl Chart {
         }
     }
 
-    /// That of a system whose quasi-velocities, all of them in their order, are changed by the matrix A: det A a where they are
-    /// defined by ẋ, else det A.
+    /// The chart of a system whose quasi-velocities, all of them in their order, are changed by the matrix A:
+    /// it watches det A a where they are defined by ẋ, else det A.
     ///
     /// # Errors
     /// [`MechError`] for a symbol without a value.
@@ -84,7 +85,8 @@ impl Chart {
         Chart::new(system, &product, true)
     }
 
-    /// That of a square matrix by which some quasi-velocities determine others; none where it is constant.
+    /// The chart that watches a square matrix by which some quasi-velocities determine others; `None` if that
+    /// is constant.
     pub(crate) fn watching<'g>(
         system: &System<'g>,
         a: &Matrix<Expr<'g>>,
@@ -129,7 +131,8 @@ impl Chart {
         determinant(self.matrix(t, x, parameters), n)
     }
 
-    /// The determinant at the start of a step, which is that at the end of the one before unless the state has jumped.
+    /// The determinant at the start of a step, which is known from the end of the last one unless the state
+    /// has jumped.
     fn at_start(&mut self, (t, y): (f64, &[f64]), parameters: &[f64]) -> f64 {
         let here =
             [t].into_iter().chain(y[..self.coordinates].iter().copied()).chain(parameters.iter().copied());
@@ -158,7 +161,7 @@ impl Chart {
         value
     }
 
-    /// How the determinant passes zero or infinity on the way from one end of a step to the other, if it does.
+    /// The zero or pole of the determinant between the ends of a step, if there is one.
     pub(crate) fn passage(
         &mut self,
         from: (f64, &[f64]),
@@ -179,7 +182,7 @@ impl Chart {
             let there = along(low).abs().max(along(high).abs());
             return Some(if there < most { Passage::Zero } else { Passage::Pole });
         }
-        // With one sign at both ends, whether it goes towards zero, or infinity, and comes back.
+        // With one sign at both ends, the question is whether it approaches zero, or infinity, and returns.
         let slope = along(SLOPE).abs() - start.abs();
         let comes_back = |slope: f64, before: f64| slope * (end.abs() - before.abs()) < 0.0;
         if slope == 0.0 || !comes_back(slope, along(1.0 - SLOPE)) {
@@ -194,9 +197,8 @@ impl Chart {
         }
     }
 
-    /// Whether a motion with these velocities, which has passed so, does not move in the direction that is lost there: then it
-    /// needs no quasi-velocity to say how it does, or no velocity to say which quasi-velocity it has. Said of no motion where
-    /// the columns are not those of ẋ.
+    /// Whether a motion with these velocities, after such a passage, is at rest in the undetermined
+    /// direction: it then continues uniquely. False where the columns are not those of ẋ.
     pub(crate) fn rests(
         &mut self,
         passage: Passage,
@@ -226,7 +228,7 @@ impl Chart {
     }
 }
 
-/// The least value of a function that falls and then rises between 0 and 1, by golden sections.
+/// The minimum of a function that falls and then rises between 0 and 1, by golden sections.
 fn smallest(mut f: impl FnMut(f64) -> f64) -> f64 {
     let part = 0.5 * (5.0f64.sqrt() - 1.0);
     let (mut low, mut high) = (0.0, 1.0);
@@ -288,7 +290,7 @@ mod tests {
 
     #[test]
     fn the_least_value_is_found_wherever_it_is() {
-        // Golden sections leave 0.618⁴⁵ = 4e-10 of the interval, so that squares are below its square.
+        // Golden sections leave 0.618⁴⁵ = 4e-10 of the interval: squares are below its square.
         for place in [1e-3, 0.2, 0.5, 0.999] {
             assert!(smallest(|s| (s - place).powi(2)) < 1e-18, "{place}");
             assert!((smallest(|s| (s - place).powi(2) + 0.5) - 0.5).abs() < 1e-15, "{place}");

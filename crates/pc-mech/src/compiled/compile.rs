@@ -13,7 +13,7 @@ use crate::error::MechError;
 use crate::system::signals::Signals;
 
 /// M⁻¹ is written out if the factorisation of M takes no more operations than that of a full matrix of 16
-/// rows. So all smaller systems are written out, and longer ones whose bodies are coupled with few others.
+/// rows: for all smaller systems, and for longer ones with sparse coupling.
 pub(crate) const LONGEST_ELIMINATION: usize = 16 * 15 * 20 / 6;
 
 impl<'g> Equations<'g> {
@@ -24,8 +24,8 @@ impl<'g> Equations<'g> {
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor
-    /// declared parameter; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) where a joint of a tree moves
-    /// nothing that has inertia.
+    /// declared parameter; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) where a joint
+    /// of a tree moves nothing that has inertia.
     pub fn compile(&self) -> Result<Motion, MechError> {
         self.compile_for(CompileOptions::default())
     }
@@ -52,7 +52,7 @@ impl<'g> Equations<'g> {
 
 impl FirstOrder<'_> {
     /// Compiles; M⁻¹ is written out if the factorisation takes no more operations than `longest` and the
-    /// unknowns stand linearly in their equations.
+    /// equations are linear in the unknowns.
     ///
     /// # Errors
     /// As for [`Equations::compile`].

@@ -5,29 +5,29 @@ use pc_expr::{Evaluator, ExprError};
 use crate::compiled::point::Point;
 use crate::error::{ConstraintError, EvaluationError, IntegralError, MechError};
 
-/// What is wrong, before it is known where.
+/// A failure without its time and state.
 #[derive(Debug)]
 pub(crate) enum EvaluationFailure {
     /// The pivot of the unknown of that index vanished.
     Pivot { index: usize, pivot: f64 },
-    /// The constraint of that index among unknowns and constraints is none at this state.
+    /// The constraint with this index among unknowns and constraints is degenerate at this state.
     Constraint { index: usize },
-    /// The state is not near those that satisfy the constraints, which follow so many unknowns.
+    /// The state is too far from the constraints, whose indices follow this number of unknowns.
     NoProjection { unknowns: usize },
-    /// A constraint that followed from the others does not vanish where they do.
+    /// A constraint that follows from the others does not vanish where they do.
     Departed { constraint: String },
     /// Newton's method ended with |F| = `residual`.
     NotSolved { residual: f64, iterations: usize },
-    /// The state is not near those with the values of the integrals.
+    /// The state is too far from those with the values of the integrals.
     NotKept,
-    /// A part that the motion was compiled without.
+    /// The motion was compiled without this part.
     NotCompiled { what: &'static str },
     /// A value is not finite.
     Expr(ExprError),
 }
 
 impl EvaluationFailure {
-    /// The same of a pivot whose unknown has another index.
+    /// The same failure with the index of a pivot converted by `place`.
     pub(crate) fn at_place(self, place: impl Fn(usize) -> usize) -> EvaluationFailure {
         match self {
             EvaluationFailure::Pivot { index, pivot } => {
@@ -37,7 +37,7 @@ impl EvaluationFailure {
         }
     }
 
-    /// The error, of the unknowns and constraints called `unknowns`, at the state with these `names`.
+    /// The error at the state with these `names`; `unknowns` are the names of unknowns and constraints.
     pub(crate) fn at(self, unknowns: &[String], t: f64, names: &[String], state: &[f64]) -> MechError {
         let state = || names.iter().cloned().zip(state.iter().copied()).collect();
         match self {
@@ -65,7 +65,7 @@ impl EvaluationFailure {
     }
 }
 
-/// That all values are finite.
+/// Checks that all values are finite.
 ///
 /// # Errors
 /// [`EvaluationFailure::Expr`] for the first that is not on the way to them.
@@ -74,11 +74,11 @@ pub(crate) fn check_finite(
     evaluator: &Evaluator,
     at: Point<'_>,
 ) -> Result<(), EvaluationFailure> {
-    // Number by number, with an early end: to look at several at a time would wait for those just written.
+    // One number at a time, with an early exit: wider reads would wait for the numbers just written.
     if values.iter().all(|value| value.is_finite()) { Ok(()) } else { Err(blame(evaluator, at)) }
 }
 
-/// What is to blame for values that are not finite.
+/// The cause of values that are not finite.
 #[cold]
 pub(crate) fn blame(evaluator: &Evaluator, Point { t, y, p }: Point<'_>) -> EvaluationFailure {
     EvaluationFailure::Expr(evaluator.blame(t, y, p))

@@ -31,21 +31,21 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) states: usize,
     /// The parameters with their values.
     pub(crate) parameters: Vec<(Expr<'g>, f64)>,
-    /// Those of them that may change at each evaluation: functions of time, and forces computed outside.
+    /// Parameters that may change at each evaluation: functions of time, and forces computed outside.
     pub(crate) varying: Vec<Expr<'g>>,
     /// The symbols of w, k of them.
     pub(crate) unknowns: Vec<Expr<'g>>,
-    /// What to call the unknowns in messages: the quasi-velocities.
+    /// The names of the unknowns in messages: the quasi-velocities.
     pub(crate) names: Vec<String>,
-    /// How many of them, the last ones, are multipliers: their block of M is zero.
+    /// The number of multipliers, which are the last unknowns: their block of M is zero.
     pub(crate) multipliers: usize,
-    /// How many of these belong to independent constraints, the first ones wherever they are.
+    /// The number of independent constraints, whose multipliers come first.
     pub(crate) rank: usize,
-    /// M, k × k; without entries where a tree is eliminated.
+    /// M, k × k; without entries for a tree, which is eliminated joint after joint.
     pub(crate) mass: Matrix<Expr<'g>>,
-    /// What M w = r is, where M and r are not written out.
+    /// M w = r of a tree, where M and r are not written out.
     pub(crate) tree: Option<Rc<TreeEquations<'g>>>,
-    /// p, where it is not M w.
+    /// p, if it is not M w.
     pub(crate) implicit: Option<Implicit<'g>>,
     /// r, in t and y.
     pub(crate) right: Vec<Expr<'g>>,
@@ -63,7 +63,7 @@ pub(crate) struct FirstOrder<'g> {
 pub(crate) struct Implicit<'g> {
     /// p, k of them.
     pub(crate) left: Vec<Expr<'g>>,
-    /// The w from which the solution is looked for.
+    /// The w from which the iteration starts.
     pub(crate) guess: Vec<f64>,
 }
 
@@ -76,7 +76,7 @@ impl<'g> FirstOrder<'g> {
         }
     }
 
-    /// Operations of ẏ written out.
+    /// The number of operations of ẏ written out.
     fn operations(&self) -> usize {
         let unknowns = self.solve(&self.factors());
         let values: Vec<_> = self.unknowns.iter().copied().zip(unknowns).collect();
@@ -98,7 +98,7 @@ impl<'g> FirstOrder<'g> {
         self.parameters.iter().map(|&(symbol, _)| symbol).collect()
     }
 
-    /// w = M⁻¹ r; an unknown that is a single quotient is shortened once more.
+    /// w = M⁻¹ r; an unknown that is a single quotient is shortened again.
     pub(crate) fn solve(&self, factors: &Factors<'g>) -> Vec<Expr<'g>> {
         if let Some(tree) = &self.tree {
             return tree.system.in_order(&tree.dynamics.accelerations());
@@ -121,7 +121,7 @@ impl<'g> FirstOrder<'g> {
         self.graph.are_made_of(expressions, &self.parameter_symbols())
     }
 
-    /// The places on and below the diagonal of M that are not zero everywhere, and what stands there.
+    /// The pattern of the lower triangle of M, and its nonzero entries.
     pub(crate) fn lower_triangle(&self) -> (Pattern, Vec<Expr<'g>>) {
         let k = self.unknowns.len();
         let mut columns = vec![Vec::new(); k];
@@ -142,13 +142,12 @@ impl<'g> FirstOrder<'g> {
         self.right.iter().enumerate().map(|(s, &right)| right - left(s)).collect()
     }
 
-    /// ∂g/∂w: what is not 0 of each row, with its column.
+    /// The nonzero entries of each row of ∂g/∂w with their columns.
     pub(crate) fn coupling(&self) -> Vec<SparseColumn<'g>> {
         self.graph.jacobian(&self.rates, &self.unknowns)
     }
 
-    /// One symbol for each of `symbols` that stands nowhere in the equations, called as these with `mark`
-    /// before.
+    /// One new symbol for each of `symbols`, with the same name behind `mark`.
     pub(crate) fn fresh(&self, mark: &str, symbols: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let equations = [self.balance(), self.rates.clone(), self.mass.nonzero_entries()].concat();
         let inputs = self.inputs(&self.unknowns);
@@ -171,19 +170,20 @@ impl<'g> Equations<'g> {
         first_order.solve(&first_order.factors())
     }
 
-    /// With M and r where they are written out.
+    /// The system with M and r written out.
     fn written_first_order(&self) -> FirstOrder<'g> {
         let is_large = self.system.tree.as_ref().is_some_and(|tree| tree.is_large());
         self.shortest_first_order(if is_large { TreeElimination::ByJoints } else { TreeElimination::Whole })
     }
 
     /// Inverse dynamics: the generalised forces that have to be added to Q for accelerations η̇, whose
-    /// [symbols](crate::System::accelerations) they contain, M η̇ − r; length k. Of a large tree from body to body, in O(N).
+    /// [symbols](crate::System::accelerations) they contain, M η̇ − r; length k. Of a large tree from body to
+    /// body, in O(N).
     pub fn inverse_dynamics(&self) -> Vec<Expr<'g>> {
         self.written_first_order().balance().into_iter().map(|left| -left).collect()
     }
 
-    /// The same, of a tree joint after joint where that takes fewer operations.
+    /// The system, for a tree solved joint after joint if that takes fewer operations.
     pub(crate) fn shortest_first_order(&self, elimination: TreeElimination) -> FirstOrder<'g> {
         let Some(tree) = self.system.tree.as_ref().filter(|_| elimination != TreeElimination::Whole) else {
             return self.first_order();
@@ -252,11 +252,11 @@ pub(crate) struct Linearised<'a, 'g> {
     factors: &'a Factors<'g>,
     /// g, then F.
     rows: Vec<Expr<'g>>,
-    /// The rows that each symbol stands in, by its name; known when derivatives by single symbols are asked for.
+    /// The rows that contain each symbol, by its name; found on the first derivative by single symbols.
     rows_with: OnceCell<HashMap<Option<String>, Vec<usize>>>,
-    /// ∂g/∂w: what is not 0 in each row, with its column.
+    /// ∂g/∂w: the nonzero entries of each row with their columns.
     coupling: Vec<SparseColumn<'g>>,
-    /// The rows of ∂g/∂w in which each of its columns is not 0.
+    /// The rows with nonzero entries in each column of ∂g/∂w.
     coupled: Vec<Vec<usize>>,
     /// The symbols w with their expressions in t and y.
     values: Substitution<'g>,
@@ -298,10 +298,11 @@ impl<'a, 'g> Linearised<'a, 'g> {
         })
     }
 
-    /// What is not 0 of ẏ′ when each symbol of `direction` changes at the rate beside it, with its place.
+    /// The nonzero components of ẏ′ with their places when each symbol of `direction` changes at the rate
+    /// beside it.
     fn nonzero_along(&self, direction: &[(Expr<'g>, Expr<'g>)]) -> SparseColumn<'g> {
         let graph = self.graph;
-        // Along all of the state every row changes.
+        // Along the full state every row changes.
         let places: BTreeSet<usize> = if direction.len() >= self.coupling.len() {
             (0..self.rows.len()).collect()
         } else {

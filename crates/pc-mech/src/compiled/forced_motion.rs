@@ -38,7 +38,7 @@ pub struct ForcedMotion<F> {
     force: F,
     /// The quasi-velocities on which the forces act.
     names: Vec<String>,
-    /// Number of parameters, which the forces follow.
+    /// The number of parameters; the forces follow them.
     parameters: usize,
     /// q
     values: Vec<f64>,
@@ -101,15 +101,16 @@ impl Multipliers<'_> {
     }
 }
 
-/// The options with ∂f/∂q where a Jacobian needs it.
+/// The options with ∂f/∂q if a Jacobian needs it.
 fn derived(options: CompileOptions) -> CompileOptions {
     options.parameter_jacobian(options.parameter_jacobian || options.jacobian || options.jvp)
 }
 
 impl Motion {
-    /// The motion under the forces of `force` on the quasi-velocities called `names`: those for which external forces were
-    /// [declared](crate::SystemBuilder::external_force), in that order. It [keeps](Motion::keep) the same integrals.
-    /// It has a Jacobian if this motion has one and [that by its parameters](CompileOptions::parameter_jacobian).
+    /// The motion under the forces of `force` on the quasi-velocities called `names`: those for which
+    /// external forces were [declared](crate::SystemBuilder::external_force), in that order. It
+    /// [keeps](Motion::keep) the same integrals. It has a Jacobian if this motion has one and [that by its
+    /// parameters](CompileOptions::parameter_jacobian).
     ///
     /// # Errors
     /// [`ForceError::NoneDeclared`] without names; [`ShapeError`] for more names than the motion has inputs.
@@ -207,7 +208,8 @@ impl<F: ExternalForce> ForcedMotion<F> {
         }
     }
 
-    /// Writes the observables at (t, y) to `values` without computing the forces; those that contain one are not finite.
+    /// Writes the observables at (t, y) to `values` without computing the forces; those that contain one are
+    /// not finite.
     ///
     /// # Panics
     /// As for [`Motion::observe_to`].
@@ -312,7 +314,7 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
         self.motion.has_jacobian().then_some(&self.pattern)
     }
 
-    /// The pattern is full, so that both storages are one.
+    /// The pattern is full, so both storages are the same.
     fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         self.jacobian(t, y, values)
     }

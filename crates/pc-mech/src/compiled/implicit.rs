@@ -9,11 +9,11 @@ use crate::compiled::point::Point;
 
 /// The most steps.
 const MOST_STEPS: usize = 200;
-/// How often a step is halved before the iteration is taken to have ended.
+/// The most halvings of a step before the iteration ends.
 const HALVINGS: i32 = 60;
-/// A residual this small against the terms it is the difference of is a solution.
+/// A residual this small against its terms is accepted as a solution.
 const ENOUGH: f64 = 1e-12;
-/// One this small is what a few roundings make of nothing: no step can lessen it.
+/// A residual this small consists of a few roundings, which no step can reduce.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Solves F = r(t, y) − p(t, y, w) = 0 for w:
@@ -24,25 +24,25 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 ///
 ///   |F(w + λ δ) − (1 − λ) F(w)| ≤ ½ λ |F(w)|.
 ///
-/// So |F| falls, w never leaves the domain of p, and p goes to r nearly straight, which keeps w away from the
-/// boundary of the domain until the end.
+/// So |F| falls, w stays in the domain of p, and p approaches r on a nearly straight line, which keeps w away
+/// from the boundary of the domain until the end.
 ///
-/// Every solution starts from the same guess, so that w depends on (t, y) only, to the last bit; but where this
-/// leads to no solution, from the last one that was found.
+/// Every solution starts from the same guess, so that w depends on (t, y) only, to the last bit; only where
+/// that fails, from the last solution.
 #[derive(Clone, Debug)]
 pub(crate) struct Newton {
-    /// Of (t, (y, w)): what is not zero of the lower triangle of M, then p, then r.
+    /// From (t, (y, w)): the nonzero entries of the lower triangle of M, then p, then r.
     equations: Evaluator,
     values: Vec<f64>,
     lower: Pattern,
     guess: Vec<f64>,
     last: Option<Vec<f64>>,
     here: Iterate,
-    /// F at the point that is tried.
+    /// F at the trial point.
     ahead: Vec<f64>,
 }
 
-/// w, and what is known there; k of each.
+/// w, and the values there; k of each.
 #[derive(Clone, Debug)]
 struct Iterate {
     point: Vec<f64>,
@@ -50,9 +50,9 @@ struct Iterate {
     residual: Vec<f64>,
     /// δ
     step: Vec<f64>,
-    /// |r_s| + |p_s| + Σ_j |M_sj w_j|, of which F_s has the rounding errors.
+    /// |r_s| + |p_s| + Σ_j |M_sj w_j|, the scale of the rounding error of F_s.
     sizes: Vec<f64>,
-    /// 1/√|M_ss|: with these weights the norm of F is the same in all units of w.
+    /// 1/√|M_ss|: with these weights the norm of F is independent of the units of w.
     weights: Vec<f64>,
 }
 
@@ -82,7 +82,7 @@ impl Newton {
         })
     }
 
-    /// Says where solutions begin.
+    /// Sets the starting point of solutions.
     pub(crate) fn begin_at(&mut self, guess: &[f64]) {
         self.guess.copy_from_slice(guess);
     }
@@ -117,7 +117,7 @@ impl Newton {
         outcome
     }
 
-    /// The same from the w in `known`.
+    /// As [`solve`](Newton::solve), from the w in `known`.
     fn solve_from(
         &mut self,
         (t, p): At<'_>,
@@ -138,8 +138,8 @@ impl Newton {
             let before = self.here.norm(&self.here.residual);
             let enough = ENOUGH * self.here.norm(&self.here.sizes);
             if before <= enough && before.is_finite() {
-                // Steps go on as long as they help some component: what is rounding of a large one may be all of
-                // a small one.
+                // Steps continue while they improve any component: the rounding error of a large one may
+                // exceed a small one.
                 if self.step(1.0, (t, p), known) > enough {
                     known[dim..].copy_from_slice(&self.here.point);
                     return Ok(());
@@ -158,8 +158,8 @@ impl Newton {
         Err(self.failure(MOST_STEPS))
     }
 
-    /// Steps with the first λ = ½^`halvings`, … that leaves of F, `before` in norm, what it should; the
-    /// halvings of it, if there is one.
+    /// Takes the first λ = ½^`halvings`, … that reduces F, of norm `before`, sufficiently. Returns the number
+    /// of halvings, if there is one.
     fn search(
         &mut self,
         halvings: i32,
@@ -183,7 +183,7 @@ impl Newton {
         solver.factorise(&self.lower, &self.values[..self.lower.len()])
     }
 
-    /// Puts w + λ δ into `known`; |F| there, infinite if something is not finite.
+    /// Puts w + λ δ into `known`. Returns |F| there, infinite if a value is not finite.
     fn step(&mut self, fraction: f64, (t, p): At<'_>, known: &mut [f64]) -> f64 {
         let k = self.guess.len();
         let dim = known.len() - k;
@@ -201,7 +201,7 @@ impl Newton {
         self.here.norm(&self.ahead)
     }
 
-    /// Takes `point`, the values at it and M as factorised for the next step.
+    /// Continues from `point`, with its values and factors of M.
     fn look_from(&mut self, point: &[f64], solver: &mut Solver) {
         let Iterate { point: w, residual, step, sizes, weights } = &mut self.here;
         let (mass, sides) = self.values.split_at(self.lower.len());
@@ -236,7 +236,7 @@ impl Iterate {
         components.iter().zip(&self.weights).fold(0.0, |norm, (f, weight)| norm.max((f * weight).abs()))
     }
 
-    /// F against its terms: max |F_s|/size_s; a component all of whose terms are 0 does not count.
+    /// F relative to its terms: max |F_s|/size_s; components whose terms are all 0 do not count.
     fn relative(&self, components: &[f64]) -> f64 {
         components.iter().zip(&self.sizes).fold(0.0, |most, (f, size)| most.max(f.abs() / size))
     }

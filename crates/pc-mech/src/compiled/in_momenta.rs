@@ -134,12 +134,13 @@ impl InMomenta {
         &self.inner
     }
 
-    /// The motion of (x, η), to be changed.
+    /// The motion of (x, η), mutable.
     pub(crate) fn inner_mut(&mut self) -> &mut Motion {
         &mut self.inner
     }
 
-    /// What contains t, as far as it is a function of t alone: what the motion of (x, η) shows of others is in other variables.
+    /// The time dependence through functions of t alone: that of the motion of (x, η) refers to other
+    /// variables.
     pub(crate) fn time_dependence(&self) -> TimeDependence {
         match self.inner.time_dependence() {
             TimeDependence::Known(profile) if profile.follows_states() => TimeDependence::Unknown,
@@ -148,12 +149,12 @@ impl InMomenta {
         }
     }
 
-    /// The places of the Jacobian.
+    /// The pattern of the Jacobian.
     pub(crate) fn pattern(&self) -> Option<&Pattern> {
         self.jacobian.as_ref().map(|_| &self.full)
     }
 
-    /// Leaves the (x, η, z) of (x, y, z) in `state`.
+    /// Computes the (x, η, z) of (x, y, z) into `state`.
     ///
     /// # Errors
     /// As [`LegendreTransform::to_quasi_velocities`].
@@ -169,7 +170,8 @@ impl InMomenta {
         &self.state
     }
 
-    /// The observables, not finite where momenta have no quasi-velocities; without accelerations unless these are `solved` for.
+    /// The observables, not finite where momenta determine no quasi-velocities; without accelerations unless
+    /// these are `solved` for.
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
         match self.read(t, y) {
             Ok(()) => self.inner.watch(t, &self.state, values, solved),
@@ -177,7 +179,7 @@ impl InMomenta {
         }
     }
 
-    /// What should be zero of each constraint, not finite where momenta have no quasi-velocities.
+    /// The residual of each constraint, not finite where momenta determine no quasi-velocities.
     pub(crate) fn constraint_residuals(&mut self, t: f64, y: &[f64], residuals: &mut [f64]) {
         match self.read(t, y) {
             Ok(()) => self.inner.constraint_residuals_to(t, &self.state, residuals),
@@ -185,13 +187,13 @@ impl InMomenta {
         }
     }
 
-    /// The places of η, or of their momenta, in a state.
+    /// The range of η, or of their momenta, in a state.
     fn moving(&self) -> Range<usize> {
         let n = self.inner.coordinates();
         n..n + self.quasi_velocities
     }
 
-    /// Leaves (x, η, z, η̇) in `known`, and ẋ and ż in `rates`.
+    /// Computes (x, η, z, η̇) into `known`, and ẋ and ż into `rates`.
     fn solve(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
         self.read(t, y).map_err(Failure::recoverable)?;
         self.inner.rhs(t, &self.state, rates)?;
@@ -210,7 +212,7 @@ impl InMomenta {
             .map_err(|failure| self.inner.failure(failure, t, &self.known[..y.len()]))
     }
 
-    /// To where the motion of (x, η) is projected; momenta of a state that is there are left as they are.
+    /// Projects as the motion of (x, η) does; the momenta of a state on the constraints are unchanged.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.read(t, y).map_err(Failure::recoverable)?;
         self.projected.copy_from_slice(&self.state);
@@ -224,7 +226,7 @@ impl InMomenta {
     }
 
     pub(crate) fn restart(&mut self, t: f64, y: &[f64]) {
-        // Where momenta have no quasi-velocities the next evaluation says so.
+        // If momenta determine no quasi-velocities, the next evaluation reports it.
         if self.read(t, y).is_ok() {
             self.inner.restart(t, &self.state);
         }
@@ -259,7 +261,7 @@ impl InMomenta {
             slopes.by_symbol.extend_from_slice(&self.of_inner[place(q) * dim..(place(q) + 1) * dim]);
         }
         self.change(slopes, t)?;
-        // Those by x and z come first.
+        // The columns by x and z come first.
         let places = (0..slopes.symbols).map(place).chain(moving.clone());
         for (place, column) in places.zip(slopes.columns.chunks_exact(dim)) {
             entries[place * dim..(place + 1) * dim].copy_from_slice(column);
@@ -267,7 +269,7 @@ impl InMomenta {
         Ok(())
     }
 
-    /// Leaves the derivative of (ẋ, η̇, ż) by (x, η, z) in `of_inner`, and (x, η, z, η̇) in `known`.
+    /// Computes the derivative of (ẋ, η̇, ż) by (x, η, z) into `of_inner`, and (x, η, z, η̇) into `known`.
     fn find_inner_jacobian(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         let mut rates = std::mem::take(&mut self.rates);
         let outcome = self.solve(t, y, &mut rates);
@@ -303,7 +305,8 @@ impl InMomenta {
         outcome
     }
 
-    /// The columns of ∂f/∂q for the symbols of `slopes`, by which `inner` differentiates the motion of (x, η, z).
+    /// The columns of ∂f/∂q for the symbols q of `slopes`, by which `inner` differentiates the motion of (x,
+    /// η, z).
     fn slopes_by(
         &mut self,
         slopes: &mut Slopes,
@@ -320,8 +323,8 @@ impl InMomenta {
         Ok(())
     }
 
-    /// Leaves the columns of ∂f/∂q for each symbol q, then those of ∂f/∂y, in `columns` of `slopes`; (ẋ, η̇, ż) has the
-    /// derivatives `of_inner` by (x, η, z) and `by_symbol` by q.
+    /// Computes the columns of ∂f/∂q for each symbol q, then those of ∂f/∂y, into `columns` of `slopes`; (ẋ,
+    /// η̇, ż) has the derivatives `of_inner` by (x, η, z) and `by_symbol` by q.
     fn change(&mut self, slopes: &mut Slopes, t: f64) -> Result<(), Failure> {
         let (n, k, dim) = (self.inner.coordinates(), self.quasi_velocities, self.state.len());
         let (m, of_inner) = (slopes.multipliers, &self.of_inner);
@@ -352,7 +355,7 @@ impl InMomenta {
                 let direct = if is_symbol { slopes.by_symbol[i + q * dim] } else { 0.0 };
                 *change = direct + (0..k).map(|s| of_inner[i + (n + s) * dim] * h[s]).sum::<f64>();
             }
-            // η̇, of which ẏ is made.
+            // η̇, which ẏ contains.
             let accelerations = &mut self.rates[..k];
             accelerations.copy_from_slice(&column[n..n + k]);
             for (r, change) in column[n..n + k].iter_mut().enumerate() {

@@ -12,7 +12,8 @@ use crate::compiled::point::Point;
 use crate::error::{MechError, shape};
 use crate::system::system::System;
 
-/// States (x, η) and (x, y) of one system turned into each other, y_s = ∂L/∂η_s and η_s = ∂H/∂y_s (Legendre); compiled.
+/// The compiled conversion between states (x, η) and (x, y) of one system, y_s = ∂L/∂η_s and η_s = ∂H/∂y_s
+/// (Legendre).
 #[derive(Clone, Debug)]
 pub struct LegendreTransform {
     /// Names of x, η, y, z.
@@ -22,7 +23,7 @@ pub struct LegendreTransform {
     quasi_velocities: QuasiVelocities,
 }
 
-/// η of (x, y)
+/// How η follows from (x, y).
 #[derive(Clone, Debug)]
 enum QuasiVelocities {
     Closed(Evaluator),
@@ -35,11 +36,11 @@ enum QuasiVelocities {
 struct Implicit {
     newton: Newton,
     solver: Solver,
-    /// Equations of η alone, whose solution is where the method begins.
+    /// Equations of η alone, whose solution is the starting point.
     nearby: Option<Box<QuasiVelocities>>,
-    /// Where it begins if these have none.
+    /// The starting point if these have no solution.
     guess: Vec<f64>,
-    /// Room for where it begins, and for the state and w.
+    /// Storage for the starting point, and for the state and w.
     begin: Vec<f64>,
     known: Vec<f64>,
 }
@@ -47,7 +48,7 @@ struct Implicit {
 /// M w = r with w = (η, μ), in numbers.
 #[derive(Clone, Debug)]
 struct Linear {
-    /// Of (t, (x, y)): what is not zero of the lower triangle of M, then r.
+    /// From (t, (x, y)): the nonzero entries of the lower triangle of M, then r.
     equations: Evaluator,
     lower: Pattern,
     values: Vec<f64>,
@@ -57,8 +58,8 @@ struct Linear {
 }
 
 impl QuasiVelocities {
-    /// η, the first unknowns of these equations, in numbers; where they are not linear, from the solution of those `nearby`,
-    /// which have one where several velocities satisfy the constraints, as ±v satisfy v² = 1.
+    /// η, the first unknowns of these equations, in numbers. Nonlinear equations start from the solution of
+    /// those `nearby`, as several velocities may satisfy the constraints, such as ±v for v² = 1.
     fn solved(
         equations: &FirstOrder<'_>,
         nearby: Option<&FirstOrder<'_>>,
@@ -129,7 +130,7 @@ impl Linear {
         Ok(Linear { equations, lower, values, solver, solution })
     }
 
-    /// Leaves w in `solution`, and M factorised.
+    /// Computes w into `solution`, and factorises M.
     fn solve(&mut self, at @ Point { t, y: state, p }: Point<'_>) -> Result<(), EvaluationFailure> {
         self.equations.eval(t, state, p, &mut self.values);
         check_finite(&self.values, &self.equations, at)?;
@@ -142,8 +143,8 @@ impl Linear {
 }
 
 impl LegendreTransform {
-    /// The change of the states of `system`, with `momenta` y and ∂L/∂η = `of_velocities`; η are the unknowns of `equations`,
-    /// and the expressions `closed` where these are linear.
+    /// The conversion for `system`, with `momenta` y and ∂L/∂η = `of_velocities`; η are the unknowns of
+    /// `equations`, and the expressions `closed` where these are linear.
     ///
     /// # Errors
     /// As [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
@@ -164,8 +165,9 @@ impl LegendreTransform {
         LegendreTransform::new(system, momenta, of_velocities, quasi_velocities)
     }
 
-    /// The change of the states of `system`, whose momenta are called `momenta`; η are the first unknowns of `equations`,
-    /// which are in (t, x, y), and where these are not linear the solution next to that of linear ones `nearby`.
+    /// The conversion for `system`, whose momenta are called `momenta`; η are the first unknowns of
+    /// `equations`, which are in (t, x, y). If these are not linear, η is the solution next to that of the
+    /// linear equations `nearby`.
     ///
     /// # Errors
     /// As [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
@@ -201,9 +203,9 @@ impl LegendreTransform {
         })
     }
 
-    /// Replaces each of the columns, as long as the equations of η, by the solution with the matrix M = ∂²L/∂η∂η, bordered by
-    /// the constraints if there are any, of the state that was changed into quasi-velocities last. Not of closed expressions,
-    /// which have none.
+    /// Replaces each of the columns, as long as the equations of η, by the solution with the matrix M =
+    /// ∂²L/∂η∂η, bordered by the constraints if there are any, at the last state converted into
+    /// quasi-velocities. Closed expressions have no such matrix.
     pub(crate) fn solve_last(&mut self, columns: &mut [f64]) {
         match &mut self.quasi_velocities {
             QuasiVelocities::Closed(_) => columns.fill(f64::NAN),
@@ -240,8 +242,8 @@ impl LegendreTransform {
             .map_err(|failure| self.error(failure, t, state))
     }
 
-    /// (x, η) of the state (x, y), length n + k both; first-order states follow and stay. Where L is not quadratic, Newton's method finds it from
-    /// the [guess](crate::Canonical::with_guess).
+    /// (x, η) of the state (x, y), length n + k both; first-order states follow and stay. Where L is not
+    /// quadratic, Newton's method finds it from the [guess](crate::Canonical::with_guess).
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError);
@@ -254,8 +256,8 @@ impl LegendreTransform {
         Ok(result)
     }
 
-    /// Writes (x, η) of the state (x, y) to `result`, as [`to_quasi_velocities`](LegendreTransform::to_quasi_velocities) gives
-    /// it.
+    /// Writes (x, η) of the state (x, y) to `result`, as
+    /// [`to_quasi_velocities`](LegendreTransform::to_quasi_velocities) gives it.
     ///
     /// # Errors
     /// As there.
@@ -272,20 +274,20 @@ impl LegendreTransform {
         outcome.map_err(|failure| self.error(failure, t, state))
     }
 
-    /// That both states have the right length.
+    /// Checks the lengths of both states.
     fn check(&self, state: &[f64], result: &[f64]) -> Result<(), MechError> {
         let length = self.names[0].len() + self.names[1].len() + self.names[3].len();
         shape("the state", state.len(), length)?;
         Ok(shape("the result", result.len(), length)?)
     }
 
-    /// The places of η, or y, in a state.
+    /// The range of η, or y, in a state.
     fn moving(&self) -> Range<usize> {
         let n = self.names[0].len();
         n..n + self.names[1].len()
     }
 
-    /// At the state (x, y).
+    /// The error at the state (x, y).
     fn error(&self, failure: EvaluationFailure, t: f64, state: &[f64]) -> MechError {
         let [x, eta, y, z] = &self.names;
         failure.at(eta, t, &[&x[..], y, z].concat(), state)

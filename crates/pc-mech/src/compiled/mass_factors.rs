@@ -19,7 +19,7 @@ use crate::compiled::failure::EvaluationFailure;
 pub struct MassFactors {
     factors: DenseLdl,
     lower: Pattern,
-    /// What stands on and below the diagonal.
+    /// The entries on and below the diagonal.
     values: Vec<f64>,
 }
 
@@ -58,7 +58,7 @@ impl MassFactors {
         }
         self.factors.factorise(&self.lower, &self.values).map_err(|failure| match failure {
             EvaluationFailure::Pivot { index, pivot } => SingularMatrix { index, pivot },
-            _ => SingularMatrix { index: 0, pivot: f64::NAN }, // there is no other failure
+            _ => SingularMatrix { index: 0, pivot: f64::NAN }, // factorisation fails in no other way
         })
     }
 

@@ -25,19 +25,19 @@ pub struct Motion {
     pub(super) names: Vec<String>,
     pub(super) coordinates: usize,
     pub(super) states: usize,
-    /// What the pivots of M belong to: quasi-velocities, then constraints.
+    /// The unknowns to which pivots of M belong: quasi-velocities, then constraints.
     pub(super) quasi_velocities: Vec<String>,
     pub(super) parameters: Vec<f64>,
     pub(super) form: Form,
     pub(super) options: CompileOptions,
     pub(super) observable_names: Vec<String>,
     pub(super) conserved: usize,
-    /// The constraints by their names, and where they are satisfied.
+    /// The names of the constraints, and the surface where they hold.
     pub(super) constraints: Vec<String>,
     pub(super) surface: Option<Box<Surface>>,
     pub(super) kept: Option<Box<KeptIntegrals>>,
     pub(super) signals: Signals,
-    /// Where its state determines velocities.
+    /// The conditions under which the state determines velocities.
     pub(super) charts: Vec<Chart>,
 }
 
@@ -49,11 +49,12 @@ pub(super) enum Form {
     InMomenta(Box<InMomenta>),
 }
 
-/// The motion of (x, y), y = p(t, x, η) = ∂L/∂η, of which that of (x, η) is known: with η of
+/// The motion of (x, y), y = p(t, x, η) = ∂L/∂η, derived from that of (x, η): with η of
 ///
 ///   M η − Cᵀ μ = y − p_0,   C η = −c_0,
 ///
-/// or of p − Cᵀ μ = y, g = 0, which holds the constraints and is regular wherever they are (μ = 0 on them),
+/// or of p − Cᵀ μ = y, g = 0, which satisfies the constraints and is regular wherever they are (μ = 0 on
+/// them),
 ///
 ///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + (∂p/∂z) ż + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
 ///
@@ -63,16 +64,16 @@ pub(crate) struct InMomenta {
     pub(super) transform: LegendreTransform,
     pub(super) inner: Box<Motion>,
     pub(super) quasi_velocities: usize,
-    /// ẏ of (t, (x, η, z, η̇)).
+    /// ẏ from (t, (x, η, z, η̇)).
     pub(super) transport: Evaluator,
-    /// By x and z and, where these are asked for, by the parameters and by t.
+    /// The derivatives by x and z and, if they are compiled, by the parameters and by t.
     pub(super) jacobian: Option<Slopes>,
     pub(super) parameter_jacobian: Option<Slopes>,
     pub(super) time_derivative: Option<Slopes>,
     /// x, η, z, then η̇.
     pub(super) known: Vec<f64>,
     pub(super) full: Pattern,
-    /// Room for x, η, z as they were read last, for what they are projected to, and for the rates of both motions.
+    /// Storage for the x, η, z read last, for their projection, and for the rates of both motions.
     pub(super) state: Vec<f64>,
     pub(super) projected: Vec<f64>,
     pub(super) rates: Vec<f64>,
@@ -80,8 +81,8 @@ pub(crate) struct InMomenta {
     pub(super) of_inner: Vec<f64>,
 }
 
-/// Derivatives by symbols q, all of (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q, (−∂p/∂q, ∂g/∂q) one after the other; then those of
-/// ∂ẏ/∂η and of M.
+/// Derivatives by symbols q from (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q and (−∂p/∂q, ∂g/∂q) one after the
+/// other; then those of ∂ẏ/∂η and of M.
 #[derive(Clone, Debug)]
 pub(super) struct Slopes {
     pub(super) symbols: usize,
@@ -128,7 +129,8 @@ impl Motion {
         &mut self.parameters
     }
 
-    /// The values of what M does not depend on, such as external forces, to be changed: those from place `first` on.
+    /// The values, from place `first` on, of inputs on which M does not depend, such as external forces;
+    /// mutable.
     pub(crate) fn inputs_mut(&mut self, first: usize) -> &mut [f64] {
         match &mut self.form {
             Form::InMomenta(motion) => motion.inner_mut().inputs_mut(first),
@@ -144,8 +146,8 @@ impl Motion {
         }
     }
 
-    /// The same motion with the values of some of its parameters read from tables at each evaluation. No step of an integrator
-    /// crosses their times.
+    /// The same motion with the values of some of its parameters read from tables at each evaluation. No step
+    /// of an integrator crosses their times.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -214,12 +216,14 @@ impl Motion {
     /// Writes the observables at (t, y) to `values`, as [`observe`](Motion::observe) gives them.
     ///
     /// # Panics
-    /// If `y` does not have the length of the state, or `values` not that of [`observable_names`](Motion::observable_names).
+    /// If `y` does not have the length of the state, or `values` not that of
+    /// [`observable_names`](Motion::observable_names).
     pub fn observe_to(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.watch(t, y, values, true);
     }
 
-    /// The same; without accelerations where these are not to be `solved` for: what contains one is not finite then.
+    /// Writes the observables; without accelerations unless these are to be `solved` for: those that contain
+    /// one are then not finite.
     pub(crate) fn watch(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         assert_eq!(values.len(), self.observable_names.len(), "number of observables");
@@ -233,8 +237,8 @@ impl Motion {
         }
     }
 
-    /// The same motion of a system; it does not [lead](VectorField::leads) past a place where definitions of quasi-velocities by
-    /// velocities do not determine the ones by the others.
+    /// The motion of a system that does not [lead](VectorField::leads) past a place where definitions of
+    /// quasi-velocities by velocities do not determine the ones by the others.
     ///
     /// # Errors
     /// [`MechError`] if the frame contains a symbol that is neither a coordinate nor a parameter.
@@ -242,7 +246,7 @@ impl Motion {
         Ok(Motion { charts: Chart::of(system)?.into_iter().collect(), ..self })
     }
 
-    /// The same motion in other quasi-velocities η' = A η + A_0, with A for all those of the system in their order;
+    /// The motion in other quasi-velocities η' = A η + A_0, with A for all those of the system in their order;
     /// nor does it lead past a place where η' do not determine η.
     ///
     /// # Errors
@@ -255,7 +259,7 @@ impl Motion {
         Ok(Motion { charts: Chart::of_change(system, change)?.into_iter().collect(), ..self })
     }
 
-    /// The same motion in independent quasi-velocities of a system; nor does it lead past a place where this square
+    /// The motion in independent quasi-velocities of a system; nor does it lead past a place where this square
     /// matrix, by which constraints determine the others, is singular.
     ///
     /// # Errors
@@ -269,7 +273,7 @@ impl Motion {
         Ok(self)
     }
 
-    /// The same in momenta of these names.
+    /// The motion with momenta of these names.
     pub(crate) fn of_momenta(motion: InMomenta, names: impl Iterator<Item = String>) -> Motion {
         let inner = motion.inner();
         Motion {
@@ -295,7 +299,7 @@ impl Motion {
         }
     }
 
-    /// What it is made from, if momenta under constraints are in its state.
+    /// Its parts, if its state contains momenta under constraints.
     pub(crate) fn in_momenta(&mut self) -> Option<&mut InMomenta> {
         match &mut self.form {
             Form::InMomenta(motion) => Some(motion),
@@ -303,7 +307,7 @@ impl Motion {
         }
     }
 
-    /// The same with accelerations and reactions by this, where it takes fewer operations or is asked for.
+    /// The motion with accelerations and reactions by `schur`, if that takes fewer operations or is chosen.
     pub(crate) fn by_joints(mut self, schur: Schur) -> Motion {
         self.form = match self.form {
             Form::Staged(staged)
@@ -317,12 +321,12 @@ impl Motion {
         self
     }
 
-    /// The same under the constraints of these names.
+    /// The motion under the constraints of these names.
     pub(crate) fn on_surface(self, constraints: Vec<String>, surface: Surface) -> Motion {
         Motion { constraints, surface: Some(Box::new(surface)), ..self }
     }
 
-    /// Projects to the values of these integrals from now on; those before are returned.
+    /// Projects to the values of these integrals from now on; returns the previous ones.
     pub(crate) fn set_kept(&mut self, integrals: Option<KeptIntegrals>) -> Option<KeptIntegrals> {
         if let Form::InMomenta(motion) = &mut self.form {
             return motion.inner_mut().set_kept(integrals);
@@ -370,8 +374,8 @@ impl Motion {
         }
     }
 
-    /// The numbers that [`machine_code`](Motion::machine_code) takes for parameters, for their current values: these, and what is
-    /// computed of them alone. None where M is factorised in numbers.
+    /// The numbers that [`machine_code`](Motion::machine_code) takes for parameters, for their current
+    /// values: these, and what is computed of them alone. None where M is factorised in numbers.
     pub fn code_parameters(&mut self) -> Option<&[f64]> {
         match &mut self.form {
             Form::Unrolled(unrolled) => Some(unrolled.code_parameters(&self.parameters)),
@@ -394,15 +398,15 @@ impl Motion {
         matches!(self.form, Form::Staged(_))
     }
 
-    /// ẏ with each component of the state, and each number of the equations where these are solved in numbers, times a
-    /// `factor`, which is another one each time.
+    /// ẏ with each component of the state, and each number of the equations if these are solved in numbers,
+    /// multiplied by the next `factor`.
     pub(crate) fn perturbed_rates(
         &mut self,
         t: f64,
         y: &[f64],
         mut factor: impl FnMut() -> f64,
     ) -> Result<(Vec<f64>, Vec<f64>), MechError> {
-        // Constraints mix velocities: what one of them leaves of another is rounding of the largest.
+        // Constraints mix velocities: the remainder of one velocity may be rounding of the largest.
         let moving = self.coordinates()..y.len() - self.states();
         let fastest = y[moving.clone()].iter().fold(0.0f64, |fastest, eta| fastest.max(eta.abs()));
         let least = |i: usize| if moving.contains(&i) { fastest } else { 0.0 };

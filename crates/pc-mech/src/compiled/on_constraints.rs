@@ -26,7 +26,8 @@ impl Motion {
     /// [`constraint_residuals`](Motion::constraint_residuals) gives it.
     ///
     /// # Panics
-    /// If `y` does not have the length of the state, or `residuals` not that of [`constraint_names`](Motion::constraint_names).
+    /// If `y` does not have the length of the state, or `residuals` not that of
+    /// [`constraint_names`](Motion::constraint_names).
     pub fn constraint_residuals_to(&mut self, t: f64, y: &[f64], residuals: &mut [f64]) {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         assert_eq!(residuals.len(), self.constraints.len(), "number of constraints");
@@ -38,8 +39,8 @@ impl Motion {
         }
     }
 
-    /// Moves a state to the constraints alone, with the coordinates and the quasi-velocities of these indices left as they
-    /// are: the others follow by the shortest way in the kinetic metric.
+    /// Moves a state to the constraints alone, with the coordinates and the quasi-velocities of these indices
+    /// left as they are: the others follow by the shortest way in the kinetic metric.
     ///
     /// # Errors
     /// A [`Failure`] where no such state exists, or the other components cannot reach it.

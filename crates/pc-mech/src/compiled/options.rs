@@ -2,8 +2,8 @@
 
 use pc_expr::Backend;
 
-/// What to compile besides the right-hand side, and for which kernel. Each derivative takes time to derive, above all
-/// the Jacobian of a large system.
+/// The parts to compile besides the right-hand side, and for which kernel. Each derivative takes time to
+/// derive, above all the Jacobian of a large system.
 ///
 /// ```
 /// use pc_mech::{CompileOptions, Graph, System, VectorField};
@@ -33,10 +33,11 @@ pub struct CompileOptions {
     pub(crate) elimination: TreeElimination,
 }
 
-/// How accelerations of [bodies joined by joints](crate::Tree) are solved for. The numbers are the same but for rounding.
+/// The method that solves for accelerations of [bodies joined by joints](crate::Tree). The numbers are the same but
+/// for rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TreeElimination {
-    /// By joints where that takes fewer operations, as it does for all large trees.
+    /// By joints if that takes fewer operations, as for all large trees.
     #[default]
     Shorter,
     /// Joint after joint: operations grow as the number of bodies does.
@@ -91,7 +92,7 @@ impl CompileOptions {
         CompileOptions { parameter_jacobian, ..self }
     }
 
-    /// How a tree of bodies is solved.
+    /// The method for a tree of bodies.
     #[must_use]
     pub fn elimination(self, elimination: TreeElimination) -> CompileOptions {
         CompileOptions { elimination, ..self }

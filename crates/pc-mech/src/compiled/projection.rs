@@ -1,8 +1,8 @@
 //! Projection of states to constraints and integrals.
 //!
-//! `constraint_manifold` is the surface on which constraints hold, with conditions that follow (`followers`) and states
-//! some components of which are prescribed (`holding`), `nearest` the nearest velocities on it; `integrals` are first
-//! integrals that are kept, `keeping` gives them to a motion.
+//! `constraint_manifold` is the surface on which constraints hold, with conditions that follow from them
+//! (`followers`) and components that are prescribed (`holding`); `nearest` finds the nearest velocities on
+//! it; `integrals` are first integrals that are kept, `keeping` gives them to a motion.
 
 pub(crate) mod constraint_manifold;
 pub(crate) mod followers;

@@ -1,7 +1,8 @@
 //! Bounds of the rounding errors of functions.
 //!
-//! The bound is an expression, compiled with its function, for a projection ends by it at each state of a motion; a weight in
-//! numbers, by which a derivation tells zeros at a few points, is in `pc-algebra/src/identity/running_error.rs`.
+//! The bound is an expression, compiled with its function, as a projection compares with it at each state of
+//! a motion; a numerical weight, which identifies zeros at a few points of a derivation, is in
+//! `pc-algebra/src/identity/running_error.rs`.
 
 use std::ops::{Add, Mul, Neg};
 
@@ -12,15 +13,15 @@ use pc_expr::{
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::point::Point;
 
-/// What the errors are counted in. An operation errs by a quarter of it; a long sum, of whose roundings only those of the
+/// The unit of errors. An operation errs by a quarter of it; a long sum, for which only the roundings of the
 /// terms are counted, by more.
 const UNIT: f64 = 2.0 * f64::EPSILON;
 
-/// Keeps quotients of two zeros from being no numbers.
+/// Keeps a quotient of two zeros from being NaN.
 const TINY: f64 = 1e-300;
 
-/// Below it numbers have fewer digits: their spacing is that of the numbers above it, in units of which errors are
-/// counted here. Four of them, since factors of a number so small round once more.
+/// The threshold of numbers with fewer digits, whose spacing is constant, in the units of errors. It is
+/// fourfold, as factors of so small a number round again.
 const SPACING: f64 = 4.0 * f64::MIN_POSITIVE;
 
 /// Functions with bounds of their rounding errors, compiled.
@@ -40,7 +41,7 @@ impl Measured {
         functions: &[Expr<'g>],
         backend: Backend,
     ) -> Result<Measured, ExprError> {
-        // A graph of its own, for none can grow while it is gone through.
+        // A graph of its own, as a graph cannot grow while it is traversed.
         let measuring = graph.page(Folding::ByValue);
         let named = |symbol: &Expr<'g>| measuring.symbol(&symbol.to_string());
         let inputs_here = Inputs {
@@ -76,12 +77,13 @@ impl Measured {
         Ok(self.values())
     }
 
-    /// The values where they were computed last.
+    /// The values of the last evaluation.
     pub(crate) fn values(&self) -> &[f64] {
         &self.values[..self.values.len() / 2]
     }
 
-    /// A bound of the rounding error of the function in this place; not finite where one of its parts has no derivative.
+    /// A bound of the rounding error of the function number `place`; not finite where a part of it has no
+    /// derivative.
     pub(crate) fn error(&self, place: usize) -> f64 {
         UNIT * self.values[self.values.len() / 2 + place]
     }
@@ -91,7 +93,8 @@ impl Measured {
         (0..self.values().len()).map(|place| self.error(place))
     }
 
-    /// The largest of the values in units of the bound of its error: no more than 1 where only rounding is left of them.
+    /// The largest of the values in units of the bound of its error: at most 1 if they consist of rounding
+    /// only.
     pub(crate) fn in_errors(&self) -> f64 {
         let ratio = |(place, value): (usize, &f64)| match self.error(place) {
             _ if *value == 0.0 => 0.0,
@@ -102,8 +105,8 @@ impl Measured {
     }
 }
 
-/// An expression with the first-order bound of its rounding errors, in units of the last digit of one. The bound is no
-/// less than the absolute value, so that the roundings of sums are among those of their terms.
+/// An expression with the first-order bound of its rounding errors, in units of the last digit of one. The
+/// bound is at least the absolute value, which includes the roundings of sums in those of their terms.
 #[derive(Clone, Copy)]
 struct WithError<'g> {
     value: Expr<'g>,
@@ -111,17 +114,17 @@ struct WithError<'g> {
 }
 
 impl<'g> WithError<'g> {
-    /// A number that is known to one rounding.
+    /// A number with one rounding.
     fn rounded(value: Expr<'g>) -> WithError<'g> {
         WithError { value, error: value.abs() }
     }
 
-    /// The value of a symbol, which may be one of the smallest numbers.
+    /// The value of a symbol, which may be subnormal.
     fn symbol(value: Expr<'g>) -> WithError<'g> {
         WithError { value, error: value.abs() + SPACING }
     }
 
-    /// The value of a function of `args` that has these derivatives there.
+    /// The value of a function of `args` with these derivatives.
     fn with_slopes(value: Expr<'g>, args: &[Self], slopes: impl Iterator<Item = Expr<'g>>) -> WithError<'g> {
         let errors = args.iter().zip(slopes).map(|(arg, slope)| slope.abs() * arg.error);
         WithError { value, error: errors.fold(value.abs(), |sum, error| sum + error) }
@@ -177,7 +180,7 @@ impl Scalar for WithError<'_> {
         let values: Vec<_> = args.iter().map(|arg| arg.value).collect();
         let value = Expr::apply(function, &values);
         if values.iter().all(|value| value.constant().is_some()) {
-            return WithError::rounded(value); // which may have no slope, as asin 1
+            return WithError::rounded(value); // its slope may be infinite, as that of asin 1
         }
         let error = match (function, args) {
             // √(u + e) − √u
@@ -186,7 +189,7 @@ impl Scalar for WithError<'_> {
                 let base = u.value + UNIT * u.error + TINY;
                 (exponent.value * Expr::apply(Function::Pow, &[base, exponent.value - 1.0])).abs() * u.error
             }
-            // Of the branch that is taken: the other may have no number.
+            // The error of the branch that is taken: the other one may be undefined.
             (Function::Step, [x, a, b]) => x.value.step(a.error, b.error),
             (Function::Max, [a, b]) => (a.value - b.value).step(a.error, b.error),
             (Function::Min, [a, b]) => (a.value - b.value).step(b.error, a.error),
@@ -196,7 +199,7 @@ impl Scalar for WithError<'_> {
     }
 }
 
-/// ∂f/∂x_i at `values`, derived in a graph of their own, where each argument is a symbol.
+/// ∂f/∂x_i at `values`, derived in a separate graph with a symbol for each argument.
 fn slopes<'g>(function: Function, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let graph = Graph::new();
     let symbols: Vec<_> = (0..values.len()).map(|i| graph.symbol(&format!("x{i}"))).collect();
@@ -221,8 +224,8 @@ mod tests {
         let mut measured = Measured::new(&graph, &inputs, &functions, Backend::Interpreter).expect("bound");
         let values = measured.try_eval(Point { t: 0.5, y: &[-1.0, 3.0], p: &[2.0] }).expect("finite");
         assert_eq!(values[..2], [-2.0, 0.5]);
-        // About 26 units for the circle, however the graph may have written it; a thousand times the error of a difference
-        // of numbers about 1; that of u⁵ with u = 1/1000 and errors of numbers about 3 in u.
+        // About 26 units for the circle, in whatever form the graph has it; a thousand times the error of a
+        // difference of numbers about 1; and that of u⁵ with u = 1/1000 and errors of numbers about 3 in u.
         for (place, size) in [1e-14, 1e-12, 1e-26].into_iter().enumerate() {
             let error = measured.error(place);
             assert!((size / 5.0..=size * 5.0).contains(&error), "{place}: {error:e}");

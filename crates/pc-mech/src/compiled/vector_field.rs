@@ -9,7 +9,8 @@ use crate::compiled::point::Point;
 use crate::error::{EvaluationError, FrameError, MechError};
 
 impl Motion {
-    /// To the constraints by the shortest way in the kinetic metric, then along them to the integrals.
+    /// Projects to the constraints by the shortest way in the kinetic metric, then along them to the
+    /// integrals.
     fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), EvaluationFailure> {
         if let Some(surface) = &mut self.surface {
             surface.project(t, y, &self.parameters)?;
@@ -80,7 +81,7 @@ impl VectorField for Motion {
         self.write_jacobian(t, y, jacobian, Storage::Dense)
     }
 
-    /// Known if the Jacobian was compiled.
+    /// Available if the Jacobian was compiled.
     fn sparsity(&self) -> Option<&Pattern> {
         match &self.form {
             Form::Unrolled(unrolled) => unrolled.pattern(),
@@ -166,7 +167,7 @@ impl VectorField for Motion {
             Form::Unrolled(unrolled) => unrolled.expand(at, sides, order),
             Form::Staged(_) | Form::InMomenta(_) => unreachable!("has been refused"),
         };
-        // The state is not at hand where the series still is.
+        // The state is borrowed by the series.
         outcome.map_err(|failure| {
             let error = failure.at(&self.quasi_velocities, t, &self.names, y);
             Failure::recoverable(error)
@@ -193,7 +194,7 @@ impl VectorField for Motion {
         if let Some(surface) = &mut self.surface
             && surface.project(t, &mut state, &self.parameters).is_err()
         {
-            state.copy_from_slice(y); // Whoever projects to where there is nothing will hear of it.
+            state.copy_from_slice(y); // the next projection reports the failure
         }
         kept.set_levels(Point { t, y: &state, p: &self.parameters });
         kept.room.state = state;

@@ -42,7 +42,7 @@ impl<'g> BodyReaction<'g> {
 }
 
 impl<'g> System<'g> {
-    /// The bodies it was built of, in this order, with their velocities.
+    /// The bodies of which it was built, in order, with their velocities.
     pub fn bodies(&self) -> &[BodyVelocity<'g>] {
         &self.bodies.list
     }
@@ -53,10 +53,11 @@ impl<'g> Multipliers<'g> {
     ///
     ///   Σ (F · ∂ṙ/∂η_s + N · ∂ω/∂η_s) = λ_α C_αs,   s = 1..k.
     ///
-    /// The force on a body is determined by this if ṙ can be varied independently of the velocities of all other bodies,
-    /// of its own ω, and of what has kinetic energy without being a body: if the rank of all these derivatives is that of
-    /// ∂ṙ/∂η and that of the others together. It is determined up to a part normal to all ṙ that the coordinates
-    /// allow, which is left out: that part belongs to whatever holds the coordinates. For torques likewise, with ω.
+    /// The force on a body is determined by this if ṙ can be varied independently of the velocities of all
+    /// other bodies, of its own ω, and of what has kinetic energy without being a body: if the rank of all
+    /// these derivatives is that of ∂ṙ/∂η and that of the others together. It is determined up to a part
+    /// normal to all ṙ that the coordinates allow, which is left out: that part belongs to whatever holds the
+    /// coordinates. For torques likewise, with ω.
     ///
     /// Where velocities are tied together by the choice of coordinates, as those of two masses on a rod by its angle,
     /// the forces between them are not those of constraints, and share the load in a way that virtual work does not
@@ -102,7 +103,8 @@ impl<'g> Multipliers<'g> {
     }
 }
 
-/// The derivatives by η of what moves, in blocks: ṙ and ω of the bodies, in their order, then what L has beside them.
+/// The derivatives of velocities by η, in blocks: ṙ and ω of the bodies, in their order, then the other
+/// velocities in L.
 struct Velocities<'a, 'g> {
     system: &'a System<'g>,
     blocks: Vec<Vec<Vec<Expr<'g>>>>,

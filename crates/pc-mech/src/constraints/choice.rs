@@ -7,25 +7,28 @@ use crate::constraints::multipliers::Multipliers;
 use crate::equations::poincare::Equations;
 use crate::error::{ConstraintError, MechError};
 
-/// Up to so many choices are tried one after the other, each by its equations.
+/// Up to this many choices are compared by their equations.
 const MOST_TRIED: usize = 20;
-/// Equations are derived to be compared only where as many constraints are solved, and L is written with so many operations.
+/// Equations are compared only for at most this many constraints and a Lagrangian of at most this many
+/// operations.
 const MOST_SOLVED: usize = 3;
 const LONGEST_TRIED: u32 = 1000;
-/// A choice is regular if its determinant, in the kinetic metric, is this part of the largest: a motion goes on for a
-/// while before the equations are singular.
+/// A choice is regular if its determinant, in the kinetic metric, is this part of the largest: the motion
+/// then stays away from singular equations for a while.
 const REGULAR: f64 = 0.5;
-/// What part of the largest pivot the shortest may be: equations lose a digit by it. (That more choices are not
-/// derived has a second reason: what is derived in a graph before leaves its forms there.)
+/// The part of the largest pivot that the shortest one may have: equations lose a digit by it. (Few choices
+/// are derived for a second reason: forms made earlier in a graph influence later ones.)
 const PIVOT: f64 = 0.1;
 
-/// C at a state, its rows of length one and its columns divided by the roots of the masses: units do not matter.
+/// C at a state, its rows scaled to length one and its columns divided by the roots of the masses,
+/// independently of units.
 struct Weighed {
     rows: Vec<Vec<f64>>,
 }
 
 impl<'g> Multipliers<'g> {
-    /// The same with these quasi-velocities, k − m of them, as the [independent](Multipliers::in_independent_velocities) ones.
+    /// The equations with these quasi-velocities, k − m of them, as the
+    /// [independent](Multipliers::in_independent_velocities) ones.
     ///
     /// # Errors
     /// [`ConstraintError::NotIndependent`] if their number is wrong, one is not the system's, or they do not determine
@@ -75,8 +78,9 @@ impl<'g> Multipliers<'g> {
         Ok(self.depending(dependent))
     }
 
-    /// The same with the independent quasi-velocities whose equations, as `derive` makes them, are shortest in print among those
-    /// that are regular at the values `at`; among equally short ones, those whose constraints are solved best.
+    /// The equations with independent quasi-velocities whose equations, as `derive` makes them, are shortest
+    /// in print among those that are regular at the values `at`; among equally short ones, those whose
+    /// constraints are solved best.
     ///
     /// With more than 20 choices, more than 3 constraints or a long Lagrangian no equations are compared: C is then
     /// eliminated with the pivot that is shortest in print among those of at least a tenth of the largest.
@@ -105,7 +109,7 @@ impl<'g> Multipliers<'g> {
         let others = choices.into_iter().filter(|choice| *choice != best && regular(choice));
         let tried = std::iter::once(best.clone()).chain(others).filter_map(|choice| {
             let chosen = self.depending(choice);
-            // What cannot be derived with one choice may be with another; with none the error is that of the best.
+            // One choice may fail where another succeeds; if all fail, the error is that of the best.
             derive(&chosen).ok().map(|equations| (printed_length(&equations), chosen))
         });
         let shortest = tried.min_by_key(|&(length, _)| length).map(|(_, chosen)| chosen);
@@ -161,7 +165,7 @@ impl Weighed {
         determinant
     }
 
-    /// The columns of the pivots that are shortest in print among the regular ones, rising.
+    /// The columns of the pivots that are shortest in print among the regular ones, in ascending order.
     fn shortest_pivots(self, c: &Matrix<Expr<'_>>) -> Option<Vec<usize>> {
         let mut rows: Vec<(usize, Vec<f64>)> = self.rows.into_iter().enumerate().collect();
         let mut dependent = Vec::new();
@@ -187,7 +191,7 @@ impl Weighed {
     }
 }
 
-/// All m of k, in the order of their lists; none if there are more than are tried.
+/// All choices of m out of k, in lexicographic order; `None` if there are more than are compared.
 fn choices(k: usize, m: usize) -> Option<Vec<Vec<usize>>> {
     let mut all: Vec<Vec<usize>> = vec![Vec::new()];
     for _ in 0..m {
@@ -204,7 +208,7 @@ fn choices(k: usize, m: usize) -> Option<Vec<Vec<usize>>> {
     (all.len() <= MOST_TRIED).then_some(all)
 }
 
-/// How long equations are, written out.
+/// The length of equations, written out.
 fn printed_length(equations: &Equations<'_>) -> u64 {
     let mass = equations.mass_matrix().entries();
     let sides = mass.iter().chain(equations.right_hand_side()).chain(equations.velocities());

@@ -22,8 +22,9 @@ impl<'g> Constraint<'g> {
         Constraint { name: name.into(), expression, nonlinear: false }
     }
 
-    /// The condition g(t, x, η) = 0 that need not be affine in η. Virtual displacements are those of Chetaev's condition,
-    /// (∂g/∂η_s) δπ_s = 0, so that the reactions are λ ∂g/∂η_s [N. G. Chetaev, Izv. Kazan fiz.-mat. obshch. 6 (1932)].
+    /// The condition g(t, x, η) = 0 that need not be affine in η. Virtual displacements are those of
+    /// Chetaev's condition, (∂g/∂η_s) δπ_s = 0, so that the reactions are λ ∂g/∂η_s [N. G. Chetaev, Izv.
+    /// Kazan fiz.-mat. obshch. 6 (1932)].
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System, VectorField};

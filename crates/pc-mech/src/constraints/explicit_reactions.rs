@@ -1,4 +1,4 @@
-//! Reactions as functions of the state: constraints of any kind, put into the equations of all velocities.
+//! Reactions as functions of the state: constraints of any kind in the equations of all velocities.
 
 use pc_algebra::Matrix;
 use pc_expr::Expr;
@@ -10,9 +10,9 @@ use crate::error::{ConstraintError, MechError};
 use crate::system::system::System;
 
 impl<'g> Constraint<'g> {
-    /// Whether its reaction does no work on the motion: the power of λ ∂g/∂η_s is λ η_s ∂g/∂η_s, and this vanishes
-    /// with g if it is a multiple of g. By Euler's theorem this holds where g is homogeneous in η; for an affine g = C
-    /// η + c_0, if c_0 = 0.
+    /// Whether its reaction does no work on the motion: the power of λ ∂g/∂η_s is λ η_s ∂g/∂η_s, which
+    /// vanishes with g if it is a multiple of g. By Euler's theorem this holds if g is homogeneous in η; for
+    /// an affine g = C η + c_0, if c_0 = 0.
     pub fn is_workless(&self, system: &System<'g>) -> bool {
         if !self.is_nonlinear() {
             return self.coefficients(system).is_ok_and(|(_, drift)| drift.is_zero());

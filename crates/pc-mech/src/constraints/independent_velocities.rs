@@ -10,7 +10,7 @@ use crate::error::{ConstraintError, MechError, shape};
 use crate::numeric::least_squares::LeastSquares;
 use crate::system::system::System;
 
-/// The least singular value against the largest of a matrix that is well solved with.
+/// The least singular value of a well-conditioned matrix, relative to the largest.
 const WELL: f64 = 1e-3;
 
 impl<'g> Multipliers<'g> {
@@ -75,7 +75,7 @@ impl<'g> Multipliers<'g> {
         Ok(dependent.iter().enumerate().map(|(d, &s)| (eta[s], solution(d))).collect())
     }
 
-    /// The quasi-velocities that are not solved for.
+    /// The quasi-velocities that remain.
     fn free(&self, solved: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
         let eta = self.equations().system().quasi_velocities().iter().copied();
         eta.filter(|eta| solved.iter().all(|(known, _)| known != eta)).collect()
@@ -142,7 +142,7 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The same with a preference: the listed quasi-velocities, k − m of them, are taken as
+    /// The equations with a preference: the listed quasi-velocities, k − m of them, are taken as
     /// [independent](Multipliers::in_independent_velocities) wherever they determine the others well.
     #[must_use]
     pub fn preferring(mut self, independent: &[Expr<'g>]) -> Multipliers<'g> {
@@ -210,9 +210,9 @@ impl<'g> Multipliers<'g> {
         Ok(graph.shorten(&reactions, &system.collecting_order()))
     }
 
-    /// The m indices of the quasi-velocities that the constraints determine best at the values `at` of time, coordinates
-    /// and quasi-velocities, in ascending order, or the [preferred](Multipliers::preferring) ones where they can be
-    /// solved for; `at` may have other values of parameters.
+    /// The m indices of the quasi-velocities that the constraints determine best at the values `at` of time,
+    /// coordinates and quasi-velocities, in ascending order, or the [preferred](Multipliers::preferring) ones
+    /// where they can be solved for; `at` may have other values of parameters.
     ///
     /// # Errors
     /// [`ConstraintError::Singular`] if the constraints are dependent there;

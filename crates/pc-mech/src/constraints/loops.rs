@@ -11,7 +11,7 @@ use crate::tree::equations::TreeEquations;
 use crate::tree::system::TreeSystem;
 
 impl<'g> Multipliers<'g> {
-    /// The same equations derived in an empty graph, as those of a [system](crate::System) that is a tree.
+    /// The same equations derived in an empty graph, for a [system](crate::System) that is a tree.
     ///
     /// # Errors
     /// As for [`with_multipliers`](crate::System::with_multipliers), by which they were made before.
@@ -37,8 +37,8 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// What gives accelerations and the reactions of the first constraints, `rank` of them, joint after joint; none of what is no
-    /// tree.
+    /// The solution for accelerations and the reactions of the first constraints, `rank` of them, joint after
+    /// joint; `None` for a system that is not a tree.
     ///
     /// # Errors
     /// As for [`compile_for`](Multipliers::compile_for).
@@ -52,7 +52,7 @@ impl<'g> Multipliers<'g> {
         else {
             return Ok(None);
         };
-        // In an empty graph: what the whole matrix is made of has other steps.
+        // An empty graph: the steps that lead to the full matrix differ.
         let graph = system.graph().page(system.graph().folding());
         let copy = Transcription::new(system.graph(), &graph);
         let own = system.in_graph(tree, &graph);

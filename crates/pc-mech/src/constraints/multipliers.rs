@@ -1,4 +1,4 @@
-//! Constraints held by multipliers, in whatever coordinates.
+//! Constraints with multipliers, in any coordinates.
 
 use pc_algebra::{Matrix, Quadratic, quadratic};
 use pc_expr::Expr;
@@ -18,10 +18,10 @@ use crate::system::system::System;
 ///
 ///   M η̇ = r + Cᵀ λ,   C η̇ = −(dC/dt) η − dc_0/dt,   ẋ = b η + b_0,
 ///
-/// of a system whose quasi-velocities are bound by C η + c_0 = 0: conditions on velocities, or the derivatives
-/// C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is the reaction conjugate
-/// to the condition, with the power −λ_α c_α0. Of [nonlinear](Constraint::nonlinear) conditions g(t, x, η) = 0, C is ∂g/∂η
-/// and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
+/// of a system whose quasi-velocities are bound by C η + c_0 = 0: conditions on velocities, or the
+/// derivatives C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is
+/// the reaction conjugate to the condition, with the power −λ_α c_α0. Of [nonlinear](Constraint::nonlinear)
+/// conditions g(t, x, η) = 0, C is ∂g/∂η and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
 ///
 /// All k quasi-velocities are components of the state. At each evaluation those are taken as independent that
 /// determine the others best, so only positions where the constraints themselves are singular are singular; the rates
@@ -57,11 +57,11 @@ pub struct Multipliers<'g> {
     pub(crate) right: Vec<Expr<'g>>,
     /// The symbols λ, length m.
     pub(crate) reactions: Vec<Expr<'g>>,
-    /// Constraints that follow from these, looked at on the way.
+    /// Constraints that follow from these, checked along the way.
     pub(super) followers: Vec<Constraint<'g>>,
-    /// How many of the constraints are independent, the first ones almost everywhere.
+    /// The number of independent constraints, which come first almost everywhere.
     pub(super) rank: usize,
-    /// The indices of the quasi-velocities that are to depend on the others where they can.
+    /// The indices of the quasi-velocities that depend on the others, wherever these determine them.
     pub(crate) dependent: Option<Vec<usize>>,
     /// Whether the reactions are observed.
     pub(super) observed: bool,
@@ -163,7 +163,7 @@ impl<'g> Multipliers<'g> {
         self.constraints.get(constraint).is_some_and(|c| c.is_holonomic(&self.equations.system))
     }
 
-    /// The same in the velocities of the coordinates, η = a ẋ + a_0 (2): Lagrange's equations with multipliers.
+    /// The equations in the velocities of the coordinates, η = a ẋ + a_0 (2): Lagrange's equations with multipliers.
     ///
     /// # Errors
     /// As for [`System::in_velocities`].
@@ -182,10 +182,11 @@ impl<'g> Multipliers<'g> {
         lagrange.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())
     }
 
-    /// The same with constraints that follow from those held. Those that do so only where these hold replace them
-    /// where these are nearly dependent, as the bars of an overconstrained mechanism take turns in holding it; the
-    /// single reactions are not determined there, and NaN. A [projection](pc_expr::VectorField::project) of the
-    /// compiled motion to a state where one of them does not vanish is refused, as [`ConstraintError::Departed`].
+    /// The equations with constraints that follow from the present ones. Those that do so only where these
+    /// hold replace them where these are nearly dependent, as the bars of an overconstrained mechanism take
+    /// turns in carrying the load; there the single reactions are undetermined, and NaN. A
+    /// [projection](pc_expr::VectorField::project) of the compiled motion to a state where one of them does
+    /// not vanish is refused, as [`ConstraintError::Departed`].
     #[must_use]
     pub fn followed_by(self, followers: &[Constraint<'g>]) -> Multipliers<'g> {
         Multipliers { followers: followers.to_vec(), ..self }
@@ -198,7 +199,7 @@ impl<'g> Multipliers<'g> {
         (0..self.coefficients.columns()).map(on).collect()
     }
 
-    /// The same with the reactions as observables, after all others.
+    /// The equations with the reactions as observables, after all others.
     #[must_use]
     pub fn observe_reactions(self) -> Multipliers<'g> {
         Multipliers { observed: true, ..self }
@@ -236,8 +237,8 @@ impl<'g> Multipliers<'g> {
         Ok(motion.on_surface(names, whole.surface(&first_order)?))
     }
 
-    /// The same with the constraints to spare after those held: the followers that are independent of these where they do not
-    /// hold.
+    /// The same equations with spare constraints after the others: followers that are independent of these
+    /// off the constraints.
     fn with_spare(&self) -> Multipliers<'g> {
         let (system, mut whole) = (&self.equations.system, self.clone());
         let graph = system.graph();
@@ -281,8 +282,8 @@ impl<'g> Multipliers<'g> {
         LegendreTransform::solving(system, &momenta, &equations, Some(&nearby))
     }
 
-    /// M η = y − p_0 of a quadratic L, p(η) = y of any other: what the equations with multipliers say of momenta of which the
-    /// constraints hold.
+    /// M η = y − p_0 for a quadratic L, p(η) = y for any other: the equations with multipliers for momenta
+    /// that satisfy the constraints.
     fn free_legendre_equations(&self, momenta: &[Expr<'g>], guess: &[f64]) -> FirstOrder<'g> {
         let (system, graph, eta) = (&self.equations.system, self.graph(), self.quasi_velocities());
         let (mass, right, implicit) = match quadratic(graph, system.lagrangian, eta) {
@@ -311,7 +312,7 @@ impl<'g> Multipliers<'g> {
         }
     }
 
-    /// The equations with w = (η, μ); nothing changes by them.
+    /// The equations with w = (η, μ), without rates.
     fn legendre_equations(&self, momenta: &[Expr<'g>], guess: &[f64]) -> Result<FirstOrder<'g>, MechError> {
         let (system, graph, eta) = (&self.equations.system, self.graph(), self.quasi_velocities());
         let (k, m) = (eta.len(), self.reactions.len());
@@ -353,7 +354,8 @@ impl<'g> Multipliers<'g> {
         self.dependent.as_deref().unwrap_or_default()
     }
 
-    /// The same with the quasi-velocities of these m indices as the dependent ones wherever the others determine them.
+    /// The equations with the quasi-velocities of these m indices as the dependent ones wherever the others
+    /// determine them.
     #[must_use]
     pub fn depending(&self, dependent: Vec<usize>) -> Multipliers<'g> {
         Multipliers { dependent: Some(dependent), ..self.clone() }
@@ -367,7 +369,7 @@ impl<'g> Multipliers<'g> {
         &self.equations.system.quasi_velocities
     }
 
-    /// f(t, x) of the constraints that have a position, then g(t, x, η) of all.
+    /// f(t, x) of the constraints on positions, then g(t, x, η) of all.
     pub(crate) fn conditions(&self) -> Vec<Expr<'g>> {
         let positions = (0..self.constraints.len()).filter(|&a| self.is_holonomic(a));
         positions.map(|a| self.constraints[a].expression).chain(self.velocities.iter().copied()).collect()

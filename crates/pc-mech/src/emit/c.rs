@@ -9,11 +9,11 @@ pub(super) fn files(source: &Source<'_>) -> Vec<EmittedFile> {
     vec![file("h", header(source)), file("c", body(source))]
 }
 
-/// What ends the names of the macros.
+/// The endings of the names of macros.
 const MACROS: &[&str] =
     &["N", "K", "STATES", "DIM", "PARAMETERS", "INTEGRALS", "OUTPUTS", "T_START", "T_END", "H", "MAIN"];
 
-/// The macros of the header for a `name`, which must not be names of locals.
+/// The macros of the header for a `name`; locals have other names.
 pub(super) fn macros(name: &str) -> Vec<String> {
     MACROS.iter().map(|end| format!("{}_{end}", name.to_uppercase())).collect()
 }
@@ -45,7 +45,7 @@ fn extent(source: &Source<'_>, extent: Extent) -> String {
     }
 }
 
-/// The arrays of the source: declarators, what they hold, and their entries.
+/// The arrays of the source: declarators, contents in words, and entries.
 fn arrays(source: &Source<'_>) -> Vec<(String, &'static str, String)> {
     let (name, capitals) = (&source.name, capitals(source));
     let string = format!("const char *const {name}");
@@ -188,7 +188,7 @@ fn body(source: &Source<'_>) -> String {
     text
 }
 
-/// Runge and Kutta's method with fixed steps.
+/// The Runge–Kutta method with fixed steps.
 fn main(source: &Source<'_>) -> String {
     let parameters = if source.parameters.is_empty() { "NULL" } else { "@_default_parameters" };
     let text = "

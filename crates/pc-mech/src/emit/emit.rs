@@ -1,4 +1,4 @@
-//! Equations of motion as C or Rust source that depends on nothing of this library.
+//! Equations of motion as C or Rust source without dependencies.
 
 use pc_expr::{Chain, ChainLayout, Expr, FunctionBody, Language, Layout, Place, Program, Slot};
 
@@ -10,11 +10,11 @@ use crate::emit::{c, rust};
 use crate::equations::poincare::Equations;
 use crate::error::{MechError, ShapeError};
 
-/// A right-hand side of so many operations times the length of the state has a Jacobian of some ten thousand
-/// operations, which is no text to be read, and takes compilers minutes.
+/// The product of the operations of a right-hand side and the length of the state beyond which the Jacobian
+/// has some ten thousand operations: too long to be read, and minutes of work for compilers.
 const LONG_JACOBIAN: usize = 30_000;
 
-/// Equations longer than this are not shown in the comment at the head of a file.
+/// Longer equations are left out of the comment at the head of a file.
 const LONG_EQUATION: usize = 160;
 
 impl<'g> Equations<'g> {
@@ -52,7 +52,7 @@ impl<'g> Equations<'g> {
         self.emit_with(options, &[])
     }
 
-    /// The same with more functions.
+    /// As [`emit`](Equations::emit), with further functions.
     ///
     /// # Errors
     /// As for [`emit`](Equations::emit).
@@ -68,8 +68,9 @@ impl<'g> Equations<'g> {
         })
     }
 
-    /// Whether derivatives of the right-hand side are too long to be written out, as [`emit`](Equations::emit) does not: those
-    /// of a [directional](SourceFunction::directional) function would take compilers minutes, too.
+    /// Whether derivatives of the right-hand side are too long to be written out, as
+    /// [`emit`](Equations::emit) does not: those of a [directional](SourceFunction::directional) function
+    /// would take compilers minutes, too.
     ///
     /// # Errors
     /// As for [`emit`](Equations::emit).
@@ -134,8 +135,8 @@ impl<'g> Equations<'g> {
         if short { lines } else { Vec::new() }
     }
 
-    /// The table of a right-hand side whose Jacobian would be too long as statements: its operations, those of the mass matrix
-    /// and of the energy.
+    /// The table of a right-hand side whose Jacobian would be too long as statements: its operations, those
+    /// of the mass matrix and of the energy.
     fn shared(
         &self,
         writer: &Writer<'_, 'g>,
@@ -295,14 +296,14 @@ impl<'g> Equations<'g> {
     }
 }
 
-/// Whether the Jacobian of the right-hand side would be no text to be read.
+/// Whether the Jacobian of the right-hand side is too long to be read.
 fn is_long<'g>(system: &FirstOrder<'g>, solved: &Solved<'g>) -> Result<bool, MechError> {
     let inputs = system.inputs(&[]);
     let operations = Program::new(system.graph, &inputs, &solved.motion)?.code().len();
     Ok(operations * inputs.state.len() > LONG_JACOBIAN)
 }
 
-/// The motion solved for its accelerations.
+/// The rates, solved for the accelerations.
 struct Solved<'g> {
     factors: Factors<'g>,
     accelerations: Vec<Expr<'g>>,
@@ -327,7 +328,7 @@ struct Writer<'a, 'g> {
     options: &'a EmitOptions,
     inputs: Vec<String>,
     prefix: String,
-    /// What no local may be called.
+    /// Names that locals cannot have.
     reserved: Vec<String>,
 }
 
@@ -346,8 +347,8 @@ impl<'a, 'g> Writer<'a, 'g> {
         Writer { system, options, inputs, prefix: name + "_", reserved }
     }
 
-    /// A function of the name, purpose and array given; `slot` gives the index of each output in the array and what
-    /// it is.
+    /// A function of the given name, purpose and array; `slot` gives the index of each output in the array
+    /// and its meaning.
     fn routine(
         &self,
         name: &str,
@@ -359,7 +360,7 @@ impl<'a, 'g> Writer<'a, 'g> {
         self.routine_along(&[], name, purpose, (array, extent), values, slot)
     }
 
-    /// The same with these symbols of a direction after the parameters.
+    /// As [`routine`](Self::routine), with these symbols of a direction after the parameters.
     fn routine_along(
         &self,
         direction: &[Expr<'g>],

@@ -1,4 +1,4 @@
-//! Functions that are written beside those of the equations.
+//! Functions that are written in addition to those of the equations.
 
 use pc_expr::Expr;
 
@@ -12,8 +12,9 @@ pub struct SourceFunction<'g> {
 }
 
 impl<'g> SourceFunction<'g> {
-    /// A function of this name, an identifier, that writes these values, each with a word for what it is. They may contain the
-    /// [symbols of the accelerations](crate::System::accelerations). The purpose ends the sentence “Writes …”.
+    /// A function of this name, an identifier, that writes these values, each with a word for what it is.
+    /// They may contain the [symbols of the accelerations](crate::System::accelerations). The purpose ends
+    /// the sentence “Writes …”.
     pub fn new(
         name: impl Into<String>,
         purpose: impl Into<String>,
@@ -22,8 +23,8 @@ impl<'g> SourceFunction<'g> {
         SourceFunction { name: name.into(), purpose: purpose.into(), values, is_directional: false }
     }
 
-    /// A function that writes the derivatives of ẏ, then those of these values, along a direction (δy, δp), which follows p in
-    /// the array of the parameters:
+    /// A function that writes the derivatives of ẏ, then those of these values, along a direction (δy, δp),
+    /// which follows p in the array of the parameters:
     ///
     ///   δẏ = (∂ẏ/∂y) δy + (∂ẏ/∂p) δp,   δv = (∂v/∂y) δy + (∂v/∂p) δp.
     ///

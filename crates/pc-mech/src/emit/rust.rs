@@ -46,7 +46,7 @@ pub(super) fn files(source: &Source<'_>) -> Vec<EmittedFile> {
     vec![EmittedFile { name, text }]
 }
 
-/// Indented lines between fences: rustdoc would take them for Rust and try them.
+/// Indented lines between fences: rustdoc takes unfenced ones for Rust and tests them.
 fn fenced(lines: &[String]) -> Vec<String> {
     let mut fenced = Vec::new();
     for run in lines.chunk_by(|a, b| a.starts_with("    ") == b.starts_with("    ")) {

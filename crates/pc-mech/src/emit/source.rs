@@ -2,7 +2,7 @@
 
 use pc_expr::{Calls, Chain, FunctionBody, Language};
 
-/// Lists are broken there.
+/// The greatest width of a line of a list.
 const WIDTH: usize = 106;
 
 /// Options of emitted source.
@@ -17,7 +17,7 @@ pub struct EmitOptions {
     pub(super) jacobian: bool,
 }
 
-/// A motion to be tried.
+/// A motion to try.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
     pub(super) t: f64,
@@ -87,7 +87,7 @@ pub struct EmittedFile {
     pub text: String,
 }
 
-/// How many numbers a routine writes.
+/// The number of values that a routine writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Extent {
     /// One, which is returned.
@@ -100,7 +100,7 @@ pub(super) enum Extent {
     QuasiVelocitiesSquared,
     Integrals,
     Outputs,
-    /// So many.
+    /// This many.
     Count(usize),
 }
 
@@ -113,12 +113,12 @@ pub(super) struct Routine {
     pub(super) extent: Extent,
     /// Whether a direction follows the parameters.
     pub(super) directional: bool,
-    /// Whether zeros have to be written before the rest.
+    /// Whether zeros have to be written first.
     pub(super) sparse: bool,
     pub(super) body: FunctionBody,
 }
 
-/// All that the files of a language are put together from.
+/// All parts of the files of a language.
 pub(super) struct Source<'a> {
     pub(super) options: &'a EmitOptions,
     /// The name as an identifier.
@@ -133,12 +133,12 @@ pub(super) struct Source<'a> {
     /// The equations as text, unless they are long.
     pub(super) equations: Vec<String>,
     pub(super) routines: Vec<Routine>,
-    /// What these share: the table of operations of a long right-hand side.
+    /// A table of operations that they share, for a long right-hand side.
     pub(super) shared: Option<Chain>,
 }
 
 impl Source<'_> {
-    /// What all routines call.
+    /// The functions that all routines call.
     pub(super) fn calls(&self) -> Calls {
         let shared = self.shared.iter().fold(Calls::default(), |calls, chain| calls.and(&chain.calls));
         self.routines.iter().fold(shared, |calls, routine| calls.and(&routine.body.calls))

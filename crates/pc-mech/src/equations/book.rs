@@ -37,13 +37,14 @@ pub(crate) fn expanded<'g>(
     variables: &[Expr<'g>],
     style: Style,
 ) -> String {
-    // Written in a graph of its own, which merges nothing back to the nested form.
+    // A graph of its own keeps the expanded form.
     let page = system.graph().page(Folding::Structural);
     let written = sums_of_products(system, &[expression], variables, &page)[0];
     written.map_or_else(|| expression.display(style), |written| written.display(style))
 }
 
-/// The same of several in the graph of a page, symbols in book order; none of what is no polynomial.
+/// Several such expressions in the graph of a page, symbols in book order; `None` for those that are not
+/// polynomials.
 pub(crate) fn sums_of_products<'g, 'p>(
     system: &System<'g>,
     expressions: &[Expr<'g>],

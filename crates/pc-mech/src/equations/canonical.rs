@@ -14,7 +14,7 @@ use crate::equations::legendre::{Inverse, Legendre};
 use crate::error::{LagrangianError, MechError, shape};
 use crate::system::system::System;
 
-/// The rows up to which a block of the mass matrix is inverted by cofactors.
+/// The largest block of the mass matrix that is inverted by cofactors, in rows.
 const MOST_COFACTORS: usize = 3;
 
 /// The canonical equations in coordinates and momenta y_s = ∂L/∂η_s, with H(t, x, y) = y_s η_s − L:
@@ -110,8 +110,8 @@ impl<'g> System<'g> {
     }
 }
 
-/// η of M η = y − p_0, for each block of M by cofactors over the determinant where it is small: multiplied out they are
-/// as a book has them, and regular where M is.
+/// η of M η = y − p_0, for each small block of M by cofactors over the determinant: expanded they are as in a
+/// book, and regular where M is.
 fn solution<'g>(
     graph: &'g Graph,
     mass: &Matrix<Expr<'g>>,
@@ -156,7 +156,7 @@ fn cofactors<'g>(
     Some(Matrix::from_fn(size, size, |i, j| entries[i * size + j]))
 }
 
-/// The sets of rows of a symmetric matrix that entries tie together, each rising.
+/// The sets of rows that are coupled by entries of a symmetric matrix, each in ascending order.
 fn blocks(matrix: &Matrix<Expr<'_>>) -> Vec<Vec<usize>> {
     let mut open: Vec<usize> = (0..matrix.rows()).collect();
     let mut blocks = Vec::new();
@@ -308,7 +308,7 @@ impl<'g> Canonical<'g> {
     /// [`ExprError::UnboundSymbol`](pc_expr::ExprError::UnboundSymbol) for a symbol that is neither state nor
     /// declared parameter.
     pub fn legendre_transform(&self) -> Result<LegendreTransform, MechError> {
-        // External forces are in none of what is solved here.
+        // External forces occur in none of these equations.
         let equations = FirstOrder { parameters: self.system.parameters().to_vec(), ..self.first_order() };
         let of_velocities = self.momenta_of_velocities();
         LegendreTransform::unconstrained(
@@ -326,8 +326,8 @@ impl<'g> Canonical<'g> {
         Ok(FirstOrder { observables, conserved, ..self.first_order() })
     }
 
-    /// The equations with w = η, M η = y − p_0 or ∂L/∂η = y: H need not be formed, since X_s H = −X_s L at fixed
-    /// y and η. Nothing is observed.
+    /// The equations with w = η, M η = y − p_0 or ∂L/∂η = y: H is not needed, since X_s H = −X_s L at fixed y
+    /// and η. Nothing is observed.
     pub(crate) fn first_order(&self) -> FirstOrder<'g> {
         let (system, graph) = (&self.system, self.system.graph());
         let (x, eta) = (system.frame.coordinates(), &system.quasi_velocities);
@@ -370,7 +370,7 @@ impl<'g> Canonical<'g> {
     /// Integrals, energy and outputs in terms of (t, x, y, η).
     fn observables(&self) -> Result<Vec<(String, Expr<'g>)>, MechError> {
         let (system, graph) = (&self.system, self.system.graph());
-        // y_s η_s − L feels an error of η in second order only.
+        // An error of η changes y_s η_s − L in second order only.
         let energy = if self.is_closed() { system.energy() } else { self.hamiltonian };
         let energy = ("energy".to_owned(), energy);
         let mut observables: Vec<_> =

@@ -19,7 +19,7 @@ pub(crate) struct Legendre<'g> {
 /// How y = ∂L/∂η is solved for η.
 #[derive(Clone, Debug)]
 pub(crate) enum Inverse<'g> {
-    /// Of L = ½ M_rs η_r η_s + p_0s η_s + L_0, from M η = y − p_0.
+    /// By M η = y − p_0, for L = ½ M_rs η_r η_s + p_0s η_s + L_0.
     Closed {
         /// p_0
         momenta_at_rest: Vec<Expr<'g>>,
@@ -28,9 +28,9 @@ pub(crate) enum Inverse<'g> {
     },
     /// In numbers.
     Implicit {
-        /// An η in which L is not quadratic.
+        /// A quasi-velocity in which L is not quadratic.
         quasi_velocity: Expr<'g>,
-        /// The η from which the solution is looked for.
+        /// The η from which the iteration starts.
         guess: Vec<f64>,
     },
 }
@@ -62,7 +62,7 @@ impl<'g> Legendre<'g> {
     }
 }
 
-/// A quasi-velocity that stands in L otherwise than in squares and products of two.
+/// A quasi-velocity that occurs in L other than in squares and products of two.
 pub(crate) fn not_quadratic_in<'g>(system: &System<'g>) -> Expr<'g> {
     let (graph, lagrangian, eta) = (system.graph(), system.lagrangian(), system.quasi_velocities());
     let alone = eta.iter().find(|&&eta| quadratic(graph, lagrangian, &[eta]).is_none());

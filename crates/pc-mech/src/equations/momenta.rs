@@ -1,4 +1,4 @@
-//! Functions of velocities by the canonical equations.
+//! Functions of velocities in terms of momenta.
 
 use pc_expr::Expr;
 

@@ -8,14 +8,14 @@ use pc_expr::Expr;
 use crate::error::{LagrangianError, MechError, ShapeError};
 use crate::system::system::System;
 
-/// The equations of motion ẋ = b η + b_0 (3), M η̇ = r, which are (9) with n coordinates and k quasi-velocities, or (30)
-/// with l free ones in place of k.
+/// The equations of motion ẋ = b η + b_0 (3), M η̇ = r, which are (9) with n coordinates and k
+/// quasi-velocities, or (30) with l free ones in place of k.
 #[derive(Clone, Debug)]
 pub struct Equations<'g> {
     pub(crate) system: System<'g>,
     velocities: Vec<Expr<'g>>,
     energy: Expr<'g>,
-    /// M and r; of a large tree not before they are asked for.
+    /// M and r; for a large tree they are derived on first use.
     matrices: OnceCell<Matrices<'g>>,
 }
 
@@ -27,7 +27,7 @@ struct Matrices<'g> {
 }
 
 impl<'g> Matrices<'g> {
-    /// Where the derivation fails, what is used says so.
+    /// If the derivation fails, the undefined matrices are reported on use.
     fn undefined(size: usize) -> Matrices<'g> {
         let undefined = Expr::ONE / Expr::ZERO;
         Matrices { mass: Matrix::from_fn(size, size, |_, _| undefined), right: vec![undefined; size] }
@@ -74,7 +74,7 @@ impl<'g> System<'g> {
         })
     }
 
-    /// The same whether or not M is singular.
+    /// The same equations for any M, singular or not.
     pub(crate) fn equations(&self, free: usize) -> Result<Equations<'g>, MechError> {
         let graph = self.graph();
         let all = &self.quasi_velocities;
@@ -92,7 +92,7 @@ impl<'g> System<'g> {
         let (momenta, slope) = gradient.split_at(all.len());
         let mut system = self.restricted(free);
         if free == all.len() {
-            system.tree.clone_from(&self.tree); // nothing was put in
+            system.tree.clone_from(&self.tree); // no constraint was put in
         }
         let eta = &system.quasi_velocities;
         let velocities = system.frame.velocities(eta);
@@ -117,7 +117,7 @@ impl<'g> System<'g> {
         graph.check(&right)?;
         graph.check(&mass.nonzero_entries())?;
 
-        // Collected by products of quasi-velocities, then by parameters, the equations are those of a book.
+        // Collected by products of quasi-velocities, then by parameters, as in a book.
         let order = system.collecting_order();
         let shorten = |expressions: &[Expr<'g>]| graph.shorten(expressions, &order);
         let mass = mass.with_nonzero_entries(&shorten(&mass.nonzero_entries()));
@@ -206,8 +206,8 @@ impl<'g> Equations<'g> {
     }
 }
 
-/// The symmetric matrix of which these are the entries that are not zero, row by row; what is above the diagonal is not looked
-/// at.
+/// The symmetric matrix with these nonzero entries on and below the diagonal, row by row; entries above it
+/// are ignored.
 fn symmetric<'g>(rows: &[Vec<(usize, Expr<'g>)>]) -> Matrix<Expr<'g>> {
     let mut both = vec![Vec::new(); rows.len()];
     for (r, row) in rows.iter().enumerate() {

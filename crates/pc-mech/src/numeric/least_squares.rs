@@ -1,4 +1,4 @@
-//! Linear equations in numbers, which need be neither square nor independent.
+//! Linear equations in numbers, of any shape and rank.
 
 use pc_algebra::Matrix;
 
@@ -43,8 +43,8 @@ impl LeastSquares {
         }
     }
 
-    /// The shortest x of those with the smallest |A x − b|, where singular values up to `tolerance` times the largest count
-    /// as zero; b has length m.
+    /// The shortest x of those with the smallest |A x − b|, where singular values up to `tolerance` times the
+    /// largest count as zero; b has length m.
     pub fn shortest(&self, b: &[f64], tolerance: f64) -> Vec<f64> {
         let rank = self.rank(tolerance);
         self.combined(b, |i, value| if i < rank { value.recip() } else { 0.0 })
@@ -55,7 +55,7 @@ impl LeastSquares {
         self.combined(b, |_, value| if value > 0.0 { value / (value * value + mu) } else { 0.0 })
     }
 
-    /// V Σ' Uᵀ b, with the diagonal of Σ' a function of that of Σ.
+    /// V Σ' Uᵀ b, where Σ' is a diagonal function of Σ.
     fn combined(&self, b: &[f64], inverse: impl Fn(usize, f64) -> f64) -> Vec<f64> {
         let SingularValues { left, values, right } = &self.0;
         let along = |i: usize| left.column(i).zip(b).map(|(u, b)| u * b).sum::<f64>();

@@ -1,7 +1,8 @@
-//! Particles and rigid bodies: their contributions to the kinetic energy, to the force function and, by (8), to the forces.
+//! Particles and rigid bodies: their contributions to the kinetic energy, to the force function and, by (8),
+//! to the forces.
 //!
-//! Read `moving` (how a point moves with a frame, and what a body contributes), `particle` and `rigid_body`, then
-//! `body`, either of them. `velocity` is what a system keeps of its bodies.
+//! Read `moving` (how a point moves with a frame, and the contribution of a body), `particle` and
+//! `rigid_body`, then `body`, either of them. `velocity` is what a system keeps of its bodies.
 
 pub(crate) mod body;
 pub(crate) mod moving;

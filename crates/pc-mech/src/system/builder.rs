@@ -257,17 +257,17 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Adds bodies joined by joints: their kinetic energy, their weight, and the forces on them. The coordinates and
-    /// quasi-velocities of the [`Tree`] are among those of the system, whose [kinematics](SystemBuilder::kinematics) has their
-    /// velocities.
+    /// Adds bodies joined by joints: their kinetic energy, their weight, and the forces on them. The
+    /// coordinates and quasi-velocities of the [`Tree`] are among those of the system, whose
+    /// [kinematics](SystemBuilder::kinematics) has their velocities.
     #[must_use]
     pub fn tree(mut self, tree: Tree<'g>) -> Self {
         self.tree = Some(tree);
         self
     }
 
-    /// Lets gravity with the acceleration g(t), along the axes of their positions, act on all bodies: each adds m g · r to L,
-    /// r being the place of its mass centre.
+    /// Lets gravity with the acceleration g(t), along the axes of their positions, act on all bodies: each
+    /// adds m g · r to L, r being the place of its mass centre.
     ///
     /// ```
     /// # use pc_mech::{Graph, Particle, System};

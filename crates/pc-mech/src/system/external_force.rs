@@ -5,7 +5,8 @@ use pc_expr::{Expr, Failure};
 
 use crate::error::{ForceError, MechError};
 
-/// Forces Q_s (8) on the quasi-velocities that were [declared](crate::SystemBuilder::external_force) to have an external one.
+/// Forces Q_s (8) on the quasi-velocities that were [declared](crate::SystemBuilder::external_force) to have
+/// an external one.
 ///
 /// Implemented by closures `FnMut(t, y, q)` that write all q; one that may fail, or that knows its derivatives,
 /// implements it by hand. The state y is that of the motion: (x, η), or coordinates and momenta of the
@@ -29,8 +30,8 @@ pub trait ExternalForce {
     }
 }
 
-/// Writes difference quotients of the forces at (t, y) to `dq`, as [`ExternalForce::jacobian`] does unless it is implemented;
-/// `room` is workspace.
+/// Writes difference quotients of the forces at (t, y) to `dq`, as [`ExternalForce::jacobian`] does unless it
+/// is implemented; `room` is workspace.
 ///
 /// # Errors
 /// As [`ExternalForce::force`].

@@ -7,8 +7,9 @@ use std::sync::Arc;
 pub enum Interpolation {
     /// By straight lines.
     Linear,
-    /// By the cubic spline with continuous second derivative whose third derivative is continuous at the second time and at
-    /// the last but one, too (C. de Boor, *A Practical Guide to Splines*, ch. IV: not-a-knot).
+    /// By the cubic spline with continuous second derivative whose third derivative is continuous at the
+    /// second time and at the last but one, too (C. de Boor, *A Practical Guide to Splines*, ch. IV:
+    /// not-a-knot).
     Cubic,
     /// By the last value before, which holds after the last time, too.
     Hold,
@@ -89,7 +90,8 @@ impl Table {
     /// ```
     ///
     /// # Errors
-    /// [`TableError`] unless there are as many times as values, two at least (one if it holds), finite, and the times increase.
+    /// [`TableError`] unless there are as many times as values, two at least (one if it holds), finite, and
+    /// the times increase.
     pub fn new(times: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Result<Table, TableError> {
         if times.len() != values.len() {
             return Err(TableError::Lengths { times: times.len(), values: values.len() });
@@ -195,7 +197,7 @@ pub struct Signals {
     list: Vec<Signal>,
     /// The times of all tables, in ascending order.
     breaks: Arc<[f64]>,
-    /// Between which of them the evaluations are; none until an integrator says it.
+    /// The interval between breaks in which evaluations take place; `None` until an integrator enters one.
     between: Option<(f64, f64)>,
 }
 

@@ -1,10 +1,10 @@
-//! First-order states, which are no part of a frame.
+//! First-order states, which are not part of a frame.
 
 use pc_expr::Expr;
 
 use crate::error::{FrameError, MechError};
 
-/// That `parts`, called `what`, contain none of the first-order `states`.
+/// Checks that `parts`, called `what`, contain none of the first-order `states`.
 ///
 /// # Errors
 /// [`FrameError::OfState`]

@@ -20,7 +20,7 @@ pub struct System<'g> {
     /// Each z with ż.
     pub(crate) states: Vec<(Expr<'g>, Expr<'g>)>,
     pub(crate) parameters: Vec<(Expr<'g>, f64)>,
-    /// Those of the parameters that are functions of time.
+    /// The parameters that are functions of time.
     pub(crate) signals: Vec<Expr<'g>>,
     pub(crate) lagrangian: Expr<'g>,
     pub(crate) forces: Vec<Expr<'g>>,
@@ -28,7 +28,7 @@ pub struct System<'g> {
     pub(crate) integrals: Vec<(String, Expr<'g>)>,
     pub(crate) outputs: Vec<(String, Expr<'g>)>,
     pub(crate) bodies: Bodies<'g>,
-    /// The bodies joined by joints that it is made of, if it is made of nothing else that has inertia.
+    /// The bodies joined by joints of which it consists, if nothing else in it has inertia.
     pub(crate) tree: Option<Box<TreeSystem<'g>>>,
 }
 
@@ -69,7 +69,7 @@ impl<'g> System<'g> {
         self.frame.coordinates().iter().chain(moving).chain(states).copied().collect()
     }
 
-    /// That what the frame is made of, called `what`, contains no first-order state.
+    /// Checks that parts of the frame, called `what`, contain no first-order state.
     ///
     /// # Errors
     /// [`FrameError::OfState`]
@@ -87,12 +87,14 @@ impl<'g> System<'g> {
         self.tree.as_ref().map(|tree| &tree.tree)
     }
 
-    /// That tree, if its equations are too long to be written out whole: they are derived, compiled and printed from body to body.
+    /// The [tree](System::tree), if its equations are too long to be written out whole: they are derived, compiled and
+    /// printed from body to body.
     pub fn large_tree(&self) -> Option<&Tree<'g>> {
         self.tree().filter(|tree| tree.is_large())
     }
 
-    /// The acceleration of gravity of a [tree](System::tree), along the axes of the world; zero of a system that is none.
+    /// The acceleration of gravity of a [tree](System::tree), along the axes of the world; zero of a system
+    /// that is none.
     pub fn gravity(&self) -> [Expr<'g>; 3] {
         self.tree.as_ref().map_or([Expr::ZERO; 3], |tree| tree.gravity)
     }
@@ -123,8 +125,8 @@ impl<'g> System<'g> {
         &self.forces
     }
 
-    /// The symbols in Q that stand for [external forces](crate::SystemBuilder::external_force), each with the name of the
-    /// quasi-velocity on which it acts, in the order of declaration.
+    /// The symbols in Q that stand for [external forces](crate::SystemBuilder::external_force), each with the
+    /// name of the quasi-velocity on which it acts, in the order of declaration.
     pub fn external_forces(&self) -> &[(String, Expr<'g>)] {
         &self.external
     }
@@ -151,7 +153,7 @@ impl<'g> System<'g> {
         self.parameters.iter().copied().chain(external).collect()
     }
 
-    /// Those of them that may change at each evaluation: signals and external forces.
+    /// The inputs that may change at each evaluation: signals and external forces.
     pub(crate) fn varying_inputs(&self) -> Vec<Expr<'g>> {
         self.signals.iter().copied().chain(self.external.iter().map(|&(_, symbol)| symbol)).collect()
     }
@@ -183,7 +185,7 @@ impl<'g> System<'g> {
         self.quasi_velocities.iter().copied().chain(parameters).collect()
     }
 
-    /// The symbol of that name, with `mark` before it as often as it takes to be none of the system's.
+    /// The symbol of that name, with `mark` before it as often as needed to differ from those of the system.
     pub(crate) fn unused(&self, name: String, mark: &str) -> Expr<'g> {
         let parameters = self.parameters.iter().map(|(symbol, _)| symbol);
         let taken: Vec<Expr<'g>> = self.state().into_iter().chain(parameters.copied()).collect();
@@ -211,8 +213,8 @@ impl<'g> System<'g> {
         }
     }
 
-    /// The same system with `put` applied to the expressions that are not its frame's: Lagrangian, forces, integrals,
-    /// outputs, rates of the states, velocities of bodies.
+    /// The same system with `put` applied to the expressions outside the frame: Lagrangian, forces,
+    /// integrals, outputs, rates of the states, velocities of bodies.
     #[must_use]
     pub(crate) fn map_expressions(self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'g>>) -> System<'g> {
         let one = |x: Expr<'g>| put(&[x])[0];
@@ -240,7 +242,7 @@ impl<'g> System<'g> {
         System {
             frame: self.frame.map(bind),
             structure: self.structure.map(bind),
-            // Before L: what is made first is summed first.
+            // Before L: operands are summed in the order of creation.
             states: self.states.iter().map(|&(z, rate)| (z, bind(rate))).collect(),
             parameters: self.parameters.iter().filter(|(p, _)| self.signals.contains(p)).copied().collect(),
             tree: self.tree.as_ref().map(|tree| Box::new(tree.map(graph, bind))),
@@ -271,13 +273,13 @@ impl<'g> System<'g> {
         System { integrals: put(&self.integrals), outputs: put(&self.outputs), ..self.clone() }
     }
 
-    /// The same system with more outputs, after those it has.
+    /// The same system with further outputs, after its own.
     #[must_use]
     pub fn with_more_outputs(&self, more: impl IntoIterator<Item = (String, Expr<'g>)>) -> System<'g> {
         System { outputs: self.outputs.iter().cloned().chain(more).collect(), ..self.clone() }
     }
 
-    /// The same system with more generalised forces, one a quasi-velocity.
+    /// The same system with further generalised forces, one for each quasi-velocity.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError) if there are more or fewer.
@@ -289,7 +291,7 @@ impl<'g> System<'g> {
         })
     }
 
-    /// The states with their rates put in other terms.
+    /// The states with their rates in other terms.
     pub(crate) fn states_in(&self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'g>>) -> Vec<(Expr<'g>, Expr<'g>)> {
         self.states.iter().map(|&(z, rate)| (z, put(&[rate])[0])).collect()
     }

@@ -41,7 +41,7 @@ impl<'g> System<'g> {
         Ok(self.orthonormal_change(names)?.system().clone())
     }
 
-    /// The same with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
+    /// The system, with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
     ///
     /// # Errors
     /// Those of [`in_orthonormal_frame`](System::in_orthonormal_frame).
@@ -67,7 +67,7 @@ impl<'g> System<'g> {
         let mass = Matrix::from_fn(free, free, |r, s| entries[r.max(s) * free + r.min(s)]);
         self.check_regular(&mass)?;
         let Factors::Ldl(factors) = Factors::of(graph, &mass) else {
-            // A regular matrix without a pivot on its diagonal is no metric.
+            // A regular matrix without a pivot on its diagonal is not a metric.
             let quasi_velocities = eta[..free].iter().map(Expr::to_string).collect();
             return Err(LagrangianError::Degenerate { rank: 0, size: free, quasi_velocities }.into());
         };

@@ -6,7 +6,8 @@ use pc_expr::Expr;
 use crate::error::{MechError, shape};
 use crate::system::system::System;
 
-/// A system in other quasi-velocities η' = A η + A_0, with these in terms of the old ones, and the old ones in terms of them.
+/// A system in other quasi-velocities η' = A η + A_0, with these in terms of the old ones, and the old ones
+/// in terms of them.
 #[derive(Clone, Debug)]
 pub struct QuasiVelocityChange<'g> {
     system: System<'g>,
@@ -73,7 +74,7 @@ impl<'g> System<'g> {
         Ok(self.quasi_velocity_change(names, definitions)?.system)
     }
 
-    /// The same with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
+    /// The system, with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
     ///
     /// # Errors
     /// Those of [`in_quasi_velocities`](System::in_quasi_velocities).
@@ -113,7 +114,7 @@ impl<'g> System<'g> {
         Ok(self.frame.changed_by(&matrix, &drift)?)
     }
 
-    /// This system in the quasi-velocities of a change, which are called `symbols`, with the frame it leads to.
+    /// This system in the quasi-velocities of a change, called `symbols`, with the resulting frame.
     pub(crate) fn changed(
         &self,
         symbols: Vec<Expr<'g>>,

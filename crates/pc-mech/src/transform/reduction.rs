@@ -1,4 +1,4 @@
-//! Coordinates that nothing depends on, left out: Euler–Poincaré equations.
+//! Systems without their ignorable coordinates: Euler–Poincaré equations.
 
 use pc_algebra::{Frame, Matrix};
 use pc_expr::Expr;
@@ -75,13 +75,13 @@ impl<'g> System<'g> {
             forces,
             integrals: known(&self.integrals),
             outputs: known(&self.outputs),
-            bodies: Bodies { list: Vec::new(), rest: lagrangian }, // their places are gone
+            bodies: Bodies { list: Vec::new(), rest: lagrangian }, // their coordinates are left out
             tree: None,
             ..self.clone()
         })
     }
 
-    /// The coordinates that `dynamics` depend on, and those that the velocities of these do.
+    /// The coordinates on which `dynamics` depend, and those on which the velocities of these depend.
     fn kept(&self, dynamics: &[Expr<'g>]) -> Vec<usize> {
         let x = self.frame.coordinates();
         let mut matters: Vec<bool> = x.iter().map(|&x| dynamics.iter().any(|f| f.depends_on(x))).collect();

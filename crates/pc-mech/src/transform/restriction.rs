@@ -15,8 +15,8 @@ impl<'g> System<'g> {
     /// lose, counts among its forces, so that its [canonical](System::canonical) equations are (34), with y_s =
     /// ∂θ/∂η_s.
     ///
-    /// Its structure coefficients are the c_rs^m, m ≤ `free`, which are not those of its frame unless the constraints are
-    /// integrable; the bracket that they define does not satisfy Jacobi's identity.
+    /// Its structure coefficients are the c_rs^m, m ≤ `free`, which are not those of its frame unless the
+    /// constraints are integrable; the bracket that they define does not satisfy Jacobi's identity.
     ///
     /// # Errors
     /// [`ShapeError`] if there are fewer than `free` quasi-velocities.
@@ -28,7 +28,7 @@ impl<'g> System<'g> {
         }
         let restricted = self.restricted(free);
         let zeros: Vec<_> = all[free..].iter().map(|&eta| (eta, Expr::ZERO)).collect();
-        // (∂L/∂η_α)_0, and nothing for m ≤ l
+        // (∂L/∂η_α)_0, and zero for m ≤ l
         let mut dropped = graph.substitute(&self.momenta(), &zeros);
         dropped[..free].fill(Expr::ZERO);
         let lost = self.structure.gyroscopic(graph, &graph.substitute(all, &zeros), &dropped);
@@ -46,8 +46,8 @@ impl<'g> System<'g> {
         })
     }
 
-    /// The system with the first `free` quasi-velocities, the others zero. Its structure coefficients stay those of
-    /// the whole frame, and nothing may be derived from its Lagrangian but the energy.
+    /// The system of the first `free` quasi-velocities, the others zero. Its structure coefficients stay
+    /// those of the whole frame, and only the energy may be derived from its Lagrangian.
     pub(crate) fn restricted(&self, free: usize) -> System<'g> {
         let graph = self.graph();
         let dropped = &self.quasi_velocities[free..];

@@ -1,12 +1,13 @@
-//! Articulated inertias: what is left of a tree when the joints beyond a link are eliminated, from the tips to the root.
+//! Articulated inertias: the inertia of a subtree once the joints beyond a link are eliminated, from the tips
+//! to the root.
 //!
 //! Forces on a link and its accelerations, six components each, are related by
 //!
 //!   n = J α + H a + n_0,   f = Hᵀ α + M a + f_0,
 //!
-//! with the moment n about its origin and the acceleration a of this. A joint that leaves the component c free, where the force
-//! τ acts, is eliminated as a row of a symmetric matrix Φ = (J H; Hᵀ M) is:
-//!
+//! with the moment n about its origin and the acceleration a of this. A joint that leaves the component c
+//! free, where the force with the moment n about its origin and the acceleration a of that. A free component
+//! c of a joint, with the force τ, is eliminated as a row of a symmetric matrix Φ = (J H; Hᵀ M) is:
 //!   w_c = (τ − p_c − Σ_{r≠c} Φ_cr A_r)/Φ_cc,   Φ ← Φ − Φ_c Φ_cᵀ/Φ_cc,   p ← p + Φ_c (τ − p_c)/Φ_cc.
 //!
 //! This is the elimination M = Lᵀ D L of the mass matrix of all of the tree, in an order in which it does not fill in
@@ -19,7 +20,7 @@ use crate::tree::spatial::{Tensor, Vector, ZERO, cross, tensor, transpose, vecto
 use crate::tree::tree::MassOnLink;
 use crate::tree::turning::Turning;
 
-/// Six components: those of a turn, then those of a displacement; or of a moment, then of a force.
+/// Six components: rotation, then displacement; or moment, then force.
 pub(crate) type Spatial<'g> = [Expr<'g>; 6];
 
 pub(crate) fn joined<'g>(turning: &Vector<'g>, moving: &Vector<'g>) -> Spatial<'g> {
@@ -39,7 +40,7 @@ pub(crate) fn moving_part<'g>(a: &Spatial<'g>) -> Vector<'g> {
 pub(crate) struct Inertia6<'g>([[Expr<'g>; 6]; 6]);
 
 impl<'g> Inertia6<'g> {
-    /// That of a body with this mass.
+    /// The inertia of a body with this mass.
     pub(crate) fn rigid(body: &MassOnLink<'g>) -> Inertia6<'g> {
         let h = skew(&body.moment);
         Inertia6::of(&body.inertia, &h, &tensor(|i, j| if i == j { body.mass } else { Expr::ZERO }))
@@ -59,7 +60,7 @@ impl<'g> Inertia6<'g> {
         self.map(|r, c, entry| graph.keep(entry + other.0[r][c]))
     }
 
-    /// The same with each entry on and below the diagonal replaced, and those above with them.
+    /// The matrix with each entry on and below the diagonal replaced, and those above accordingly.
     fn map(&self, put: impl Fn(usize, usize, Expr<'g>) -> Expr<'g>) -> Inertia6<'g> {
         let mut mapped = *self;
         for r in 0..6 {
@@ -71,9 +72,9 @@ impl<'g> Inertia6<'g> {
         mapped
     }
 
-    /// What is left of the inertia of a body alone, if it resists the direction by a number that is no rounding of `size`. Then the
-    /// pivot of the joint is no smaller: what the bodies beyond add is nowhere negative, and what is left of a sum is at least the
-    /// sum of what is left of its parts.
+    /// The remaining inertia of a single body, if it resists the direction by a number that is not a rounding
+    /// error of `size`. The pivot of the joint is then at least as large: the inertia of the bodies beyond is
+    /// nonnegative, and the remainder of a sum is at least the sum of the remainders.
     fn resisting(&self, graph: &'g Graph, direction: Direction<'g>, size: Expr<'g>) -> Option<Inertia6<'g>> {
         let column = direction.column(graph, self);
         let number = |x: Expr<'g>| x.constant().map(Number::to_f64);
@@ -85,7 +86,8 @@ impl<'g> Inertia6<'g> {
         (tensor(|i, j| self.0[i][j]), tensor(|i, j| self.0[i][j + 3]), tensor(|i, j| self.0[i + 3][j + 3]))
     }
 
-    /// The same seen from the parent: turned to its axes, then about its origin, from which that of the link is at `place`.
+    /// The inertia seen from the parent: rotated to its axes, then about its origin, from which that of the
+    /// link is at `place`.
     ///
     ///   G = Hᵀ − M r̂,   J ← J − H r̂ + r̂ G,   H ← Gᵀ
     fn seen(&self, graph: &'g Graph, turning: &Turning<'g>, place: &Vector<'g>) -> Inertia6<'g> {
@@ -93,7 +95,7 @@ impl<'g> Inertia6<'g> {
         let turned = |block: &Tensor<'g>| turning.matrix_to_parent(graph, block);
         let (j, h, m) = (turned(&j), turned(&h), turned(&m));
         let keep = |x: Expr<'g>| graph.keep(x);
-        // Of two symmetric blocks what stands below the diagonal is what stands above.
+        // In symmetric blocks the entries below the diagonal are those above.
         let symmetric = |a: Tensor<'g>| tensor(|i, k| if i <= k { a[i][k] } else { a[k][i] });
         let (j, m) = (symmetric(j), symmetric(m));
         // a r̂, row by row: r × over the columns
@@ -110,7 +112,7 @@ impl<'g> Inertia6<'g> {
     }
 }
 
-/// A force seen from the parent: f along its axes, n + r × f.
+/// A force along the parent's axes and about its origin: f, n + r × f.
 pub(crate) fn force_seen<'g>(
     graph: &'g Graph,
     turning: &Turning<'g>,
@@ -123,7 +125,7 @@ pub(crate) fn force_seen<'g>(
     joined(&vector(|i| graph.keep(n[i] + arm[i])), &f)
 }
 
-/// An acceleration of the parent seen from the link: α along its axes, a + α × r.
+/// The parent's acceleration at the origin of the link: α, a + α × r.
 pub(crate) fn acceleration_seen<'g>(
     graph: &'g Graph,
     turning: &Turning<'g>,
@@ -151,24 +153,25 @@ pub(crate) struct Freedom<'g> {
     inverse: Expr<'g>,
     /// Φ s/(s·Φ s), zero at its own component.
     factors: Spatial<'g>,
-    /// s·Φ s with the size of what it is left of, if it may vanish.
+    /// s·Φ s with the size of the terms it remains from, if it may vanish.
     pub(crate) watched: Option<(Expr<'g>, Expr<'g>)>,
-    /// Whether nothing resists it at any state: s·Φ s is zero.
+    /// Whether s·Φ s is identically zero: no inertia resists the direction.
     pub(crate) is_massless: bool,
 }
 
-/// s, one of the six components; of a screw one of the first three, and a multiple of that which belongs to it.
+/// s, one of the six components; for a screw one of the first three plus a multiple of the displacement along
+/// it.
 #[derive(Clone, Copy, Debug)]
 struct Direction<'g> {
     component: usize,
     pitch: Expr<'g>,
 }
 
-/// What is left of a number may be rounding where it is this part of it.
+/// A remainder this small against its terms may be rounding.
 const ROUNDING: f64 = 1e-12;
 
 impl<'g> Direction<'g> {
-    /// Whether it is this one of the six components.
+    /// Whether this is the component number `r` of the six.
     fn is_component(&self, r: usize) -> bool {
         self.pitch.is_zero() && r == self.component
     }
@@ -181,7 +184,7 @@ impl<'g> Direction<'g> {
         })
     }
 
-    /// What s·Φ s can be at most: the trace of J, or of M, in the units of the direction.
+    /// An upper bound of s·Φ s: the trace of J, or of M, in the units of the direction.
     fn size(&self, graph: &'g Graph, phi: &Inertia6<'g>) -> Expr<'g> {
         let trace = |first: usize| graph.sum((first..first + 3).map(|r| phi.0[r][r]));
         match self.component < 3 {
@@ -215,7 +218,7 @@ impl<'g> Freedom<'g> {
         }
     }
 
-    /// Takes the component that is left free out of an acceleration, if it is one of the six.
+    /// Removes the free component from an acceleration and returns it, if it is one of the six.
     pub(crate) fn leave_out(&self, a: &mut Spatial<'g>) -> Expr<'g> {
         match self.direction.pitch.is_zero() {
             true => std::mem::replace(&mut a[self.direction.component], Expr::ZERO),
@@ -225,7 +228,7 @@ impl<'g> Freedom<'g> {
 }
 
 impl<'g> Hinge<'g> {
-    /// The components that it leaves free, in the order of its quasi-velocities.
+    /// The free components, in the order of its quasi-velocities.
     fn directions(&self) -> Vec<Direction<'g>> {
         let of = |component: usize| Direction { component, pitch: Expr::ZERO };
         match self {
@@ -255,8 +258,8 @@ pub(crate) struct Eliminated<'g> {
 }
 
 impl<'g> Articulated<'g> {
-    /// Eliminates the joints of links with these masses, from the last to the first. Where no inertia is negative, those of the
-    /// bodies by themselves, `own`, tell which pivots cannot vanish.
+    /// Eliminates the joints of links with these masses, from the last to the first. Where all inertias are
+    /// nonnegative, those of the single bodies, `own`, show which pivots cannot vanish.
     pub(crate) fn of(
         graph: &'g Graph,
         links: &[Link<'g>],
@@ -294,8 +297,8 @@ impl<'g> Articulated<'g> {
         Articulated { graph, links: eliminated }
     }
 
-    /// How the links accelerate, relative to accelerations that the forces p on them belong to: the components τ of the
-    /// joints, link after link, are `applied`. Answers the absolute change of the free components.
+    /// The response of the free components to the forces p on the links and the components τ = `applied` of
+    /// the joints, link after link, relative to the accelerations to which p belongs.
     pub(crate) fn solve(
         &self,
         forces: Vec<Option<Spatial<'g>>>,
@@ -314,7 +317,7 @@ impl<'g> Articulated<'g> {
                     *p = graph.keep(*p + column * impulse);
                 }
                 if freedom.direction.pitch.is_zero() {
-                    p[freedom.direction.component] = applied; // what is left there
+                    p[freedom.direction.component] = applied; // the remaining force is τ
                 }
                 impulses[i].push(impulse);
             }
@@ -354,8 +357,8 @@ impl<'g> Articulated<'g> {
     }
 }
 
-/// Eliminates a component: what is left of `inertia` does not resist it. Its pivot is watched if it has a `size`, which it is left
-/// of.
+/// Eliminates a component: the remaining `inertia` does not resist it. Its pivot is watched if the `size` of
+/// its terms is given.
 fn eliminate<'g>(
     graph: &'g Graph,
     inertia: &mut Inertia6<'g>,

@@ -11,7 +11,7 @@ use crate::tree::spatial::{Vector, ZERO};
 #[derive(Clone, Debug)]
 pub struct TreeBody<'g> {
     pub(crate) name: String,
-    /// None is the world.
+    /// `None` is the world.
     pub(crate) parent: Option<String>,
     pub(crate) joint: Joint<'g>,
     pub(crate) mass: Expr<'g>,
@@ -72,7 +72,7 @@ impl<'g> TreeBody<'g> {
         TreeBody { torque: torque.map(Into::into), ..self }
     }
 
-    /// The same with each expression replaced.
+    /// The body with each expression replaced.
     pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> TreeBody<'n> {
         TreeBody {
             name: self.name.clone(),

@@ -4,13 +4,15 @@
 //!
 //!   ω = Rᵀ ω_p + ω_r,   α = Rᵀ α_p + ω × ω_r + ω̇_r,   a = Rᵀ (a_p + B_p r) + (2ω − ω_r) × v_r + v̇_r,
 //!
-//! with ω_r, v_r against the parent and B = α̂ + ω̂ω̂; the root of the world accelerates by −g, so that no weight is needed. The
-//! force on it is f = m a + B h, n = I α + ω × I ω + h × a, h = m c the first moment. What η̇ adds to a reference motion is found by
-//! [articulated inertias](crate::tree::articulated). In the reference motion the components of α and a that the joint leaves free
-//! are zero: they may have any value there.
+//! with ω_r, v_r relative to the parent and B = α̂ + ω̂ω̂; the world accelerates by −g, which replaces the
+//! weights. The force on the link is f = m a + B h, n = I α + ω × I ω + h × a, with the first moment h = m c.
+//! The difference between η̇ and a reference motion follows from [articulated
+//! inertias](crate::tree::articulated). In the reference motion the components of α and a that the joint
+//! leaves free are zero, an arbitrary choice.
 //!
-//! These are Poincaré's equations (9) with the velocities of all links as auxiliary quasi-velocities: d/dt ∂T/∂ω + ω × ∂T/∂ω for
-//! each link is (18) on its Lie algebra, and the joints are conditions that say how they follow from η.
+//! These are Poincaré's equations (9) with the velocities of all links as auxiliary quasi-velocities: d/dt
+//! ∂T/∂ω + ω × ∂T/∂ω for each link is (18) on its Lie algebra, and the joints are constraints that relate
+//! them to η.
 
 use pc_expr::{Expr, Graph};
 
@@ -19,7 +21,7 @@ use crate::tree::link::Link;
 use crate::tree::spatial::{Tensor, Vector, ZERO, cross, tensor, vector};
 use crate::tree::tree::{MassOnLink, Tree};
 
-/// How a link accelerates.
+/// The acceleration of a link.
 #[derive(Clone, Copy, Debug)]
 struct Acceleration<'g> {
     omega: Vector<'g>,
@@ -51,7 +53,7 @@ impl<'g> Acceleration<'g> {
         vector(|i| graph.keep(graph.sum((0..3).map(|j| r[j] * self.field[i][j]).chain([self.a[i]]))))
     }
 
-    /// The moment and force that a body with this mass takes.
+    /// The moment and force that accelerate a body of this mass.
     fn force(&self, graph: &'g Graph, body: &MassOnLink<'g>) -> Spatial<'g> {
         let MassOnLink { mass, moment: h, inertia } = body;
         let f = vector(|i| {
@@ -117,12 +119,12 @@ impl<'g> TreeDynamics<'g> {
         relative.into_iter().zip(&dropped).map(total).collect()
     }
 
-    /// The same with each mass where it is.
+    /// The same equations without regrouped masses.
     pub(crate) fn with_own_masses(self, tree: &Tree<'g>) -> TreeDynamics<'g> {
         TreeDynamics { masses: (0..tree.links.len()).map(|link| tree.mass_on(link)).collect(), ..self }
     }
 
-    /// The moments and forces on the links by their joints that the accelerations `unknowns` take, beside `loads`.
+    /// The moments and forces of the joints on the links for the accelerations `unknowns` under `loads`.
     pub(crate) fn forces_on_joints(
         &self,
         unknowns: &[Vec<Expr<'g>>],
@@ -145,7 +147,7 @@ impl<'g> TreeDynamics<'g> {
         forces
     }
 
-    /// τ less the forces that the accelerations `unknowns` take, link after link: zero where these are the right ones.
+    /// τ minus the forces that the accelerations `unknowns` need, link after link: zero for the solution.
     pub(crate) fn balance(&self, unknowns: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
         let forces = self.forces_on_joints(unknowns, &vec![[Expr::ZERO; 6]; self.links.len()]);
         let left = |(i, link): (usize, &Eliminated<'g>)| {
@@ -155,7 +157,8 @@ impl<'g> TreeDynamics<'g> {
         self.articulated.links.iter().enumerate().map(left).collect()
     }
 
-    /// How the links accelerate with these η̇, or in the reference motion, of which the components left out are answered.
+    /// The accelerations of the links for these η̇, or in the reference motion, with the components left out
+    /// there.
     fn motions(&self, unknowns: Option<&[Vec<Expr<'g>>]>) -> (Vec<Acceleration<'g>>, Vec<Vec<Expr<'g>>>) {
         let graph = self.graph;
         let world = Acceleration::new(graph, ZERO, ZERO, self.gravity.map(|g| -g));

@@ -14,7 +14,7 @@ pub(crate) struct TreeEquations<'g> {
 }
 
 impl TreeEquations<'_> {
-    /// That each joint is resisted by some inertia.
+    /// Checks that some inertia resists each joint.
     ///
     /// # Errors
     /// [`LagrangianError::Degenerate`] with the quasi-velocities of those that are not.
@@ -31,7 +31,7 @@ impl TreeEquations<'_> {
         Err(LagrangianError::Degenerate { rank: size - massless.len(), size, quasi_velocities })
     }
 
-    /// Whether it has more quasi-velocities than a mass matrix that is looked at whole.
+    /// Whether it has too many quasi-velocities for a mass matrix as a whole.
     pub(crate) fn is_large(&self) -> bool {
         self.system.is_large()
     }

@@ -1,14 +1,14 @@
-//! How a body moves against another.
+//! How a body moves relative to its parent.
 
 use pc_algebra::Matrix;
 use pc_expr::Expr;
 
 use crate::tree::spatial::{Tensor, Vector, ZERO, entries_of, unit};
 
-/// A joint: how a body moves against its parent.
+/// A joint: how a body moves relative to its parent.
 ///
-/// It stands at a point of the parent, with axes of its own. The origin of the body is the point of the joint, and the axes of
-/// the body are those of the joint where all coordinates of the joint vanish.
+/// It is at a point of the parent, with axes of its own. The origin of the body is the point of the
+/// joint, and the axes of the body are those of the joint where all coordinates of the joint vanish.
 ///
 /// | kind | movement of the body | coordinates, quasi-velocities of a body `arm` |
 /// |---|---|---|
@@ -28,7 +28,7 @@ pub struct Joint<'g> {
     pub(crate) place: Vector<'g>,
     /// From the axes of the joint to those of the parent.
     pub(crate) rotation: Tensor<'g>,
-    /// Coordinates and quasi-velocities, where they are not those of the rule.
+    /// Names of coordinates and quasi-velocities, if they differ from the default ones.
     pub(crate) names: Option<(Vec<String>, Vec<String>)>,
 }
 
@@ -80,7 +80,8 @@ impl<'g> Joint<'g> {
         Joint::of(Kind::Universal(first, second))
     }
 
-    /// Slides along two axes orthogonal to a normal, which makes them a right-handed system, and turns about the normal. For the normal (0, 0, 1) they are x and y.
+    /// Slides along two axes orthogonal to a normal, which makes them a right-handed system, and turns about
+    /// the normal. For the normal (0, 0, 1) they are x and y.
     pub fn planar(normal: [f64; 3]) -> Joint<'g> {
         Joint::of(Kind::Planar(normal))
     }
@@ -125,7 +126,7 @@ impl<'g> Joint<'g> {
         Joint { names: Some(list), ..self }
     }
 
-    /// The same with each expression replaced.
+    /// The joint with each expression replaced.
     pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Joint<'n> {
         Joint {
             kind: self.kind.map(put),

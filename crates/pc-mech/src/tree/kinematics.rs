@@ -1,4 +1,4 @@
-//! How bodies move: from each body to those that hang on it.
+//! The motion of bodies, from each one to those that hang on it.
 
 use pc_algebra::{LieGroup, Matrix, Side, UnitQuaternions};
 use pc_expr::{Expr, Graph};
@@ -10,20 +10,20 @@ use crate::tree::spatial::{
 };
 use crate::tree::tree::{Stand, Tree};
 
-/// How a link moves: its place and axes in the world, and its velocities along its own axes.
+/// The motion of a link: its place and axes in the world, and its velocities along its own axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkMotion<'g> {
-    /// Of its origin.
+    /// Place of its origin.
     pub(crate) place: Vector<'g>,
     /// From its axes to those of the world.
     pub(crate) rotation: Tensor<'g>,
-    /// Of its origin.
+    /// Velocity of its origin.
     pub(crate) velocity: Vector<'g>,
     pub(crate) omega: Vector<'g>,
 }
 
 impl<'g> LinkMotion<'g> {
-    /// The same, each number of it a step of the recursion.
+    /// The same motion with each number kept as a step of the recursion.
     fn kept(&self, graph: &'g Graph) -> LinkMotion<'g> {
         let keep = |v: &Vector<'g>| v.map(|component| graph.keep(component));
         LinkMotion {
@@ -38,7 +38,7 @@ impl<'g> LinkMotion<'g> {
 const AT_REST: fn() -> LinkMotion<'static> =
     || LinkMotion { place: ZERO, rotation: unit(), velocity: ZERO, omega: ZERO };
 
-/// How the bodies of a tree move.
+/// The motions of the bodies of a tree.
 #[derive(Clone, Debug)]
 pub struct Motions<'a, 'g> {
     pub(crate) tree: &'a Tree<'g>,
@@ -83,16 +83,16 @@ impl<'a, 'g> Motions<'a, 'g> {
     }
 }
 
-/// How a body moves against its parent.
+/// The motion of a body relative to its parent.
 #[derive(Clone, Debug)]
 pub struct JointMotion<'g> {
     /// From the axes of the body to those of its parent, 3 × 3.
     pub rotation: Matrix<Expr<'g>>,
     /// The place of the origin of the body, along the axes of its parent from the origin of this.
     pub place: [Expr<'g>; 3],
-    /// Its angular velocity against the parent, along its axes.
+    /// Its angular velocity relative to the parent, along its axes.
     pub angular_velocity: [Expr<'g>; 3],
-    /// The velocity of its origin against the parent, along its axes.
+    /// The velocity of its origin relative to the parent, along its axes.
     pub velocity: [Expr<'g>; 3],
     /// The quasi-velocities of the joint.
     pub quasi_velocities: Vec<Expr<'g>>,
@@ -104,12 +104,12 @@ impl<'g> Tree<'g> {
         self.declared().flat_map(|link| rates(self.graph, &self.links[link].hinge)).collect()
     }
 
-    /// How all bodies move, as expressions of x and η.
+    /// The motions of all bodies, as expressions in x and η.
     pub fn motions(&self) -> Motions<'_, 'g> {
         Motions::of(self)
     }
 
-    /// How a body moves against its parent, or the world: what its joint does.
+    /// The motion of a body relative to its parent, or to the world.
     pub fn joint_motion(&self, body: &str) -> Option<JointMotion<'g>> {
         let (graph, i) = (self.graph, self.place_of(body)?);
         let world = Stand { link: None, place: ZERO, rotation: unit() };
@@ -149,7 +149,8 @@ impl<'g> Motions<'_, 'g> {
             .map(|(motion, stand)| matrix_of(&product(self.tree.graph, &motion.rotation, &stand.rotation)))
     }
 
-    /// The velocity of the mass centre along the axes of the link, with the place of this there.
+    /// The motion of the link of a body, the place of its mass centre there, and the velocity of that along
+    /// the axes of the link.
     fn centre(&self, body: usize) -> (LinkMotion<'g>, Vector<'g>, Vector<'g>) {
         let (graph, stand) = (self.tree.graph, &self.tree.stands[body]);
         let motion = self.of_stand(stand);
@@ -223,7 +224,7 @@ impl<'g> Link<'g> {
 }
 
 impl<'g> Hinge<'g> {
-    /// From the axes of the link to those of the joint. Of a quaternion it is |q|² times a rotation.
+    /// From the axes of the link to those of the joint; for a quaternion |q|² times a rotation.
     pub(crate) fn turning(&self) -> Tensor<'g> {
         match self {
             Hinge::Turn { axis, angle, .. } => plane_rotation(*axis, angle.cos(), angle.sin()),
@@ -234,7 +235,7 @@ impl<'g> Hinge<'g> {
         }
     }
 
-    /// Where its origin is, along the axes of the joint.
+    /// The place of its origin, along the axes of the joint.
     pub(crate) fn displacement(&self) -> Vector<'g> {
         match self {
             Hinge::Turn { axis, pitch, angle, .. } => along(*axis, *pitch * *angle),
@@ -244,7 +245,7 @@ impl<'g> Hinge<'g> {
         }
     }
 
-    /// The velocity of its origin against the parent, along its axes.
+    /// The velocity of its origin relative to the parent, along its axes.
     pub(crate) fn velocity(&self) -> Vector<'g> {
         match self {
             Hinge::Turn { axis, pitch, rate, .. } => along(*axis, *pitch * *rate),
@@ -254,7 +255,7 @@ impl<'g> Hinge<'g> {
         }
     }
 
-    /// Its angular velocity against the parent, along its axes.
+    /// Its angular velocity relative to the parent, along its axes.
     pub(crate) fn omega(&self) -> Vector<'g> {
         match self {
             Hinge::Turn { axis, rate, .. } => along(*axis, *rate),

@@ -4,18 +4,20 @@ use pc_expr::Expr;
 
 use crate::tree::spatial::{Tensor, Vector};
 
-/// A movement of axes against others, one of those that joints are made of; with mass if a body stands still against its axes.
+/// An elementary movement of a joint, between two sets of axes; with the masses of the bodies fixed to the
+/// second.
 #[derive(Clone, Debug)]
 pub(crate) struct Link<'g> {
-    /// The link that it hangs on; none is the world.
+    /// The link that it hangs on; `None` is the world.
     pub(crate) parent: Option<usize>,
-    /// Its point where its coordinates vanish, and the matrix from its axes there to those of the parent.
+    /// The place of its origin where its coordinates vanish, and the matrix from its axes there to those of
+    /// the parent.
     pub(crate) place: Vector<'g>,
     pub(crate) rotation: Tensor<'g>,
     pub(crate) hinge: Hinge<'g>,
 }
 
-/// What moves a link. Axes are numbers of coordinate axes; the symbols are x, then η.
+/// The movement of a link. Axes are numbers of coordinate axes; the symbols are x, then η.
 #[derive(Clone, Debug)]
 pub(crate) enum Hinge<'g> {
     /// Turns about an axis, and advances along it by `pitch` times the angle.
@@ -30,12 +32,13 @@ pub(crate) enum Hinge<'g> {
         way: Expr<'g>,
         rate: Expr<'g>,
     },
-    /// By a unit quaternion, with ω against the parent.
+    /// By a unit quaternion, with ω relative to the parent.
     Ball {
         quaternion: [Expr<'g>; 4],
         omega: Vector<'g>,
     },
-    /// Its origin at `way` in the axes of the joint, with the velocity v against the parent in its own axes.
+    /// The origin at `way` along the axes of the joint, with the velocity v relative to the parent along its
+    /// own axes.
     Free {
         way: Vector<'g>,
         quaternion: [Expr<'g>; 4],
@@ -45,7 +48,7 @@ pub(crate) enum Hinge<'g> {
 }
 
 impl<'g> Link<'g> {
-    /// The same with each expression replaced.
+    /// The link with each expression replaced.
     pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Link<'n> {
         Link {
             parent: self.parent,
@@ -66,7 +69,7 @@ impl<'g> Hinge<'g> {
         }
     }
 
-    /// The same with each expression replaced.
+    /// The hinge with each expression replaced.
     pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Hinge<'n> {
         match self {
             Hinge::Turn { axis, pitch, angle, rate } => {

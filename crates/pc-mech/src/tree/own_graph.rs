@@ -6,8 +6,8 @@ use crate::system::system::System;
 use crate::tree::system::TreeSystem;
 
 impl<'g> System<'g> {
-    /// The same system in an empty graph, of which `tree` is the tree: what is derived there depends on the system alone, to the
-    /// last bit, and not on what else has been made in the graph of this one.
+    /// The same system in an empty graph, of which `tree` is the tree: derivations there depend on the system
+    /// alone, to the last bit, whatever else the graph of this one contains.
     pub(crate) fn in_graph<'n>(&self, tree: &TreeSystem<'g>, graph: &'n Graph) -> System<'n> {
         let copy = Transcription::new(self.graph(), graph);
         let put = |x: Expr<'g>| copy.write(x);

@@ -1,4 +1,4 @@
-//! The forces on joints, and what these bear.
+//! Forces on joints, and their reactions.
 
 use pc_expr::Expr;
 
@@ -9,8 +9,8 @@ use crate::tree::system::TreeSystem;
 
 /// The force and the moment that a joint exerts on its body, in terms of (t, x, η, η̇).
 ///
-/// Along the axes of the body, the moment about its origin. Their components in which the joint is free are the generalised
-/// forces that act on it.
+/// Both are along the axes of the body, the moment about its origin. Their components in the free directions
+/// of the joint are the generalised forces on it.
 #[derive(Clone, Debug)]
 pub struct JointReaction<'g> {
     pub(crate) body: String,
@@ -36,16 +36,16 @@ impl<'g> JointReaction<'g> {
 }
 
 impl<'g> System<'g> {
-    /// What the joints of a [tree](crate::Tree) exert on their bodies (Newton's and Euler's equations from the tips to the root); none
-    /// of a system that is no tree, nor of bodies that are fixed to others. As [outputs](System::with_more_outputs) they
-    /// are watched along a motion.
+    /// The forces and moments of the joints of a [tree](crate::Tree) on their bodies (Newton's and Euler's
+    /// equations from the tips to the root); none for a system that is not a tree, nor for bodies fixed to
+    /// others. As [outputs](System::with_more_outputs) they are observed along a motion.
     pub fn joint_reactions(&self) -> Vec<JointReaction<'g>> {
         let Some(tree) = &self.tree else { return Vec::new() };
         tree.reactions(self)
     }
 
-    /// The generalised forces on the joints of its [tree](System::tree), k of them: of Q + X U what does not come from forces
-    /// and torques on bodies, or from their weight. Without a tree it is Q.
+    /// The generalised forces on the joints of its [tree](System::tree), k of them: Q + X U without the
+    /// forces and torques on bodies, and without their weight. Without a tree it is Q.
     pub fn joint_forces(&self) -> Vec<Expr<'g>> {
         self.tree.as_ref().map_or_else(|| self.forces.clone(), |tree| tree.joint_forces(self))
     }
@@ -66,7 +66,7 @@ impl<'g> TreeSystem<'g> {
         let dynamics = self.dynamics(&system.frame, &system.forces).with_own_masses(&self.tree);
         let unknowns = self.by_link(&system.accelerations());
         let motions = self.tree.motions();
-        // F and N act beside the joints.
+        // F and N act in addition to the joints.
         let mut loads: Vec<Spatial<'g>> = vec![[Expr::ZERO; 6]; self.tree.links.len()];
         for (body, stand) in self.tree.bodies.iter().zip(&self.tree.stands) {
             let Some(link) = stand.link else { continue };

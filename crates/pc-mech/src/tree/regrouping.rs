@@ -1,9 +1,10 @@
-//! Mass that may as well belong to the parent.
+//! Masses that can be counted with the parent.
 //!
-//! What a joint leaves in place of a body can be counted with the parent: of a body that turns about an axis its mass at the
-//! joint, the first moment along the axis, and as much of an inertia about all axes across as makes one of them vanish; of one
-//! that turns about a point its mass there; of one that slides its inertia. That changes no acceleration, and what vanishes costs
-//! nothing at each evaluation (*base parameters*; Gautier & Khalil 1990). It takes parameters alone.
+//! A part of a body's inertia can be counted with the parent: for a body that turns about an axis, its mass
+//! at the joint, the first moment along the axis, and as much of an inertia about all perpendicular axes as
+//! makes one of them vanish; for a body that turns about a point, its mass there; for one that slides, its
+//! inertia. Accelerations are unchanged, and zero entries cost nothing at each evaluation (*base parameters*;
+//! Gautier & Khalil 1990). The result depends on parameters alone.
 
 use pc_expr::Expr;
 
@@ -14,7 +15,7 @@ use crate::tree::tree::{MassOnLink, Tree};
 const NONE: Tensor<'static> = [ZERO; 3];
 
 impl<'g> Tree<'g> {
-    /// The masses on the links, each with as little as possible.
+    /// The masses on the links, each reduced as far as possible.
     pub(crate) fn regrouped(&self) -> Vec<MassOnLink<'g>> {
         let mut masses: Vec<MassOnLink<'g>> = (0..self.links.len()).map(|link| self.mass_on(link)).collect();
         for (i, link) in self.links.iter().enumerate().rev() {
@@ -33,7 +34,8 @@ impl<'g> Tree<'g> {
                 },
                 Hinge::Turn { .. } | Hinge::Free { .. } => continue,
             };
-            // What is moved to the world stands still. An inertia that slides has the same axes whatever its place.
+            // Masses moved to the world are at rest. The axes of a sliding inertia are the same at each
+            // place.
             if let Some(parent) = link.parent {
                 let moved = moved.seen(self, &link.place, &link.rotation);
                 masses[parent].add(&moved);
@@ -44,7 +46,7 @@ impl<'g> Tree<'g> {
 }
 
 impl<'g> MassOnLink<'g> {
-    /// Takes away what no turn about an axis moves or changes.
+    /// Removes and returns the part that no rotation about an axis moves or changes.
     fn take_about(&mut self, axis: usize) -> MassOnLink<'g> {
         let across = if axis == 2 { 1 } else { 2 };
         let transverse = self.inertia[across][across];
@@ -61,7 +63,7 @@ impl<'g> MassOnLink<'g> {
         taken
     }
 
-    /// The same along the axes of the parent, about its origin, of a link that stands at a place there.
+    /// The masses along the axes of the parent and about its origin, for a link at this place.
     fn seen(&self, tree: &Tree<'g>, place: &Vector<'g>, rotation: &Tensor<'g>) -> MassOnLink<'g> {
         let graph = tree.graph;
         let moment = apply(graph, rotation, &self.moment);

@@ -21,8 +21,9 @@ pub(crate) struct TreeSystem<'g> {
 }
 
 impl<'g> TreeSystem<'g> {
-    /// That of a tree, with the rest of the Lagrangian; none if there is other inertia, if the tree does not move as its joints
-    /// say, if it has not all quasi-velocities, or if gravity is not the same everywhere: then the world does not accelerate.
+    /// The system of a tree with the rest of the Lagrangian; `None` if there is other inertia, if the bodies
+    /// do not move as the joints prescribe, if the tree lacks a quasi-velocity, or if gravity depends on the
+    /// place: the world then has no acceleration.
     pub(crate) fn of(
         tree: Tree<'g>,
         gravity: Vector<'g>,
@@ -51,7 +52,7 @@ impl<'g> TreeSystem<'g> {
         of_joints.into_iter().all(follows).then_some(TreeSystem { tree, gravity, others, places })
     }
 
-    /// Whether it has more quasi-velocities than a mass matrix that is looked at whole.
+    /// Whether it has too many quasi-velocities for a mass matrix as a whole.
     pub(crate) fn is_large(&self) -> bool {
         self.tree.is_large()
     }
@@ -94,12 +95,12 @@ impl<'g> TreeSystem<'g> {
         ordered
     }
 
-    /// The reverse.
+    /// The inverse of [`in_order`](TreeSystem::in_order).
     pub(crate) fn by_link(&self, ordered: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
         self.places.iter().map(|places| places.iter().map(|&place| ordered[place]).collect()).collect()
     }
 
-    /// The same with each expression replaced by one of a graph.
+    /// The system with each expression replaced by one of a graph.
     pub(crate) fn map<'n>(&self, graph: &'n Graph, put: impl Fn(Expr<'g>) -> Expr<'n>) -> TreeSystem<'n> {
         TreeSystem {
             tree: self.tree.map(graph, &put),
@@ -111,10 +112,10 @@ impl<'g> TreeSystem<'g> {
 }
 
 impl<'g> Tree<'g> {
-    /// That masses and places are constant in their axes.
+    /// Checks that masses and places are constant in their axes.
     ///
     /// # Errors
-    /// [`TreeError::NotConstant`] with the first of `moving` that stands in one of them.
+    /// [`TreeError::NotConstant`] with the first of `moving` that occurs in one of them.
     pub(crate) fn check_constant(&self, moving: &[Expr<'g>]) -> Result<(), MechError> {
         for body in &self.bodies {
             let parts = [

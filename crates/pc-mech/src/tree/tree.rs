@@ -1,4 +1,4 @@
-//! The tree: which body hangs on which, and what moves it.
+//! The tree: which body hangs on which, and how it moves.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -15,8 +15,9 @@ use crate::tree::spatial::{
 
 /// Bodies joined by joints: one or more trees that hang on the world.
 ///
-/// Its coordinates are those of the joints, in the order in which the bodies are declared; its quasi-velocities are velocities of a
-/// body against its parent. The velocities of a body follow from those of its parent,
+/// Its coordinates are those of the joints, in the order in which the bodies are declared; its
+/// quasi-velocities are velocities of a body against its parent. The velocities of a body follow from those
+/// of its parent,
 ///
 /// ω = Rᵀ ω_p + ω_joint, v = Rᵀ (v_p + ω_p × r) + v_joint,
 ///
@@ -45,21 +46,22 @@ use crate::tree::spatial::{
 pub struct Tree<'g> {
     pub(crate) graph: &'g Graph,
     pub(crate) bodies: Vec<TreeBody<'g>>,
-    /// Where each body stands.
+    /// The link and place at which each body is fixed.
     pub(crate) stands: Vec<Stand<'g>>,
-    /// Each after the one that it hangs on.
+    /// The links, each after its parent.
     pub(crate) links: Vec<Link<'g>>,
     /// The links of each body.
     pub(crate) own: Vec<Range<usize>>,
 }
 
-/// Elementary joints up to which a tree is also looked at as a whole: the equations of more do not fit on a page.
+/// The most elementary joints of a tree whose equations are also derived as a whole: more do not fit on a
+/// page.
 const MANY_LINKS: usize = 4;
 
-/// Where a body stands still.
+/// The link and place at which a body is fixed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stand<'g> {
-    /// The link; none is the world.
+    /// The link; `None` is the world.
     pub(crate) link: Option<usize>,
     /// Its origin, along the axes of the link.
     pub(crate) place: Vector<'g>,
@@ -71,8 +73,9 @@ impl<'g> Tree<'g> {
     /// The tree of bodies, declared in any order.
     ///
     /// # Errors
-    /// [`TreeError`] for two bodies of one name, a parent that there is not, parents in a circle, an axis without a direction,
-    /// or a list of names that does not fit its joint; [`BodyError`](crate::BodyError) for a rotation that is none.
+    /// [`TreeError`] for two bodies of one name, a parent that there is not, parents in a circle, an axis
+    /// without a direction, or a list of names that does not fit its joint; [`BodyError`](crate::BodyError)
+    /// for a rotation that is none.
     pub fn new(
         graph: &'g Graph,
         bodies: impl IntoIterator<Item = TreeBody<'g>>,
@@ -118,7 +121,7 @@ impl<'g> Tree<'g> {
         &self.bodies
     }
 
-    /// The coordinates of the joint of a body; none of a body that there is not.
+    /// The coordinates of the joint of a body; none for an unknown body.
     pub fn joint_coordinates(&self, body: &str) -> Vec<Expr<'g>> {
         let links = self.place_of(body).map_or(0..0, |body| self.own[body].clone());
         self.links[links].iter().flat_map(|link| link.hinge.coordinates()).collect()
@@ -134,16 +137,16 @@ impl<'g> Tree<'g> {
         self.own.iter().cloned().flatten()
     }
 
-    /// Adds the links of a body, and answers where it stands.
+    /// Adds the links of a body. Returns the place at which it is fixed.
     fn hang(&mut self, body: usize, parent: Stand<'g>) -> Result<Stand<'g>, MechError> {
         let graph = self.graph;
         let TreeBody { name, joint: Joint { kind, place, rotation, .. }, .. } = &self.bodies[body];
         let (coordinates, velocities) = self.names(body)?;
         let mut x = coordinates.iter().map(|name| graph.symbol(name));
         let mut eta = velocities.iter().map(|name| graph.symbol(name));
-        let mut x = || x.next().unwrap_or(Expr::ZERO); // as many as the kind has
+        let mut x = || x.next().unwrap_or(Expr::ZERO); // the kind determines their number
         let mut eta = || eta.next().unwrap_or(Expr::ZERO);
-        // Where the joint stands on the link of the parent.
+        // The place of the joint on the link of the parent.
         let place = add(&parent.place, &apply(graph, &parent.rotation, place));
         let rotation = product(graph, &parent.rotation, rotation);
         let align = |axis: &[f64; 3]| {
@@ -152,7 +155,7 @@ impl<'g> Tree<'g> {
         let turned = |matrix: &Tensor<'g>| product(graph, &rotation, matrix);
         let kind = kind.clone();
         let mut stand = Stand { link: parent.link, place, rotation };
-        // The next elementary movement, on what has been there.
+        // Adds the next elementary movement after the last one.
         let mut links = Vec::new();
         let first = self.links.len();
         let mut push = |rotation: Tensor<'g>, hinge: Hinge<'g>| {
@@ -223,12 +226,12 @@ impl<'g> Tree<'g> {
         Ok(stand)
     }
 
-    /// Whether it has more quasi-velocities than a mass matrix that is looked at whole.
+    /// Whether it has too many quasi-velocities for a mass matrix as a whole.
     pub(crate) fn is_large(&self) -> bool {
         self.links.len() > MANY_LINKS
     }
 
-    /// The same with each expression replaced by one of a graph.
+    /// The tree with each expression replaced by one of a graph.
     pub(crate) fn map<'n>(&self, graph: &'n Graph, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Tree<'n> {
         let stand = |stand: &Stand<'g>| Stand {
             link: stand.link,
@@ -264,8 +267,8 @@ impl<'g> Tree<'g> {
         self.is_nowhere_negative(&[])
     }
 
-    /// Whether, at these values of the parameters, no body has a negative mass, or a negative moment of inertia about any axis
-    /// through its mass centre: then no motion has a negative kinetic energy.
+    /// Whether, at these values of the parameters, no body has a negative mass, or a negative moment of
+    /// inertia about any axis through its mass centre: then no motion has a negative kinetic energy.
     pub fn is_nowhere_negative(&self, parameters: &[(Expr<'g>, f64)]) -> bool {
         let numbers =
             |body: &TreeBody<'g>| [vec![body.mass], entries_of(&body.inertia.matrix()).concat()].concat();
@@ -281,7 +284,7 @@ impl<'g> Tree<'g> {
         })
     }
 
-    /// The mass, first moment and inertia about its origin of all that stands still on a link, along its axes.
+    /// The mass, first moment and inertia about its origin of all bodies fixed to a link, along its axes.
     pub(crate) fn mass_on(&self, link: usize) -> MassOnLink<'g> {
         let graph = self.graph;
         let mut on_link = MassOnLink { mass: Expr::ZERO, moment: ZERO, inertia: [ZERO; 3] };
@@ -324,7 +327,7 @@ impl<'g> Stand<'g> {
     }
 }
 
-/// The bodies with their parents, each after its own.
+/// The bodies with their parents, parents first.
 fn from_root_to_tip(bodies: &[TreeBody<'_>]) -> Result<Vec<(usize, Option<usize>)>, TreeError> {
     let mut places = HashMap::new();
     for (place, body) in bodies.iter().enumerate() {
@@ -346,7 +349,7 @@ fn from_root_to_tip(bodies: &[TreeBody<'_>]) -> Result<Vec<(usize, Option<usize>
     let mut order = Vec::with_capacity(bodies.len());
     let mut hung = vec![false; bodies.len()];
     for body in 0..bodies.len() {
-        // Its ancestors that do not hang yet, it first.
+        // The body and those of its ancestors that are not yet placed.
         let mut line = vec![body];
         while let Some(parent) = parents[line[line.len() - 1]].filter(|&parent| !hung[parent]) {
             if line.contains(&parent) {
@@ -375,7 +378,7 @@ fn aligned<'g>(direction: [f64; 3]) -> Option<(usize, Tensor<'g>)> {
     }
     let along = |axis: usize| (0..3).all(|i| (direction[i] != 0.0) == (i == axis));
     if let Some(axis) = (0..3).find(|&axis| along(axis)) {
-        // Backwards: half a turn about the next axis but one.
+        // Opposite direction: half a turn about the next axis but one.
         let backwards = direction[axis] < 0.0;
         let sign = |i: usize| if backwards && i != (axis + 2) % 3 { -1 } else { 1 };
         return Some((
@@ -386,7 +389,7 @@ fn aligned<'g>(direction: [f64; 3]) -> Option<(usize, Tensor<'g>)> {
         ));
     }
     let n = direction.map(|c| c / length);
-    // Orthogonal to the direction and to the axis that is farthest from it.
+    // Orthogonal to the direction and to the axis farthest from it.
     let far = (0..3).min_by(|&i, &j| n[i].abs().total_cmp(&n[j].abs()))?;
     let mut e = [0.0; 3];
     e[far] = 1.0;

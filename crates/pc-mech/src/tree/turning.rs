@@ -1,4 +1,4 @@
-//! How vectors and matrices turn from the axes of a link to those of its parent.
+//! The rotation of vectors and matrices from the axes of a link to those of its parent.
 
 use pc_expr::{Expr, Graph};
 
@@ -9,7 +9,7 @@ use crate::tree::spatial::{Tensor, Vector, apply, congruent, tensor, transpose, 
 #[derive(Clone, Debug)]
 pub(crate) struct Turning<'g> {
     hinge: HingeTurning<'g>,
-    /// None is the unit matrix.
+    /// `None` is the unit matrix.
     constant: Option<Tensor<'g>>,
 }
 

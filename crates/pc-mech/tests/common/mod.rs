@@ -1,4 +1,4 @@
-//! Systems of several test files.
+//! Systems that several test files share.
 
 #![allow(dead_code, reason = "no file uses all of them")]
 
@@ -63,7 +63,7 @@ pub(crate) fn rates(motion: &mut Motion, t: f64, y: &[f64]) -> Vec<f64> {
     ydot
 }
 
-/// Numbers that look random, between −1 and 1.
+/// Pseudo-random numbers between −1 and 1.
 pub(crate) fn some(i: u32, j: u32) -> f64 {
     (f64::from(i * 7 + j * 13) * 0.618).sin()
 }

@@ -1,4 +1,4 @@
-//! The solution of Hamilton–Jacobi's equation that a model claims.
+//! The solution of Hamilton–Jacobi's equation given by a model.
 
 use pc_mech::Expr;
 
@@ -17,8 +17,8 @@ pub struct Action<'g> {
 }
 
 impl<'g> Assembler<'g, '_> {
-    /// The action of `[hamilton_jacobi]`. No motion needs it, so that it need not have a value at the start, as one with (x −
-    /// α)²/(2t) has none at t = 0: its names are resolved apart from those that must.
+    /// The action of `[hamilton_jacobi]`. The motion does not use it, so it needs no value at the start, as
+    /// (x − α)²/(2t) has none at t = 0: its names are resolved separately from those that do.
     pub(super) fn action(&self) -> Result<Option<Action<'g>>, ModelError> {
         let document = self.model.document();
         let Some(given) = &document.hamilton_jacobi else { return Ok(None) };

@@ -23,14 +23,14 @@ impl Model {
         let assembler =
             || Assembler { model: self, graph, scope: Scope::new(graph, self.document()) }.assemble();
         let assembly = self.document().stage(graph, "the mechanical system", assembler)?;
-        self.drawn(&assembly)?; // what is wrong with a drawing is wrong with the text
+        self.drawn(&assembly)?; // an error in a drawing is an error of the text
         Ok(assembly)
     }
 }
 
 impl<'g> Assembler<'g, '_> {
-    /// That the quasi-velocities say at the start as much of ẋ as elsewhere: where q = 0 the rate of a quaternion is none,
-    /// whatever ω.
+    /// Checks that the quasi-velocities determine ẋ at the start as elsewhere: where q = 0 the rate of a
+    /// quaternion is zero for any ω.
     fn check_frame_at_start(&self, frame: &Frame<'g>, values: &[(Expr<'g>, f64)]) -> Result<(), ModelError> {
         let start = Neighbourhood { centre: values.to_vec() };
         let (rank, everywhere) = (start.rank_at_centre(self.graph, frame.b()), frame.rank());
@@ -171,7 +171,7 @@ impl<'g> Assembler<'g, '_> {
         })
     }
 
-    /// That no momentum depends on an input: it would change with it, at a rate that is not known.
+    /// Checks that no momentum depends on an input, whose rate is unknown.
     fn check_inputs(&self, system: &System<'g>) -> Result<(), ModelError> {
         let momenta = system.momenta();
         let mut inputs = self.model.document().inputs.iter().map(|input| &input.name.text);
@@ -185,7 +185,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// T − V of `[lagrangian]`, the whole energy but for that of the bodies.
+    /// T − V of `[lagrangian]`, the energy without that of the bodies.
     fn lagrangian(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Expr<'g>, ModelError> {
         let Some(energy) = &self.model.document().lagrangian else { return Ok(Expr::ZERO) };
         let mut lagrangian = Expr::ZERO;
@@ -260,11 +260,11 @@ impl<'g> Assembler<'g, '_> {
         Ok(observed)
     }
 
-    /// Puts ẋ = b η + b_0 in, and its derivative along the motion for the accelerations x''.
+    /// Substitutes ẋ = b η + b_0, and for the accelerations x'' its derivative along the motion.
     fn with_velocities(&self, value: Expr<'g>, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
         let graph = self.graph;
         let eta = self.scope.quasi_velocities();
-        // Of the velocities that are not put in, x' is a quasi-velocity itself.
+        // Of the velocities that remain, x' is itself a quasi-velocity.
         let rate = |velocity: Expr<'g>| x_dot.iter().find(|(symbol, _)| *symbol == velocity);
         let coordinates = self.scope.coordinates().into_iter().zip(self.scope.velocities());
         let mut rates: Vec<(Expr<'g>, Expr<'g>)> = coordinates
@@ -281,7 +281,7 @@ impl<'g> Assembler<'g, '_> {
         graph.substitute(&[value], &replacements)[0]
     }
 
-    /// Looks for the first part of the model, as written, that is not a number at the start.
+    /// Finds the first part of the model, as written, that is not a number at the start.
     fn check_finite(
         &self,
         values: &[(Expr<'g>, f64)],
@@ -295,7 +295,7 @@ impl<'g> Assembler<'g, '_> {
         let written = self.scope.taken(&velocities.chain(values.iter().copied()).collect::<Vec<_>>());
         let all: Vec<Expr<'g>> = written.iter().map(|written| written.value).collect();
         let all = self.graph.substitute(&all, x_dot);
-        // What contains accelerations has no value yet: it is checked when the motion is computed.
+        // Expressions with accelerations have no value yet: they are checked when the motion is computed.
         let known = SymbolPlaces::of(&values.iter().map(|&(symbol, _)| symbol).collect::<Vec<_>>());
         let is_unknown = |symbol: &Expr<'g>| !known.contains(*symbol);
         let unknown = self.graph.symbols_of(&all).into_iter().filter(is_unknown);

@@ -1,4 +1,4 @@
-//! What the parts of the assembly share: the model, the graph, and the names in scope.
+//! The common state of the assembly: the model, the graph, and the names in scope.
 
 use pc_mech::{Expr, Graph};
 
@@ -9,7 +9,7 @@ use crate::model::model::Model;
 use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
-/// Puts a model together as expressions of a graph; each part has a file of its own.
+/// Assembles a model as expressions of a graph; each part has a file of its own.
 pub(super) struct Assembler<'g, 'm> {
     pub(super) model: &'m Model,
     pub(super) graph: &'g Graph,
@@ -22,7 +22,7 @@ impl<'g> Assembler<'g, '_> {
         self.model.document().quasi_velocities.is_empty()
     }
 
-    /// Whether joints give all quasi-velocities, but for those that are velocities x'.
+    /// Whether joints give all quasi-velocities except those that are velocities x'.
     pub(super) fn is_moved_by_joints(&self) -> bool {
         !self.model.document().tree.is_empty() && self.first_own_quasi_velocity().is_none()
     }
@@ -45,7 +45,7 @@ impl<'g> Assembler<'g, '_> {
             .error(&name.place, MeaningError::NotACoordinate { name: name.text.clone(), coordinates })
     }
 
-    /// An expression of the dynamics with ẋ = b η + b_0 put in.
+    /// An expression of the dynamics with ẋ = b η + b_0 substituted.
     pub(super) fn dynamic(
         &mut self,
         expression: &Expression,

@@ -78,7 +78,8 @@ impl<'g> Assembly<'g> {
             .unwrap_or_else(|error| Err(error.into()))
     }
 
-    /// The error that something could not be derived from this system, located at the energy if no other entry causes it.
+    /// The error that something could not be derived from this system, located at the energy if no other
+    /// entry causes it.
     pub fn not_derived(&self, message: String) -> ModelError {
         self.document.error(&self.document.energy_place(), MeaningError::Derivation { message })
     }
@@ -118,9 +119,9 @@ impl<'g> Assembly<'g> {
         self.placed(self.constraints.quasi_velocities_of(self.system.quasi_velocities(), free))
     }
 
-    /// Whether the motion is proved to keep its energy, that of all velocities where multipliers hold constraints, else that
-    /// of the free ones: dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s vanishes where the constraints hold, and these are
-    /// homogeneous in the velocities, so that their reactions do no work.
+    /// Whether the motion is proved to keep its energy, that of all velocities where multipliers hold
+    /// constraints, else that of the free ones: dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s vanishes where the
+    /// constraints hold, and these are homogeneous in the velocities, so that their reactions do no work.
     pub fn keeps_energy(&self) -> bool {
         let (system, graph) = (&self.system, self.system.graph());
         match self.constraints.formulation() {

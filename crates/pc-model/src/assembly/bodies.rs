@@ -1,4 +1,4 @@
-//! The bodies of a model: their expressions, resolved and checked where they stand.
+//! The bodies of a model: their expressions, resolved and checked in place.
 
 use pc_algebra::affine;
 use pc_mech::{Expr, Inertia, Matrix, Particle, RigidBody};
@@ -9,7 +9,7 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::{self, Expression, Orientation};
 use crate::names::stage::Stage;
 
-/// A body as the mechanics knows it.
+/// A body for the mechanics.
 pub(super) enum SystemBody<'g> {
     /// One without orientation.
     Particle(Particle<'g>),
@@ -75,7 +75,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(SystemBody::Rigid(Box::new(rigid)))
     }
 
-    /// Functions of what may stand at that stage.
+    /// Functions of the names allowed at that stage.
     pub(super) fn resolved<const N: usize>(
         &mut self,
         list: &[Expression; N],
@@ -88,7 +88,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(values)
     }
 
-    /// Functions of the motion, with ẋ = b η + b_0 put in.
+    /// Functions of the motion, with ẋ = b η + b_0 substituted.
     pub(super) fn all_dynamic<const N: usize>(
         &mut self,
         list: &[Expression; N],

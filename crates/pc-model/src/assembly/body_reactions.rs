@@ -8,20 +8,21 @@ use crate::assembly::resultant::{force_names, torque_names};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 
-/// What the reactions do to bodies, each component with its name.
+/// The reactions on bodies, each component with its name.
 #[derive(Default)]
 struct Resultants<'g> {
-    /// Of all vectors that do not vanish identically.
+    /// The components of all vectors that are not identically zero.
     columns: Vec<(String, Expr<'g>)>,
-    /// The symbols of all components with what they are.
+    /// The symbols of all components with their values.
     known: Vec<(Expr<'g>, Expr<'g>)>,
-    /// What virtual work does not determine, in words.
+    /// The reactions that virtual work leaves undetermined, in words.
     undetermined: Vec<String>,
 }
 
 impl<'g> Assembler<'g, '_> {
-    /// The system with the forces and torques of the reactions on bodies put into its integrals and outputs, and as more
-    /// outputs where all reactions are to be observed; and what of them is not determined, in words.
+    /// The system with the forces and torques of the reactions on bodies put into its integrals and outputs,
+    /// and as more outputs where all reactions are to be observed; and what of them is not determined, in
+    /// words.
     ///
     /// # Errors
     /// [`MeaningError::ForceNotDetermined`] if such a one is named.
@@ -60,7 +61,7 @@ impl<'g> Assembler<'g, '_> {
                 self.note(&mut all, torque_names(constraint, body.body()), body.torque(a));
             }
         }
-        // What is dropped has no reaction.
+        // Dropped constraints have no reaction.
         for dropped in redundant {
             for body in &bodies {
                 let names = [force_names, torque_names].map(|names| names(&dropped.constraint, body.body()));
@@ -80,7 +81,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// That what the model names is determined.
+    /// Checks that virtual work determines the components named in the model.
     fn check_determined(&self, found: &Resultants<'g>) -> Result<(), ModelError> {
         let unknown = |symbol: &Expr<'g>| found.known.iter().all(|(known, _)| known != symbol);
         match self.scope.resultants.iter().find(|(symbol, _)| unknown(symbol)) {

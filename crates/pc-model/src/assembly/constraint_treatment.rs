@@ -29,14 +29,15 @@ pub struct ConstraintTreatment<'g> {
     chosen: OnceCell<Chosen>,
 }
 
-/// The indices of the dependent quasi-velocities of a choice, and the values of time and state where it was made.
+/// The indices of the dependent quasi-velocities of a choice, and the values of time and state for which it
+/// was made.
 #[derive(Clone, Debug)]
 struct Chosen {
     at: Vec<f64>,
     dependent: Vec<usize>,
 }
 
-/// How the constraints are kept.
+/// The formulation of the constraints.
 #[derive(Clone, Debug)]
 pub enum ConstraintFormulation<'g> {
     /// There are none.
@@ -61,7 +62,7 @@ impl<'g> ConstraintTreatment<'g> {
         ConstraintTreatment::nothing(Vec::new())
     }
 
-    /// Constraints that say nothing.
+    /// Constraints without effect.
     pub(crate) fn nothing(redundant: Vec<Redundant>) -> ConstraintTreatment<'g> {
         ConstraintTreatment {
             formulation: ConstraintFormulation::Free,
@@ -75,7 +76,7 @@ impl<'g> ConstraintTreatment<'g> {
         }
     }
 
-    /// Constraints that bind, kept in some formulation.
+    /// Constraints that bind, in some formulation.
     pub(crate) fn new(
         formulation: ConstraintFormulation<'g>,
         multipliers: Multipliers<'g>,
@@ -99,12 +100,12 @@ impl<'g> ConstraintTreatment<'g> {
         ConstraintTreatment { combinations, ..self }
     }
 
-    /// The same, kept in another formulation.
+    /// The same constraints in another formulation.
     pub(crate) fn in_formulation(self, formulation: ConstraintFormulation<'g>) -> ConstraintTreatment<'g> {
         ConstraintTreatment { formulation, ..self }
     }
 
-    /// The same with these velocities for independent ones wherever there is a choice.
+    /// The same constraints with these velocities as the independent ones wherever there is a choice.
     pub(crate) fn with_independent(self, independent: Vec<Expr<'g>>) -> ConstraintTreatment<'g> {
         ConstraintTreatment { independent, chosen: OnceCell::new(), ..self }
     }
@@ -124,8 +125,8 @@ impl<'g> ConstraintTreatment<'g> {
         }
     }
 
-    /// The multipliers of a formulation with the independent quasi-velocities that are asked for, or with those whose equations
-    /// are [shortest](Multipliers::shortest) of the choices that are regular at the values `at`.
+    /// The multipliers of a formulation with the requested independent quasi-velocities, or with those whose
+    /// equations are [shortest](Multipliers::shortest) among the choices that are regular at the values `at`.
     fn chosen(
         &self,
         held: &MultiplierFormulation<'g>,
@@ -144,12 +145,13 @@ impl<'g> ConstraintTreatment<'g> {
             })?,
             independent => held.multipliers.with_independent(independent, at)?,
         };
-        // It is kept for the first values that it is made for.
+        // The choice is kept for the values for which it is first made.
         self.chosen.get_or_init(|| Chosen { at: there, dependent: chosen.dependent().to_vec() });
         Ok(chosen)
     }
 
-    /// That no choice is asked for where quasi-velocities vanish that are those of the model, or nothing binds.
+    /// Checks that no choice is requested where constraints make quasi-velocities of the model vanish, or
+    /// nothing binds.
     fn check_no_choice(&self, free: &[Expr<'g>]) -> Result<(), NonholoError> {
         let is_other = |chosen: &[Expr<'g>]| {
             chosen.len() != free.len() || !chosen.iter().all(|chosen| free.contains(chosen))
@@ -172,7 +174,7 @@ impl<'g> ConstraintTreatment<'g> {
         self.multipliers.as_ref()
     }
 
-    /// How the constraints are kept.
+    /// The formulation of the constraints.
     pub fn formulation(&self) -> &ConstraintFormulation<'g> {
         &self.formulation
     }
@@ -267,7 +269,7 @@ impl<'g> ConstraintTreatment<'g> {
         let shorter =
             |(solved, open)| if graph.size(&[solved]) > graph.size(&[open]) { open } else { solved };
         let values: Vec<Expr<'g>> = solved.into_iter().zip(open).map(shorter).collect();
-        // Constraints that are quasi-velocities stand in the order of these, others in their own.
+        // Constraints that are quasi-velocities keep the order of these, others their own.
         let place = |(a, constraint): (usize, &Constraint<'g>)| {
             constrained.vanishing().iter().position(|&eta| eta == constraint.expression()).unwrap_or(a)
         };
@@ -275,7 +277,8 @@ impl<'g> ConstraintTreatment<'g> {
         Ok(multipliers.reactions().iter().copied().zip(places.map(|a| values[a])).collect())
     }
 
-    /// The equations with multipliers, if a constraint is not affine in the velocities: there are no independent ones then.
+    /// The equations with multipliers, if a constraint is not affine in the velocities: there are no
+    /// independent ones then.
     pub fn nonlinear(&self) -> Option<&Multipliers<'g>> {
         self.multipliers.as_ref().filter(|multipliers| multipliers.is_nonlinear())
     }

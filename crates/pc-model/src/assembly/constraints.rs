@@ -1,4 +1,4 @@
-//! The constraints of a model: classified, checked at the start, and put where they are cheapest to keep.
+//! The constraints of a model: classified, checked at the start, and given the cheapest treatment.
 
 use pc_mech::{Constraint, Expr, Multipliers, System};
 use pc_nonholo::{Constrained, ConstraintClassification, Kind, Redundant};
@@ -14,43 +14,43 @@ use crate::document;
 use crate::document::ConstraintKind;
 use crate::names::stage::Stage;
 
-/// A constraint of the text with its expression, x' still symbols.
+/// A constraint of the text with its expression, in which x' are symbols.
 pub(super) struct Written<'g> {
     place: usize,
     value: Expr<'g>,
-    /// Whether it is called nonlinear.
+    /// Whether it is declared nonlinear.
     nonlinear: bool,
-    /// The quasi-velocity that it is, where it completes those defined.
+    /// The quasi-velocity that it defines, if it completes the declared ones.
     defines: Option<Expr<'g>>,
 }
 
 impl<'g> Written<'g> {
-    /// Says that it is this quasi-velocity.
+    /// Makes it define this quasi-velocity.
     pub(super) fn define(&mut self, quasi_velocity: Expr<'g>) {
         self.defines = Some(quasi_velocity);
     }
 
-    /// Whether it is called nonlinear in the velocities.
+    /// Whether it is declared nonlinear in the velocities.
     pub(super) fn is_nonlinear(&self) -> bool {
         self.nonlinear
     }
 
-    /// Its place in the section.
+    /// Its index in the section.
     pub(super) fn place(&self) -> usize {
         self.place
     }
 
-    /// Its expression, x' still symbols.
+    /// Its expression, in which x' are symbols.
     pub(super) fn value(&self) -> Expr<'g> {
         self.value
     }
 }
 
-/// The system with what is observed of reactions, and its equations with multipliers.
+/// The system with observed reactions, and its equations with multipliers.
 struct Reacting<'g> {
     system: System<'g>,
     multipliers: Multipliers<'g>,
-    /// What virtual work does not determine of the forces on bodies, in words.
+    /// The forces on bodies that virtual work leaves undetermined, in words.
     undetermined: Vec<String>,
 }
 
@@ -65,7 +65,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(written)
     }
 
-    /// The name of a constraint, made longer where it is that of something else.
+    /// The name of a constraint, extended if something else has it.
     pub(super) fn unused(&self, label: &str) -> String {
         let document = self.model.document();
         let parameters = document.parameters.iter().map(|p| &p.name.text);
@@ -79,8 +79,8 @@ impl<'g> Assembler<'g, '_> {
         name
     }
 
-    /// How the constraints bind the system, and the start on them; `at` are values of all symbols there, and so many of the
-    /// quasi-velocities are `prescribed` for others to follow.
+    /// The treatment of the constraints, and the start on them; `at` are values of all symbols there, and the
+    /// first `prescribed` quasi-velocities determine the others.
     pub(super) fn treatment(
         &self,
         system: &System<'g>,
@@ -103,7 +103,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// What the constraints do at the start.
+    /// The kinds of the constraints at the start.
     fn classify(
         &self,
         trial: &Trial<'_, 'g>,
@@ -118,7 +118,7 @@ impl<'g> Assembler<'g, '_> {
         Ok((classification, classified))
     }
 
-    /// Moves the start to the constraints, if the model says so, and checks that it satisfies them.
+    /// Moves the start to the constraints, if the model requests it, and checks that it satisfies them.
     fn project_start(
         &self,
         trial: &Trial<'_, 'g>,
@@ -128,7 +128,7 @@ impl<'g> Assembler<'g, '_> {
     ) -> Result<(), ModelError> {
         let projects = self.model.projects_start();
         if projects || !classification.redundant().is_empty() {
-            // Quasi-velocities that determine the others stay as they are prescribed.
+            // Quasi-velocities that determine the others keep their prescribed values.
             let binding = classification.multipliers().map_or(0, |m| m.constraints().len());
             let free = trial.system.quasi_velocities().len() - binding;
             let held = StartHeld::new(self.model, if free == prescribed { prescribed } else { 0 });
@@ -143,7 +143,7 @@ impl<'g> Assembler<'g, '_> {
         trial.check(start)
     }
 
-    /// The equations with multipliers, and what is observed of the reactions; none where nothing binds.
+    /// The equations with multipliers, and the observed reactions; `None` if nothing binds.
     fn attach_reactions(
         &self,
         trial: &Trial<'_, 'g>,
@@ -151,7 +151,7 @@ impl<'g> Assembler<'g, '_> {
     ) -> Result<Option<Reacting<'g>>, ModelError> {
         let Some(binding) = classification.multipliers() else { return Ok(None) };
         let redundant = classification.redundant();
-        // What is dropped has no reaction.
+        // Dropped constraints have no reaction.
         let none =
             |dropped: &Redundant| (self.graph.symbol(&format!("λ_{}", dropped.constraint)), Expr::ZERO);
         let system = trial.system.with_observed(&redundant.iter().map(none).collect::<Vec<_>>());
@@ -159,7 +159,7 @@ impl<'g> Assembler<'g, '_> {
         let multipliers = system.with_multipliers(binding.constraints());
         let multipliers =
             multipliers.map_err(|error| self.model.document().constraint_error(error.into()))?;
-        // As many as are declared where these are completed, and independent then.
+        // The declared quasi-velocities, if these are completed and then independent.
         let declared = &system.quasi_velocities()[..self.scope.quasi_velocities().len()];
         let dropped = |c: &&Constraint<'g>| redundant.iter().any(|dropped| dropped.constraint == c.name());
         let followers: Vec<Constraint<'g>> = trial.constraints.iter().filter(dropped).cloned().collect();
@@ -167,8 +167,8 @@ impl<'g> Assembler<'g, '_> {
         Ok(Some(Reacting { system, multipliers, undetermined }))
     }
 
-    /// The formulation that is cheapest to keep: without the quasi-velocities that vanish, where all constraints say no more
-    /// than that some do, else with multipliers.
+    /// The cheapest formulation: without the quasi-velocities that vanish, if every constraint states just
+    /// that of one, otherwise with multipliers.
     fn choose(
         &self,
         Reacting { system, multipliers, undetermined }: Reacting<'g>,
@@ -217,7 +217,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// That what is called nonlinear is so: what is affine has more forms and Frobenius' test.
+    /// Checks that constraints declared nonlinear are: affine ones have more forms and Frobenius' test.
     fn check_nonlinear(&self, system: &System<'g>, constraints: &[Constraint<'g>]) -> Result<(), ModelError> {
         for constraint in constraints.iter().filter(|constraint| constraint.is_nonlinear()) {
             let what = match constraint.coefficients(system) {
@@ -242,7 +242,7 @@ impl<'g> Assembler<'g, '_> {
         &self.model.document().constraints[written.place]
     }
 
-    /// What each binding constraint does, unless the text says otherwise.
+    /// The kind of each binding constraint, checked against the kind declared in the text.
     fn classified(
         &self,
         classification: &ConstraintClassification<'g>,
@@ -273,7 +273,7 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// Whether the text says that it is not affine in the velocities.
+/// Whether the text declares it not affine in the velocities.
 fn is_called_nonlinear(constraint: &document::Constraint) -> bool {
     constraint.kind.as_ref().is_some_and(|kind| kind.value == ConstraintKind::Nonlinear)
 }

@@ -5,7 +5,7 @@ use pc_mech::Expr;
 
 use crate::assembly::assembly::Assembly;
 
-/// What is this small against the largest entry of a matrix is rounding.
+/// An entry this small against the largest of a matrix is rounding.
 const ROUNDING: f64 = 1e-12;
 
 impl<'g> Assembly<'g> {
@@ -13,7 +13,7 @@ impl<'g> Assembly<'g> {
     /// moment of inertia has the wrong sign.
     pub fn has_negative_energy(&self) -> bool {
         let (system, graph) = (&self.system, self.system.graph());
-        // M is a sum over bodies; of a long chain it is longer than all that is integrated.
+        // M is a sum over bodies, which for a long chain is longer than the integrated equations.
         if system.tree().is_some_and(|tree| tree.is_nowhere_negative(system.parameters())) {
             return false;
         }
@@ -69,7 +69,7 @@ fn complement<'a>(rows: impl Iterator<Item = &'a [f64]>, k: usize) -> Vec<Vec<f6
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let add = |basis: &mut Vec<Vec<f64>>, vector: &[f64]| {
         let mut rest = vector.to_vec();
-        // Twice is enough.
+        // Two passes are enough.
         for _ in 0..2 {
             for known in basis.iter() {
                 let share = dot(&rest, known);
@@ -82,14 +82,14 @@ fn complement<'a>(rows: impl Iterator<Item = &'a [f64]>, k: usize) -> Vec<Vec<f6
         }
     };
     rows.for_each(|row| add(&mut basis, row));
-    let normals = basis.len(); // rows that depend on others add none
+    let normals = basis.len(); // dependent rows add no normal
     for i in 0..k {
         add(&mut basis, &(0..k).map(|j| f64::from(u8::from(i == j))).collect::<Vec<_>>());
     }
     basis.split_off(normals)
 }
 
-/// Whether Gauss's elimination meets a negative pivot, but for those that vanish against `size`.
+/// Whether Gaussian elimination meets a negative pivot, except those that vanish against `size`.
 fn is_negative_somewhere(mut form: Vec<Vec<f64>>, size: f64) -> bool {
     for p in 0..form.len() {
         let pivot = form[p][p];

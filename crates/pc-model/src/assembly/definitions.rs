@@ -1,4 +1,4 @@
-//! The frame of quasi-velocities that are defined by `is`.
+//! The frame of quasi-velocities defined by `is`.
 
 use pc_algebra::affine;
 use pc_mech::{AlgebraError, Constraint, Expr, Frame, System};
@@ -11,10 +11,11 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::Expression;
 use crate::names::stage::Stage;
 
-/// A coefficient smaller than this against the largest of its row is no pivot.
+/// A coefficient smaller than this part of the largest of its row is not a pivot.
 const SMALL: f64 = 1e-3;
 
-/// What completes the definitions to a frame: symbols of quasi-velocities, what they are in x', and of which constraints.
+/// The completion of the definitions to a frame: symbols of quasi-velocities, their definitions in x', and
+/// their constraints.
 #[derive(Default)]
 struct Completion<'g> {
     symbols: Vec<Expr<'g>>,
@@ -26,11 +27,12 @@ impl<'g> Assembler<'g, '_> {
     /// The frame of η = a x' + a_0, and the quasi-velocities that complete those declared where they are fewer than the
     /// coordinates.
     ///
-    /// The definitions, with the constraints on velocities that contain x' and the time derivatives of those on positions,
-    /// are to determine x'. Where all these are on velocities, they complete the frame: quasi-velocities that vanish. Where
-    /// some are on positions, velocities x' complete it if its matrix then is regular everywhere, and the constraints are
-    /// multipliers' to hold, which take other independent velocities whenever the η do not determine x'; else the
-    /// constraints complete it, and it is singular only where η do not determine x'.
+    /// The definitions, the constraints on velocities that contain x', and the time derivatives of those on
+    /// positions are to determine x'. If all constraints are on velocities, they complete the frame, as
+    /// quasi-velocities that vanish. If some are on positions, velocities x' complete it, provided that its
+    /// matrix is then regular everywhere, and the constraints have multipliers, for which other independent
+    /// velocities are taken wherever the η do not determine x'; otherwise the constraints complete it, and it
+    /// is singular only where the η do not determine x'.
     pub(super) fn frame_of_definitions(
         &mut self,
         time: Expr<'g>,
@@ -43,7 +45,8 @@ impl<'g> Assembler<'g, '_> {
         let rows = self.coefficients_of(&definitions)?;
         let (kinematic, binding) = self.completing(&definitions, constraints, at)?;
         let place = &self.model.document().quasi_velocities[0].name.place;
-        // Where definitions and constraints on velocities determine all velocities, those on positions restrict these.
+        // If definitions and constraints on velocities determine all velocities, those on positions restrict
+        // them.
         let positions = binding.iter().filter(|(_, constraint)| constraint.is_holonomic(&kinematic)).count();
         let (all, coordinates) = (definitions.len() + binding.len(), x.len());
         if all != coordinates && all - positions != coordinates {
@@ -73,7 +76,7 @@ impl<'g> Assembler<'g, '_> {
         Ok((frame, completion.symbols))
     }
 
-    /// What the quasi-velocities are, x' still symbols.
+    /// The definitions of the quasi-velocities, in which x' are symbols.
     fn definitions(&mut self) -> Result<Vec<Expr<'g>>, ModelError> {
         let mut definitions = Vec::new();
         for quasi_velocity in &self.model.document().quasi_velocities {
@@ -101,8 +104,9 @@ impl<'g> Assembler<'g, '_> {
         definitions.iter().zip(texts).map(row).collect()
     }
 
-    /// The independent ones of the constraints that restrict what the definitions leave open, in velocities x', each with its
-    /// place among those written, and the system whose constraints they are. η in them stand for their definitions.
+    /// Those constraints, in velocities x', that are independent and restrict the velocities left open by the
+    /// definitions, each with its index in the text; and the system that they constrain. η in them is
+    /// replaced by its definition.
     ///
     /// Where there are as many definitions as coordinates, constraints on positions restrict these.
     fn completing(
@@ -136,8 +140,8 @@ impl<'g> Assembler<'g, '_> {
         Ok((kinematic, independent))
     }
 
-    /// Velocities x' that complete the rows of definitions to a matrix with a determinant that depends on nothing but
-    /// parameters, if there are such: those that an elimination with such pivots leaves.
+    /// Velocities x' that complete the rows of definitions to a matrix whose determinant depends on
+    /// parameters only, if there are such: those without a pivot after an elimination with such pivots.
     fn regular_completion(&self, rows: &[Vec<Expr<'g>>], at: &[(Expr<'g>, f64)]) -> Option<Completion<'g>> {
         let graph = self.graph;
         let parameters: Vec<Expr<'g>> = self.model.parameters().map(|(name, _)| graph.symbol(name)).collect();
@@ -173,8 +177,8 @@ impl<'g> Assembler<'g, '_> {
         Some(Completion { values: symbols.clone(), symbols, constraints: Vec::new() })
     }
 
-    /// The completion by the constraints themselves, those on velocities first, which are told that they are quasi-velocities;
-    /// where they are more than are needed, by those that add to the `rows`.
+    /// The completion by the constraints themselves, those on velocities first, which are marked as
+    /// quasi-velocities; if there are more than needed, by those that are independent of the `rows`.
     fn completed_by(
         &self,
         mut rows: Vec<Vec<Expr<'g>>>,
@@ -203,7 +207,7 @@ impl<'g> Assembler<'g, '_> {
         completion
     }
 
-    /// The first definition that adds nothing to those before it: it may contain no velocity.
+    /// The first definition that depends on those before it: it may contain no velocity.
     fn dependent(
         &self,
         rows: &[Vec<Expr<'g>>],

@@ -1,4 +1,4 @@
-//! What of a model can be drawn: shapes of its text, bodies, joints and points.
+//! Drawings of a model: shapes of its text, bodies, joints and points.
 
 use pc_mech::{Expr, Graph, Matrix};
 
@@ -17,9 +17,9 @@ pub type Spot<'g> = [Expr<'g>; 3];
 pub enum Shape<'g> {
     /// A dot, with a label of its own.
     Point {
-        /// Where it is.
+        /// Its place.
         at: Spot<'g>,
-        /// What it is called.
+        /// Its name.
         label: Option<String>,
     },
     /// A broken line.
@@ -31,7 +31,7 @@ pub enum Shape<'g> {
     Disc {
         /// Its middle.
         at: Spot<'g>,
-        /// What is perpendicular to it.
+        /// A vector perpendicular to it.
         normal: Spot<'g>,
         /// Its radius.
         radius: Expr<'g>,
@@ -54,7 +54,7 @@ pub enum Shape<'g> {
     },
     /// The axes of a body that turns.
     Axes {
-        /// Where they meet.
+        /// Their common point.
         at: Spot<'g>,
         /// From its axes to those of space.
         rotation: Matrix<Expr<'g>>,
@@ -73,7 +73,7 @@ pub enum Shape<'g> {
     },
     /// Words.
     Text {
-        /// Where they begin.
+        /// The place where they begin.
         at: Spot<'g>,
         /// The words.
         text: String,
@@ -81,7 +81,7 @@ pub enum Shape<'g> {
 }
 
 impl Model {
-    /// What of the model can be drawn: bodies with the rods from joint to joint, points, then the shapes of `[[draw]]`.
+    /// The drawing of the model: bodies with the rods from joint to joint, points, then the shapes of `[[draw]]`.
     ///
     /// # Errors
     /// [`ModelError`] at the expression that cannot be resolved.
@@ -155,7 +155,7 @@ fn resolved<'g>(scope: &mut Scope<'g, '_>, draw: &Draw) -> Result<Shape<'g>, Mod
     })
 }
 
-/// Two expressions are those of a plane.
+/// Two expressions are a place in a plane.
 fn spot<'g>(scope: &mut Scope<'g, '_>, place: &[Expression], stage: Stage) -> Result<Spot<'g>, ModelError> {
     let mut at = [Expr::ZERO; 3];
     for (value, expression) in at.iter_mut().zip(place) {
@@ -176,7 +176,8 @@ fn rotation<'g>(
     Ok(Matrix::from_fn(3, 3, |i, j| values[3 * i + j]))
 }
 
-/// A rod from the joint of each body to the joints on it, or to its mass centre where it is the last, and the mass centre.
+/// For each body a rod from its joint to the joints on it, or to its mass centre if there are none, and the
+/// mass centre.
 fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
     let Some(tree) = assembly.system.tree() else { return Vec::new() };
     let (motions, graph) = (tree.motions(), assembly.system.graph());
@@ -200,7 +201,7 @@ fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
 }
 
 impl<'g> Shape<'g> {
-    /// Its functions, in an order that depends on nothing but its kind.
+    /// Its functions, in an order that depends on its kind only.
     pub fn functions(&self) -> Vec<Expr<'g>> {
         match self {
             Shape::Point { at, .. } | Shape::Trace { at } | Shape::Text { at, .. } => at.to_vec(),
@@ -213,7 +214,7 @@ impl<'g> Shape<'g> {
         }
     }
 
-    /// With values put in for velocities.
+    /// The shape with velocities substituted.
     fn substituted(self, graph: &'g Graph, known: &[(Expr<'g>, Expr<'g>)]) -> Shape<'g> {
         let values = graph.substitute(&self.functions(), known);
         let at = |n: usize| [values[n], values[n + 1], values[n + 2]];
@@ -234,7 +235,7 @@ impl<'g> Shape<'g> {
     }
 }
 
-/// Row by row.
+/// The entries, row by row.
 fn entries<'g>(rotation: &Matrix<Expr<'g>>) -> Vec<Expr<'g>> {
     (0..9).map(|ij| rotation[(ij / 3, ij % 3)]).collect()
 }

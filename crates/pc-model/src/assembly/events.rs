@@ -13,14 +13,14 @@ use crate::names::scope::entry;
 use crate::names::stage::Stage;
 
 impl<'g> Assembler<'g, '_> {
-    /// What passes through zero, ẋ = b η + b_0 put in, in the order of the file.
+    /// The functions that pass through zero, with ẋ = b η + b_0 substituted, in the order of the file.
     pub(super) fn crossings(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Vec<Expr<'g>>, ModelError> {
         let events = &self.model.document().events;
         events.iter().map(|event| self.at_event(&event.when, x_dot)).collect()
     }
 
-    /// The events with these crossings, and their resets, which need have no value before the event. First-order states stand
-    /// in the state from `first_state` on.
+    /// The events with these crossings, and their resets, which need no value before the event. First-order
+    /// states begin at the component `first_state` of the state.
     pub(super) fn events(
         &mut self,
         crossings: Vec<Expr<'g>>,
@@ -55,7 +55,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(self.graph.substitute(&[value], x_dot)[0])
     }
 
-    /// The component of (x, η, z) that a reset gives a new value.
+    /// The component of (x, η, z) to which a reset gives a new value.
     fn reset_place(
         &self,
         reset: &NamedExpression,
@@ -136,7 +136,7 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// Whether a constraint says that this quasi-velocity vanishes, and no more.
+/// Whether a constraint states just that this quasi-velocity vanishes.
 fn vanishes<'g>(constraints: &ConstraintTreatment<'g>, eta: Expr<'g>) -> bool {
     let constraints = constraints.multipliers().map_or(&[][..], |multipliers| multipliers.constraints());
     constraints.iter().any(|constraint| constraint.expression() == eta)

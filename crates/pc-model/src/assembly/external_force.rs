@@ -13,9 +13,10 @@ pub struct NotForced {
 }
 
 impl Model {
-    /// Declares that a force computed outside, such as that of a controller, acts on a quasi-velocity; on a coordinate where no
-    /// quasi-velocity is declared. The system then has an [external force](pc_mech::System::external_forces), and a motion
-    /// one more input: zero until it is set, or [given by a function](pc_mech::Motion::forced).
+    /// Declares that a force computed outside, such as that of a controller, acts on a quasi-velocity; on a
+    /// coordinate where no quasi-velocity is declared. The system then has an [external
+    /// force](pc_mech::System::external_forces), and a motion one more input: zero until it is set, or [given
+    /// by a function](pc_mech::Motion::forced).
     ///
     /// ```
     /// use pc_mech::{Graph, VectorField};
@@ -47,7 +48,8 @@ impl Model {
         Ok(())
     }
 
-    /// The quasi-velocities on which external forces act, in the order in which they were declared: `x'` for a coordinate x.
+    /// The quasi-velocities on which external forces act, in the order in which they were declared: `x'` for
+    /// a coordinate x.
     pub fn external_forces(&self) -> Vec<String> {
         let velocities = self.document().quasi_velocities.is_empty();
         let name = |on: &String| if velocities { format!("{on}'") } else { on.clone() };

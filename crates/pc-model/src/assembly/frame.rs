@@ -1,4 +1,4 @@
-//! The frame of a model, and errors in it.
+//! The frame of a model, and its errors.
 
 use pc_mech::{AlgebraError, Expr, Frame};
 
@@ -13,8 +13,8 @@ use crate::names::stage::Stage;
 impl<'g> Assembler<'g, '_> {
     /// The frame in one of its four ways: kinematics, definitions, neither (Lagrange), or no coordinates at all.
     ///
-    /// Definitions are completed by constraints, or by velocities, `at` the start: these are quasi-velocities after those that
-    /// are declared.
+    /// Definitions are completed by constraints, or by velocities, `at` the start: these are quasi-velocities
+    /// after the declared ones.
     pub(super) fn frame(
         &mut self,
         constraints: &mut [Written<'g>],

@@ -1,8 +1,9 @@
-//! Bodies whose orientation is a matrix of redundant coordinates: a rotation at the start, and along every motion from there.
+//! Bodies whose orientation is a matrix of redundant coordinates: a rotation at the start, and along every
+//! motion from it.
 //!
-//! With as many coordinates as quasi-velocities RᵀR has to be a multiple of 1 everywhere, which the mechanics sees. Redundant
-//! coordinates, such as nine direction cosines, may give a rotation on the surface of the motion only: what is known of that surface
-//! is the start, and the operators X_s along it.
+//! With as many coordinates as quasi-velocities, RᵀR has to be a multiple of 1 everywhere, which the
+//! mechanics checks. Redundant coordinates, such as nine direction cosines, may give a rotation on the
+//! surface of the motion only, which is known by the start and the operators X_s along it.
 
 use pc_algebra::Frame;
 use pc_mech::Expr;
@@ -14,19 +15,20 @@ use crate::diagnostics::source::Place;
 use crate::document::Orientation;
 use crate::names::stage::Stage;
 
-/// By how much RᵀR may miss a multiple of 1, in parts of it: far above the rounding of numbers with all their digits, and
-/// below what ω would feel.
+/// The greatest relative deviation of RᵀR from a multiple of 1: far above the rounding of numbers with all
+/// their digits, and below any effect on ω.
 const OFF: f64 = 1e-10;
 
 impl<'g> Assembler<'g, '_> {
-    /// That the matrices of bodies are rotations where `values` says that the motion starts, and remain so along the frame.
+    /// Checks that the matrices of bodies are rotations at the start, given by `values`, and remain so along
+    /// the frame.
     pub(super) fn check_orientations(
         &mut self,
         frame: &Frame<'g>,
         values: &[(Expr<'g>, f64)],
     ) -> Result<(), ModelError> {
         let document = self.model.document();
-        // Under constraints not every operator is a direction of motion.
+        // Under constraints, some operators are not directions of motion.
         if frame.coordinates().len() <= frame.operators() || !document.constraints.is_empty() {
             return Ok(());
         }
@@ -48,8 +50,8 @@ impl<'g> Assembler<'g, '_> {
         Ok(())
     }
 
-    /// The largest defect of the derivatives of RᵀR along the operators of the frame, X_0 among them, that is more than rounding
-    /// where RᵀR is of this size. Where there are no numbers others say so.
+    /// The largest defect of the derivatives of RᵀR along the operators of the frame, X_0 included, that
+    /// exceeds rounding for RᵀR of this size. Missing values are reported elsewhere.
     fn defect_along(
         &self,
         frame: &Frame<'g>,
@@ -74,7 +76,7 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// By how much a symmetric matrix, its diagonal first, misses a multiple of 1.
+/// The deviation of a symmetric matrix, diagonal first, from a multiple of 1.
 fn defect(matrix: &[f64]) -> f64 {
     let (diagonal, beside) = matrix.split_at(3);
     let mean = diagonal.iter().sum::<f64>() / 3.0;

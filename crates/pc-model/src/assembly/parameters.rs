@@ -13,28 +13,29 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::{Document, Expression, InputValue, Name};
 use crate::names::scope::Scope;
 
-/// The values of the parameters of a model, then of its inputs, in the order of declaration. One that is an expression
-/// in those before it follows them until it is itself set.
+/// The values of the parameters of a model, then of its inputs, in the order of declaration. A value given by
+/// an expression in earlier ones follows these until it is itself set.
 #[derive(Clone, Debug)]
 pub struct Parameters {
     values: Vec<f64>,
     formulas: Vec<Formula>,
 }
 
-/// Where a value comes from.
+/// The source of a value.
 #[derive(Clone, Debug)]
 enum Formula {
     /// It was given as a number.
     Number,
-    /// An expression in all parameters, of which it contains none but those before it.
+    /// An expression in the parameters before it; its program takes all of them.
     Of(Box<Interpreter>),
-    /// A function of time, of which this is the value at the start.
+    /// A function of time; the value is that at the start.
     Table(Arc<Table>),
-    /// An expression that means nothing, or a table that is none.
+    /// An invalid expression or table.
     Wrong(ModelError),
 }
 
-/// The names of parameters and inputs, each with its expression, in their order; an input with a table has none.
+/// The names of parameters and inputs, each with its expression, in their order; an input with a table has
+/// none.
 fn written(document: &Document) -> impl Iterator<Item = (&Name, Option<&Expression>)> {
     let parameters =
         document.parameters.iter().map(|parameter| (&parameter.name, Some(&parameter.expression)));

@@ -12,25 +12,26 @@ use crate::model::model::Model;
 use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
-/// What is left of a unit vector that depends on others, beside rounding.
+/// The remainder of a unit vector that depends on others, above rounding.
 const DEPENDENT: f64 = 1e-9;
 
-/// A velocity that misses another by less than this, absolute or relative whichever is larger, is that one.
+/// Velocities that differ by less than this, absolute or relative, whichever is larger, are equal.
 const OFF: f64 = 1e-8;
 
-/// The start as it is given.
+/// The given start.
 pub(super) struct Given {
-    /// Coordinates, then declared quasi-velocities, or velocities where none is; zero where nothing is given.
+    /// Coordinates, then declared quasi-velocities, or velocities if none is declared; zero if not given.
     pub(super) values: Vec<f64>,
     /// Whether a value is given for each.
     is_given: Vec<bool>,
-    /// Velocities of coordinates beside quasi-velocities, by their places among `start_velocities`.
+    /// Velocities of coordinates in addition to quasi-velocities, in the order of `start_velocities`.
     velocities: Vec<f64>,
-    /// First-order states; zero where nothing is given.
+    /// First-order states; zero if not given.
     pub(super) states: Vec<f64>,
 }
 
-/// The start values alone: of coordinates, of the declared quasi-velocities or of the velocities, of first-order states.
+/// The start values alone: of coordinates, of the declared quasi-velocities or of the velocities, of
+/// first-order states.
 ///
 /// # Errors
 /// [`ModelError`] where one is not a number.
@@ -67,7 +68,7 @@ impl<'g> Assembler<'g, '_> {
             for coordinate in &document.coordinates {
                 let place = names().position(|name| *name == coordinate.name.text);
                 values.push(place.map_or(0.0, |place| velocities[place]));
-                // Those of loops follow from each other.
+                // The coordinates of loops follow from each other.
                 is_given.push(place.is_some() || document.tree.is_empty());
             }
             velocities.clear();
@@ -92,7 +93,7 @@ impl<'g> Assembler<'g, '_> {
     ) -> Result<f64, ModelError> {
         let value = self.scope.resolve(expression, Stage::Start)?;
         let values = self.graph.evaluate(&[value], parameters);
-        let value = values.map_or(f64::NAN, |values| values[0]); // parameters are all there can be in it
+        let value = values.map_or(f64::NAN, |values| values[0]); // it can contain only parameters
         if value.is_finite() {
             return Ok(value);
         }
@@ -100,12 +101,13 @@ impl<'g> Assembler<'g, '_> {
         Err(self.scope.error(expression, expression.ast.span, fault))
     }
 
-    /// Coordinates and all quasi-velocities `eta` of the frame at the start. Those that are not given follow from given
-    /// velocities, b η + b_0 = x', and from the constraints; where these leave them open, those declared are zero.
+    /// Coordinates and all quasi-velocities `eta` of the frame at the start. Those not given follow from
+    /// given velocities, b η + b_0 = x', and from the constraints; if these leave them open, the declared
+    /// ones are zero.
     ///
     /// # Errors
-    /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`] where those
-    /// that complete the definitions are left open.
+    /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`]
+    /// where those that complete the definitions are left open.
     pub(super) fn start_state(
         &self,
         frame: &Frame<'g>,
@@ -120,7 +122,7 @@ impl<'g> Assembler<'g, '_> {
         let velocities = self.scope.velocities();
         let is_complete = eta[declared..].iter().all(|extra| !velocities.contains(extra));
         let unit = |s: usize| (0..eta.len()).map(|r| f64::from(u8::from(r == s))).collect::<Vec<f64>>();
-        // Loops tie velocities: of those of joints that are not given, some follow.
+        // Loops tie velocities together: some of those of joints that are not given follow from the others.
         let follows = !self.model.document().tree.is_empty() && !(0..declared).all(|s| given.is_given[n + s]);
         if is_complete && given.velocities.is_empty() && !follows {
             return Ok(start);
@@ -141,7 +143,7 @@ impl<'g> Assembler<'g, '_> {
             equations.add(&unit(s), start[n + s]);
         }
         for (row, value) in &conditions {
-            equations.add(row, *value); // one that is contradicted is off at the start, which is looked at later
+            equations.add(row, *value); // a contradiction shows as a start off its constraint
         }
         self.add_velocities(&mut equations, frame, at, &given.velocities)?;
         for s in (0..declared).filter(|&s| !given.is_given[n + s]) {
@@ -162,7 +164,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(start)
     }
 
-    /// C η = −c_0 of the constraints that have values.
+    /// C η = −c_0 for the constraints that have values.
     fn conditions(
         &self,
         frame: &Frame<'g>,
@@ -181,7 +183,7 @@ impl<'g> Assembler<'g, '_> {
         conditions
     }
 
-    /// b η = x' − b_0 of the velocities given.
+    /// b η = x' − b_0 for the given velocities.
     fn add_velocities(
         &self,
         equations: &mut Equations,
@@ -209,7 +211,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(())
     }
 
-    /// C and c_0 of a constraint in the quasi-velocities of the frame; none of what is not affine.
+    /// C and c_0 of a constraint in the quasi-velocities of the frame; `None` if it is not affine.
     fn condition(
         &self,
         written: &Written<'g>,
@@ -228,14 +230,14 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// Linear equations, each freed of those before it and of length one.
+/// Linear equations, each orthogonal to those before it and of length one.
 #[derive(Default)]
 struct Equations {
     rows: Vec<(Vec<f64>, f64)>,
 }
 
 impl Equations {
-    /// Adds row · η = value. Where those before it say what row · η is, and that is another value: that value.
+    /// Adds row · η = value. Returns the value of row · η that earlier equations determine, if that differs.
     fn add(&mut self, row: &[f64], value: f64) -> Option<f64> {
         let length = norm(row);
         let (rest, missing) = self.rest(row, value);
@@ -247,10 +249,10 @@ impl Equations {
         (missing.abs() > OFF * value.abs().max(length).max(1.0)).then_some(value - missing)
     }
 
-    /// What is left of an equation beside those there are.
+    /// The part of an equation that is independent of the present ones.
     fn rest(&self, row: &[f64], value: f64) -> (Vec<f64>, f64) {
         let (mut rest, mut missing) = (row.to_vec(), value);
-        // Twice is enough.
+        // Two passes are enough.
         for (known, right) in self.rows.iter().chain(&self.rows) {
             let along: f64 = known.iter().zip(&rest).map(|(a, b)| a * b).sum();
             rest.iter_mut().zip(known).for_each(|(rest, known)| *rest -= along * known);

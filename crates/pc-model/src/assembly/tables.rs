@@ -14,7 +14,7 @@ const LISTS: &str = "give as many values as times, at least two, with increasing
 const COLUMNS: &str = "a file has a line of names, then lines of numbers, with commas between them; the times are in its \
                        column `t`, else in the first, or where `time = \"…\"` says";
 
-/// The table of an input; none of one that is constant.
+/// The table of an input; `None` for a constant.
 ///
 /// # Errors
 /// [`ModelError`] at the entry that is wrong, or whose file is.
@@ -29,7 +29,7 @@ pub(crate) fn of(document: &Document, input: &Input) -> Result<Option<Table>, Mo
     }
 }
 
-/// That the motion starts outside a table.
+/// The error that the motion starts outside a table.
 pub(crate) fn not_at_start(document: &Document, name: &Name, table: &Table) -> ModelError {
     let (from, to) = (table.times().first(), table.times().last());
     let [from, to] = [from, to].map(|t| t.copied().unwrap_or(f64::NAN));

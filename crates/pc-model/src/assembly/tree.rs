@@ -1,4 +1,4 @@
-//! Bodies on joints: their expressions, resolved and checked where they stand.
+//! Bodies on joints: their expressions, resolved and checked in place.
 
 use pc_mech::{Expr, Inertia, Tree};
 
@@ -9,12 +9,12 @@ use crate::document::{self, Expression, JointRotation};
 use crate::names::points::hung;
 use crate::names::stage::Stage;
 
-/// By how much a matrix of constants may miss being a rotation, and a quaternion its length: the rounding of numbers written
-/// with nine digits.
+/// The greatest deviation of a matrix of constants from a rotation, and of the length of a quaternion from 1:
+/// the rounding of numbers with nine digits.
 const OFF: f64 = 1e-8;
 
 impl<'g> Assembler<'g, '_> {
-    /// The bodies on joints; `x_dot` are the symbols x' with b η + b_0. None where there are none.
+    /// The bodies on joints; `x_dot` are the symbols x' with b η + b_0. `None` if there are no such bodies.
     pub(super) fn tree(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Option<Tree<'g>>, ModelError> {
         let document = self.model.document();
         if document.tree.is_empty() {
@@ -58,7 +58,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(tree.velocities())
     }
 
-    /// That the rotations of joints are some, with these values of the parameters.
+    /// Checks that the rotations of joints are rotations, with these values of the parameters.
     pub(super) fn check_rotations(&mut self, parameters: &[(Expr<'g>, f64)]) -> Result<(), ModelError> {
         for body in &self.model.document().tree {
             if let Some(JointRotation::Matrix(entries)) = &body.joint.rotation {
@@ -75,7 +75,7 @@ impl<'g> Assembler<'g, '_> {
             let product: f64 = (0..3).map(|l| r[3 * i + l] * r[3 * j + l]).sum();
             (product - f64::from(u8::from(i == j))).abs()
         };
-        // NaN is larger than what is allowed.
+        // NaN exceeds every bound.
         let defect = (0..9).map(|ij| entry(ij / 3, ij % 3)).fold(0.0, |a: f64, b| if b <= a { a } else { b });
         let minor = |i: usize, j: usize| r[3 + i] * r[6 + j] - r[3 + j] * r[6 + i];
         let determinant = r[0] * minor(1, 2) - r[1] * minor(0, 2) + r[2] * minor(0, 1);
@@ -87,7 +87,7 @@ impl<'g> Assembler<'g, '_> {
         Err(self.model.document().error(&place, MeaningError::NotARotation { defect, determinant }))
     }
 
-    /// That quaternions have length 1 at the start; `start` are the values of the coordinates.
+    /// Checks that quaternions have length 1 at the start; `start` are the values of the coordinates.
     pub(super) fn check_quaternions(&self, start: &[f64]) -> Result<(), ModelError> {
         let document = self.model.document();
         let mut first = 0;

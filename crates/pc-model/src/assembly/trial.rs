@@ -7,18 +7,18 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
 
-/// A start that misses a constraint by less than this displacement of a coordinate or velocity, absolute or relative
-/// whichever is larger, is rounding of the numbers it is written with.
+/// A start whose distance from a constraint, as a displacement of a coordinate or velocity, absolute or
+/// relative, whichever is larger, is less than this is off by the rounding of its digits.
 const OFF: f64 = 1e-8;
 
-/// The components of the start that are not moved to the constraints, by their indices.
+/// The indices of the components of the start that are not moved to the constraints.
 pub(super) struct StartHeld {
     coordinates: Vec<usize>,
     quasi_velocities: Vec<usize>,
 }
 
 impl StartHeld {
-    /// What is to be held of a model, and the first `prescribed` quasi-velocities.
+    /// The components that the model holds, and the first `prescribed` quasi-velocities.
     pub(super) fn new(model: &Model, prescribed: usize) -> StartHeld {
         let n = model.document().coordinates.len();
         let (coordinates, named): (Vec<usize>, Vec<usize>) =
@@ -41,7 +41,7 @@ impl StartHeld {
     }
 }
 
-/// The constraints of a model, to be tried at states of time `t`.
+/// The constraints of a model, evaluated at states of time `t`.
 pub(super) struct Trial<'a, 'g> {
     pub(super) model: &'a Model,
     pub(super) system: &'a System<'g>,
@@ -50,7 +50,7 @@ pub(super) struct Trial<'a, 'g> {
 }
 
 impl<'g> Trial<'_, 'g> {
-    /// The nearest state that satisfies the constraints that bind, of those with the components that are held.
+    /// The nearest state with the held components that satisfies the binding constraints.
     ///
     /// # Errors
     /// [`ModelError`] if none is found.
@@ -86,7 +86,7 @@ impl<'g> Trial<'_, 'g> {
         Ok(nearest)
     }
 
-    /// That the constraints and their rates have values.
+    /// Checks that the constraints and their rates have values.
     ///
     /// # Errors
     /// [`MeaningError::NotFinite`] at the first that has none.
@@ -108,8 +108,8 @@ impl<'g> Trial<'_, 'g> {
         Ok(())
     }
 
-    /// That what was dropped vanishes where the constraints that bind do: a position that follows from others may do
-    /// so up to a constant.
+    /// Checks that dropped constraints vanish where the binding ones do: a position that follows from others
+    /// may do so up to a constant.
     ///
     /// # Errors
     /// [`MeaningError::Contradictory`]
@@ -133,7 +133,7 @@ impl<'g> Trial<'_, 'g> {
         Ok(())
     }
 
-    /// That all constraints are satisfied.
+    /// Checks that all constraints are satisfied.
     ///
     /// # Errors
     /// [`MeaningError::OffConstraint`] at the first that is not.
@@ -149,7 +149,7 @@ impl<'g> Trial<'_, 'g> {
         }
     }
 
-    /// Whether a constraint or its rate does not vanish, in words, and its value.
+    /// The constraint or its rate, in words, if it does not vanish, with its value.
     fn off(&self, constraint: &Constraint<'g>, state: &[f64]) -> Option<(&'static str, f64)> {
         let x = self.system.frame().coordinates();
         let eta = self.system.quasi_velocities();
@@ -161,14 +161,14 @@ impl<'g> Trial<'_, 'g> {
         position.or_else(|| self.misses(rate, state).map(|residual| ("its rate is", residual)))
     }
 
-    /// What should vanish, if none of the `movable` changed by [`OFF`] would make it so.
+    /// The value of an expression that should vanish, if no change of the `movable` by [`OFF`] makes it zero.
     fn misses(&self, (value, movable): (Expr<'g>, &[Expr<'g>]), state: &[f64]) -> Option<f64> {
         let graph = self.system.graph();
         let gradient = graph.gradient(value, movable).into_iter().map(|slope| self.value(slope, state));
         let sizes = movable.iter().map(|&x| self.value(x, state).abs().max(1.0));
         let reach = gradient.zip(sizes).map(|(slope, size)| slope.abs() * size).fold(0.0, f64::max);
         let residual = self.value(value, state);
-        // Where nothing moves it, it is taken as it stands.
+        // An expression that nothing moves is compared directly.
         let within = residual.abs() <= OFF * if reach > 0.0 { reach } else { 1.0 };
         (!within).then_some(residual)
     }

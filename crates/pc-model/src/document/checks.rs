@@ -1,4 +1,4 @@
-//! What must hold between the sections: one meaning for a name, something that moves, an energy.
+//! Conditions between the sections: one meaning for a name, something that moves, an energy.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -8,7 +8,7 @@ use crate::diagnostics::error_kind::{ErrorKind, Role};
 use crate::document::contents::Document;
 use crate::document::expression::Name;
 
-/// The energy must come from somewhere: `[lagrangian]` or `[bodies]`.
+/// The energy is given by `[lagrangian]` or `[bodies]`.
 pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {
     if !document.bodies.is_empty() || !document.tree.is_empty() {
         return Ok(());
@@ -23,7 +23,7 @@ pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {
     }
 }
 
-/// Gravity must have something to act on.
+/// Gravity acts on something.
 pub(super) fn require_bodies(document: &Document) -> Result<(), ModelError> {
     match &document.gravity {
         Some(gravity) if document.bodies.is_empty() && document.tree.is_empty() => {
@@ -35,7 +35,7 @@ pub(super) fn require_bodies(document: &Document) -> Result<(), ModelError> {
     }
 }
 
-/// Something must move: a coordinate, or a quasi-velocity.
+/// Something moves: a coordinate, or a quasi-velocity.
 pub(super) fn require_motion(document: &Document) -> Result<(), ModelError> {
     if document.coordinates.is_empty() && document.quasi_velocities.is_empty() {
         return Err(document.source.error(&document.end(), ErrorKind::NothingMoves));
@@ -44,7 +44,7 @@ pub(super) fn require_motion(document: &Document) -> Result<(), ModelError> {
 }
 
 impl Document {
-    /// The names of the one namespace, with what each stands for.
+    /// The names of the one namespace, each with its role.
     pub(crate) fn declared_names(&self) -> Vec<(&Name, Role)> {
         let quasi = self.quasi_velocities.iter().map(|quasi| (&quasi.name, Role::QuasiVelocity));
         let inputs = self.inputs.iter().map(|input| (&input.name, Role::Input));
@@ -68,7 +68,7 @@ impl Document {
     }
 }
 
-/// A name stands for one thing only.
+/// A name has one meaning only.
 pub(super) fn check_names(document: &Document) -> Result<(), ModelError> {
     let mut names = document.declared_names();
     names.sort_by_key(|(name, _)| name.place.span.start);

@@ -24,8 +24,8 @@ pub struct Document {
     pub definitions: Vec<NamedExpression>,
     /// Coordinates, each with its start value: those of joints, then what else is in `[coordinates]`.
     pub coordinates: Vec<NamedExpression>,
-    /// Quasi-velocities: those of joints unless all velocities are `x'`, then what else is in `[quasi_velocities]` but for
-    /// entries `"x'"`.
+    /// Quasi-velocities: those of joints unless all velocities are `x'`, then what else is in
+    /// `[quasi_velocities]` except entries `"x'"`.
     pub quasi_velocities: Vec<QuasiVelocity>,
     /// Entries `"x'" = value` of `[quasi_velocities]`: start velocities by the names of coordinates, without prime.
     pub start_velocities: Vec<NamedExpression>,
@@ -90,7 +90,7 @@ pub enum InputValue {
     Constant(Expression),
     /// Values at times.
     Lists {
-        /// Where they stand.
+        /// Their place.
         place: Place,
         /// The times.
         times: Vec<f64>,
@@ -110,7 +110,7 @@ pub struct TableFile {
     pub file: Located<String>,
     /// The column of the values.
     pub column: Located<String>,
-    /// That of the times; `t`, else the first one, where it is left out.
+    /// The column of the times; if left out, `t` or else the first one.
     pub time: Option<Located<String>>,
     /// The interpolation between the times.
     pub interpolation: Interpolation,
@@ -152,7 +152,7 @@ pub struct Algebra {
 pub enum AlgebraDefinition {
     /// By its name in the catalogue.
     Catalogue(Located<String>),
-    /// By its brackets, pairs left out being zero.
+    /// By its brackets; pairs left out are zero.
     Brackets(Vec<Bracket>),
 }
 
@@ -185,7 +185,7 @@ pub enum ConstraintKind {
     Holonomic,
     /// It is not integrable.
     Nonholonomic,
-    /// It is not affine in the velocities: Chetaev's condition says which displacements are virtual.
+    /// It is not affine in the velocities: Chetaev's condition determines the virtual displacements.
     Nonlinear,
 }
 
@@ -294,7 +294,7 @@ pub enum EquationForm {
     Canonical,
     /// Equations for η without coordinates that nothing depends on.
     Reduced,
-    /// Those for the momenta.
+    /// Equations for the momenta of these.
     LiePoisson,
     /// Equations in a frame that is orthonormal in the kinetic metric.
     Orthonormal,

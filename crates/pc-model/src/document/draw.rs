@@ -11,19 +11,19 @@ use crate::document::expression::{Expression, Located};
 pub struct Draw {
     /// The entry.
     pub place: Place,
-    /// What it draws.
+    /// The shape drawn.
     pub shape: DrawnShape,
 }
 
 /// A place by two or three expressions.
 pub type DrawnPlace = Vec<Expression>;
 
-/// What is drawn, by expressions.
+/// A shape, by expressions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DrawnShape {
     /// A dot of the same size from near and far.
     Point {
-        /// Where it is.
+        /// Its place.
         at: DrawnPlace,
     },
     /// A broken line.
@@ -35,7 +35,7 @@ pub enum DrawnShape {
     Disc {
         /// Its middle.
         at: DrawnPlace,
-        /// What is perpendicular to it.
+        /// A vector perpendicular to it.
         normal: Option<DrawnPlace>,
         /// Its radius.
         radius: Expression,
@@ -70,7 +70,7 @@ pub enum DrawnShape {
     },
     /// Words.
     Text {
-        /// Where they begin.
+        /// The place where they begin.
         at: DrawnPlace,
         /// The words.
         text: Located<String>,
@@ -88,7 +88,7 @@ const KINDS: &[(&str, Keys)] = &[
     ("text", Keys(&["kind", "at", "text"])),
 ];
 
-/// What an entry of a kind may say.
+/// The entries allowed for a kind.
 #[derive(Clone, Copy)]
 struct Keys(&'static [&'static str]);
 
@@ -145,7 +145,7 @@ fn entry(item: &Item<'_>) -> Result<Draw, ModelError> {
     Ok(Draw { place: table.place.clone(), shape })
 }
 
-/// How many corners a line may have.
+/// The possible numbers of corners of a line.
 const LINES: &[usize] = &{
     let mut lengths = [0; 63];
     let mut i = 0;

@@ -8,25 +8,25 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::source::{Place, Source};
 use crate::document::text_map::TextMap;
 
-/// A value and where it stands in the file.
+/// A value and its place in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Located<T> {
     /// The value.
     pub value: T,
-    /// Where it stands.
+    /// Its place.
     pub place: Place,
 }
 
-/// A name and where it stands in the file, quotes excluded.
+/// A name and its place in the file, quotes excluded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
     /// The name.
     pub text: String,
-    /// Where it stands.
+    /// Its place.
     pub place: Place,
 }
 
-/// An expression and where it stands in the file.
+/// An expression and its place in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     /// As written, escapes of the TOML string resolved.
@@ -38,7 +38,7 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// The expression that is the whole of a text.
+    /// The expression that a whole text consists of.
     ///
     /// # Errors
     /// [`ModelError`] if it is none.
@@ -51,14 +51,14 @@ impl Expression {
         Ok(Expression { text: text.to_owned(), ast, entry: String::new(), map: TextMap::verbatim(text) })
     }
 
-    /// An expression that is not written, but follows from what stands at a place.
+    /// An expression that is not written, but implied by the text at a place.
     pub(super) fn following(source: &Source, text: String, place: &Place) -> Result<Expression, ModelError> {
         let ast = parse(&text).map_err(|error| source.error(place, error))?;
         let map = TextMap::standing_for(place.span.clone(), text.len());
         Ok(Expression { text, ast, entry: place.entry.clone(), map })
     }
 
-    /// Bytes of the file at which a part of the expression stands.
+    /// Bytes of a part of the expression in the file.
     pub fn locate(&self, span: Span) -> Range<usize> {
         self.map.locate(span.start..span.end)
     }

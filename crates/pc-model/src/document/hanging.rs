@@ -1,4 +1,4 @@
-//! What joints declare: their coordinates and quasi-velocities among those of the model; and that bodies hang somewhere.
+//! The coordinates and quasi-velocities that joints declare among those of the model, and checks of the tree.
 
 use std::collections::{HashMap, HashSet};
 
@@ -12,10 +12,10 @@ use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::joints::{TreeBody, WORLD, prime};
 use crate::document::loops::Loop;
 
-/// Puts what joints and loops declare in its places among the rest.
+/// Adds the declarations of joints and loops to the document.
 ///
 /// # Errors
-/// Where a body hangs on none that there is, or what a joint says is said otherwise elsewhere.
+/// If a body hangs on one that does not exist, or the motion of a joint is also given elsewhere.
 pub(super) fn declare(document: &mut Document, loops: Vec<Loop>) -> Result<(), ModelError> {
     check_parents(document)?;
     check_masses(document)?;
@@ -29,7 +29,7 @@ pub(super) fn declare(document: &mut Document, loops: Vec<Loop>) -> Result<(), M
     declared
 }
 
-/// That a body is one of the tree, or the world.
+/// Checks that a body is one of the tree, or the world.
 fn check_body(document: &Document, body: &Located<String>) -> Result<(), ModelError> {
     if body.value == WORLD || document.tree.iter().any(|known| known.name.text == body.value) {
         return Ok(());
@@ -39,7 +39,7 @@ fn check_body(document: &Document, body: &Located<String>) -> Result<(), ModelEr
     Err(document.source.error(&body.place, kind))
 }
 
-/// That each body hangs on one that there is, and all of them on the world in the end.
+/// Checks that each body hangs on an existing one, and all of them ultimately on the world.
 fn check_parents(document: &Document) -> Result<(), ModelError> {
     for parent in document.tree.iter().filter_map(|body| body.parent.as_ref()) {
         check_body(document, parent)?;
@@ -66,7 +66,7 @@ fn check_parents(document: &Document) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// That what moves has mass: it, or what hangs on it, unless `[lagrangian]` says more of the energy.
+/// Checks that a moving body has mass, or one that hangs on it, unless `[lagrangian]` gives more energy.
 fn check_masses(document: &Document) -> Result<(), ModelError> {
     if document.lagrangian.as_ref().is_some_and(|own| own.kinetic.is_some() || own.lagrangian.is_some()) {
         return Ok(());
@@ -111,7 +111,7 @@ fn close(document: &mut Document, loops: Vec<Loop>) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// The joint that has this coordinate.
+/// The body whose joint has this coordinate.
 fn of_joint<'d>(tree: &'d [TreeBody], coordinate: &str) -> Option<&'d TreeBody> {
     tree.iter().find(|body| body.joint.coordinates.iter().any(|x| x.text == coordinate))
 }
@@ -184,7 +184,7 @@ fn declare_motions(document: &mut Document, tree: &[TreeBody]) -> Result<(), Mod
         }
         None => {}
     }
-    // The start velocity of a coordinate is the start value of the quasi-velocity that is this velocity.
+    // The start velocity of a coordinate is the start value of the quasi-velocity that equals it.
     for eta in &mut quasi_velocities {
         let given = document.start_velocities.iter().position(|x| prime(&x.name.text) == eta.name.text);
         if let Some(place) = given {

@@ -4,7 +4,7 @@ use crate::diagnostics::source::Place;
 use crate::document::expression::{Expression, Located, Name};
 use crate::document::inertia::Inertia;
 
-/// What stands for the fixed axes where a body is named.
+/// The name of the fixed axes in place of a body.
 pub const WORLD: &str = "world";
 
 /// A body that hangs on another, or on the world, by a joint.
@@ -16,7 +16,7 @@ pub struct TreeBody {
     pub place: Place,
     /// The body it hangs on; the world where it is left out.
     pub parent: Option<Located<String>>,
-    /// How it hangs there.
+    /// The joint by which it hangs there.
     pub joint: Joint,
     /// Its mass; 0 where it is left out.
     pub mass: Option<Expression>,
@@ -37,18 +37,18 @@ impl TreeBody {
     }
 }
 
-/// How a body moves against the one it hangs on.
+/// A joint: how a body moves relative to the one on which it hangs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Where it is written.
+    /// Its place in the file.
     pub place: Place,
-    /// What it lets move.
+    /// Its kind.
     pub kind: JointKind,
     /// The directions that its kind has, in the joint's axes; of any length but 0.
     pub axes: Vec<[f64; 3]>,
-    /// Of a screw, the advance per radian.
+    /// The advance of a screw per radian.
     pub pitch: Option<Expression>,
-    /// Where it is, in the axes of the body it hangs on, from the origin of that; the origin where it is left out.
+    /// Its place, in the axes of the body it hangs on, from the origin of that; the origin if left out.
     pub at: Option<[Expression; 3]>,
     /// From the joint's axes to those of the body it hangs on; none where they are parallel.
     pub rotation: Option<JointRotation>,
@@ -71,7 +71,7 @@ pub(crate) fn prime(coordinate: &str) -> String {
     format!("{coordinate}'")
 }
 
-/// What a joint lets move.
+/// The kinds of joints, by the motions they allow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
     /// Nothing.
@@ -108,7 +108,7 @@ impl JointKind {
         ("free", JointKind::Free),
     ];
 
-    /// How many axes it has.
+    /// The number of its axes.
     pub fn axes(self) -> usize {
         match self {
             JointKind::Fixed | JointKind::Spherical | JointKind::Free => 0,
@@ -131,7 +131,7 @@ impl JointKind {
         ends.iter().map(|end| format!("{name}{end}")).collect()
     }
 
-    /// The names of its quasi-velocities, where its coordinates have these names.
+    /// The names of its quasi-velocities, for coordinates of these names.
     pub(crate) fn quasi_velocities(self, name: &str, coordinates: &[String]) -> Vec<String> {
         let ends: &[&str] = match self {
             JointKind::Spherical => &["_ω1", "_ω2", "_ω3"],
@@ -172,9 +172,10 @@ pub struct Point {
     pub name: Name,
     /// The body it belongs to.
     pub body: Located<String>,
-    /// Where it is, in body axes from the origin of the body; this origin where it is left out.
+    /// Its place, in body axes from the origin of the body; this origin if left out.
     pub at: Option<[Expression; 3]>,
-    /// `NAME_x` to `NAME_z`, its place along fixed axes, then `NAME_11` to `NAME_33`, the rotation of its body, row after row.
+    /// `NAME_x` to `NAME_z`, its place along fixed axes, then `NAME_11` to `NAME_33`, the rotation of its
+    /// body, row after row.
     pub components: Vec<Name>,
 }
 

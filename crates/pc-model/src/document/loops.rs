@@ -1,4 +1,4 @@
-//! Joints between bodies that hang already, as constraints on points of these.
+//! Joints between bodies of the tree, as constraints on points of these.
 
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
@@ -12,22 +12,22 @@ const BODIES: &str = "bodies = [\"a\", \"b\"]";
 const PLACES: &str = "at = [[0, 0, 0], [0, 0, 0]]";
 const DIRECTIONS: &str = "axis = [[0, 0, 1], [0, 0, 1]]";
 
-/// A joint between two bodies that hang already.
+/// A joint that closes a loop between two bodies of the tree.
 pub(super) struct Loop {
     pub(super) name: Name,
     pub(super) points: [Point; 2],
-    /// What stays zero, functions of the components of the points.
+    /// Expressions that stay zero, functions of the components of the points.
     pub(super) constraints: Vec<Expression>,
 }
 
-/// How a loop is closed.
+/// The ways to close a loop.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Closing {
-    /// A point of the one is a point of the other.
+    /// A point of one body coincides with a point of the other.
     Point,
-    /// The same, and an axis of the one is parallel to one of the other.
+    /// A point coincides, and an axis of one body is parallel to one of the other.
     Revolute,
-    /// A point of the one keeps its distance from a point of the other.
+    /// A point of one body keeps its distance from a point of the other.
     Rod,
 }
 
@@ -112,12 +112,12 @@ fn entries<'a>(table: &Table<'a>) -> Result<Entries<'a>, ModelError> {
     Ok(entries)
 }
 
-/// The components of the distance of the two points.
+/// The components of the difference of the two points.
 fn apart(name: &str) -> Vec<String> {
     ["x", "y", "z"].iter().map(|i| format!("{name}_a_{i} - {name}_b_{i}")).collect()
 }
 
-/// The product of a direction of the first body with one of the second.
+/// The scalar product of a direction of the first body and one of the second.
 fn scalar_product(name: &str, a: [f64; 3], b: [f64; 3]) -> String {
     let along = |end: &str, u: &[f64; 3], i: usize| {
         let terms = (0..3).filter(|&j| u[j] != 0.0).map(|j| {
@@ -130,13 +130,13 @@ fn scalar_product(name: &str, a: [f64; 3], b: [f64; 3]) -> String {
     products.collect::<Vec<_>>().join(" + ")
 }
 
-/// An axis, made a unit vector.
+/// An axis, scaled to a unit vector.
 fn axis(item: &Item<'_>) -> Result<[f64; 3], ModelError> {
     let axis = direction(item, DIRECTIONS)?;
     Ok(axis.map(|value| value / norm(axis)))
 }
 
-/// Two unit vectors across a unit vector and across each other.
+/// Two unit vectors orthogonal to a unit vector and to each other.
 fn across(u: [f64; 3]) -> [[f64; 3]; 2] {
     let least = (0..3).fold(0, |least, i| if u[i].abs() < u[least].abs() { i } else { least });
     let first = cross(u, [0, 1, 2].map(|i| f64::from(u8::from(i == least))));

@@ -33,7 +33,7 @@ pub(super) struct Item<'a> {
     value: &'a DeValue<'a>,
 }
 
-/// Whether a name has a meaning of its own.
+/// Whether a name has a fixed meaning.
 fn is_reserved(name: &str) -> bool {
     matches!(name, "t" | "pi" | "energy") || FUNCTIONS.iter().any(|function| function.name == name)
 }
@@ -66,13 +66,13 @@ impl<'a> Table<'a> {
         self.entries.contains_key(key)
     }
 
-    /// An expression that follows from what stands at a place.
+    /// An expression implied by the text at a place.
     pub(super) fn following(&self, text: String, place: &Place) -> Result<Expression, ModelError> {
         Expression::following(self.source, text, place)
     }
 
-    /// The entries as `name = "expression"`, the names being those of things declared elsewhere, the velocity `x'` of a
-    /// coordinate standing for this.
+    /// The entries as `name = "expression"`, where names are declared elsewhere and the velocity `x'` of a
+    /// coordinate stands for the coordinate.
     pub(super) fn on_velocities(&self) -> Result<Vec<NamedExpression>, ModelError> {
         let entry = |item: Item<'a>| {
             let name = item.velocity().map_or_else(|| item.name(), Ok)?;
@@ -81,14 +81,14 @@ impl<'a> Table<'a> {
         self.items().map(entry).collect()
     }
 
-    /// The entries as `name = "expression"`, the names being those of things declared elsewhere.
+    /// The entries as `name = "expression"`, where names are declared elsewhere.
     pub(super) fn expressions(&self) -> Result<Vec<NamedExpression>, ModelError> {
         self.items()
             .map(|item| Ok(NamedExpression { name: item.name()?, expression: item.expression()? }))
             .collect()
     }
 
-    /// The entries as `name = "expression"`, the names being declared by them.
+    /// The entries as `name = "expression"`, which declare the names.
     pub(super) fn declarations(&self) -> Result<Vec<NamedExpression>, ModelError> {
         self.items()
             .map(|item| Ok(NamedExpression { name: item.new_name()?, expression: item.expression()? }))
@@ -143,14 +143,14 @@ impl<'a> Item<'a> {
         self.error(ErrorKind::WrongType { expected, found, example })
     }
 
-    /// The key under whatever name, such as that of a body.
+    /// The key as any label, such as that of a body.
     pub(super) fn label(&self) -> Name {
         let raw = self.source.slice(self.key_span.clone());
         let span = TextMap::new(raw, self.key_span.start, self.key).locate(0..self.key.len());
         Name { text: self.key.into(), place: Place { entry: self.place.entry.clone(), span } }
     }
 
-    /// The key as a label, which need not be a name, but can be shown as it is.
+    /// The key as a label, which need not be a name, but has no hidden characters.
     pub(super) fn new_label(&self) -> Result<Name, ModelError> {
         if self.key.contains(is_hidden) {
             return Err(self.key_error(ErrorKind::HiddenInLabel { label: self.key.into() }));
@@ -175,7 +175,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A name made of the key, which stands for it.
+    /// A name derived from the key, with its place.
     pub(super) fn derived_name(&self, text: String) -> Result<Name, ModelError> {
         match text.as_str() {
             name if !is_name(name) => Err(self.key_error(ErrorKind::NotAName { key: text })),
@@ -184,7 +184,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// The value as a name that it declares.
+    /// The value as a name declared by this entry.
     pub(super) fn value_as_name(&self) -> Result<Name, ModelError> {
         let Located { value: text, place } = self.text()?;
         match text.as_str() {
@@ -362,7 +362,7 @@ impl<'a> Item<'a> {
         self.elements(array).map(|element| element.expression()).collect()
     }
 
-    /// The value as a list of one of the given lengths, whatever its elements are.
+    /// The value as a list of one of the given lengths, with any elements.
     pub(super) fn parts(
         &self,
         lengths: &[usize],

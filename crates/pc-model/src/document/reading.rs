@@ -22,7 +22,7 @@ pub fn read_bounded(from: impl Read) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The same for a file.
+/// The whole contents of a file.
 ///
 /// # Errors
 /// As for [`read_bounded`], and those of opening it.

@@ -1,8 +1,8 @@
 //! The text format as a JSON Schema.
 
-/// The JSON Schema (draft 7) of the text format, for editors: the sections, their entries and the types of these. A text that
-/// it refuses is refused by [`Document::parse`](crate::Document::parse); names, expressions and what must hold between
-/// sections it does not know.
+/// The JSON Schema (draft 7) of the text format, for editors: the sections, their entries and the types of
+/// these. A text that it refuses is refused by [`Document::parse`](crate::Document::parse); names,
+/// expressions and what must hold between sections it does not know.
 ///
 /// It is kept by hand; the tests compare each of its entries and choices with those that the reader accepts.
 pub const SCHEMA: &str = include_str!("../../model.schema.json");

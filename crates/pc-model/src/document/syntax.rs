@@ -1,4 +1,4 @@
-//! The TOML layer: from bytes to a table, with the parser's errors in our words.
+//! The TOML layer: from bytes to a table, with the parser's errors in plain words.
 
 use std::ops::Range;
 
@@ -35,7 +35,7 @@ fn kind(source: &Source, error: &Error, span: &Range<usize>) -> ErrorKind {
     ErrorKind::Toml { message: message.into(), help: help(source, message, span) }
 }
 
-/// What was probably meant by the line at `span`.
+/// The probable intention of the line at `span`.
 fn help(source: &Source, message: &str, span: &Range<usize>) -> &'static str {
     let text = source.text();
     let start = text[..text.floor_char_boundary(span.start)].rfind('\n').map_or(0, |newline| newline + 1);

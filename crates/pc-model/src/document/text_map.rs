@@ -10,7 +10,7 @@ pub struct TextMap {
     end: usize,
 }
 
-/// `decoded` of the value stands at `file`; verbatim where the lengths agree, else an escape.
+/// `decoded` of the value corresponds to `file`; verbatim if the lengths agree, else an escape.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Piece {
     decoded: Range<usize>,
@@ -25,18 +25,18 @@ impl TextMap {
         if scan.decoded == value {
             return Self { pieces: scan.pieces, end: start + scan.at };
         }
-        // Not a literal we know: the value stands somewhere in it.
+        // An unknown kind of literal: the value lies somewhere in it.
         let whole = Piece { decoded: 0..value.len(), file: start..start + raw.len() };
         Self { pieces: vec![whole], end: start + raw.len() }
     }
 
-    /// That of a text that stands as it is.
+    /// The map of a text to itself.
     pub(crate) fn verbatim(text: &str) -> Self {
         let whole = 0..text.len();
         Self { pieces: vec![Piece { decoded: whole.clone(), file: whole }], end: text.len() }
     }
 
-    /// That of a text of so many bytes that stands for a place as a whole.
+    /// The map of a text of `length` bytes to a single place.
     pub(crate) fn standing_for(place: Range<usize>, length: usize) -> Self {
         Self { end: place.end, pieces: vec![Piece { decoded: 0..length, file: place }] }
     }
@@ -135,7 +135,7 @@ impl<'a> Scan<'a> {
         };
         match value {
             Some(value) => self.push(value.encode_utf8(&mut [0; 4]), 2 + digits),
-            // A backslash at the end of a line: it and all white space after it are not there.
+            // A backslash at the end of a line: it and all following white space are removed.
             None => {
                 let space = rest[1..].trim_start_matches([' ', '\t', '\r', '\n']);
                 self.at += (rest.len() - space.len()).max(1);

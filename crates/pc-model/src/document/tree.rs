@@ -1,4 +1,4 @@
-//! The sections of bodies, those that hang on others by joints among them, and of points of bodies.
+//! The sections of bodies, also of those on joints, and of points of bodies.
 
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
@@ -152,7 +152,8 @@ pub(super) fn direction(item: &Item<'_>, example: &'static str) -> Result<[f64; 
     }
 }
 
-/// The slides of a planar joint are along the axes of the joint that follow its normal, so that this is one of them.
+/// Checks the normal of a planar joint: the slides are along the joint axes that follow it, so it is one of
+/// these axes.
 fn check_normal(kind: JointKind, part: &Item<'_>, normal: [f64; 3]) -> Result<(), ModelError> {
     if kind != JointKind::Planar
         || (0..3).any(|i| normal[i] > 0.0 && normal[(i + 1) % 3] == 0.0 && normal[(i + 2) % 3] == 0.0)
@@ -167,7 +168,7 @@ fn check_normal(kind: JointKind, part: &Item<'_>, normal: [f64; 3]) -> Result<()
     }))
 }
 
-/// An entry that joints of this kind do not have.
+/// The error for an entry that joints of this kind do not have.
 fn without_effect(part: &Item<'_>, kind: JointKind) -> ModelError {
     let example = match kind.axes() {
         0 => "kind = \"revolute\"",
@@ -178,7 +179,7 @@ fn without_effect(part: &Item<'_>, kind: JointKind) -> ModelError {
     part.key_error(ErrorKind::OfOtherJoints { key: part.key().to_owned(), example })
 }
 
-/// The names that an entry lists, else the usual ones.
+/// The names listed in an entry, or the usual ones.
 fn names(list: Option<&Item<'_>>, body: &Item<'_>, usual: Vec<String>) -> Result<Vec<Name>, ModelError> {
     let Some(list) = list else {
         return usual.into_iter().map(|name| body.derived_name(name)).collect();

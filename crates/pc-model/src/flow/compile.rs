@@ -1,4 +1,4 @@
-//! The motion of a model, compiled and tried at the start.
+//! The motion of a model, compiled and evaluated at the start.
 
 use std::sync::Arc;
 
@@ -36,7 +36,8 @@ impl Model {
         }
     }
 
-    /// Compiles the equations with multipliers and tries them at the start (x, η, z) with all η, which is returned with them.
+    /// Compiles the equations with multipliers and tries them at the start (x, η, z) with all η, which is
+    /// returned with them.
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be evaluated there.
@@ -108,8 +109,7 @@ impl Model {
         })
     }
 
-    /// The names of what is to be kept, but for integrals of the text that a system without some of its coordinates
-    /// does not have.
+    /// The names of the kept integrals, without those of the text that a system with fewer coordinates lacks.
     fn kept_of(&self, system: &System<'_>) -> Vec<String> {
         let is_written =
             |name: &String| self.document().integrals.iter().any(|known| known.name.text == *name);
@@ -124,8 +124,8 @@ impl Model {
             .time_derivative(self.differentiates_by_time())
     }
 
-    /// What was compiled, if it can be evaluated at the start, projected to the integrals that are to be kept. These are to be
-    /// integrals whatever the external forces.
+    /// The compiled motion, if it can be evaluated at the start, projected to the kept integrals. These have
+    /// to be integrals for any external forces.
     fn started(
         &self,
         compiled: Result<Motion, MechError>,
@@ -156,7 +156,7 @@ impl Model {
             let kept = kept().map_err(|error| self.document().derivation_error(error))?;
             let forces = motion.parameters().len() - self.external.len()..;
             for (i, force) in motion.parameters_mut()[forces.clone()].iter_mut().enumerate() {
-                *force = std::f64::consts::PI / (i + 1) as f64; // in balance with nothing that is written
+                *force = std::f64::consts::PI / (i + 1) as f64; // in balance with nothing in the model
             }
             motion = motion
                 .keep(kept, t_start, &start)

@@ -8,8 +8,8 @@ use crate::diagnostics::error::ModelError;
 use crate::flow::reading::inputs;
 use crate::model::model::Model;
 
-/// Of each event the derivatives of its function, and of what its reset writes, by (t, y, p), where y = (x, η, z) with the free
-/// η, of which the others are functions.
+/// For each event the derivatives of its function, and of the values its reset writes, by (t, y, p), where y
+/// = (x, η, z) with the free η, of which the others are functions.
 #[derive(Clone, Debug)]
 pub(super) struct EventSlopes {
     dim: usize,
@@ -18,7 +18,7 @@ pub(super) struct EventSlopes {
     events: Vec<Compiled>,
 }
 
-/// The components of the state that a reset gives new values, and the rows of the function and of these.
+/// The components of the state that a reset writes, and the rows of the function and of these.
 #[derive(Clone, Debug)]
 struct Compiled {
     places: Vec<usize>,
@@ -94,12 +94,12 @@ impl<'a> Slopes<'a> {
         Row { dim: self.dim, values: &self.compiled.values[i * self.symbols..(i + 1) * self.symbols] }
     }
 
-    /// Of the function.
+    /// The derivatives of the function.
     pub(super) fn function(&self) -> Row<'a> {
         self.row(0)
     }
 
-    /// What `of` takes of the derivatives of each component that the reset writes, with its place in the state.
+    /// `of` the derivatives of each component that the reset writes, with its index in the state.
     pub(super) fn resets(&self, of: impl Fn(Row<'a>) -> f64) -> impl Iterator<Item = (usize, f64)> {
         self.compiled.places.iter().enumerate().map(move |(i, &place)| (place, of(self.row(i + 1))))
     }
@@ -118,7 +118,7 @@ impl<'a> Row<'a> {
         self.values[1 + self.dim + j]
     }
 
-    /// Along (τ, v) of time and state.
+    /// Along (τ, v) in time and state.
     pub(super) fn along(self, in_time: f64, v: &[f64]) -> f64 {
         let by_state = self.by_state().iter().zip(v).map(|(slope, v)| slope * v);
         self.by_time() * in_time + by_state.sum::<f64>()

@@ -1,4 +1,4 @@
-//! The events of a model on the states that are integrated, whatever their form.
+//! The events of a model on the states that are integrated, in any form.
 
 use std::sync::Arc;
 
@@ -12,10 +12,10 @@ use crate::flow::event_slopes::EventSlopes;
 use crate::flow::reading::{Reading, inputs};
 use crate::model::model::Model;
 
-/// A reset that misses a constraint on coordinates by more than this displacement, absolute or relative whichever is
-/// larger, is no rounding.
+/// A reset that leaves a constraint on coordinates by more than this displacement, absolute or relative,
+/// whichever is larger, is more than rounding.
 const OFF: f64 = 1e-8;
-/// A reset may lengthen by this factor how far a state is off the constraints.
+/// The factor by which a reset may increase the distance of a state from the constraints.
 const LENGTHENED: f64 = 10.0;
 
 /// The events of a model, compiled. Functions and resets see (x, η) with all quasi-velocities.
@@ -27,15 +27,15 @@ pub struct FlowEvents {
     signals: Signals,
     functions: Evaluator,
     resets: Vec<Reset>,
-    /// Derivatives of both, where states are read and written by formulas.
+    /// Derivatives of both, if states are read and written by formulas.
     slopes: Option<EventSlopes>,
-    /// The places of inputs with tables.
+    /// The indices of inputs with tables.
     tables: Vec<usize>,
-    /// The motion under constraints, which knows where they are satisfied.
+    /// The motion under constraints, which measures distances from them.
     constraints: Option<Motion>,
-    /// The quasi-velocities that determine the others, and keep the values that resets give them.
+    /// The quasi-velocities that determine the others, and keep the values of resets.
     determining: Vec<usize>,
-    /// Room for (x, η, z) with all η.
+    /// Storage for (x, η, z) with all η.
     room: Vec<f64>,
 }
 
@@ -50,14 +50,14 @@ struct Reset {
 #[error("these events were not compiled with their derivatives")]
 struct NoSlopes;
 
-/// Sensitivities by what is a function of time.
+/// The error of sensitivities by a function of time.
 #[derive(Debug, thiserror::Error)]
 #[error("there is no derivative by parameter {parameter} (from 0): it is an input with a table")]
 struct OfTable {
     parameter: usize,
 }
 
-/// A reset to where constraints do not allow the system to be.
+/// The error of a reset to a state that constraints forbid.
 #[derive(Debug, thiserror::Error)]
 #[error("its reset leaves the constraints: {coordinate} would have to be {allowed}, not {given}")]
 struct OffConstraints {
@@ -67,8 +67,8 @@ struct OffConstraints {
 }
 
 impl FlowEvents {
-    /// The events of a model whose states are read in this way; `watch` is the motion of all quasi-velocities where there
-    /// are multipliers.
+    /// The events of a model whose states are read in this way; `watch` is the motion of all quasi-velocities
+    /// where there are multipliers.
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be compiled.
@@ -94,7 +94,7 @@ impl FlowEvents {
         });
         let held = matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_))
             && !declared.is_empty();
-        // Those declared, where others complete them to a frame and follow from them.
+        // The declared ones, if others complete them to a frame and follow from them.
         let bound =
             assembly.constraints.multipliers().map_or(0, |multipliers| multipliers.constraints().len());
         let follow = bound > 0 && assembly.declared + bound == system.quasi_velocities().len();
@@ -123,8 +123,8 @@ impl FlowEvents {
         }
     }
 
-    /// ∂g/∂pⱼ and, in `reset`, ∂R/∂pⱼ by central difference quotients, good for ten digits: of momenta, and of velocities that
-    /// constraints determine.
+    /// ∂g/∂pⱼ and, in `reset`, ∂R/∂pⱼ by central difference quotients, accurate to ten digits: for momenta,
+    /// and for velocities that constraints determine.
     fn quotient_by_parameter(
         &mut self,
         event: usize,
@@ -135,7 +135,7 @@ impl FlowEvents {
     ) -> Result<f64, Failure> {
         let held = self.reading.parameters().to_vec();
         let size = Some(held[j].abs()).filter(|size| *size > 0.0).unwrap_or(1.0);
-        let step = f64::EPSILON.cbrt() * size; // truncation and rounding are alike
+        let step = f64::EPSILON.cbrt() * size; // truncation and rounding errors are equal
         let mut at = |value: f64| {
             let mut moved = held.clone();
             moved[j] = value;
@@ -180,14 +180,14 @@ impl Events for FlowEvents {
         Ok(())
     }
 
-    /// That of the functions where states are read as they are and nothing comes of tables.
+    /// The program of the functions, if states are read directly and there are no tables.
     fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
         let plain = self.reading.is_plain() && self.signals.is_empty() && !self.events.is_empty();
         plain.then(|| (self.functions.program(), self.reading.parameters()))
     }
 
-    /// The new values all come of the state before; velocities are then moved to where constraints allow them. Coordinates
-    /// stay where they are unless the reset says otherwise: the state is at the event, and no rounding may take it back.
+    /// All new values are functions of the state before; velocities are then projected to the constraints.
+    /// Other coordinates stay unchanged: the state is at the event, and rounding must not move it back.
     fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let mut all = self.reading.read(t, y).map_err(Failure::fatal)?;
         let before = all.clone();
@@ -210,7 +210,8 @@ impl Events for FlowEvents {
                 [] => motion.project(t, &mut all)?,
                 determining => motion.project_holding(t, &mut all, &[], determining)?,
             }
-            // A state that is itself off them by so much, as those that derivatives are taken by, stays so near.
+            // A state that is itself at some distance from the constraints, such as one displaced for
+            // derivatives, keeps that distance.
             let mut nearest = before.clone();
             motion.project(t, &mut nearest)?;
             let coordinates = 0..motion.coordinates();
@@ -243,7 +244,7 @@ impl Events for FlowEvents {
         if self.tables.contains(&parameter) {
             return Err(Failure::fatal(OfTable { parameter }));
         }
-        // External forces do not act on events.
+        // Events do not depend on external forces.
         if parameter >= self.reading.parameters().len() {
             return Ok(0.0);
         }
@@ -258,7 +259,7 @@ impl Events for FlowEvents {
         }
     }
 
-    /// Not where inputs have tables, whose rates no expression has.
+    /// False if inputs have tables, whose rates are not expressions.
     fn has_derivatives(&self) -> bool {
         self.slopes.is_some() && self.tables.is_empty()
     }

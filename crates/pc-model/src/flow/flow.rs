@@ -70,7 +70,7 @@ impl Flow {
         }
     }
 
-    /// The flow of a motion whose state has, or whose momenta have, the quasi-velocities of a form.
+    /// The flow of a motion whose state contains the quasi-velocities of a form, or their momenta.
     fn of<'g>(
         model: &Model,
         assembly: &Assembly<'g>,
@@ -92,7 +92,7 @@ impl Flow {
         let slopes = (explicit && model.differentiates_by_parameters())
             .then(|| EventSlopes::new(model, assembly, free, &all))
             .transpose()?;
-        // Where multipliers are eliminated they still say where a reset may lead.
+        // Eliminated multipliers still determine where a reset may lead.
         let watch = match assembly.constraints.formulation() {
             ConstraintFormulation::Multipliers(held)
                 if assembly.constraints.held().is_none() && !assembly.events.is_empty() =>
@@ -127,8 +127,8 @@ impl Flow {
         Flow { motion, start, names: self.names.clone(), events, reading }
     }
 
-    /// Coordinates, all quasi-velocities and first-order states of a state. Where momenta have no quasi-velocities,
-    /// these are no numbers.
+    /// Coordinates, all quasi-velocities and first-order states of a state. Quasi-velocities that momenta do
+    /// not determine are NaN.
     fn shown(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let n = self.motion.coordinates();
         self.reading.read(t, state).unwrap_or_else(|_| {

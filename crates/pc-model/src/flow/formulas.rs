@@ -1,4 +1,4 @@
-//! What follows from parameters by formulas of the text: other parameters, and the start.
+//! Values given by formulas of the text in parameters: other parameters, and the start.
 
 use pc_expr::SymbolPlaces;
 use pc_mech::Expr;
@@ -12,8 +12,8 @@ use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
 impl<'g> Assembly<'g> {
-    /// The parameters that follow others, by their places, each as a function of those that follow none. `model` is what this
-    /// was assembled from.
+    /// The parameters that follow others, by their places, each as a function of those that follow none.
+    /// `model` is what this was assembled from.
     ///
     /// # Errors
     /// [`ModelError`] for an expression that means nothing; it would not have been assembled.
@@ -32,8 +32,9 @@ impl<'g> Assembly<'g> {
         Ok(formulas)
     }
 
-    /// The start of a form in its coordinates, quasi-velocities and first-order states: functions of parameters as far as the
-    /// text gives them so, numbers where they are numbers there, follow from velocities, or were moved onto constraints.
+    /// The start of a form in its coordinates, quasi-velocities and first-order states: functions of
+    /// parameters as far as the text gives them so, numbers where they are numbers there, follow from
+    /// velocities, or were moved onto constraints.
     ///
     /// # Errors
     /// As above.
@@ -60,8 +61,8 @@ impl<'g> Assembly<'g> {
         Ok(coordinates.chain(eta).chain(states).collect())
     }
 
-    /// The start values of the text, of coordinates, declared quasi-velocities and first-order states; none where there is
-    /// none, or another value was set.
+    /// The start values of the text, of coordinates, declared quasi-velocities and first-order states; `None`
+    /// for those not given, or set to other values.
     fn written(&self, model: &Model) -> Result<Vec<Option<Expr<'g>>>, ModelError> {
         let document = model.document();
         let mut scope = Scope::new(self.system.graph(), document);

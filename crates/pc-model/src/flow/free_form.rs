@@ -8,7 +8,7 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::flow::variables::Variables;
 
-/// A definition of a quasi-velocity that is this part of what those before it say does not say anything more.
+/// A definition of a quasi-velocity of which only this part is independent of those before it is dependent.
 const DEPENDENT: f64 = 1e-6;
 
 /// A system whose equations (9) are the equations of motion, with the relation between its quasi-velocities and those
@@ -28,13 +28,13 @@ pub struct FreeForm<'g> {
 }
 
 impl<'g> FreeForm<'g> {
-    /// That of the quasi-velocities of a system.
+    /// The form in the quasi-velocities of a system.
     pub(crate) fn own(system: System<'g>) -> FreeForm<'g> {
         let eta = system.quasi_velocities().to_vec();
         FreeForm { independent: eta.clone(), values: eta.clone(), definitions: eta, matrix: None, system }
     }
 
-    /// All quasi-velocities of a system whose constraints multipliers hold.
+    /// All quasi-velocities of a system whose constraints have multipliers.
     pub(crate) fn all(assembly: &Assembly<'g>) -> FreeForm<'g> {
         FreeForm::own(assembly.system.clone())
     }
@@ -89,7 +89,7 @@ impl<'g> Assembly<'g> {
         Ok((self.placed(form.system.poincare())?, form))
     }
 
-    /// The same system with the reactions put in where they are observed.
+    /// The system with reactions substituted where they are observed.
     fn observed(&self, free: System<'g>) -> Result<System<'g>, ModelError> {
         match self.constraints.formulation() {
             ConstraintFormulation::Multipliers(_) => Ok(free.observing(self.equations()?.system())),
@@ -97,7 +97,7 @@ impl<'g> Assembly<'g> {
         }
     }
 
-    /// In quasi-velocities η1, η2, … that are orthonormal in the kinetic metric.
+    /// The form in quasi-velocities η1, η2, … that are orthonormal in the kinetic metric.
     fn orthonormal(&self, free: &System<'g>) -> Result<FreeForm<'g>, ModelError> {
         let taken: Vec<String> = free.symbols().iter().map(Expr::to_string).collect();
         let name = |s: usize| {
@@ -124,7 +124,7 @@ impl<'g> Assembly<'g> {
         Err(self.no_form(message.to_owned(), "use another form: poincare, canonical, or hamel"))
     }
 
-    /// In the quasi-velocities given beside the text, and as many of the model's as complete them.
+    /// The form in the quasi-velocities given in addition to the text, completed by those of the model.
     fn in_given(&self, free: &System<'g>) -> Result<FreeForm<'g>, ModelError> {
         let (graph, eta) = (free.graph(), free.quasi_velocities());
         let help = "give them after the model, as in `pc derive MODEL --form hamel \"v = r*φ'\"`, each independent of those before";
@@ -154,7 +154,7 @@ impl<'g> Assembly<'g> {
             known.push(rest);
             chosen.push((name, definition));
         }
-        // Each time the one that those there are determine least; the first of those alike.
+        // Each time the one least determined by those present; the first among equals.
         let units = rows(eta)?;
         while chosen.len() < eta.len() {
             let left = |s: usize| rest(&known, &units[s]).1;
@@ -194,9 +194,9 @@ impl<'g> Assembly<'g> {
         matches!(self.constraints.formulation(), ConstraintFormulation::Multipliers(_))
     }
 
-    /// Determinants, functions of time, coordinates and parameters, that vanish where the state of a form does not determine
-    /// velocities, as `within_chart` watches them; none for a matrix of more than four rows, whose
-    /// determinant is not a short expression.
+    /// Determinants, functions of time, coordinates and parameters, that vanish where the state of a form
+    /// does not determine velocities, as `within_chart` watches them; none for a matrix of more than four
+    /// rows, whose determinant is not a short expression.
     pub fn chart_determinants(&self, form: &FreeForm<'g>) -> Vec<Option<Expr<'g>>> {
         let (graph, frame, all) = (self.system.graph(), self.system.frame(), self.system.quasi_velocities());
         if form.system.frame().coordinates() != frame.coordinates() {
@@ -225,7 +225,7 @@ impl<'g> Assembly<'g> {
     pub(crate) fn within_chart(&self, motion: Motion, form: &FreeForm<'g>) -> Result<Motion, ModelError> {
         let all = self.system.quasi_velocities();
         if form.system.frame().coordinates() != self.system.frame().coordinates() {
-            return Ok(motion); // where what is left out is not determined nothing depends on it
+            return Ok(motion); // what is left out does not matter
         }
         let motion = match &form.matrix {
             None => motion.within_chart(&self.system),
@@ -262,7 +262,8 @@ fn dependent_columns<'g>(
     Matrix::from_fn(c.rows(), dependent.len(), |a, d| c[(a, dependent[d])])
 }
 
-/// A determinant but for its sign, rows and columns with one entry taken out first; none where more than four rows are left.
+/// A determinant up to its sign, after elimination of rows and columns with one entry; `None` if more than
+/// four rows remain.
 fn short_determinant<'g>(graph: &'g Graph, square: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
     let (mut rows, mut columns): (Vec<usize>, Vec<usize>) =
         ((0..square.rows()).collect(), (0..square.columns()).collect());
@@ -283,11 +284,11 @@ fn short_determinant<'g>(graph: &'g Graph, square: &Matrix<Expr<'g>>) -> Option<
     Some(factors.into_iter().fold(rest, |product, factor| product * factor))
 }
 
-/// What a row says beside those known, all of length one, and how large a part of the row that is.
+/// The part of a row orthogonal to the known ones, all of length one, and its size relative to the row.
 fn rest(known: &[Vec<f64>], row: &[f64]) -> (Vec<f64>, f64) {
     let size = |row: &[f64]| row.iter().fold(0.0f64, |size, entry| size.hypot(*entry));
     let mut rest = row.to_vec();
-    // Twice is enough.
+    // Two passes are enough.
     for known in known.iter().chain(known) {
         let along: f64 = known.iter().zip(&rest).map(|(a, b)| a * b).sum();
         rest.iter_mut().zip(known).for_each(|(rest, known)| *rest -= along * known);

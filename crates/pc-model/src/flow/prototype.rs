@@ -9,17 +9,17 @@ use crate::flow::flow::Flow;
 use crate::flow::variables::Variables;
 use crate::model::model::Model;
 
-/// A start that a projection moves by no more than this, relative to the larger of 1 and its size, satisfies the
-/// constraints up to the rounding of the numbers it is written with; a tenth of what a model is refused for.
+/// A start that a projection moves by at most this, relative to the larger of 1 and its size, satisfies the
+/// constraints up to the rounding of its digits; a tenth of the distance at which a model is refused.
 const ON_CONSTRAINTS: f64 = 1e-9;
 
 /// The equations of a model compiled once, for models of which only numbers are different.
 #[derive(Debug)]
 pub struct Prototype {
     flow: Mutex<Flow>,
-    /// For each component of the state its place among the start values; none where it starts at 0.
+    /// The index of each component of the state among the start values; `None` if it starts at 0.
     places: Vec<Option<usize>>,
-    /// Start values that are no components of the state, because constraints say that they vanish.
+    /// Start values that are not components of the state, because constraints make them vanish.
     vanishing: Vec<usize>,
 }
 
@@ -32,9 +32,9 @@ impl Prototype {
         Prototype::of(model, &assembly, variables, flow)
     }
 
-    /// That of a flow of the model in these variables. None where the equations may depend on the start or on the values of
-    /// the parameters: momenta solved for velocities near the start, constraints left out because they follow from
-    /// others; or where the start has to be solved for.
+    /// The prototype of a flow of the model in these variables. None where the equations may depend on the start or on
+    /// the values of the parameters: momenta solved for velocities near the start, constraints left out
+    /// because they follow from others; or where the start has to be solved for.
     pub fn of(model: &Model, assembly: &Assembly<'_>, variables: Variables, flow: Flow) -> Option<Prototype> {
         let own =
             variables == Variables::QuasiVelocities && !model.projects_start() && !model.derives_start();
@@ -48,8 +48,8 @@ impl Prototype {
         Some(Prototype { flow: Mutex::new(flow), places, vanishing })
     }
 
-    /// The equations with the values of a model of the same text, at its start at time `t`; none if something about it has
-    /// to be looked at closer, by [`Flow::new`].
+    /// The equations with the values of a model of the same text, at its start at time `t`; none if something
+    /// about it needs closer examination, by [`Flow::new`].
     pub fn flow(&self, model: &Model, t: f64) -> Option<Flow> {
         let values = model.start().ok()?;
         let start: Vec<f64> =

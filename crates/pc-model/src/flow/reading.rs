@@ -1,4 +1,4 @@
-//! States read as coordinates, all quasi-velocities and first-order states of a model.
+//! States converted to coordinates, all quasi-velocities and first-order states of a model.
 
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program, SymbolPlaces};
 use pc_mech::{LegendreTransform, MechError, System};
@@ -7,35 +7,36 @@ use crate::assembly::assembly::Assembly;
 use crate::diagnostics::error::ModelError;
 use crate::flow::free_form::FreeForm;
 
-/// How a state is read as coordinates and all quasi-velocities of the model, and written.
+/// The conversion of a state to coordinates and all quasi-velocities of the model, and back.
 #[derive(Clone, Debug)]
 pub(super) struct Reading {
     /// Number of coordinates.
     pub(super) coordinates: usize,
     /// All quasi-velocities of the model, the declared ones first, as functions of (t, x, η, z) with the free η.
     pub(super) quasi_velocities: Evaluator,
-    /// Which of them are the free ones.
+    /// The indices of the free ones.
     pub(super) free: Vec<usize>,
     pub(super) parameters: Vec<f64>,
-    /// From momenta to quasi-velocities, where the state has momenta.
+    /// From momenta to quasi-velocities, if the state has momenta.
     pub(super) transform: Option<LegendreTransform>,
-    /// Room for a state in quasi-velocities.
+    /// Storage for a state in quasi-velocities.
     pub(super) room: Vec<f64>,
-    /// Where the state has quasi-velocities that are not the model's.
+    /// The change of quasi-velocities, if those of the state are not the model's.
     change: Option<Change>,
 }
 
 /// Quasi-velocities of a state that are not those of the model.
 #[derive(Clone, Debug)]
 struct Change {
-    /// These as functions of (t, x, η, z) with the free η.
+    /// Their values as functions of (t, x, η, z) with the free η.
     written: Evaluator,
     /// The rates of all quasi-velocities of the model as functions of (t, x, η', z, η̇').
     rates: Evaluator,
 }
 
 impl Reading {
-    /// That of the states of a form, `all` quasi-velocities being functions of its independent ones.
+    /// The reading of states of a form, in which `all` quasi-velocities are functions of its independent
+    /// ones.
     ///
     /// # Errors
     /// [`ModelError`] for a symbol without a value.
@@ -88,14 +89,14 @@ impl Reading {
         self.change.is_some()
     }
 
-    /// Whether a state is (x, η, z) with all η as it is.
+    /// Whether a state already is (x, η, z) with all η.
     pub(super) fn is_plain(&self) -> bool {
         let all = self.quasi_velocities.program().outputs_len();
         self.transform.is_none() && self.change.is_none() && self.free.iter().copied().eq(0..all)
     }
 
-    /// The rates of all quasi-velocities of the model where a state moves at these rates; none where the state has quasi-velocities
-    /// of the model.
+    /// The rates of all quasi-velocities of the model at a state with these rates; `None` if the state has
+    /// quasi-velocities of the model.
     pub(super) fn rates(&mut self, t: f64, state: &[f64], rates: &[f64]) -> Option<Vec<f64>> {
         let change = self.change.as_mut()?;
         let moving = self.coordinates..self.coordinates + self.free.len();
@@ -115,7 +116,7 @@ impl Reading {
         Ok(all)
     }
 
-    /// The same, left in `all`.
+    /// Writes (x, η, z) with all η to `all`.
     ///
     /// # Errors
     /// As [`read`](Reading::read).
@@ -134,7 +135,7 @@ impl Reading {
         outcome
     }
 
-    /// Leaves in `all` the (x, η, z) with all η of one with the free ones.
+    /// Writes to `all` the (x, η, z) with all η for one with the free ones.
     pub(super) fn complete(&mut self, t: f64, free: &[f64], all: &mut Vec<f64>) {
         let n = self.coordinates;
         all.clear();
@@ -184,7 +185,7 @@ impl Reading {
     }
 }
 
-/// Time, a state of these symbols, and the parameters.
+/// The inputs of a program: time, a state of these symbols, and the parameters.
 pub(super) fn inputs<'g>(system: &System<'g>, state: &[Expr<'g>]) -> Inputs<'g> {
     Inputs {
         time: Some(system.frame().time()),

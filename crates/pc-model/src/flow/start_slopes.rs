@@ -6,15 +6,16 @@ use crate::flow::flow::Flow;
 use crate::flow::variables::Variables;
 use crate::model::model::Model;
 
-/// A central difference over so much of the size of a parameter is good for ten digits: truncation and rounding are alike.
+/// The step of a central difference, as a part of the size of a parameter, that is accurate to ten digits:
+/// truncation and rounding errors are equal.
 fn step(value: f64) -> f64 {
     let size = if value == 0.0 { 1.0 } else { value.abs() };
     f64::EPSILON.cbrt() * size
 }
 
 impl Flow {
-    /// ∂y₀/∂pⱼ for number j of the [parameters](Model::parameters), the start of a column of
-    /// sensitivities, by central differences of starts: these may be expressions in parameters, or moved to constraints that
+    /// ∂y₀/∂pⱼ for number j of the [parameters](Model::parameters), the start of a column of sensitivities,
+    /// by central differences of starts: these may be expressions in parameters, or moved to constraints that
     /// have parameters.
     ///
     /// # Errors
@@ -69,7 +70,7 @@ impl Flow {
         }
         let parameters = self.reading.parameters().to_vec();
         let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
-        // Neither the parameter nor the state is to move by more than that part of itself.
+        // Both the parameter and the state move by at most that part of their size.
         let step = step(parameters[j]).min(step(largest(state)) / largest(column));
         let shown = |sign: f64| {
             let mut moved = parameters.clone();

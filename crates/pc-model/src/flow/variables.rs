@@ -20,7 +20,8 @@ pub enum Variables {
     ReducedMomenta,
     /// Quasi-velocities that are orthonormal in the kinetic metric.
     Orthonormal,
-    /// Quasi-velocities [given](crate::Model::give_quasi_velocity) in addition to those of the text: Hamel's equations in these.
+    /// Quasi-velocities [given](crate::Model::give_quasi_velocity) in addition to those of the text: Hamel's
+    /// equations in these.
     Given,
 }
 
@@ -57,7 +58,7 @@ impl<'g> Assembly<'g> {
     pub fn system_in(&self, variables: Variables) -> Result<System<'g>, ModelError> {
         Ok(match variables {
             Variables::QuasiVelocities if self.constraints.held().is_some() => self.system.without_observed(),
-            // What is observed may contain velocities that are not among the free ones.
+            // Observables may contain velocities other than the free ones.
             Variables::Momenta if self.constraints.held().is_some() => self.free_system()?.without_observed(),
             _ => self.free_form(variables)?.system,
         })
@@ -93,8 +94,8 @@ impl<'g> Assembly<'g> {
         canonical.map_err(|error| self.document.derivation_error(error))
     }
 
-    /// The change between the quasi-velocities of the state and its momenta; from momenta to quasi-velocities that satisfy
-    /// the constraints, where multipliers hold these and momenta are integrated.
+    /// The change between the quasi-velocities of the state and its momenta; from momenta to quasi-velocities
+    /// that satisfy the constraints, where multipliers hold these and momenta are integrated.
     ///
     /// # Errors
     /// [`ModelError`] if there is none.

@@ -13,7 +13,8 @@ use crate::diagnostics::source::Place;
 use crate::document::{AlgebraDefinition, Bracket, Constraint, Document};
 
 impl Document {
-    /// Does some work in a graph, unless its budget is spent, before or by it: that is the error then, whatever the work says.
+    /// Does some work in a graph. If its budget is spent before or during the work, that is the error,
+    /// whatever the work returns.
     pub(crate) fn stage<T>(
         &self,
         graph: &Graph,
@@ -29,7 +30,7 @@ impl Document {
         }
     }
 
-    /// Puts an error of the derivation under constraints at the place in the file that is to blame.
+    /// Locates an error of the derivation under constraints at the entry of the file that causes it.
     pub(crate) fn constraint_error(&self, error: NonholoError) -> ModelError {
         let message = error.to_string();
         let cannot = |name: &str, help| {
@@ -85,14 +86,14 @@ impl Document {
         self.constraints.iter().find(|constraint| constraint.name.text == name)
     }
 
-    /// A fault of a constraint, at its expression.
+    /// An error of a constraint, at its expression.
     pub(crate) fn constraint_fault(&self, name: &str, fault: MeaningError) -> ModelError {
         let expression = self.constraint_text(name).map(|constraint| &constraint.expression);
         let place = expression.map(|expression| expression.place(expression.ast.span));
         self.error(&place.unwrap_or_else(|| self.end()), fault)
     }
 
-    /// Puts an error of the derivation at the place in the file that is to blame.
+    /// Locates an error of the derivation at the entry of the file that causes it.
     pub(crate) fn derivation_error(&self, error: MechError) -> ModelError {
         if let Some(&ExprError::Spent { what, stage, nodes }) = error.of_expressions() {
             return self.error(&self.energy_place(), ErrorKind::Spent { what, stage, nodes });
@@ -133,7 +134,7 @@ impl Document {
         self.source.error(place, kind)
     }
 
-    /// Where it is said that an integral is to be kept; its definition if it is said elsewhere.
+    /// The place where an integral is requested to be kept; its definition if that is not in the file.
     pub(crate) fn kept_place(&self, name: &str) -> Place {
         let written = self.simulation.project.iter().find(|written| written.value == name);
         let integral = || self.integrals.iter().find(|integral| integral.name.text == name);

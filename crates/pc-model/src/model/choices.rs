@@ -49,8 +49,9 @@ impl Model {
         &self.given
     }
 
-    /// Chooses these velocities as the independent ones of equations in which multipliers are eliminated: quasi-velocities of the
-    /// model, or velocities x' for the forms in these. Without names, those whose equations are shortest are chosen.
+    /// Chooses these velocities as the independent ones of equations in which multipliers are eliminated:
+    /// quasi-velocities of the model, or velocities x' for the forms in these. Without names, those whose
+    /// equations are shortest are chosen.
     pub fn choose_independent<S: Into<String>>(&mut self, names: impl IntoIterator<Item = S>) {
         self.independent = names.into_iter().map(Into::into).collect();
     }

@@ -17,7 +17,7 @@ pub struct GivenQuasiVelocity {
 }
 
 impl GivenQuasiVelocity {
-    /// That of a name and a text.
+    /// The quasi-velocity of a name and a text.
     ///
     /// # Errors
     /// [`ModelError`] if the name is none or is taken, or the text is no expression.
@@ -50,7 +50,7 @@ impl GivenQuasiVelocity {
         Ok(GivenQuasiVelocity { name: name.to_owned(), expression: Expression::of(&source)?, source })
     }
 
-    /// Those of the document, for which nothing is left to be checked.
+    /// The quasi-velocities of the document, which is already checked.
     pub(crate) fn of_document(document: &Document) -> Vec<Self> {
         let given = document.simulation.hamel.iter().map(|given| GivenQuasiVelocity {
             name: given.name.text.clone(),

@@ -14,10 +14,10 @@ use crate::model::given::GivenQuasiVelocity;
 pub struct Model {
     document: Arc<Document>,
     parameters: Parameters,
-    /// Start values that are not those of the document, by their places.
+    /// Start values other than those of the document, by their indices.
     starts: Vec<(usize, f64)>,
     projects_start: bool,
-    /// The places of start values that are not moved.
+    /// The indices of start values that stay unmoved.
     held_starts: Vec<usize>,
     observes_reactions: bool,
     /// Whether motions and events are to be differentiated by parameters.
@@ -25,13 +25,13 @@ pub struct Model {
     by_time: bool,
     /// The names of the integrals to be kept.
     kept: Vec<String>,
-    /// What its derivations may take.
+    /// The limits of its derivations.
     budget: Budget,
     /// The quasi-velocities, or coordinates, on which external forces act.
     pub(crate) external: Vec<String>,
-    /// Quasi-velocities that are given beside those of the document.
+    /// Quasi-velocities given in addition to those of the document.
     pub(crate) given: Vec<GivenQuasiVelocity>,
-    /// The names of the velocities that are asked for as independent ones.
+    /// The names of the velocities requested as independent ones.
     pub(crate) independent: Vec<String>,
 }
 
@@ -132,7 +132,7 @@ impl Model {
         self.parameters.set(place, value);
     }
 
-    /// Where number `place` of the parameters and inputs is written.
+    /// The place of number `place` of the parameters and inputs in the file.
     pub(crate) fn parameter_place(&self, place: usize) -> Place {
         let parameters = self.document.parameters.iter().map(|p| &p.name);
         let mut names = parameters.chain(self.document.inputs.iter().map(|input| &input.name));
@@ -178,7 +178,7 @@ impl Model {
         self.projects_start = yes;
     }
 
-    /// Says that start value number `place` is not to be moved.
+    /// Holds start value number `place` unmoved.
     pub(crate) fn hold_start_at(&mut self, place: usize) {
         if !self.held_starts.contains(&place) {
             self.held_starts.push(place);
@@ -186,7 +186,7 @@ impl Model {
         }
     }
 
-    /// The places of the start values that are not to be moved, rising.
+    /// The indices of the start values that stay unmoved, in ascending order.
     pub(crate) fn held_starts(&self) -> &[usize] {
         &self.held_starts
     }
@@ -225,7 +225,7 @@ impl Model {
         self.starts.push((place, value));
     }
 
-    /// The start values that are not those of the document, by their places.
+    /// The start values other than those of the document, by their indices.
     pub(crate) fn overridden_starts(&self) -> &[(usize, f64)] {
         &self.starts
     }

@@ -51,7 +51,7 @@ impl Model {
     /// [`UnknownStart`] with the names there are.
     pub fn hold_start(&mut self, name: &str) -> Result<(), UnknownStart> {
         let mut known = self.start_names();
-        known.truncate(known.len() - self.document().states.len()); // no constraint moves first-order states
+        known.truncate(known.len() - self.document().states.len()); // constraints do not move first-order states
         match known.iter().position(|known| known == name) {
             Some(place) => {
                 self.hold_start_at(place);

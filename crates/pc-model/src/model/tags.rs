@@ -7,7 +7,7 @@ use crate::model::builtin::Builtin;
 pub struct Tag {
     /// The word.
     pub name: &'static str,
-    /// What the models have in common.
+    /// The common property of the models.
     pub meaning: &'static str,
     /// Their names.
     pub models: &'static [&'static str],

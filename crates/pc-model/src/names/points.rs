@@ -1,4 +1,4 @@
-//! Bodies on joints as the mechanics knows them, and the points on them that have names.
+//! Bodies on joints for the mechanics, and their named points.
 
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
@@ -22,7 +22,7 @@ impl<'g> Scope<'g, '_> {
             Some(points) => points,
             None => self.all_points()?,
         };
-        let value = points.get(name).copied().unwrap_or(Expr::ZERO); // a point that there is
+        let value = points.get(name).copied().unwrap_or(Expr::ZERO); // the point exists
         self.points = Some(points);
         Ok(value)
     }
@@ -45,7 +45,7 @@ impl<'g> Scope<'g, '_> {
             let (origin, rotation) = match point.body() {
                 None => ([Expr::ZERO; 3], unit()),
                 Some(body) => (
-                    motions.place(body).unwrap_or([Expr::ZERO; 3]), // bodies of points are of the tree
+                    motions.place(body).unwrap_or([Expr::ZERO; 3]), // bodies of points are in the tree
                     motions.rotation(body).unwrap_or_else(unit),
                 ),
             };
@@ -132,7 +132,7 @@ pub(crate) fn hung<'g>(body: &document::TreeBody, joint: Joint<'g>) -> TreeBody<
     }
 }
 
-/// The turn by an angle about the axis of that number; by quarters of a turn exactly.
+/// The rotation by an angle about the axis of that number, exact for quarters of a turn.
 fn about<'g>(axis: usize, angle: Expr<'g>) -> Matrix<Expr<'g>> {
     let (cos, sin) = match angle.constant().and_then(|angle| quarters(angle.to_f64())) {
         None => (angle.cos(), angle.sin()),
@@ -156,7 +156,8 @@ fn about<'g>(axis: usize, angle: Expr<'g>) -> Matrix<Expr<'g>> {
     })
 }
 
-/// How many quarters of a turn an angle is, 0 to 3, if it is some to rounding: π is rounded itself, and its sine is not 0.
+/// The number of quarters of a turn in an angle, 0 to 3, if it is a multiple up to rounding: π is rounded,
+/// and its sine is not 0.
 fn quarters(angle: f64) -> Option<u8> {
     let count = (angle / FRAC_PI_2).round();
     let is_some = (angle - count * FRAC_PI_2).abs() <= 4.0 * f64::EPSILON * angle.abs() && count.abs() < 1e3;

@@ -101,7 +101,7 @@ impl<'g> Scope<'g, '_> {
                 continue;
             }
             if stage == Stage::Rate {
-                // The rates of two states may each contain that of the other.
+                // The rates of two states may each contain the rate of the other.
                 let fault = |text| MeaningError::NotHere {
                     name: text,
                     place: stage.place(),

@@ -15,8 +15,7 @@ use crate::document::{Body, Document, Expression, NamedExpression, TreeBody};
 use crate::names::functions::call;
 use crate::names::stage::Stage;
 
-/// A part of the model as written, and the expression it became: what is looked through when something is not a
-/// number.
+/// A part of the model as written, and its expression; searched when a value is not a number.
 pub(crate) struct Written<'g> {
     pub(crate) value: Expr<'g>,
     pub(crate) place: Place,
@@ -24,7 +23,7 @@ pub(crate) struct Written<'g> {
     context: Context<'g>,
 }
 
-/// Where a part stands: in which definition, if any, and in which branches of `step`.
+/// The place of a part: its definition, if any, and the branches of `step` around it.
 #[derive(Clone, Default)]
 pub(super) struct Context<'g> {
     pub(super) definition: Option<(Stage, usize)>,
@@ -48,27 +47,27 @@ impl Branch<'_> {
 pub(crate) struct Scope<'g, 'd> {
     pub(super) graph: &'g Graph,
     pub(super) document: &'d Document,
-    /// Where the expressions stand.
+    /// The source in which the expressions are located.
     source: &'d Source,
     pub(super) time: Expr<'g>,
-    /// The places of the definitions in their section.
+    /// The indices of the definitions in their section.
     pub(super) places: HashMap<&'d str, usize>,
-    /// Definitions that were used already: each is resolved once for a stage.
+    /// Definitions already used: each is resolved once for each stage.
     pub(super) definitions: BTreeMap<(Stage, usize), Expr<'g>>,
-    /// Where definitions were named.
+    /// The places where definitions are used.
     pub(super) uses: Vec<((Stage, usize), Context<'g>)>,
-    /// Where the part stands that is being resolved; the place of a parameter in that stage.
+    /// The place of the part being resolved.
     pub(super) context: Context<'g>,
     /// Quotients and calls in the order of their evaluation, whole expressions after their parts.
     pub(crate) written: Vec<Written<'g>>,
-    /// The components of points, once one has been named.
+    /// The components of points, once one has been used.
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
-    /// Forces and torques of reactions that were named, each with a place.
+    /// Forces and torques of reactions that are used, each with a place.
     pub(crate) resultants: Vec<(Expr<'g>, Place)>,
 }
 
 impl<'g, 'd> Scope<'g, 'd> {
-    /// Makes the symbols: parameters first, since print-outs order factors by the making of their symbols.
+    /// Makes the symbols: parameters first, since print-outs order factors by the creation of their symbols.
     pub(crate) fn new(graph: &'g Graph, document: &'d Document) -> Scope<'g, 'd> {
         let names = document.parameters.iter().map(|p| &p.name.text);
         let coordinates = document.coordinates.iter().map(|c| &c.name.text);
@@ -95,7 +94,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         }
     }
 
-    /// The same names, for expressions that stand elsewhere.
+    /// The same names, for expressions in another source.
     pub(crate) fn elsewhere(self, source: &'d Source) -> Scope<'g, 'd> {
         Scope { source, ..self }
     }
@@ -132,7 +131,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         value
     }
 
-    /// The expression, its velocities as symbols x'.
+    /// The expression, with velocities as symbols x'.
     pub(crate) fn resolve(&mut self, expression: &Expression, stage: Stage) -> Result<Expr<'g>, ModelError> {
         let before = self.graph.zero_divisions();
         let value = self.ast(expression, &expression.ast, stage)?;
@@ -161,14 +160,14 @@ impl<'g, 'd> Scope<'g, 'd> {
         self.written.push(Written { value, place: expression.place(span), text, context });
     }
 
-    /// What was written, but for branches of `step` that are not taken at these values, in themselves or as all that names a
-    /// definition.
+    /// The written parts without branches of `step` that are not taken at these values, neither there nor
+    /// around every use of their definition.
     pub(crate) fn taken(&self, values: &[(Expr<'g>, f64)]) -> Vec<&Written<'g>> {
         let is_taken = |branch: &Branch<'g>| {
             let condition = self.graph.evaluate(&[branch.condition], values);
             condition.is_ok_and(|condition| branch.is_taken(condition[0]))
         };
-        // A definition is named by what comes after it, and last of all by what is none.
+        // A definition is used by later ones, and finally by entries of other sections.
         let mut used: BTreeSet<(Stage, usize)> = BTreeSet::new();
         let mut uses: Vec<_> = self.uses.iter().collect();
         uses.sort_by_key(|(_, context)| Reverse(context.definition.map_or(usize::MAX, |(_, place)| place)));

@@ -11,7 +11,8 @@ pub(crate) enum Stage {
     Definition,
     /// Kinematics: coordinates, t, and quasi-velocities.
     Kinematics,
-    /// What stays the same of a body with a joint, of the joint, and of a point: parameters, and definitions made of them.
+    /// The constants of a body with a joint, of the joint, and of a point: parameters, and definitions
+    /// made of them.
     Joint,
     /// Mass, inertia, place and attitude of a body: coordinates and t.
     Position,

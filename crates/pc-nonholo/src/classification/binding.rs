@@ -5,17 +5,17 @@ use pc_mech::{Constraint, Expr, Graph, System};
 use crate::classification::positions::{Place, Positions, norm};
 use crate::error::NonholoError;
 
-/// What is left of a unit vector that is worth looking closer, whether it depends on others: the root of a rounding.
+/// A unit vector with a remainder below this may depend on others: the root of a rounding error.
 const DEPENDENT: f64 = 1e-7;
 
-/// What is left of coefficients that depend on others where conditions on positions hold, against what is left of them
-/// around, a hundredth of the size of the system away: rounding against that.
+/// The remainder of coefficients that depend on others where conditions on positions hold, relative to the
+/// remainder a hundredth of the size of the system away: rounding.
 const VANISHES: f64 = 1e-8;
 
-/// What is left, in units of displacements, of a condition on positions that follows from others.
+/// The remainder, in units of displacements, of a condition on positions that follows from others.
 const FOLLOWS: f64 = 1e-9;
 
-/// The number of places at which constraints are looked at that are dependent where the motion starts.
+/// The number of places at which constraints that are dependent at the start are tested.
 const PLACES: u64 = 6;
 
 /// A constraint that follows from others.
@@ -27,13 +27,13 @@ pub struct Redundant {
     pub follows_from: Vec<String>,
 }
 
-/// Constraints told apart by rank: those that bind a system, and those that follow from them.
+/// The constraints of a system by rank: those that bind it, and those that follow from them.
 ///
-/// Conditions on velocities are C η + c_0, conditions on positions have the coefficients C_s = X_s f, c_0 = X_0 f. What is
-/// dependent at almost all states is found exactly. An overconstrained mechanism has conditions that are dependent
-/// only where all of them hold: where the start shows this, it is tested numerically at places around it that satisfy
-/// all conditions on positions, and one of these is redundant if it vanishes wherever, near the start, those before it
-/// do.
+/// Conditions on velocities are C η + c_0, conditions on positions have the coefficients C_s = X_s f, c_0 =
+/// X_0 f. What is dependent at almost all states is found exactly. An overconstrained mechanism has
+/// conditions that are dependent only where all of them hold: where the start shows this, it is tested
+/// numerically at places around it that satisfy all conditions on positions, and one of these is redundant if
+/// it vanishes wherever, near the start, those before it do.
 ///
 /// ```
 /// use pc_mech::{Constraint, Graph, System};
@@ -65,8 +65,9 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// Sorts the constraints of a system; positions come first: a condition on velocities may follow from them, but never
-    /// the other way round. [Nonlinear](Constraint::nonlinear) ones bind, and no other follows from them.
+    /// Sorts the constraints of a system; positions come first: a condition on velocities may follow from
+    /// them, but never the other way round. [Nonlinear](Constraint::nonlinear) ones bind, and no other
+    /// follows from them.
     ///
     /// `at` are values of time and coordinates where the motion starts, and may be of more.
     ///
@@ -120,7 +121,8 @@ struct Found<'a, 'g> {
     constraints: &'a [Constraint<'g>],
     rows: Rows<'g>,
     redundant: Vec<Redundant>,
-    /// Those on velocities that, at almost all states, none satisfies together with others, and these.
+    /// Constraints on velocities that, at almost all states, no velocity satisfies together with others, and
+    /// those others.
     open: Vec<(usize, Vec<String>)>,
 }
 
@@ -165,7 +167,8 @@ impl<'g> Found<'_, 'g> {
         places.into_iter().map(|a| self.constraints[a].name().to_owned()).collect()
     }
 
-    /// Looks for those that depend on others where all conditions on positions hold, if there are such at the start.
+    /// Finds those that depend on others where all conditions on positions hold, if the start shows that
+    /// there are any.
     fn look_where_they_hold(&mut self, at: &[(Expr<'g>, f64)]) -> Result<(), NonholoError> {
         let Some(start) = self.start(at).filter(|_| self.rows.places.len() + self.open.len() > 1) else {
             return Ok(());
@@ -225,8 +228,8 @@ impl<'g> Found<'_, 'g> {
             .collect()
     }
 
-    /// Keeps those that are independent where all hold, and conditions on positions that do not vanish where those before
-    /// them do.
+    /// Keeps constraints that are independent where all hold, and conditions on positions that do not follow
+    /// from those before them.
     fn drop_dependent(&mut self, looked: &Looked, start: &Place) -> Result<(), NonholoError> {
         let rows = std::mem::take(&mut self.rows);
         let first_open = rows.places.len();
@@ -274,7 +277,7 @@ impl<'g> Found<'_, 'g> {
         Ok(())
     }
 
-    /// Whether a condition on positions vanishes wherever, around the start, those kept do.
+    /// Whether a condition on positions vanishes around the start wherever the kept ones do.
     fn vanishes(&self, a: usize, start: &Place) -> bool {
         let holonomic =
             self.rows.places.iter().copied().filter(|&b| self.constraints[b].is_holonomic(self.system));
@@ -285,7 +288,7 @@ impl<'g> Found<'_, 'g> {
 }
 
 impl<'g> Rows<'g> {
-    /// The constraints that `row` is a combination of: without each of them it is not.
+    /// The constraints of which `row` is a combination: each of them is necessary.
     fn depends_on(&self, graph: &'g Graph, row: &[Expr<'g>]) -> Vec<usize> {
         let independent_without = |a: &usize| {
             let mut rows = self.rows.clone();
@@ -296,7 +299,7 @@ impl<'g> Rows<'g> {
     }
 }
 
-/// What of the coefficients of a constraint is looked at.
+/// The coefficients of a constraint that are tested.
 #[derive(Clone, Copy, PartialEq)]
 enum Part {
     /// C
@@ -305,15 +308,16 @@ enum Part {
     Whole,
 }
 
-/// C and c_0 of constraints, one after the other, at places where all conditions on positions hold and at places around.
+/// C and c_0 of constraints, one after the other, at places where all conditions on positions hold and at
+/// places around them.
 struct Looked {
     on: Vec<Vec<Vec<f64>>>,
     off: Vec<Vec<Vec<f64>>>,
 }
 
 impl Looked {
-    /// Whether a constraint depends on others where conditions on positions hold: what is left of its coefficients then
-    /// vanishes against what is left of them around, whatever the units.
+    /// Whether a constraint depends on others where conditions on positions hold: the remainder of its
+    /// coefficients then vanishes against that around, in any units.
     fn depends(&self, on: &[usize], index: usize, part: Part) -> bool {
         let left = |places: &[Vec<Vec<f64>>]| {
             let left = places.iter().map(|place| {
@@ -330,21 +334,21 @@ impl Looked {
     }
 }
 
-/// Whether C of constraints given by C and c_0 are independent, as far as the units let it be seen.
+/// Whether the C of constraints, given with c_0, are independent, as far as units allow a decision.
 fn are_independent(whole: &[Vec<f64>]) -> bool {
     let mut span = Span::default();
     whole.iter().all(|whole| span.add(&whole[..whole.len() - 1]) > DEPENDENT)
 }
 
-/// What vectors span, by an orthonormal basis.
+/// The span of vectors, by an orthonormal basis.
 #[derive(Default)]
 struct Span(Vec<Vec<f64>>);
 
 impl Span {
-    /// What of a vector, as of length one, is orthogonal to all.
+    /// The part of a vector, scaled to length one, that is orthogonal to the span.
     fn rest(&self, vector: &[f64]) -> Vec<f64> {
         let mut rest = unit(vector);
-        // Twice is enough [W. Kahan, B. N. Parlett].
+        // Two passes are enough [W. Kahan, B. N. Parlett].
         for known in self.0.iter().chain(&self.0) {
             let along: f64 = known.iter().zip(&rest).map(|(a, b)| a * b).sum();
             rest.iter_mut().zip(known).for_each(|(rest, known)| *rest -= along * known);
@@ -352,12 +356,12 @@ impl Span {
         rest
     }
 
-    /// The length of it.
+    /// The length of that part.
     fn left_of(&self, vector: &[f64]) -> f64 {
         norm(&self.rest(vector))
     }
 
-    /// Adds a vector, and answers that length.
+    /// Adds a vector. Returns that length.
     fn add(&mut self, vector: &[f64]) -> f64 {
         let rest = self.rest(vector);
         let left = norm(&rest);
@@ -368,7 +372,7 @@ impl Span {
     }
 }
 
-/// The vector made as long as one; nothing where it vanishes.
+/// The vector scaled to length one; unchanged if it is zero.
 fn unit(vector: &[f64]) -> Vec<f64> {
     let length = norm(vector);
     vector.iter().map(|entry| if length > 0.0 { entry / length } else { 0.0 }).collect()

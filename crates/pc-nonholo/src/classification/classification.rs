@@ -32,8 +32,9 @@ pub struct ConstraintClassification<'g> {
 }
 
 impl<'g> ConstraintClassification<'g> {
-    /// Sorts the constraints of a system: by rank into [binding](Binding) and redundant ones, and by Frobenius' test into
-    /// holonomic and nonholonomic ones. With X'_1..X'_l and X'_0 a basis of the velocities that all constraints allow,
+    /// Sorts the constraints of a system: by rank into [binding](Binding) and redundant ones, and by
+    /// Frobenius' test into holonomic and nonholonomic ones. With X'_1..X'_l and X'_0 a basis of the
+    /// velocities that all constraints allow,
     ///
     ///   [X'_r, X'_s] = c'_rs^m X'_m + c'_rs^α X'_α,   r, s = 0..l,
     ///
@@ -100,7 +101,8 @@ impl<'g> ConstraintClassification<'g> {
     }
 }
 
-/// The kind of each constraint, of the affine ones as if there were no others, and the number of integrable combinations.
+/// The kind of each constraint, for the affine ones as if there were no others, and the number of integrable
+/// combinations.
 fn kinds<'g>(
     multipliers: &Multipliers<'g>,
     at: &[(Expr<'g>, f64)],

@@ -1,4 +1,4 @@
-//! Combinations of constraints that have an integral though no single one has.
+//! Combinations of constraints that have an integral although no single constraint has one.
 
 use pc_mech::{Constraint, Expr, Graph, Multipliers, Number, System};
 
@@ -16,10 +16,10 @@ pub struct IntegrableCombination<'g> {
     pub integral: Expr<'g>,
 }
 
-/// A form f_i dx_i + f_0 dt that is a combination of those of the constraints.
+/// A form f_i dx_i + f_0 dt, a combination of the forms of the constraints.
 #[derive(Clone)]
 struct Form<'g> {
-    /// Of all constraints.
+    /// The coefficients of the combination, one for each constraint.
     coefficients: Vec<Expr<'g>>,
     /// f_1..f_n, f_0
     components: Vec<Expr<'g>>,
@@ -75,7 +75,7 @@ impl<'g> IntegrableCombination<'g> {
         let nonholonomic = nonholonomic.map(|(a, _)| a).collect();
         let search = Search { system, nonholonomic, reach: &reach, variables: variables(system) };
         let mut found: Vec<(Form<'g>, Expr<'g>)> = Vec::new();
-        // Numbers take the place of parameters only where nothing is found with these.
+        // Parameters are replaced by numbers only if nothing is found otherwise.
         let ways: [&dyn Fn() -> Vec<(Form<'g>, Expr<'g>)>; 3] =
             [&|| search.with_constants(&forms), &|| search.with_functions(&forms, count), &|| {
                 search.with_constants(&search.bound(&forms))
@@ -124,7 +124,7 @@ fn forms<'g>(system: &System<'g>, reach: &Reach<'g>) -> Option<Vec<Form<'g>>> {
 
 struct Search<'a, 'g> {
     system: &'a System<'g>,
-    /// The places of the constraints that have no integral of their own.
+    /// The indices of the constraints without an integral of their own.
     nonholonomic: Vec<usize>,
     reach: &'a Reach<'g>,
     /// (x, t)
@@ -159,8 +159,8 @@ impl<'g> Search<'_, 'g> {
         relations.filter_map(sum).collect()
     }
 
-    /// Combinations whose coefficients are functions of time and place: those that vanish on all that commutators reach, solved
-    /// for the rates of some coordinates. What is solved for is tried in turn.
+    /// Combinations whose coefficients are functions of time and place: those that vanish on all fields
+    /// reached by commutators, solved for the rates of some coordinates, in each possible order.
     fn with_functions(&self, forms: &[Form<'g>], count: usize) -> Vec<(Form<'g>, Expr<'g>)> {
         let Some(vanishing) = self.vanishing(forms) else { return Vec::new() };
         let places = self.variables.len();
@@ -179,7 +179,8 @@ impl<'g> Search<'_, 'g> {
         best
     }
 
-    /// A basis of the combinations of nonholonomic constraints that vanish on what commutators reach.
+    /// A basis of the combinations of nonholonomic constraints that vanish on the fields reached by
+    /// commutators.
     fn vanishing(&self, forms: &[Form<'g>]) -> Option<Vec<Form<'g>>> {
         let graph = self.graph();
         // μ_α U^α = 0: each field reached eliminates one constraint from the others.
@@ -261,16 +262,16 @@ impl<'g> Search<'_, 'g> {
         Some((form, integral))
     }
 
-    /// Whether F is no function of the integrals known.
+    /// Whether F is independent of the known integrals.
     fn is_new(&self, known: &[(Form<'g>, Expr<'g>)], integral: Expr<'g>) -> bool {
-        // For the values of the parameters: they are symbols in some, numbers in others.
+        // For the values of the parameters: some contain these as symbols, others as numbers.
         let all: Vec<Expr<'g>> = known.iter().map(|&(_, known)| known).chain([integral]).collect();
         let all = self.graph().substitute(&all, &self.system.numbers()).into_iter();
         let rows: Vec<Vec<Expr<'g>>> = all.map(|f| self.graph().gradient(f, &self.variables)).collect();
         self.graph().generic_rank(&rows) == rows.len()
     }
 
-    /// Whether no velocity that is allowed changes F, looked at once more in numbers.
+    /// Whether no allowed velocity changes F, verified numerically.
     fn is_kept(&self, integral: Expr<'g>) -> bool {
         let numbers = self.system.numbers();
         self.reach.allowed.iter().all(|field| {

@@ -2,17 +2,17 @@
 
 use pc_mech::{Expr, Neighbourhood, System};
 
-/// A field U = U^p X_p, p = 0..k; X_0 is that of time.
+/// A field U = U^p X_p, p = 0..k; X_0 belongs to time.
 pub(crate) type OperatorField<'g> = Vec<Expr<'g>>;
 
-/// The terms of which the components C_αm U^m of a field along constraints are the sums.
+/// The terms of the sums C_αm U^m, the components of a field along the constraints.
 pub(crate) type Along<'g> = Vec<Vec<Expr<'g>>>;
 
-/// Components along the constraints of fields that, with those `allowed`, span at almost every point all commutators of
-/// these, those of commutators included [Frobenius; Chow, Math. Ann. 117 (1939) 98].
+/// The components along the constraints of fields that, with those `allowed`, span at almost every point all
+/// their commutators, those of commutators included [Frobenius; Chow, Math. Ann. 117 (1939) 98].
 ///
-/// The fields allowed are X'_0, with the component 1 along X_0, and others without such a component, with C_αm X'^m = 0;
-/// `rows` are the C_α.
+/// The allowed fields are X'_0, with the component 1 along X_0, and others without such a component, with
+/// C_αm X'^m = 0; `rows` are the C_α.
 pub(crate) fn involutive_closure<'g>(
     system: &System<'g>,
     allowed: &[OperatorField<'g>],
@@ -26,7 +26,7 @@ pub(crate) fn involutive_closure<'g>(
         for generator in allowed {
             let bracket = commutator(system, generator, &fields[next]);
             let along: Along<'g> = rows.iter().map(|row| component(row, &bracket)).collect();
-            // What the graph cannot tell from zero is tried in numbers.
+            // A zero that the graph does not recognise is decided numerically.
             if near.residual(graph, &along) <= Neighbourhood::ROUNDING {
                 continue;
             }

@@ -1,23 +1,23 @@
-//! States near one given that satisfy conditions on positions, in numbers.
+//! States near a given one that satisfy conditions on positions, in numbers.
 
 use pc_mech::{Expr, Graph, LeastSquares, Matrix, System};
 
-/// The steps by which a condition that can be satisfied nearby is satisfied, quadratic convergence once near.
+/// The most steps to satisfy a condition nearby; convergence is quadratic at the end.
 const MOST_STEPS: usize = 60;
 
-/// How often a step that leads nowhere is shortened.
+/// The most reductions of a step that does not improve.
 const SHORTENINGS: usize = 12;
 
-/// What rounding leaves of conditions that are satisfied, in units of the displacements that would do it.
+/// The residual, in units of displacements, that rounding leaves of satisfied conditions.
 const SATISFIED: f64 = 1e-11;
 
-/// The part of themselves by which coordinates are varied.
+/// The relative variation of coordinates.
 const VARIED: f64 = 0.01;
 
-/// Coordinates smaller than this part of the largest are varied as if they were as large.
+/// Coordinates smaller than this part of the largest are varied as if they were that large.
 const LEAST: f64 = 0.1;
 
-/// Conditions f(t, x) = 0 on the positions of a system, none of which need be independent of the others.
+/// Conditions f(t, x) = 0 on the positions of a system, possibly dependent on each other.
 pub(crate) struct Positions<'g> {
     graph: &'g Graph,
     time: Expr<'g>,
@@ -36,7 +36,7 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// A place near this one, another for each `index`; the same in each run.
+    /// A place near this one, different for each `index` and the same on each run.
     pub(crate) fn varied(&self, index: u64) -> Place {
         let scale = self.scale();
         let mut random = Random(index.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d_4c95_7f2d);
@@ -61,7 +61,7 @@ impl<'g> Positions<'g> {
         Positions { graph, time: frame.time(), x, values, count: functions.len(), parameters }
     }
 
-    /// Expressions of time, coordinates and parameters at a place; none where one is not finite.
+    /// Expressions in time, coordinates and parameters at a place; `None` if one is not finite.
     pub(crate) fn evaluate(&self, expressions: &[Expr<'g>], at: &Place) -> Option<Vec<f64>> {
         let state = self.x.iter().copied().zip(at.x.iter().copied());
         let values: Vec<_> =
@@ -89,15 +89,15 @@ impl<'g> Positions<'g> {
         Some(sizes.map(|size| if size > 0.0 { size } else { 1.0 }).collect())
     }
 
-    /// How far f is from zero, in units of displacements; infinite where it has no value.
+    /// The distance of f from zero, in units of displacements; infinite where it has no value.
     pub(crate) fn off(&self, place: &Place) -> f64 {
         let found = self.sizes(place).and_then(|sizes| self.at(place, &sizes));
         found.map_or(f64::INFINITY, |(f, _)| norm(&f) / place.scale())
     }
 
-    /// A place near `start`, at its time, where f = 0, by the method of Levenberg and Marquardt with μ = |f|²: it comes near by
-    /// the square of the distance though ∂f/∂x lose rank where f = 0 [N. Yamashita, M. Fukushima, Computing Suppl. 15 (2001)
-    /// 239–249]. None if it leads to no such place.
+    /// A place near `start`, at its time, where f = 0, by the method of Levenberg and Marquardt with μ =
+    /// |f|²: it converges quadratically even if ∂f/∂x loses rank where f = 0 [N. Yamashita, M. Fukushima,
+    /// Computing Suppl. 15 (2001) 239–249]. `None` if it does not converge.
     pub(crate) fn near(&self, start: &Place) -> Option<Place> {
         let (scale, sizes) = (start.scale(), self.sizes(start)?);
         let mut place = start.clone();

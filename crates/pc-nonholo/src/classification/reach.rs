@@ -1,4 +1,4 @@
-//! The velocities that constraints allow, and what their commutators reach.
+//! The velocities that constraints allow, and the directions that their commutators reach.
 
 use pc_mech::{Constraint, Expr, Matrix, MechError, Multipliers, Neighbourhood, System};
 
@@ -6,7 +6,7 @@ use crate::classification::involutive::{Along, OperatorField, involutive_closure
 use crate::error::NonholoError;
 use crate::reduction::adapted::independent;
 
-/// What constraints C η + c_0 = 0 leave within reach.
+/// The velocities and directions within reach under constraints C η + c_0 = 0.
 pub(crate) struct Reach<'g> {
     /// The C_α.
     pub(crate) rows: Vec<Vec<Expr<'g>>>,
@@ -14,14 +14,14 @@ pub(crate) struct Reach<'g> {
     pub(crate) rests: Vec<Expr<'g>>,
     /// X'_0..X'_l, in components along X_0..X_k.
     pub(crate) allowed: Vec<OperatorField<'g>>,
-    /// The components along the constraints of what commutators add to these.
+    /// The components along the constraints of the fields added by commutators.
     pub(crate) reached: Vec<Along<'g>>,
-    /// Where constraints are regular.
+    /// Values near which the constraints are regular.
     pub(crate) near: Neighbourhood<'g>,
 }
 
 impl<'g> Reach<'g> {
-    /// That of affine constraints, regular at the values `at` of time and state.
+    /// The reach under affine constraints, regular at the values `at` of time and state.
     pub(crate) fn new(
         multipliers: &Multipliers<'g>,
         at: &[(Expr<'g>, f64)],
@@ -38,7 +38,8 @@ impl<'g> Reach<'g> {
     }
 }
 
-/// The places of the constraints that are affine in the velocities, and the system under these alone if there are any.
+/// The indices of the constraints that are affine in the velocities, and the system under these alone if
+/// there are any.
 pub(crate) fn affine<'g>(
     multipliers: &Multipliers<'g>,
 ) -> Result<(Vec<usize>, Option<Multipliers<'g>>), NonholoError> {
@@ -52,8 +53,8 @@ pub(crate) fn affine<'g>(
     Ok((affine, Some(without)))
 }
 
-/// X'_0..X'_l of the velocities that satisfy C η + c_0 = 0, in components along X_0..X_k: the l quasi-velocities
-/// `independent` are theirs.
+/// X'_0..X'_l of the velocities that satisfy C η + c_0 = 0, in components along X_0..X_k, by the l
+/// quasi-velocities `independent`.
 ///
 /// # Errors
 /// [`MechError::Algebra`] of constraints that are dependent everywhere.

@@ -42,7 +42,7 @@ impl<'g> Adapted<'g> {
         Ok(Adapted { system: system.in_quasi_velocities(names, &definitions)?, free })
     }
 
-    /// The same with free quasi-velocities of these names, as many as there are, that are orthonormal in the kinetic
+    /// The system with free quasi-velocities of these names, as many as there are, that are orthonormal in the kinetic
     /// metric: their mass matrix is the unit matrix, l × l.
     ///
     /// # Errors
@@ -75,7 +75,7 @@ impl<'g> Adapted<'g> {
     }
 }
 
-/// That all constraints are affine in the velocities, as the form needs them.
+/// Checks that all constraints are affine in the velocities, as this form requires.
 ///
 /// # Errors
 /// [`NonholoError::Nonlinear`]
@@ -102,12 +102,12 @@ pub(crate) fn independent<'g>(
     Ok((0..eta.len()).filter(|s| !dependent.contains(s)).collect())
 }
 
-/// The indices of the quasi-velocities that the constraints say vanish, if that is all they say.
+/// The indices of the quasi-velocities that the constraints set to zero, if each constraint does just that.
 fn vanishing<'g>(eta: &[Expr<'g>], velocities: &[Expr<'g>]) -> Option<Vec<usize>> {
     velocities.iter().map(|velocity| eta.iter().position(|eta| eta == velocity)).collect()
 }
 
-/// The name of a constraint, made longer where the system has it.
+/// The name of a constraint, extended if the system already has it.
 fn unused(system: &System<'_>, constraint: &Constraint<'_>) -> String {
     let parameters = system.parameters().iter().map(|(symbol, _)| symbol);
     let taken: Vec<String> = system

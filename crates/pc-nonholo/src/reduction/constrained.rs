@@ -71,7 +71,7 @@ impl<'g> Constrained<'g> {
         self.reactions_by(&self.equations.accelerations())
     }
 
-    /// The same with these accelerations of the free η in them, such as their symbols.
+    /// The reactions with these accelerations of the free η, such as their symbols.
     pub fn reactions_by(&self, accelerations: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (system, graph) = (&self.system, self.system.graph());
         let frame = system.frame();

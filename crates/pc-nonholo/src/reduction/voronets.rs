@@ -19,7 +19,7 @@ use crate::reduction::adapted::affine;
 ///   c_0i^r = ∂α_ri/∂t − ∂α_r/∂x_i + α_k ∂α_ri/∂x_k − α_ki ∂α_r/∂x_k,   k = l+1..n.
 #[derive(Clone, Debug)]
 pub struct Voronets<'g> {
-    /// In velocities.
+    /// The equations in velocities.
     multipliers: Multipliers<'g>,
     /// ẋ_r = α_ri ẋ_i + α_r
     solved: Vec<(Expr<'g>, Expr<'g>)>,
@@ -63,7 +63,8 @@ impl<'g> Voronets<'g> {
         })
     }
 
-    /// The same for the independent velocities that make the equations shortest, as [`Multipliers::shortest`] says.
+    /// Voronets' equations for the independent velocities that make the equations shortest, as
+    /// [`Multipliers::shortest`] says.
     ///
     /// # Errors
     /// As [`new`](Voronets::new).
@@ -157,12 +158,13 @@ impl<'g> Voronets<'g> {
             graph.sum(rates.map(|(j, rate)| rate * graph.dot(self.structure(j, i), momenta.iter().copied())))
         };
         let lost: Vec<Expr<'g>> = (1..=free.len()).map(lost).collect();
-        let flat = system.structure().restricted(free.len()); // those of velocities: none
+        let flat = system.structure().restricted(free.len()); // those of velocities vanish
         Ok(self.multipliers.eliminated(&self.solved, flat)?.with_added_forces(&lost)?)
     }
 
-    /// Whether the equations are Chaplygin's: neither L, Q nor the coefficients depend on the dependent coordinates, and the α_r
-    /// vanish. Then the equations of the independent coordinates can be integrated alone.
+    /// Whether the equations are Chaplygin's: neither L, Q nor the coefficients depend on the dependent
+    /// coordinates, and the α_r vanish. Then the equations of the independent coordinates can be integrated
+    /// alone.
     pub fn is_chaplygin(&self) -> bool {
         let system = self.held();
         let parts: Vec<Expr<'g>> = std::iter::once(system.lagrangian())

@@ -1,4 +1,4 @@
-//! Hamilton–Jacobi's equation, and what is known of an action.
+//! Hamilton–Jacobi's equation, and the results on an action.
 
 use pc_analysis::ProposedAction;
 use pc_mech::{Expr, Identity};
@@ -60,7 +60,7 @@ pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {
     section(entries)
 }
 
-/// In words, where it is not proved.
+/// The residual in words, if the action is not proved.
 fn residual(checked: &ProposedAction<'_>) -> Vec<String> {
     match (checked.identity, &checked.refuted) {
         (Identity::Proved, _) => Vec::new(),
@@ -77,7 +77,7 @@ fn residual(checked: &ProposedAction<'_>) -> Vec<String> {
     }
 }
 
-/// The equation, X_s S as a symbol `S_` and the name of the coordinate or quasi-velocity.
+/// The equation, with X_s S as a symbol `S_` and the name of the coordinate or quasi-velocity.
 fn equation<'g>(ground: &Ground<'_, 'g>) -> Vec<Entry<'g>> {
     let (Ok(canonical), system) = (&ground.canonical, &ground.free) else { return Vec::new() };
     if system.forces().iter().any(|q| !q.is_zero()) {

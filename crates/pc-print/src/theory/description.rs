@@ -1,11 +1,11 @@
-//! The description of a model, whatever the format.
+//! The description of a model, in any format.
 
 use pc_mech::{Expr, Identity, Style};
 
 use crate::mathml;
 use crate::words::short;
 
-/// What can be said of a model, part by part.
+/// The results on a model, part by part.
 #[derive(Clone, Debug)]
 pub(crate) struct Theory<'g> {
     pub(crate) title: String,
@@ -17,21 +17,21 @@ pub(crate) struct Theory<'g> {
 pub(crate) struct Section<'g> {
     /// Its name for programs.
     pub(crate) key: &'static str,
-    /// Its name for people.
+    /// Its title in print.
     pub(crate) title: &'static str,
-    /// Names that are first needed here, each with what it stands for.
+    /// Names first used here, each with its meaning.
     pub(crate) names: Vec<(Side<'g>, Side<'g>)>,
     pub(crate) entries: Vec<Entry<'g>>,
 }
 
-/// Formulas that belong together, with what is known of them.
+/// Formulas that belong together, with the results on them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Entry<'g> {
     pub(crate) name: Option<String>,
     pub(crate) formulas: Vec<(Side<'g>, Side<'g>)>,
     /// Names with numbers.
     pub(crate) values: Vec<(String, f64)>,
-    /// What is known, and of what if not of the formulas.
+    /// The verdict, with its subject if that is not the formulas.
     pub(crate) verdict: Option<(Option<&'static str>, Verdict)>,
     /// Sentences without formulas.
     pub(crate) words: Vec<String>,
@@ -42,35 +42,34 @@ pub(crate) struct Entry<'g> {
 /// Whether something holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Verdict {
-    /// Whatever the parameters.
+    /// For all values of the parameters.
     Proved,
-    /// For the values that the parameters have.
+    /// For the present values of the parameters.
     ProvedHere,
-    /// Numbers leave so large a part of the terms, or differ so much.
+    /// The numbers leave this part of the terms, or differ by this much.
     Disproved {
-        /// How far it is from holding.
+        /// The distance from holding.
         margin: f64,
     },
     /// Neither.
     Open,
 }
 
-/// A side of a formula, in each of the ways in which it is printed; an expression is written when all that stand on the page are
-/// known.
+/// A side of a formula, in each style; expressions are written once all expressions of the page are known.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Side<'g> {
     pub(crate) expression: Option<Expr<'g>>,
     /// As in a book.
     pub(crate) book: String,
     pub(crate) latex: String,
-    /// In the language of expressions, where it is one.
+    /// In the expression language, if possible.
     pub(crate) text: String,
     /// A row of MathML.
     pub(crate) mathml: String,
 }
 
 impl Verdict {
-    /// That on an identity.
+    /// The verdict on an identity.
     pub(crate) fn of(identity: Identity) -> Verdict {
         match identity {
             Identity::Proved => Verdict::Proved,
@@ -79,7 +78,7 @@ impl Verdict {
         }
     }
 
-    /// One of three words.
+    /// The verdict as a single word.
     pub(crate) fn word(self) -> &'static str {
         match self {
             Verdict::Proved | Verdict::ProvedHere => "proved",
@@ -88,7 +87,7 @@ impl Verdict {
         }
     }
 
-    /// That word with what belongs to it.
+    /// The verdict in words, with its details.
     pub(crate) fn in_words(self) -> String {
         match self {
             Verdict::ProvedHere => "proved for these parameters".to_owned(),
@@ -104,7 +103,7 @@ impl<'g> Side<'g> {
         Side { expression: Some(e), ..Side::default() }
     }
 
-    /// What is written in each style.
+    /// The text in each style.
     pub(crate) fn written(write: impl Fn(Style) -> String) -> Side<'g> {
         Side {
             expression: None,
@@ -115,7 +114,7 @@ impl<'g> Side<'g> {
         }
     }
 
-    /// A symbol of mathematics that is the same in plain text everywhere.
+    /// A mathematical symbol with one form in all plain text.
     pub(crate) fn symbol(plain: &str, latex: &str, mathml: &str) -> Side<'g> {
         let (book, latex, text) = (plain.to_owned(), latex.to_owned(), plain.to_owned());
         Side { expression: None, book, latex, text, mathml: mathml.to_owned() }
@@ -138,7 +137,7 @@ impl<'g> Side<'g> {
         })
     }
 
-    /// df/dt of what has a name.
+    /// df/dt of a named function.
     pub(crate) fn rate_of(name: &str) -> Side<'g> {
         let plain = format!("d/dt {name}");
         Side {
@@ -175,7 +174,7 @@ impl<'g> Entry<'g> {
         Entry { formulas: vec![(left, right)], ..Entry::default() }
     }
 
-    /// Something to be said.
+    /// Words without formulas.
     pub(crate) fn words(words: impl Into<String>) -> Entry<'g> {
         Entry { words: vec![words.into()], ..Entry::default() }
     }
@@ -188,7 +187,7 @@ impl<'g> Entry<'g> {
         Entry { verdict: Some((None, verdict)), ..self }
     }
 
-    /// With a verdict on something else than its formulas.
+    /// With a verdict on something other than its formulas.
     pub(crate) fn with_on(self, subject: &'static str, verdict: Verdict) -> Entry<'g> {
         Entry { verdict: Some((Some(subject), verdict)), ..self }
     }

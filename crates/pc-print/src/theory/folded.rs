@@ -1,12 +1,12 @@
 //! Long formulas on several lines.
 
-/// The formula in lines of at most `width` characters, as far as it can be broken before a sign of a sum, in as few brackets as
-/// possible. Nothing is left out.
+/// The formula in lines of at most `width` characters, as far as it can be broken before a sign of a sum, in
+/// as few brackets as possible. The formula stays complete.
 pub(crate) fn folded(formula: &str, width: usize) -> Vec<String> {
     broken(formula, width, usize::MAX)
 }
 
-/// The same, broken in no brackets at all.
+/// The formula broken outside of all brackets only.
 pub(crate) fn folded_outside(formula: &str, width: usize) -> Vec<String> {
     broken(formula, width, 0)
 }
@@ -24,7 +24,7 @@ fn broken(formula: &str, width: usize, deepest: usize) -> Vec<String> {
                 .max()
         };
         let most = places.iter().map(|&(_, depth)| depth).max().unwrap_or(0).min(deepest);
-        // Where nothing fits the first place beyond is the least evil.
+        // If nothing fits, the first place beyond is used.
         let beyond = || places.iter().find(|&&(_, depth)| depth <= deepest).map(|&(place, _)| place);
         let Some(place) = (0..=most).find_map(within).or_else(beyond) else { break };
         let tail = rest.split_off(place);
@@ -35,7 +35,7 @@ fn broken(formula: &str, width: usize, deepest: usize) -> Vec<String> {
     lines
 }
 
-/// Where ` + ` and ` - ` stand, but for the beginning, with the number of brackets about them: the places of the signs.
+/// The places of ` + ` and ` - `, except at the beginning, with the number of brackets around them.
 fn signs(text: &[char]) -> Vec<(usize, usize)> {
     let (mut depth, mut places) = (0usize, Vec::new());
     for (i, &c) in text.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What all parts of the theory start from.
+//! The common basis of all parts of the theory.
 
 use pc_analysis::AnalysisError;
 use pc_mech::{Canonical, Equations, MechError, Neighbourhood, System};
@@ -11,9 +11,9 @@ pub(crate) struct Ground<'a, 'g> {
     pub(crate) equations: Equations<'g>,
     /// The system of the independent quasi-velocities.
     pub(crate) free: System<'g>,
-    /// In the frame in which constraints make quasi-velocities vanish, if they are not integrable.
+    /// The system in the frame in which constraints make quasi-velocities vanish, if they are not integrable.
     pub(crate) constrained: Option<Constrained<'g>>,
-    /// The canonical equations of the independent momenta, or why there are none.
+    /// The canonical equations of the independent momenta, or the reason why there are none.
     pub(crate) canonical: Result<Canonical<'g>, String>,
     /// Values at the start.
     pub(crate) near: Neighbourhood<'g>,
@@ -42,12 +42,12 @@ impl<'a, 'g> Ground<'a, 'g> {
         })
     }
 
-    /// Whether no constraint binds that cannot be integrated.
+    /// Whether all binding constraints are integrable.
     pub(crate) fn is_holonomic(&self) -> bool {
         self.assembly.constraints.positions(&self.assembly.system).is_some()
     }
 
-    /// Whether nothing holds the system but its frame.
+    /// Whether the system is free of constraints, except those of its frame.
     pub(crate) fn is_unbound(&self) -> bool {
         matches!(self.assembly.constraints.formulation(), ConstraintFormulation::Free)
     }
@@ -57,7 +57,7 @@ impl<'a, 'g> Ground<'a, 'g> {
         !self.assembly.system.external_forces().is_empty()
     }
 
-    /// What came of an analysis, its error put at the place in the file that is to blame.
+    /// The result of an analysis, with its error located at the entry of the file that causes it.
     pub(crate) fn placed<T>(&self, found: Result<T, AnalysisError>) -> Result<T, ModelError> {
         found.or_else(|error| match error {
             AnalysisError::Nonholo(error) => self.assembly.placed(Err(error)),

@@ -50,13 +50,13 @@ fn name_momenta(integrals: &mut Integrals<'_>, system: &System<'_>) {
     });
 }
 
-/// Says of what keeps its value between events whether resets may change it.
+/// Marks conserved functions that resets may change between events.
 fn say_what_jumps<'g>(integrals: &mut Integrals<'g>, assembly: &Assembly<'g>) {
     let projected = matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_));
     integrals.jump(&assembly.system, assembly.events.iter().map(|event| event.resets.as_slice()), projected);
 }
 
-/// The energy of all velocities, which is that of a run, in the independent ones of the equations.
+/// The energy of all velocities, which a run observes, in the independent ones of the equations.
 fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Option<Expr<'g>> {
     let (all, free) = (assembly.system.quasi_velocities(), equations.system().quasi_velocities());
     let values = assembly.quasi_velocities_of(free).ok()?;
@@ -65,7 +65,7 @@ fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Opti
     Some(graph.substitute(&[assembly.system.energy()], &known)[0])
 }
 
-/// The integrals of the theory, those of the ansatz at the end, with what this was tried with.
+/// The integrals of the theory, those of the ansatz at the end, with the extent of its search.
 pub(crate) fn found<'g>(
     ground: &Ground<'_, 'g>,
     model: &Model,
@@ -109,7 +109,7 @@ pub(crate) fn section<'g>(
     Section { key: "integrals", title: "Integrals", names: Vec::new(), entries }
 }
 
-/// What is known of an integral: where its rate is not seen to vanish, numbers at the start tell whether it does.
+/// The verdict on an integral: if its rate is not proved to vanish, numbers at the start may refute it.
 fn verdict(ground: &Ground<'_, '_>, rates: &Rates<'_>, integral: &Integral<'_>) -> (Verdict, Option<String>) {
     let between = integral.jumps.then(|| "between events".to_owned());
     match integral.verdict {
@@ -124,7 +124,7 @@ fn verdict(ground: &Ground<'_, '_>, rates: &Rates<'_>, integral: &Integral<'_>) 
             let verdict = left.map_or(Verdict::Open, |left| Verdict::of(Identity::of(left)));
             let at_start = at_start.map(|rate| format!("its rate at the start is {}", short(rate, 4)));
             let frame = ground.free.frame();
-            // Beside the start only where all states are possible.
+            // Points other than the start are used only if all states are possible.
             let is_free = ground.is_unbound() && frame.coordinates().len() == frame.rank();
             match verdict {
                 Verdict::Disproved { .. } => (verdict, at_start),
@@ -132,14 +132,14 @@ fn verdict(ground: &Ground<'_, '_>, rates: &Rates<'_>, integral: &Integral<'_>) 
                     let residual = ground.near.residual(ground.free.graph(), &[vec![rate]]);
                     (Verdict::of(Identity::of(residual)), at_start)
                 }
-                // That numbers leave nothing at one state is no proof.
+                // A vanishing number at one state is not a proof.
                 _ => (Verdict::Open, at_start),
             }
         }
     }
 }
 
-/// What the ansatz was tried with, in words.
+/// The extent of the search by the ansatz, in words.
 fn tried(made: AnsatzSearch, options: &TheoryOptions) -> String {
     let degree = options.degree;
     let times = match options.functions.as_slice() {
@@ -168,7 +168,7 @@ pub(crate) fn displacements<'g>(ground: &Ground<'_, 'g>, integrals: &Integrals<'
     };
     let Ok(canonical) = &ground.canonical else { return section(Vec::new()) };
     if ground.constrained.is_some() {
-        return section(Vec::new()); // constraints let through no displacement that is a symmetry of L alone
+        return section(Vec::new()); // under constraints, symmetries of L alone give no integrals
     }
     let entry = |integral: &Integral<'_>| {
         let field = NoetherField::of(canonical, integral.value)?;
@@ -193,7 +193,7 @@ pub(crate) fn displacements<'g>(ground: &Ground<'_, 'g>, integrals: &Integrals<'
     section(integrals.conserved().filter_map(entry).collect())
 }
 
-/// a_s X_s, the operators of velocities as ∂/∂x.
+/// a_s X_s, with operators of velocities as ∂/∂x.
 fn written(system: &System<'_>, field: &NoetherField<'_>, style: Style) -> String {
     let (frame, eta) = (system.frame(), system.quasi_velocities());
     let is_lagrange = frame.velocities(eta) == eta;

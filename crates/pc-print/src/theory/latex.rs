@@ -10,7 +10,7 @@ use crate::words::short;
 /// The most characters of a line of source, about the width of a page.
 const WIDTH: usize = 140;
 
-/// A display for each section, with a comment above it; what is said without formulas stands in comments under it.
+/// A display for each section, with a comment above it; words without formulas are comments below it.
 pub(crate) fn written(theory: &Theory<'_>) -> String {
     let mut page = format!("% {}: theory (needs amsmath)\n", theory.title);
     for section in &theory.sections {
@@ -53,7 +53,7 @@ fn lines(entry: &Entry<'_>) -> Vec<String> {
     lines
 }
 
-/// Left = right, in as many lines as it needs, with something behind it.
+/// Left = right, in as many lines as needed, with `end` behind it.
 fn formula(left: &str, right: &str, end: &str) -> Vec<String> {
     let parts = folded_outside(right, WIDTH);
     let line = |(j, part): (usize, &String)| {

@@ -1,4 +1,4 @@
-//! Names for what is long or comes again on a page of theory, and its formulas written with them.
+//! Names for long or repeated expressions on a page of theory, and its formulas written with them.
 
 use std::ops::Range;
 
@@ -10,8 +10,8 @@ use crate::latex::whole;
 use crate::layout::Layout;
 use crate::theory::description::{Section, Side, Theory};
 
-/// Writes all expressions of a page, in the order in which they stand there, with the definitions of the model for what has their
-/// value.
+/// Writes all expressions of a page in their order, with the definitions of the model for expressions of
+/// equal value.
 pub(crate) fn write<'g>(theory: &mut Theory<'g>, assembly: &Assembly<'g>) {
     let graph = assembly.system.graph();
     let page = graph.page(Folding::Structural);
@@ -45,7 +45,7 @@ impl<'g> Section<'g> {
         sides.filter_map(|side| side.expression)
     }
 
-    /// Writes the expressions, which stand in these lines of the page, and the names that are first needed in one of them.
+    /// Writes the expressions in these lines of the page, and the names first used in one of them.
     fn write(
         &mut self,
         names: &Names<'_>,

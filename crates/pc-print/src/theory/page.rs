@@ -9,9 +9,9 @@ use crate::theory::options::TheoryOptions;
 use crate::theory::{action, brackets, integrals, json, latex, measure, names, routh, steady, text};
 use crate::visible::{one_line, visible, visible_json};
 
-/// What can be said of the motions of a model without integrating them, printed: momenta and their brackets, Casimirs, integrals
-/// and the displacements to which they belong, invariant measure, Chaplygin's multiplier, Hamilton–Jacobi's equation, steady
-/// motions, Routh's reduction. Each claim is proved, disproved or open.
+/// What can be said of the motions of a model without integrating them, printed: momenta and their brackets,
+/// Casimirs, integrals and the displacements to which they belong, invariant measure, Chaplygin's multiplier,
+/// Hamilton–Jacobi's equation, steady motions, Routh's reduction. Each claim is proved, disproved or open.
 ///
 /// # Errors
 /// [`ModelError`] if the equations cannot be derived, or a function cannot be read.

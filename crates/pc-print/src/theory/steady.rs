@@ -1,4 +1,4 @@
-//! Equilibria and steady motions, and whether they are stable.
+//! Equilibria and steady motions, and their stability.
 
 use pc_analysis::{
     Eigenvalue, FoundSteadyMotion, Integrals, NoSteadyMotions, Stability, SteadyMotions, Verdict as Of,
@@ -9,13 +9,13 @@ use crate::theory::description::{Entry, Section, Verdict};
 use crate::theory::ground::Ground;
 use crate::words::short;
 
-/// What Newton's method leaves of a zero.
+/// The remainder that Newton's method leaves of a zero.
 const ZERO: f64 = 1e-9;
 
-/// Of more, that are members of families then, only so many are listed.
+/// The most members of families that are listed.
 const MOST_LISTED: usize = 8;
 
-/// All that are found, the nearest of many.
+/// All steady motions found, or the nearest of many.
 pub(crate) fn section<'g>(
     ground: &Ground<'_, 'g>,
     integrals: &Integrals<'g>,

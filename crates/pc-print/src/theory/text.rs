@@ -1,4 +1,4 @@
-//! The theory for people.
+//! The theory as text.
 
 use crate::lines::columns;
 use crate::text::underlined;
@@ -24,7 +24,7 @@ pub(crate) fn written(theory: &Theory<'_>) -> String {
     underlined(&format!("{}: theory", theory.title)) + &sections.join("\n")
 }
 
-/// Name, formulas with the verdict on them, then what else is said, further in.
+/// Name, formulas with their verdict, then the remaining lines, indented further.
 fn lines(entry: &Entry<'_>) -> Vec<String> {
     let mut verdict = entry.verdict.map(|(subject, verdict)| match subject {
         None => verdict.in_words(),
@@ -79,7 +79,7 @@ fn in_lines(words: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// The line, broken where it is long, all of it further in if it is not the first.
+/// The line, broken if long, indented further unless it is the first.
 fn indented(line: &str, further: bool) -> Vec<String> {
     let margin = if further { "    " } else { "" };
     let parts = if columns(line) <= WIDTH { vec![line.to_owned()] } else { folded(line, WIDTH) };

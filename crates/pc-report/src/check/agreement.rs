@@ -4,7 +4,7 @@ use pc_print::columns;
 use pc_verify::{Agreement, VerifyError};
 use serde_json::{Value, json};
 
-/// An agreement in the lines of a report of so many columns.
+/// An agreement as lines of a report of this width.
 pub(super) fn lines(outcome: &Result<Agreement, VerifyError>, width: usize) -> Vec<String> {
     match outcome {
         Ok(agreement) => {
@@ -17,7 +17,7 @@ pub(super) fn lines(outcome: &Result<Agreement, VerifyError>, width: usize) -> V
     }
 }
 
-/// The first line of a text, as much as there is room for.
+/// The first line of a text, cut to the width.
 fn clipped(text: &str, width: usize) -> String {
     let line = text.lines().next().unwrap_or_default();
     if columns(line) <= width {
@@ -28,7 +28,7 @@ fn clipped(text: &str, width: usize) -> String {
     short
 }
 
-/// The same for programs.
+/// The agreement as JSON.
 pub(super) fn object(outcome: &Result<Agreement, VerifyError>) -> Value {
     match outcome {
         Ok(agreement) => json!({

@@ -1,4 +1,4 @@
-//! What can be said of a model before it is run.
+//! The properties of a model before it is run.
 
 use pc_analysis::{FrameFacts, Integral, Integrals, SteadySearch};
 use pc_mech::{Equations, Expr, Identity, MechError, Motion, Neighbourhood, System, VectorField};
@@ -15,7 +15,7 @@ use crate::check::measure::Measure;
 use crate::check::{agreement, combinations, frame, integrals, steady};
 use crate::remarks::{NEGATIVE_ENERGY, dropped};
 
-/// What can be said of a model before it is run.
+/// The properties of a model before it is run.
 #[derive(Clone, Debug)]
 pub struct Check<'g> {
     title: String,
@@ -36,13 +36,13 @@ pub struct Check<'g> {
     start: Vec<f64>,
     largest_rate: f64,
     frame: FrameFacts<'g>,
-    /// Each with what it does.
+    /// Each with its kind.
     constraints: Vec<(String, String)>,
     classified: Vec<ClassifiedConstraint>,
     redundant: Vec<Redundant>,
-    /// How many there are.
+    /// Their number.
     integrable_combinations: usize,
-    /// Those of them that are found.
+    /// Those that are found.
     combinations: Vec<IntegrableCombination<'g>>,
     start_residual: f64,
     integrals: Integrals<'g>,
@@ -53,7 +53,7 @@ pub struct Check<'g> {
 }
 
 impl<'g> Check<'g> {
-    /// Of an assembled model with its equations in independent quasi-velocities.
+    /// The properties of an assembled model with its equations in independent quasi-velocities.
     ///
     /// # Errors
     /// [`ModelError`] if something of it cannot be derived.
@@ -69,7 +69,7 @@ impl<'g> Check<'g> {
 
         let (mut motion, start) = model.compile(assembly)?;
         let mut rate = vec![0.0; start.len()];
-        // `compile` has tried the same
+        // `compile` has evaluated the same
         let evaluated = motion.rhs(assembly.t_start, &start, &mut rate).is_ok();
         let largest_rate = rate.iter().fold(0.0f64, |largest, r| largest.max(r.abs()));
 
@@ -114,7 +114,7 @@ impl<'g> Check<'g> {
         })
     }
 
-    /// With the comparison with a second derivation.
+    /// The properties with the comparison with a second derivation.
     pub fn compared(self, second: Result<Agreement, VerifyError>) -> Check<'g> {
         Check { second: Some(second), ..self }
     }
@@ -127,7 +127,7 @@ impl<'g> Check<'g> {
         format!("{}\n{text}", one_line(&self.title))
     }
 
-    /// What is known, each with a label, in lines.
+    /// The results, each with a label, in lines.
     pub fn entries(&self) -> Vec<(&'static str, Vec<String>)> {
         const WIDTH: usize = 78;
         let k = self.quasi_velocities.len();
@@ -248,7 +248,7 @@ fn algebra(system: &System<'_>) -> String {
     }
 }
 
-/// Whether an identity holds of which numbers leave a residual, relative to its terms.
+/// Whether an identity with this numerical residual, relative to its terms, holds.
 fn held(residual: f64) -> String {
     match Identity::of(residual) {
         Identity::Proved => "holds identically".to_owned(),
@@ -258,7 +258,7 @@ fn held(residual: f64) -> String {
     }
 }
 
-/// The steady motion near the start of the equations of a model, of which `motion` is what is integrated.
+/// The steady motion near the start of the equations of a model; `motion` is the integrated one.
 fn steady_motion<'g>(
     assembly: &Assembly<'g>,
     equations: &Equations<'g>,
@@ -282,7 +282,7 @@ fn steady_motion<'g>(
     SteadySearch::near(equations, &mut independent, (assembly.t_start, &start), integrals, &positions)
 }
 
-/// The constraints, those dropped at the end, each with what it does.
+/// The constraints, dropped ones last, each with its kind.
 fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
     let binding = assembly.constraints.classified().iter().map(|verdict| {
         let words = kind_in_words(verdict.kind);
@@ -300,7 +300,7 @@ fn constraint(verdict: &ClassifiedConstraint) -> Value {
     let residual = match verdict.kind {
         Kind::Nonholonomic { residual } => Some(residual),
         Kind::Position | Kind::Integrable => Some(0.0),
-        Kind::Nonlinear => None, // not tried
+        Kind::Nonlinear => None, // not tested
     };
     json!({ "name": verdict.constraint, "kind": kind_in_words(verdict.kind), "residual": residual })
 }
@@ -309,7 +309,7 @@ fn dropped_object(redundant: &Redundant) -> Value {
     json!({ "name": redundant.constraint, "follows_from": redundant.follows_from })
 }
 
-/// The largest value at the start of what should vanish.
+/// The largest value at the start of the functions that should vanish.
 fn start_residual(assembly: &Assembly<'_>, near: &Neighbourhood<'_>) -> f64 {
     let Some(multipliers) = assembly.constraints.multipliers() else { return 0.0 };
     let graph = assembly.system.graph();

@@ -5,7 +5,7 @@ use pc_nonholo::IntegrableCombination;
 use pc_print::{columns, combination};
 use serde_json::{Value, json};
 
-/// A formula of more columns stands in a line of its own, one of more than this not at all.
+/// A formula of more columns than a line has is put on a line of its own; one of more than this is left out.
 const WIDEST: usize = 100;
 
 /// μ_1 φ_1 + …
@@ -14,7 +14,7 @@ fn written(found: &IntegrableCombination<'_>) -> String {
     combination(terms.map(|(name, mu)| (mu.display(Style::Book), name.clone())))
 }
 
-/// Those that are found, with their integrals, and how many of the `count` there are are not.
+/// The combinations found, with their integrals, and how many of the `count` remain unknown.
 pub(super) fn lines(found: &[IntegrableCombination<'_>], count: usize) -> Vec<String> {
     let line = |found: &IntegrableCombination<'_>| {
         let integral = format!("{} = const", found.integral.display(Style::Book));
@@ -35,7 +35,7 @@ pub(super) fn lines(found: &[IntegrableCombination<'_>], count: usize) -> Vec<St
     found.iter().flat_map(line).chain(open).collect()
 }
 
-/// A combination for programs.
+/// A combination as JSON.
 pub(super) fn object(found: &IntegrableCombination<'_>) -> Value {
     let coefficients: serde_json::Map<String, Value> =
         found.coefficients.iter().map(|(name, mu)| (name.clone(), json!(mu.to_string()))).collect();

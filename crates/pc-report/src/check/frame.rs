@@ -6,7 +6,7 @@ use pc_mech::{StructureCoefficients, Style};
 use pc_print::{recognised, wrapped};
 use serde_json::{Value, json};
 
-/// What functions constraints of a frame are.
+/// The variables of the functions that constraints of a frame are.
 fn of(of_time: bool) -> &'static str {
     if of_time { "f(x, t)" } else { "f(x)" }
 }
@@ -26,7 +26,7 @@ pub(super) fn constraints(frame: &FrameFacts<'_>) -> Option<String> {
     })
 }
 
-/// Which quasi-velocities are holonomic, in lines of `width` characters; none where the frame leaves it open.
+/// The holonomic quasi-velocities, in lines of `width` characters; none if the frame leaves it open.
 pub(super) fn holonomic(frame: &FrameFacts<'_>, width: usize) -> Vec<String> {
     if frame.lagrangian && !frame.holonomy.is_empty() {
         return vec!["all, the velocities of the coordinates".to_owned()];
@@ -40,7 +40,7 @@ pub(super) fn holonomic(frame: &FrameFacts<'_>, width: usize) -> Vec<String> {
     if lines.is_empty() && !frame.holonomy.is_empty() { vec!["none".to_owned()] } else { lines }
 }
 
-/// `frame_constraints` and `holonomic` for programs.
+/// `frame_constraints` and `holonomic` as JSON.
 pub(super) fn objects(frame: &FrameFacts<'_>) -> (Value, Value) {
     let holonomic: Vec<Value> = frame
         .holonomy
@@ -65,7 +65,7 @@ pub(super) fn objects(frame: &FrameFacts<'_>) -> (Value, Value) {
     (constraints, json!(holonomic))
 }
 
-/// The algebra of the operators in words, of which `constant` says that they are.
+/// The algebra of the operators in words; `constant` states when they form one.
 pub(super) fn algebra(structure: &StructureCoefficients<'_>, constant: &str) -> String {
     if let Some(name) = recognised(structure) {
         return format!("{name}, {constant}");
@@ -81,7 +81,7 @@ pub(super) fn algebra(structure: &StructureCoefficients<'_>, constant: &str) -> 
     format!("{constant}, not one of the catalogue{facts}")
 }
 
-/// What kind of algebra it is, its rank and its index.
+/// The kind of the algebra, its rank and its index.
 fn facts(algebra: &LieAlgebra) -> Result<String, AlgebraError> {
     let kind = if algebra.is_abelian() {
         "commutative except for time"

@@ -5,10 +5,10 @@ use pc_mech::Style;
 use pc_print::{columns, short};
 use serde_json::{Value, json};
 
-/// A formula of more columns is not printed behind what is said of it.
+/// A formula of more columns is not printed after the verdict.
 const WIDEST: usize = 100;
 
-/// Where it comes from, in words.
+/// The origin of an integral, in words.
 fn how(origin: &Origin) -> &'static str {
     match origin {
         Origin::Declared => "declared",
@@ -31,7 +31,7 @@ fn words(verdict: ConservationVerdict<'_>, jumps: bool) -> String {
         ConservationVerdict::NoFunction => {
             "not decided: it is not a function of time and state alone".to_owned()
         }
-        // Rounding of a rate that is zero there.
+        // A rate at the level of rounding is zero.
         ConservationVerdict::Rate { at_start: Some(rate), .. } if rate.abs() < 1e-12 => {
             "not proved to be conserved, though it does not change at the start".to_owned()
         }
@@ -42,7 +42,7 @@ fn words(verdict: ConservationVerdict<'_>, jumps: bool) -> String {
     }
 }
 
-/// The verdict, with the formula of what is not declared, and of the rate of the energy.
+/// The verdict, with the formula of an integral that is not declared, and that of the rate of the energy.
 pub(super) fn lines(integral: &Integral<'_>) -> Vec<String> {
     let words = words(integral.verdict, integral.jumps);
     if let (Origin::Energy, ConservationVerdict::Rate { rate, at_start }) =
@@ -71,7 +71,7 @@ pub(super) fn lines(integral: &Integral<'_>) -> Vec<String> {
     }
 }
 
-/// The integral for programs.
+/// The integral as JSON.
 pub(super) fn object(integral: &Integral<'_>) -> Value {
     let mut object = json!({
         "name": integral.name,

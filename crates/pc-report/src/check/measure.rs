@@ -9,28 +9,28 @@ use serde_json::{Value, json};
 /// A formula of more columns is not printed.
 const WIDEST: usize = 80;
 
-/// What is known of it.
+/// The results on it.
 #[derive(Clone, Debug)]
 pub(super) struct Measure<'g> {
-    /// None where a constraint is not affine in the velocities.
+    /// `None` if a constraint is not affine in the velocities.
     search: Option<MeasureSearch<'g>>,
     /// Whether there are as many free quasi-velocities as coordinates.
     square: bool,
-    /// Whether an event may change what the motion keeps between events.
+    /// Whether an event may change integrals that hold between events.
     jumps: bool,
     /// Chaplygin's reducing multiplier.
     multiplier: Option<Expr<'g>>,
 }
 
 impl<'g> Measure<'g> {
-    /// That of a model; `at` are values of time, state and parameters at the start.
+    /// The measure of a model; `at` are values of time, state and parameters at the start.
     pub(super) fn of(assembly: &Assembly<'g>, at: &[(Expr<'g>, f64)]) -> Measure<'g> {
         let jumps = assembly.events.iter().any(|event| !event.resets.is_empty());
         if assembly.constraints.nonlinear().is_some() {
             return Measure { search: None, square: false, jumps, multiplier: None };
         }
         let positions = assembly.constraints.positions(&assembly.system);
-        // Equations that have been derived before: an error is that these have no closed form.
+        // The equations have been derived before: an error means that these have no closed form.
         let free = assembly.free_system().ok();
         let frame = free.as_ref().map(System::frame);
         let square = frame.is_some_and(|frame| frame.coordinates().len() == frame.operators());
@@ -43,7 +43,7 @@ impl<'g> Measure<'g> {
         Measure { search: Some(search), square, jumps, multiplier }
     }
 
-    /// What to print.
+    /// The lines to print.
     pub(super) fn lines(&self) -> Vec<String> {
         let known = match &self.search {
             None => "not looked for: a constraint is not affine in the velocities".to_owned(),
@@ -63,7 +63,7 @@ impl<'g> Measure<'g> {
         [known].into_iter().chain(multiplier).collect()
     }
 
-    /// For programs; null where none is known.
+    /// As JSON; null if none is known.
     pub(super) fn object(&self) -> Value {
         let Some(MeasureSearch::Found(measure)) = &self.search else { return Value::Null };
         let text = |value: &Option<Expr<'_>>| value.map(|value| value.to_string());

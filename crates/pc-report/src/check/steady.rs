@@ -1,10 +1,10 @@
-//! The steady motion near the start, and whether it is stable, in words.
+//! The steady motion near the start, and its stability, in words.
 
 use pc_analysis::{NearbySteadyMotion, SteadySearch};
 use pc_print::{eigenvalues_in_words, short, stability_in_words, wrapped};
 use serde_json::{Map, Value, json};
 
-/// Where it is, how far from the start, eigenvalues, verdict: lines of `width` characters.
+/// Its state, its distance from the start, eigenvalues and verdict, in lines of `width` characters.
 fn motion_lines(steady: &NearbySteadyMotion, width: usize) -> Vec<String> {
     let assigned = |name: &str, value: f64| format!("{name} = {}", rounded(value));
     let state = steady.state.iter().map(|(name, value)| assigned(name, *value));
@@ -41,7 +41,7 @@ fn motion_object(steady: &NearbySteadyMotion) -> Value {
     })
 }
 
-/// What to print; nothing where no steady motion is to be expected.
+/// The lines to print; none where no steady motion is to be expected.
 pub(super) fn lines(search: &SteadySearch, width: usize) -> Vec<String> {
     match search {
         SteadySearch::NotAutonomous => Vec::new(),
@@ -62,7 +62,7 @@ pub(super) fn lines(search: &SteadySearch, width: usize) -> Vec<String> {
     }
 }
 
-/// The motion for programs; null where none is found.
+/// The motion as JSON; null if none is found.
 pub(super) fn object(search: &SteadySearch) -> Value {
     match search {
         SteadySearch::Found(steady) => motion_object(steady),
@@ -70,10 +70,10 @@ pub(super) fn object(search: &SteadySearch) -> Value {
     }
 }
 
-/// What Newton's method leaves of a zero.
+/// The remainder that Newton's method leaves of a zero.
 const ZERO: f64 = 1e-9;
 
-/// Six digits; what Newton's method leaves of a zero is one.
+/// Six digits; the remainder that Newton's method leaves of a zero is printed as zero.
 fn rounded(value: f64) -> String {
     if value.abs() <= ZERO { "0".to_owned() } else { short(value, 6) }
 }

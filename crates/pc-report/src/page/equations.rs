@@ -17,7 +17,7 @@ pub(super) fn equations(title: &str, assembly: &Assembly<'_>, layout: &Layout) -
     for other in others(assembly) {
         match displayed_equations(other, layout, title, assembly) {
             Ok(equations) => shown += &form(&equations, other),
-            // A limit that is reached ends the work; a form that a model does not have does not.
+            // An exhausted limit ends the work; a form that the model does not have is left out.
             Err(error) => match assembly.within_limits() {
                 Err(limit) => return Err(limit),
                 Ok(()) => refused.push(format!("{}: {error}", other.name())),
@@ -31,11 +31,11 @@ pub(super) fn equations(title: &str, assembly: &Assembly<'_>, layout: &Layout) -
     Ok(shown)
 }
 
-/// The forms that may say something else than Poincaré's.
+/// The forms that may differ from Poincaré's equations.
 fn others(assembly: &Assembly<'_>) -> Vec<Form> {
     let system = &assembly.system;
     if system.large_tree().is_some() {
-        return Vec::new(); // written from body to body, in one form
+        return Vec::new(); // printed from body to body, in one form
     }
     let mut forms = vec![Form::Canonical];
     let reduced = assembly.free_form(Variables::Reduced).ok();

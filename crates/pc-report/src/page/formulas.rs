@@ -6,15 +6,16 @@ use pc_print::{Display, DisplayedPart};
 
 use crate::page::html::{lines, text};
 
-/// Lines of a formula that stand together; paper breaks between such parts, and what is longer than a page would be lost.
+/// The lines of a formula kept together: paper breaks between such parts, and a part longer than a page would
+/// be cut.
 const LINES: usize = 14;
 
-/// A formula in a box that scrolls by itself; browsers let the keyboard reach those that do.
+/// A formula in a box that scrolls separately; browsers let the keyboard reach such boxes.
 pub(super) fn formula(mathml: &str) -> String {
     format!("<div class=\"formula\">{}</div>\n", in_parts(mathml))
 }
 
-/// The same table of lines as several tables, where it is long.
+/// A long table of lines as several tables.
 fn in_parts(mathml: &str) -> Cow<'_, str> {
     let (Some(start), Some(end)) = (mathml.find("<mtr>"), mathml.rfind("</mtr>")) else {
         return mathml.into();
@@ -28,7 +29,7 @@ fn in_parts(mathml: &str) -> Cow<'_, str> {
     lines.chunks(LINES).map(|part| format!("{head}{}{tail}", part.concat())).collect::<String>().into()
 }
 
-/// The source for a paper.
+/// The LaTeX source.
 pub(super) fn source(latex: &str) -> String {
     format!(
         "<details><summary>LaTeX</summary><pre tabindex=\"0\"><code>{}</code></pre></details>\n",
@@ -56,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_long_table_is_several() {
+    fn a_long_table_is_divided() {
         let table = |lines: std::ops::Range<usize>| {
             let lines: String = lines.map(|i| format!("<mtr><mtd>{i}</mtd></mtr>")).collect();
             format!("<math display=\"block\"><mtable>{lines}</mtable></math>")

@@ -1,4 +1,4 @@
-//! Elements, and text that is none.
+//! Elements, and text without markup.
 
 use pc_print::{one_line, visible};
 
@@ -54,7 +54,7 @@ pub(crate) fn paragraph(words: &str) -> String {
     format!("<p>{}</p>\n", text(words))
 }
 
-/// Labels with what belongs to them, line by line.
+/// Labels with their lines.
 pub(crate) fn described<L: AsRef<str>>(entries: &[(L, Vec<String>)]) -> String {
     let entry = |(label, all): &(L, Vec<String>)| {
         let all: Vec<String> = all.iter().map(|line| text(line)).collect();
@@ -66,7 +66,7 @@ pub(crate) fn described<L: AsRef<str>>(entries: &[(L, Vec<String>)]) -> String {
     )
 }
 
-/// A page without anything from elsewhere.
+/// A page without external resources.
 pub(crate) fn page(title: &str, body: &str) -> String {
     let title = text(title);
     format!(

@@ -1,4 +1,4 @@
-//! The motion: curves, drift, portraits, what is said of the run.
+//! The motion: curves, drift, portraits, and the summary of the run.
 
 use crate::page::html::{described, paragraph, text};
 use crate::picture::chart::figure;
@@ -6,12 +6,12 @@ use crate::picture::motion::{of_kind, portrait, title};
 use crate::picture::{Ink, Panel};
 use crate::record::Record;
 
-/// Charts of a kind; what is left out is in the table of `pc run`.
+/// The most charts of a kind; the table of `pc run` has the others.
 const MOST_CHARTS: usize = 8;
 /// Points of a curve.
 const MOST_POINTS: usize = 1500;
 
-/// Charts by kind, the pairs of columns that say most over each other, then the summary.
+/// Charts by kind, the most telling pairs of columns over each other, then the summary.
 pub(super) fn motion(record: &Record, pairs: &[(String, String)]) -> String {
     let mut shown = String::new();
     if let Some(remark) = &record.remark {

@@ -1,12 +1,12 @@
-//! The columns of a motion that say most over each other.
+//! The pairs of columns of a motion that tell most over each other.
 
 use pc_model::Assembly;
 
 use crate::picture::motion::{are_alike, moves};
 use crate::record::{Kind, Record};
 
-/// Each coordinate with the quasi-velocity that is its rate, then components of one vector that follow each other; of what
-/// moves.
+/// Each coordinate with the quasi-velocity that is its rate, then successive components of one vector; only
+/// columns that change.
 pub(super) fn pairs(assembly: &Assembly<'_>, record: &Record) -> Vec<(String, String)> {
     let (system, samples) = (&assembly.system, record.curves());
     let shown = |name: &str| samples.column(name).is_ok_and(|(_, values)| moves(values));

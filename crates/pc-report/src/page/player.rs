@@ -1,19 +1,19 @@
-//! The motion to be watched: a canvas, a few controls, the script that draws.
+//! The motion in a player: a canvas, a few controls, the script that draws.
 
 use pc_print::visible_json;
 
 use crate::page::html::{Part, page, text};
 use crate::scene::Scene;
 
-/// A page with nothing but the motion.
+/// A page with the motion alone.
 pub fn animation(title: &str, scene: &Scene) -> String {
     let body = Part::new("animation", "Motion", player(scene)).section();
     page(title, &format!("<header><h1>{}</h1></header>\n<main>\n{body}</main>\n", text(title)))
 }
 
-/// The player, which shows itself where scripts are run.
+/// The player, which appears where scripts run.
 pub(crate) fn player(scene: &Scene) -> String {
-    // Neither `</script>` nor what ends a CDATA section stands in JSON written so.
+    // JSON escaped in this way contains neither `</script>` nor the end of a CDATA section.
     let data =
         visible_json(&scene.data()).replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026");
     format!(

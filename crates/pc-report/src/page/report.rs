@@ -15,11 +15,11 @@ use crate::scene::Scene;
 
 /// Columns of a line of a formula.
 const WIDTH: usize = 92;
-/// Texts of more lines are folded until they are asked for.
+/// Texts of more lines are folded until opened.
 const LONG_TEXT: usize = 40;
 
-/// All that is known of a model, and of its motion if there is one, as one page for a browser. The same model gives the same
-/// bytes.
+/// All that is known of a model, and of its motion if there is one, as one page for a browser. The same model
+/// gives the same bytes.
 ///
 /// # Errors
 /// [`ReportError`] if the equations cannot be derived, or a second derivation disagrees with the first.
@@ -81,7 +81,7 @@ fn head(model: &Model, parts: &[Part]) -> String {
     head + &format!("</header>\n<nav aria-label=\"Contents\">\n<ol>\n{entries}</ol>\n</nav>\n")
 }
 
-/// The text as it was read, with the values that parameters have now.
+/// The text as it was read, with the present values of parameters.
 fn written(model: &Model) -> String {
     let source = model.document().source.text();
     let values: Vec<(String, Vec<String>)> =

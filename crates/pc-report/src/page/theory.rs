@@ -1,4 +1,4 @@
-//! What can be said of the motions.
+//! The theory of the motions.
 
 use pc_print::{DisplayedEntry, DisplayedTheory};
 
@@ -9,7 +9,7 @@ use crate::picture::plane;
 /// Formulas of more bytes are left to `pc theory`.
 const LONGEST: usize = 60_000;
 
-/// So are parts of more, so that a page stays below a megabyte.
+/// Parts of more bytes, too, so that a page stays below a megabyte.
 const LONGEST_PART: usize = 90_000;
 
 /// Each part under a heading.
@@ -52,7 +52,7 @@ fn entry(entry: &DisplayedEntry, id: &str) -> String {
         };
         head += &format!("<span class=\"{class}\">{}</span>", text(verdict));
     }
-    // Formulas of which nothing else is said stand under each other.
+    // Formulas without further results share a display.
     let is_plain = head.is_empty() && entry.values.is_empty() && entry.words.is_empty();
     let class = if is_plain { "entry plain" } else { "entry" };
     let mut shown = format!("<div class=\"{class}\">\n");

@@ -4,7 +4,7 @@ use pc_print::short;
 
 use crate::picture::panel::Scale;
 
-/// An interval of values laid on one of points.
+/// An interval of values mapped to an interval of points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis {
     pub(crate) low: f64,
@@ -23,14 +23,14 @@ impl Axis {
         self.from + (value - self.low) / (self.high - self.low) * (self.to - self.from)
     }
 
-    /// The axis widened about its middle so that a point is as much of it as of another.
+    /// The axis widened about its middle to this length of values per point.
     pub(crate) fn widened_to(&self, per_point: f64) -> Axis {
         let half = per_point * (self.to - self.from).abs() / 2.0;
         let middle = f64::midpoint(self.low, self.high);
         Axis { low: middle - half, high: middle + half, ..*self }
     }
 
-    /// How much of it a point is.
+    /// The length of values per point.
     pub(crate) fn per_point(&self) -> f64 {
         (self.high - self.low) / (self.to - self.from).abs()
     }
@@ -50,7 +50,7 @@ impl Axis {
         (first..=last).map(|n| n as f64 * step).collect()
     }
 
-    /// About `count` values with what is written beside them.
+    /// About `count` values with their labels.
     pub(crate) fn labels(&self, scale: Scale, count: usize) -> Vec<(f64, String)> {
         match scale {
             Scale::Linear => {
@@ -91,7 +91,7 @@ impl Axis {
     }
 }
 
-/// The number as it is written beside an axis.
+/// The label of a number on an axis.
 pub(crate) fn label(value: f64, scale: Scale) -> String {
     match scale {
         Scale::Linear | Scale::Angles => linear(value),
@@ -103,7 +103,7 @@ fn linear(value: f64) -> String {
     short(value, 5).replace('-', "−")
 }
 
-/// 10 to a whole power.
+/// 10 to an integer power.
 fn power(exponent: f64) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',
@@ -114,7 +114,7 @@ fn power(exponent: f64) -> String {
     format!("10{}", format!("{exponent:.0}").chars().map(raised).collect::<String>())
 }
 
-/// That of 1, 2, 5 times a power of ten that is the least number of times larger or smaller than a length.
+/// The number among 1, 2, 5 times a power of ten whose ratio to a length is nearest to one.
 fn round_step(length: f64) -> f64 {
     let power = 10f64.powf(length.log10().floor());
     let between = [(1.0, 2.0), (2.0, 5.0), (5.0, 10.0)];
@@ -140,7 +140,7 @@ pub(crate) fn widened(values: impl Iterator<Item = f64>) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// Whether what lies between these does not move: less is rounding, which would look like noise.
+/// Whether values between these are constant: smaller differences are rounding, which would look like noise.
 pub(crate) fn is_still(low: f64, high: f64) -> bool {
     0.05 * (high - low) <= 1e-9 * low.abs().max(high.abs())
 }
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_length_may_be_as_long_on_both_axes() {
+    fn both_axes_may_have_the_same_scale() {
         let (x, y) = (Axis::new((0.0, 10.0), (0.0, 100.0)), Axis::new((0.0, 1.0), (100.0, 0.0)));
         let y = y.widened_to(x.per_point());
         assert_eq!((y.low, y.high), (0.5 - 5.0, 0.5 + 5.0));

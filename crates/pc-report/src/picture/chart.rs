@@ -1,13 +1,13 @@
-//! A panel drawn: axes, lines through round numbers, what stands on them.
+//! A panel drawn: axes, lines through round numbers, and contents.
 
 use crate::picture::axes::{Axis, label, range, widened};
 use crate::picture::drawing::{Anchor, Drawing, Ink};
 use crate::picture::panel::{Content, Curve, Panel, Scale};
 use crate::picture::simplify::simplified;
 
-/// Events that are marked.
+/// The most events that are marked.
 const MOST_EVENTS: usize = 60;
-/// Width of the colours beside cells, with their numbers.
+/// The width of the scale of colours beside cells, with its numbers.
 const LEGEND: f64 = 96.0;
 /// The colours of values, the lowest first [Smith, van der Walt 2015].
 const COLOURS: [[u8; 3]; 9] = [
@@ -22,7 +22,7 @@ const COLOURS: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
-/// A panel of a page, with a description of it, its texts in the size of the page.
+/// A panel of a page, with a description and texts in the size of the page.
 pub(crate) fn figure(panel: &Panel, most: usize, id: &str) -> String {
     const WIDTH: f64 = 480.0;
     const SIZE: f64 = 13.0;
@@ -42,7 +42,7 @@ pub(crate) fn figure(panel: &Panel, most: usize, id: &str) -> String {
     drawing.inline(id, &panel.title, &described)
 }
 
-/// The place of what is within the axes.
+/// The area within the axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     pub(super) left: f64,
@@ -63,7 +63,7 @@ impl Frame {
     }
 }
 
-/// Width of a text, about.
+/// The approximate width of a text.
 pub(super) fn width_of(text: &str, size: f64) -> f64 {
     0.6 * size * text.chars().count() as f64
 }
@@ -116,19 +116,19 @@ impl Panel {
         }
     }
 
-    /// The range of its values, as it is written.
+    /// The range of its values, in words.
     pub(super) fn values_in_words(&self) -> (String, String) {
         let (low, high) = self.up_range();
         (label(low, self.up.1), label(high, self.up.1))
     }
 
-    /// The range to the right, as it is written.
+    /// The range to the right, in words.
     pub(super) fn span_in_words(&self) -> (String, String) {
         let (low, high) = self.across_range();
         (label(low, self.across.1), label(high, self.across.1))
     }
 
-    /// The width that numbers beside its axis take.
+    /// The width of the numbers beside its axis.
     pub(super) fn margin(&self, height: f64, size: f64) -> f64 {
         let axis = Axis::new(self.up_range(), (height, 0.0));
         let labels = axis.labels(self.up.1, count(height, 38.0));
@@ -136,7 +136,7 @@ impl Panel {
         (widest + 12.0).max(36.0)
     }
 
-    /// Draws it on axes around `frame`; texts have a size, curves up to so many points.
+    /// Draws it on axes around `frame`, with texts of this size and curves of at most `most` points.
     pub(super) fn draw(&self, drawing: &mut Drawing, frame: Frame, size: f64, most: usize) {
         let frame = match self.content {
             Content::Cells { .. } => Frame { right: frame.right - LEGEND, ..frame },
@@ -147,7 +147,7 @@ impl Panel {
             cells(drawing, (&across, &up), (columns, rows, values), size, frame);
         }
         self.mesh(drawing, frame, (&across, &up), size);
-        // Bars are wide enough to hide them; curves are not hidden by them.
+        // Bars are wide enough to hide event lines; curves are drawn over them.
         let is_behind = !matches!(self.content, Content::Bars(_));
         if is_behind {
             self.mark(drawing, frame, &across);
@@ -216,7 +216,7 @@ impl Panel {
 /// From −π to π, a little widened.
 const ANGLES: (f64, f64) = (-1.03 * std::f64::consts::PI, 1.03 * std::f64::consts::PI);
 
-/// How many numbers stand along a length.
+/// The number of labels along a length.
 fn count(length: f64, each: f64) -> usize {
     ((length / each) as usize).max(2)
 }
@@ -227,14 +227,14 @@ fn draw_curve(drawing: &mut Drawing, curve: &Curve, (across, up): (&Axis, &Axis)
     let is_there = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite();
     let pieces = || placed.split(|p| !is_there(p)).filter(|piece| !piece.is_empty());
     if let (Some([[x, y]]), 1) = (pieces().next(), pieces().count()) {
-        // One point alone is seen as a small cross.
+        // A single point is drawn as a small cross.
         drawing.line(vec![[x - 2.0, *y], [x + 2.0, *y]], ink);
         drawing.line(vec![[*x, y - 2.0], [*x, y + 2.0]], ink);
     }
     pieces().filter(|piece| piece.len() > 1).for_each(|piece| drawing.line(simplified(piece, most), ink));
 }
 
-/// A colour for each value, and what the colours mean.
+/// A colour for each value, and a scale of the colours.
 fn cells(
     drawing: &mut Drawing,
     (across, up): (&Axis, &Axis),
@@ -254,7 +254,7 @@ fn cells(
             drawing.area([x[i], y[j + 1]], [x[i + 1], y[j]], Ink::Mixed(colour((value - low) / span)));
         }
     }
-    // What has no value stays as the paper is.
+    // A cell without a value stays blank.
     let scale = Axis::new((low, low + span), (frame.bottom, frame.top));
     let (left, right) = (frame.right + 18.0, frame.right + 34.0);
     const SHADES: usize = 64;

@@ -1,4 +1,4 @@
-//! What is drawn: lines, texts and areas.
+//! The elements of a drawing: lines, texts and areas.
 
 /// A drawing in points, x to the right and y down, in the order in which it is painted.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -7,7 +7,7 @@ pub struct Drawing {
     pub width: f64,
     /// Its height.
     pub height: f64,
-    /// What is painted.
+    /// The shapes, in the order of painting.
     pub shapes: Vec<Shape>,
 }
 
@@ -32,9 +32,9 @@ pub enum Shape {
     },
     /// A line of text.
     Text {
-        /// Where it begins, has its middle, or ends, on its base line.
+        /// Its beginning, its middle, or its end, on its base line.
         at: [f64; 2],
-        /// Which of these.
+        /// The point of the text at that place.
         anchor: Anchor,
         /// Height of the font.
         size: f64,
@@ -45,37 +45,37 @@ pub enum Shape {
     },
 }
 
-/// Which place of a text is given.
+/// The point of a text that is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Where it begins.
+    /// Its beginning.
     Start,
     /// Its middle.
     Middle,
-    /// Where it ends.
+    /// Its end.
     End,
 }
 
 /// Colour and width by purpose: a page has its own colours for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
-    /// Of words that matter.
+    /// Important words.
     Text,
-    /// Of numbers beside axes.
+    /// Numbers beside axes.
     Soft,
-    /// Of axes.
+    /// Axes.
     Axis,
-    /// Of lines through round numbers.
+    /// Lines through round numbers.
     Grid,
-    /// Of the time of an event.
+    /// The time of an event.
     Event,
-    /// Of a curve of this number.
+    /// The curve with this number.
     Curve(usize),
-    /// Of this red, green and blue.
+    /// This red, green and blue.
     Mixed([u8; 3]),
 }
 
-/// Colours that colour-blind readers tell apart [Okabe, Ito 2008].
+/// Colours that colour-blind readers can distinguish [Okabe, Ito 2008].
 const COLOURS: [[u8; 3]; 8] = [
     [0, 114, 178],
     [213, 94, 0],
@@ -88,7 +88,7 @@ const COLOURS: [[u8; 3]; 8] = [
 ];
 
 impl Ink {
-    /// The number of curves that are told apart.
+    /// The number of distinguishable curves.
     pub(crate) const CURVES: usize = COLOURS.len();
 
     /// Red, green and blue on white.

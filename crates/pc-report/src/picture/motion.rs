@@ -9,12 +9,12 @@ use crate::picture::panel::{Content, Curve, Panel, Scale};
 use crate::picture::scales::groups;
 use crate::record::{Columns, Kind, Record, Samples, UnknownColumn};
 
-/// Decimal logarithm of the smallest drift that is drawn: less is rounding.
+/// The decimal logarithm of the smallest drift that is drawn: less is rounding.
 const FLOOR: f64 = -17.0;
-/// Lengths of which one is more than so many times the other are not drawn to the same scale: nothing would be seen of it.
+/// The greatest ratio of two lengths drawn to the same scale: beyond, the shorter one is invisible.
 const MOST_UNEQUAL: f64 = 6.0;
 
-/// What is to be seen of a motion.
+/// The requested parts of a motion.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// Columns over time; `drift(NAME)` is the relative drift of NAME. Where neither columns nor pairs are given, all.
@@ -37,7 +37,7 @@ pub(crate) fn title(kind: Kind) -> &'static str {
     }
 }
 
-/// What is wanted of a motion, in panels.
+/// The requested parts of a motion, as panels.
 ///
 /// # Errors
 /// [`UnknownColumn`]
@@ -59,7 +59,7 @@ pub(crate) fn panels(record: &Record, wanted: &Wanted) -> Result<Vec<Panel>, Unk
     Ok(panels)
 }
 
-/// The columns that were chosen, those of a kind in panels by scale, drifts for themselves.
+/// The chosen columns, those of a kind in panels by scale, drifts apart.
 fn chosen(record: &Record, samples: &Samples, wanted: &Wanted) -> Result<Vec<Panel>, UnknownColumn> {
     let mut drifts: Vec<(String, Vec<f64>)> = Vec::new();
     let mut kinds: Vec<Columns> = Vec::new();
@@ -127,14 +127,14 @@ fn over_time(record: &Record, title: &str, scale: Scale, curves: Vec<Curve>) -> 
     Panel { span: Some(span), events: record.events.clone(), ..Panel::over("t", title, scale, curves) }
 }
 
-/// log₁₀ |I(t) − I(0)|/|I(0)|; where I(0) is no larger than the drift, the largest |I| stands for it if that is above 1.
+/// log₁₀ |I(t) − I(0)|/|I(0)|; if |I(0)| is at most the drift, the largest |I|, at least 1, replaces it.
 fn drift(record: &Record, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     let curve = |(name, values): &(String, Vec<f64>)| {
         let start = values.first().copied().unwrap_or(0.0);
         let worst = values.iter().fold(0.0f64, |worst, v| worst.max((v - start).abs()));
         let scale =
             if worst < start.abs() { start.abs() } else { values.iter().fold(1.0f64, |a, b| a.max(b.abs())) };
-        // Where it is exactly what it was there is no logarithm; what never changes lies at the bottom.
+        // An unchanged value has no logarithm; an integral that never changes lies at the bottom.
         let logarithm = |v: &f64| match (v - start).abs() / scale {
             0.0 if worst > 0.0 => f64::NAN,
             drift => drift.log10().max(FLOOR),
@@ -170,7 +170,8 @@ pub(crate) fn portrait(
     })
 }
 
-/// Whether two names are those of components of one vector: they differ by one letter of x, y, z or by one digit.
+/// Whether two names are those of components of one vector: they differ in one letter of x, y, z or in one
+/// digit.
 pub(crate) fn are_alike(a: &str, b: &str) -> bool {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     let differ = |(x, y): (&char, &char)| (x != y).then_some([*x, *y]);
@@ -192,7 +193,8 @@ fn are_comparable(a: &[f64], b: &[f64]) -> bool {
     a.max(b) <= MOST_UNEQUAL * a.min(b)
 }
 
-/// Points whose first or second numbers are angles, from −π to π: the curve is broken where it leaves that range.
+/// Points whose first or second numbers are angles, from −π to π: the curve is broken where it leaves that
+/// range.
 fn broken(points: Vec<(f64, f64)>, wrap: [bool; 2]) -> Vec<(f64, f64)> {
     if wrap == [false; 2] {
         return points;
@@ -205,7 +207,7 @@ fn broken(points: Vec<(f64, f64)>, wrap: [bool; 2]) -> Vec<(f64, f64)> {
     for point in points {
         let now = at(point);
         if let Some((last, then)) = before.filter(|(_, then)| *then != now) {
-            // The curve goes on to the edge, as the line between the two points does.
+            // The curve continues to the edge, on the line between the two points.
             let edge = |k: usize, a: f64, b: f64| {
                 let border = TAU * then[k].max(now[k]) - PI;
                 if then[k] == now[k] { 1.0 } else { ((border - a) / (b - a)).clamp(0.0, 1.0) }

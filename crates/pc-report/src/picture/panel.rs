@@ -1,13 +1,13 @@
-//! What stands on common axes.
+//! Panels: the contents of common axes.
 
 /// Curves, bars or cells on common axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// What is shown.
+    /// The title.
     pub title: String,
-    /// What is along the axis to the right, and its scale.
+    /// The name of the axis to the right, and its scale.
     pub across: (String, Scale),
-    /// What is along the axis up, if one name stands for all, and its scale.
+    /// The name of the axis up, if there is one for all curves, and its scale.
     pub up: (String, Scale),
     /// The range to the right, where it is not that of the contents.
     pub span: Option<(f64, f64)>,
@@ -15,11 +15,11 @@ pub struct Panel {
     pub equal: bool,
     /// Values to the right at which events occurred.
     pub events: Vec<f64>,
-    /// What is drawn.
+    /// The contents.
     pub content: Content,
 }
 
-/// How values are shown.
+/// The scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// As they are.
@@ -30,7 +30,7 @@ pub enum Scale {
     Angles,
 }
 
-/// What is drawn on axes.
+/// The contents of a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
     /// Curves, each with its name.

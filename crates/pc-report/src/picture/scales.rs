@@ -1,11 +1,11 @@
-//! Which curves one scale shows well.
+//! Groups of curves that one scale shows well.
 
 use crate::picture::axes::{is_still, range};
 use crate::picture::panel::{Curve, Panel, Scale};
 
-/// A range that is so many times that of a curve within it flattens the curve.
+/// A range this many times that of a curve within it flattens the curve.
 const RATIO: f64 = 12.0;
-/// Curves on common axes that are told apart.
+/// The most curves on common axes.
 const MOST_CURVES: usize = 6;
 /// Sizes below this part of the largest are rounding.
 const ROUNDING: f64 = 1e-13;
@@ -22,8 +22,8 @@ pub fn by_scale((across, scale): (&str, Scale), title: &str, curves: &[Curve]) -
     groups(&values).into_iter().map(panel).collect()
 }
 
-/// Groups of lists of values, by their numbers, the widest range first: so that each is seen to move, no more in one than can be
-/// told apart.
+/// Groups of lists of values, by their numbers, the widest range first, such that each is seen to change and
+/// no group has more curves than can be distinguished.
 pub(super) fn groups(lists: &[Vec<f64>]) -> Vec<Vec<usize>> {
     let ranges: Vec<Option<(f64, f64)>> = lists.iter().map(|list| range(list.iter().copied())).collect();
     let size = |&(low, high): &(f64, f64)| low.abs().max(high.abs());
@@ -50,7 +50,7 @@ pub(super) fn groups(lists: &[Vec<f64>]) -> Vec<Vec<usize>> {
             None => groups.push((own, vec![j])),
         }
     }
-    // What does not move takes no room: it goes to the narrowest that has it within, or hardly beyond.
+    // A constant needs no range: it joins the narrowest group that contains it, or nearly does.
     let still: Vec<usize> = (0..lists.len()).filter(|&j| !moves(&ranges[j])).collect();
     let mut apart: Vec<usize> = Vec::new();
     for j in still {
@@ -89,7 +89,7 @@ mod tests {
     fn a_large_coordinate_does_not_flatten_a_small_one() {
         let lists = [about(0.0, 0.01), about(0.0, 200.0), about(0.0, 0.0), about(0.0, 30.0)];
         assert_eq!(groups(&lists), [vec![1, 3], vec![0, 2]]);
-        // Nor does one that moves little at a large value.
+        // Nor does a curve with a small change at a large value.
         assert_eq!(groups(&[about(100.0, 100.0), about(150.0, 0.5)]), [vec![0], vec![1]]);
     }
 
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn no_more_curves_than_can_be_told_apart() {
+    fn groups_have_no_more_curves_than_can_be_distinguished() {
         let lists: Vec<Vec<f64>> = (0..13).map(|_| about(0.0, 1.0)).collect();
         assert_eq!(groups(&lists).iter().map(Vec::len).collect::<Vec<_>>(), [6, 6, 1]);
     }

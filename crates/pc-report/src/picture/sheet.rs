@@ -11,37 +11,37 @@ use crate::record::{Record, UnknownColumn};
 const WIDTH: f64 = 960.0;
 const TITLE: f64 = 46.0;
 const REMARK: f64 = 22.0;
-/// Of a panel over time: its heading, what is within the axes, the numbers below.
+/// For a panel over time: its heading, the area within the axes, the numbers below.
 const HEADING: f64 = 30.0;
 const WITHIN: f64 = 180.0;
 const BELOW: f64 = 36.0;
-/// What is within the axes of a panel without time.
+/// The area within the axes of a panel without time.
 const SQUARE: f64 = 340.0;
 const EDGE: f64 = 14.0;
 /// Sizes of texts.
 const LARGE: f64 = 17.0;
 const HEADLINE: f64 = 13.0;
 const SMALL: f64 = 11.0;
-/// More curves than this are not named.
+/// More curves than this have no names.
 const MOST_NAMES: usize = 9;
-/// Points of a curve.
+/// The most points of a curve.
 const MOST_POINTS: usize = 12_000;
-/// Panels of a picture, unless what is shown was chosen.
+/// The most panels of a picture, unless its contents were chosen.
 const MOST_PANELS: usize = 12;
 
 /// Panels under a title.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// What they are of.
+    /// The title.
     pub title: String,
-    /// What else is to be said, line by line.
+    /// Further remarks, line by line.
     pub remarks: Vec<String>,
     /// The panels.
     pub panels: Vec<Panel>,
 }
 
 impl Picture {
-    /// What is wanted of a motion.
+    /// The picture of the requested parts of a motion.
     ///
     /// # Errors
     /// [`UnknownColumn`]
@@ -49,7 +49,7 @@ impl Picture {
         let mut panels = panels(record, wanted)?;
         let mut remarks: Vec<String> = record.remark.iter().cloned().collect();
         if wanted.columns.is_empty() && panels.len() > MOST_PANELS {
-            // The drift says how far the rest can be trusted.
+            // The drift shows the reliability of the rest.
             let is_more = |panel: &Panel| !panel.is_portrait() && panel.up.1 == Scale::Linear;
             let mut left = panels.len() - MOST_PANELS;
             let are = if left == 1 { "panel is" } else { "panels are" };
@@ -83,7 +83,7 @@ impl Picture {
             self.panels.iter().partition(|panel| !panel.is_portrait());
         let margin = wide.iter().map(|panel| panel.margin(WITHIN, SMALL)).fold(0.0, f64::max);
         for (i, panel) in wide.iter().enumerate() {
-            // What is to the right is said below the last of several.
+            // The label to the right is written below the last of several.
             let again = wide.get(i + 1).is_some_and(|next| next.across == panel.across);
             let panel = &Panel {
                 across: if again { (String::new(), panel.across.1) } else { panel.across.clone() },
@@ -97,7 +97,7 @@ impl Picture {
             names(&mut drawing, panel, [frame.right + 14.0, top + 8.0], legend - 14.0);
             y = frame.bottom + if again { BELOW - 12.0 } else { BELOW };
         }
-        // Two beside each other; one alone has the whole width.
+        // Two side by side; a single one has the whole width.
         for pair in square.chunks(2) {
             let cell = (WIDTH - 2.0 * EDGE) / pair.len() as f64;
             let top = y + HEADING + 16.0;
@@ -118,7 +118,7 @@ impl Picture {
         drawing
     }
 
-    /// Width for the names of curves.
+    /// The width of the names of curves.
     fn legend(&self) -> f64 {
         let over_time = self.panels.iter().filter(|panel| !panel.is_portrait());
         let longest = over_time

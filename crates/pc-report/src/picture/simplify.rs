@@ -1,11 +1,11 @@
-//! The points of a curve that are seen.
+//! The visible points of a curve.
 
-/// Points between which a line is as good as the curve, in points of the drawing.
+/// The greatest distance of the curve from the lines between its points, in points of the drawing.
 const TOLERANCE: f64 = 0.05;
-/// Width within which only the ends and extremes of a curve are seen.
+/// The width within which only the ends and extremes of a curve are visible.
 const COLUMN: f64 = 1.0;
 
-/// Fewer points that look the same: `most` at most, up to twice as many where the curve is all turns.
+/// Fewer points with the same appearance: at most `most`, or up to twice as many for a curve full of turns.
 pub(super) fn simplified(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     let onwards = points.windows(2).all(|pair| pair[0][0] <= pair[1][0])
         || points.windows(2).all(|pair| pair[0][0] >= pair[1][0]);
@@ -13,7 +13,7 @@ pub(super) fn simplified(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     loop {
         let seen = if onwards { extremes(points, column) } else { points.to_vec() };
         let few = straightened(&seen, tolerance);
-        // Coarser than this it would look like another curve.
+        // A coarser curve would look different.
         if few.len() <= most || tolerance > 40.0 * TOLERANCE {
             return few;
         }
@@ -45,13 +45,14 @@ fn extremes(points: &[[f64; 2]], width: f64) -> Vec<[f64; 2]> {
     kept
 }
 
-/// The points at which the line turns: each line from one kept to the next passes all between them within a tolerance
-/// [Williams 1978].
+/// The points at which the line turns: each line from one kept point to the next passes all points between
+/// them within a tolerance [Williams 1978].
 fn straightened(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let Some((&first, rest)) = points.split_first() else { return Vec::new() };
     let mut kept = vec![first];
     let (mut anchor, mut last) = (first, first);
-    // The directions from the anchor that pass all points so far, about the first of them; how far they went.
+    // The directions from the anchor that pass all points so far, relative to the first of them, and the
+    // farthest distance.
     let mut cone: Option<(f64, f64, f64)> = None;
     let mut reach = 0.0;
     for &point in rest {
@@ -100,7 +101,7 @@ fn turned(angle: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The largest distance of a point from the line through those that are kept, which stand in their order.
+    /// The largest distance of a point from the line through the kept ones, which are in order.
     fn worst(points: &[[f64; 2]], kept: &[[f64; 2]]) -> f64 {
         let to_piece = |p: [f64; 2], a: [f64; 2], b: [f64; 2]| {
             let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
@@ -124,7 +125,7 @@ mod tests {
         assert_eq!((kept[0], kept[kept.len() - 1]), (circle[0], circle[19_999]));
         let line: Vec<[f64; 2]> = (0..1000).map(|i| [f64::from(i), 2.0 * f64::from(i)]).collect();
         assert_eq!(simplified(&line, 10), [[0.0, 0.0], [999.0, 1998.0]]);
-        // There and back.
+        // A path there and back.
         let way = [[0.0, 0.0], [10.0, 0.0], [5.0, 0.0], [5.0, 3.0]];
         assert_eq!(simplified(&way, 10), way);
     }

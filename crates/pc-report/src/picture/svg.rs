@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::page::html::text;
 use crate::picture::drawing::{Anchor, Drawing, Ink, Shape};
 
-/// Viewers read it as a list.
+/// A list of fonts for viewers.
 const FONT: &str = "DejaVu Sans, Verdana, sans-serif";
 
 impl Drawing {
@@ -130,7 +130,7 @@ fn path(points: &[[f64; 2]], digits: usize) -> String {
     path
 }
 
-/// Adds to a picture.
+/// Adds an element to a picture.
 pub(super) fn put(svg: &mut String, element: std::fmt::Arguments<'_>) {
     let _ = svg.write_fmt(element); // writing to a string cannot fail
 }

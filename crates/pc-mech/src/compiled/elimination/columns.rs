@@ -5,8 +5,8 @@ use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Progr
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::point::Point;
 
-/// A derivative of more operations is interpreted: integrators ask for it once in dozens of steps, and
-/// machine code for it would take longer to make than a run.
+/// A derivative of more operations is interpreted: integrators evaluate it once in dozens of steps, and
+/// compiling it would take longer than a run.
 const LONG_DERIVATIVE: usize = 5000;
 
 /// How the entries of a matrix are written.
@@ -33,15 +33,15 @@ pub(crate) fn derivative<'g>(
     Ok(Evaluator::new(program, if long { Backend::Interpreter } else { backend }))
 }
 
-/// What is not 0 of a column, with the row where it stands; or of a row, with its column.
+/// The nonzero entries of a column with their rows; or of a row with their columns.
 pub(crate) type SparseColumn<'g> = Vec<(usize, Expr<'g>)>;
 
-/// What is not 0 of a column.
+/// The nonzero entries of a column.
 pub(crate) fn sparse<'g>(column: &[Expr<'g>]) -> SparseColumn<'g> {
     column.iter().copied().enumerate().filter(|(_, x)| !x.is_zero()).collect()
 }
 
-/// The places of a matrix that are not zero everywhere, and what stands there, column after column.
+/// The pattern of a matrix, and its nonzero entries, column after column.
 pub(crate) fn nonzeros<'g>(
     rows: usize,
     columns: impl IntoIterator<Item = SparseColumn<'g>>,

@@ -1,4 +1,4 @@
-//! M = L D Lᵀ in numbers, and with pivoting where that meets a vanishing minor of a regular M.
+//! M = L D Lᵀ in numbers, with pivoting where a minor of a regular M vanishes.
 
 use std::mem::MaybeUninit;
 
@@ -20,11 +20,11 @@ const DEPENDENT: f64 = 1e-13;
 #[derive(Clone, Debug)]
 pub(crate) struct DenseLdl {
     matrix: Mat<f64>,
-    /// What the pivots are compared with: the diagonal of M, unless something else is said.
+    /// The sizes that pivots are compared with: the diagonal of M, unless others are given.
     sizes: Vec<f64>,
     pivots: Vec<f64>,
     scratch: Vec<MaybeUninit<u8>>,
-    /// The factors with complete pivoting, where M has none without.
+    /// The factors with complete pivoting, if there are none without.
     pivoted: Option<Box<FullPivLu<f64>>>,
 }
 
@@ -40,7 +40,7 @@ impl DenseLdl {
         }
     }
 
-    /// Factorises M, of which `values` stand at the places `lower` on and below the diagonal; all are finite.
+    /// Factorises M, given by its `values` at the places `lower` on and below the diagonal; all are finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.
@@ -52,7 +52,7 @@ impl DenseLdl {
         self.eliminate().or_else(|failure| self.eliminate_pivoted(lower, values, failure))
     }
 
-    /// The same of a matrix whose diagonal is the sum of terms of these sizes.
+    /// Factorises M, whose diagonal entries are sums of terms of these sizes.
     ///
     /// # Errors
     /// As there.
@@ -74,7 +74,8 @@ impl DenseLdl {
         }
     }
 
-    /// A matrix of both signs may be regular though one of its leading minors vanishes, as ((0, 1), (1, 0)) is.
+    /// Factorises with complete pivoting: an indefinite matrix may be regular though a leading minor
+    /// vanishes, as ((0, 1), (1, 0)) is.
     ///
     /// # Errors
     /// The `failure` that elimination without pivoting met, if M is singular.
@@ -89,7 +90,7 @@ impl DenseLdl {
         let (k, m) = (self.sizes.len(), &self.matrix);
         let factors = FullPivLu::new(Mat::from_fn(k, k, |i, j| m[(i.max(j), i.min(j))]).as_ref());
         let pivots = || (0..k).map(|s| factors.U()[(s, s)].abs());
-        // What the entries are sums of may be larger than they are.
+        // The terms of an entry may be larger than the entry.
         let largest = pivots().chain(self.sizes.iter().map(|size| size.abs())).fold(0.0, f64::max);
         if !pivots().all(|pivot| pivot > DEPENDENT * largest) {
             return Err(failure);
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn an_indefinite_matrix_is_solved_with() {
+    fn an_indefinite_matrix_is_factorised() {
         let mut ldl = factorised([2.0, 1.0, 0.0, -3.0, 1.0, 4.0]).unwrap();
         // M (1, 2, 3) = (4, −2, 14), M (0, 1, 0) = (1, −3, 1)
         let mut columns = [4.0, -2.0, 14.0, 1.0, -3.0, 1.0];
@@ -169,7 +170,7 @@ mod tests {
             // 27 operations with numbers up to 4
             assert!((found - expected).abs() < 27.0 * 4.0 * f64::EPSILON, "{column:?}");
         }
-        // Without pivoting it is solved with again.
+        // A second factorisation without pivoting.
         ldl.factorise(
             &Pattern::from_columns(3, [vec![0, 1, 2], vec![1, 2], vec![2]]),
             &[2.0, 0.0, 0.0, 4.0, 0.0, 1.0],
@@ -182,7 +183,7 @@ mod tests {
 
     #[test]
     fn units_do_not_matter() {
-        // Beside the mass of the Earth that of a satellite is no rounding.
+        // The mass of a satellite beside that of the Earth is not a rounding error.
         assert!(factorised([6e24, 0.0, 0.0, 1e3, 0.0, 1e-3]).is_ok());
         // sin² π beside 1
         assert!(matches!(

@@ -1,4 +1,4 @@
-//! First-order systems whose M is factorised in numbers: programs before the solution for w, and after it.
+//! First-order systems whose M is factorised in numbers: programs up to the solution for w, and after it.
 
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
@@ -16,32 +16,32 @@ use crate::compiled::point::Point;
 #[derive(Clone, Debug)]
 pub(crate) struct Staged {
     dim: usize,
-    /// How many of the unknowns, the last ones, are multipliers.
+    /// The number of multipliers, which are the last unknowns.
     multipliers: usize,
     unknowns: Unknowns,
     solver: Solver,
-    /// What gives w alone, of a tree with loops; it says where it does not.
+    /// An alternative for w alone, for a tree with loops; it reports where it is inaccurate.
     schur: Option<Box<Schur>>,
     /// y, then w.
     known: Vec<f64>,
-    /// Of (t, (y, w)).
+    /// ẏ from (t, (y, w)).
     rates: Evaluator,
     cost: Cost,
     jacobian: Option<Stage>,
     jvp: Option<Product>,
     parameter_jacobian: Option<Stage>,
     time_derivative: Option<Stage>,
-    /// Of (t, (y, w)).
+    /// The observables from (t, (y, w)).
     observables: Evaluator,
 }
 
-/// Operations of straight-line code that take as long as one of a factorisation in loops, about.
+/// The number of operations of straight-line code that take about as long as one of a factorisation in loops.
 pub(crate) const OF_A_LOOP: usize = 4;
 
-/// What determines w.
+/// The equations of w.
 #[derive(Clone, Debug)]
 enum Unknowns {
-    /// M w = r: of (t, y), what is not zero of the lower triangle of M, then r.
+    /// M w = r: from (t, y), the nonzero entries of the lower triangle of M, then r.
     Linear { equations: Evaluator, lower: Pattern, values: Vec<f64> },
     /// p(t, y, w) = r
     Implicit(Box<Newton>),
@@ -94,18 +94,19 @@ impl Staged {
         &self.cost
     }
 
-    /// The same with w by this, where only that is asked for.
+    /// The same system with w by `schur`, where nothing but w is needed.
     pub(crate) fn by_joints(self, schur: Schur) -> Staged {
         Staged { schur: Some(Box::new(schur)), ..self }
     }
 
-    /// Operations of w by factors of its matrix, as many of straight-line code as take as long.
+    /// The operations that lead to w, each operation of a factorisation counted as the straight-line code of
+    /// equal duration.
     pub(crate) fn operations(&self) -> usize {
         let size = self.known.len() - self.dim;
         self.equations().cost().total() + OF_A_LOOP * self.solver.operations(size, self.multipliers)
     }
 
-    /// The program of the equations of w.
+    /// The program for the equations of w.
     fn equations(&self) -> &Program {
         match &self.unknowns {
             Unknowns::Linear { equations, .. } => equations.program(),
@@ -160,7 +161,7 @@ impl Staged {
         check_finite(ydot, &self.rates, Point { t, y: &self.known, p })
     }
 
-    /// The same with each number of M w = r times a `factor`, which is another one each time.
+    /// ẏ with each number of M w = r multiplied by the next `factor`.
     pub(crate) fn perturbed_rhs(
         &mut self,
         Point { t, y, p }: Point<'_>,
@@ -179,14 +180,15 @@ impl Staged {
         check_finite(ydot, &self.rates, Point { t, y: &self.known, p })
     }
 
-    /// Observables of w are not finite where w cannot be solved for, or is not to be `solved` for.
+    /// Writes the observables; those that contain w are not finite if it has no solution, or is not to be
+    /// `solved` for.
     pub(crate) fn observe(&mut self, (t, y, p): (f64, &[f64], &[f64]), values: &mut [f64], solved: bool) {
         if !solved || self.solve(t, y, p).is_err() {
             let (state, unknowns) = self.known.split_at_mut(self.dim);
             state.copy_from_slice(y);
             unknowns.fill(f64::NAN);
         } else if self.solver.takes_spare() {
-            // What constraints to spare take over is not told from what the others carry.
+            // The reactions of spare constraints and those they replace are not determined separately.
             let multipliers = self.known.len() - self.multipliers;
             self.known[multipliers..].fill(f64::NAN);
         }
@@ -242,13 +244,13 @@ impl Staged {
 /// ∂ẏ/∂q = ∂g/∂q + ∂g/∂w M⁻¹ ∂F/∂q with F = r − M w or r − p, for symbols q.
 #[derive(Clone, Debug)]
 struct Stage {
-    /// Of (t, (y, w)): what is not zero of ∂F/∂q, of ∂g/∂q, of ∂g/∂w.
+    /// From (t, (y, w)): the nonzero entries of ∂F/∂q, of ∂g/∂q, and of ∂g/∂w.
     parts: Evaluator,
     values: Vec<f64>,
     balance: Pattern,
     rates: Pattern,
     coupling: Pattern,
-    /// That of the whole.
+    /// The pattern of ∂ẏ/∂q.
     pattern: Pattern,
     /// M⁻¹ ∂F/∂q
     unknowns: Vec<f64>,
@@ -322,7 +324,7 @@ impl Stage {
     }
 }
 
-/// The number of the irreducible block of M that each row belongs to; the inverse of a block is full.
+/// The number of the irreducible block of M to which each row belongs; the inverse of a block is full.
 fn blocks(m: &Matrix<Expr<'_>>) -> Vec<usize> {
     let k = m.rows();
     let mut block: Vec<usize> = (0..k).collect();
@@ -349,9 +351,9 @@ fn whole(blocks: &[usize], balance: &Pattern, rates: &Pattern, coupling: &Patter
 /// (∂ẏ/∂y) v = g′ + ∂g/∂w w′ with w′ = M⁻¹ F′, where ′ is the derivative along v.
 #[derive(Clone, Debug)]
 struct Product {
-    /// F′ of (t, (y, w, v)).
+    /// F′ from (t, (y, w, v)).
     balance: Evaluator,
-    /// ẏ′ of (t, (y, w, v, w′)).
+    /// ẏ′ from (t, (y, w, v, w′)).
     rates: Evaluator,
     /// y, w, v, w′
     known: Vec<f64>,

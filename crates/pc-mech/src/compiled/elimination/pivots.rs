@@ -1,4 +1,4 @@
-//! Watching the pivots of M.
+//! Checks of the pivots of M.
 
 use std::sync::Arc;
 
@@ -8,18 +8,17 @@ use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::first_order::FirstOrder;
 
-/// A pivot this small against what it is left of is rounding.
+/// A pivot this small against the diagonal entry it remains from is rounding.
 const VANISHING_PIVOT: f64 = 1e-14;
 
-/// An entry on the diagonal this small against the largest may be the square of a rounding, as sin² π is.
+/// A diagonal entry this small against the largest may be the square of a rounding error, as sin² π is.
 const SQUARE_OF_ROUNDING: f64 = 2.0 * f64::EPSILON * f64::EPSILON;
 
-/// Finds a pivot that vanishes; `sizes` are those of the terms that each is the sum of, its entry on the diagonal among
-/// them.
+/// Checks that no pivot vanishes; `sizes` are those of the terms of each one, including its diagonal entry.
 ///
-/// Where all have one sign, each is what the others leave of its own entry, so that units and the ratio of masses do not
-/// matter. Otherwise they are compared with the largest, for a small one makes the others large, and their rounding with
-/// them.
+/// Where all pivots have one sign, each is compared with its own entry, independently of units and of the
+/// ratio of masses. Otherwise they are compared with the largest, as a small one makes the others, and their
+/// rounding errors, large.
 ///
 /// # Errors
 /// [`EvaluationFailure::Pivot`] with the place of the first.
@@ -49,26 +48,26 @@ fn closely(pivots: &[f64], sizes: &[f64], largest: f64) -> Result<(), Evaluation
     }
 }
 
-/// Which pivots there are, and which of them and of the sizes change with the state. Both are counted as one list, of
-/// the pivots and then as many sizes.
+/// The pivots, and which of them and of their sizes change with the state. They are counted as one list, the
+/// pivots and then as many sizes.
 #[derive(Debug)]
 pub(crate) struct PivotPartition {
     /// The quasi-velocity of each pivot.
     places: Vec<usize>,
-    /// What changes with the state, and how many pivots are among that.
+    /// The places that change with the state, and the number of pivots among them.
     moving: Vec<usize>,
     moving_pivots: usize,
-    /// What does not.
+    /// The places that do not.
     fixed: Vec<usize>,
 }
 
-/// Places among the numbers that say what is fixed: the smallest pivot, the largest size, then all of them.
+/// The fixed numbers: the smallest pivot, the largest size, then all fixed pivots and sizes.
 const SMALLEST: usize = 0;
 const LARGEST: usize = 1;
 const ALL: usize = 2;
 
 impl PivotPartition {
-    /// How many numbers say what is fixed.
+    /// The number of fixed numbers.
     pub(crate) fn fixed_len(&self) -> usize {
         ALL + self.fixed.len()
     }
@@ -78,7 +77,7 @@ impl PivotPartition {
         self.moving.len()
     }
 
-    /// Whether no pivot vanishes, by the numbers of what is fixed and the values of what changes.
+    /// Checks that no pivot vanishes, from the fixed numbers and the values of those that change.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] for the first that does.
@@ -111,20 +110,19 @@ impl PivotPartition {
     }
 }
 
-/// The pivots of M and what they are compared with. Those that parameters alone determine are computed once for their
-/// values.
+/// The pivots of M and the sizes they are compared with. Those that depend on parameters alone are computed
+/// once for their values.
 #[derive(Clone, Debug)]
 pub(crate) struct Pivots {
     partition: Arc<PivotPartition>,
     of_parameters: Evaluator,
-    /// What says what is fixed, for the parameters as they were when it was known.
+    /// The fixed numbers for the last values of the parameters.
     fixed: Vec<f64>,
     is_known: bool,
 }
 
 impl Pivots {
-    /// The pivots of `factors`, and the expressions that [`check`](Pivots::check) is to be given the values
-    /// of.
+    /// The pivots of `factors`, and the expressions whose values [`check`](Pivots::check) takes.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -151,17 +149,17 @@ impl Pivots {
         Ok((Pivots { partition: Arc::new(partition), of_parameters, fixed, is_known: false }, values))
     }
 
-    /// Which there are.
+    /// Which pivots change with the state.
     pub(crate) fn partition(&self) -> &Arc<PivotPartition> {
         &self.partition
     }
 
-    /// Says that the parameters may have changed.
+    /// Announces that the parameters may have changed.
     pub(crate) fn forget(&mut self) {
         self.is_known = false;
     }
 
-    /// Whether no pivot vanishes; `moving` are the values of those that change.
+    /// Checks that no pivot vanishes; `moving` are the values of those that change.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] for the first that does.
@@ -178,14 +176,14 @@ impl Pivots {
         self.partition.check(|k| self.fixed[k], moving)
     }
 
-    /// The same for many states at once.
+    /// The same check for many states at once.
     pub(crate) fn watched(&mut self, state: &[f64], parameters: &[f64]) -> Watched {
         let fixed = self.fixed(state, parameters);
         let (smallest, largest) = (fixed[SMALLEST], fixed[LARGEST]);
         Watched { pivots: self.partition.moving_pivots, smallest, largest, vanishing: VANISHING_PIVOT }
     }
 
-    /// What says what is fixed.
+    /// The fixed numbers.
     pub(crate) fn fixed(&mut self, state: &[f64], parameters: &[f64]) -> &[f64] {
         if !self.is_known {
             self.fix(state, parameters);
@@ -200,7 +198,7 @@ impl Pivots {
         self.of_parameters.eval(0.0, state, parameters, &mut fixed[ALL..]);
         let (pivots, sizes) = fixed[ALL..].split_at(partition.places.len() - partition.moving_pivots);
         (fixed[SMALLEST], fixed[LARGEST]) = if partition.moving.is_empty() {
-            // Nothing is left to be compared with them, so that they are looked at closely now and not again.
+            // No pivot changes with the state, so this check is final.
             let regular = check(pivots, sizes).is_ok();
             (if regular { f64::INFINITY } else { 0.0 }, 0.0)
         } else {

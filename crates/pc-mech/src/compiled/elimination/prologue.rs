@@ -1,23 +1,25 @@
-//! What parameters alone determine, computed once for their values.
+//! Values that depend on parameters alone, computed once.
 
 use std::sync::Arc;
 
 use pc_expr::{Backend, Entry, Evaluator, Program};
 
-/// A program without what the parameters alone determine, as regrouped masses: this is computed when they change.
+/// A program divided into a first part that depends on parameters alone, such as regrouped masses, and runs
+/// when they change, and the rest.
 #[derive(Clone, Debug)]
 pub(crate) struct Prologue {
     of_parameters: Evaluator,
     rest: Evaluator,
-    /// The parameters, then what is computed of them.
+    /// The parameters, then the results of the first part.
     numbers: Vec<f64>,
-    /// The places of the parameters that may change at any time.
+    /// The places of parameters that may change at each evaluation.
     varying: Vec<usize>,
     is_known: bool,
 }
 
 impl Prologue {
-    /// Of a program of which the parameters in these places may change at any time; none where next to nothing is saved.
+    /// The division of a program whose parameters in these places may change at each evaluation; `None` if it
+    /// saves next to nothing.
     pub(crate) fn of(program: &Program, varying: &[usize], backend: Backend) -> Option<Prologue> {
         let fixed: Vec<bool> = (0..program.parameters_len()).map(|i| !varying.contains(&i)).collect();
         let (of_parameters, rest) = program.hoisted(&fixed)?;
@@ -30,22 +32,22 @@ impl Prologue {
         })
     }
 
-    /// Says that the parameters may have changed.
+    /// Announces that the parameters may have changed.
     pub(crate) fn forget(&mut self) {
         self.is_known = false;
     }
 
-    /// The places of the parameters that may change at any time.
+    /// The places of parameters that may change at each evaluation.
     pub(crate) fn varying(&self) -> &[usize] {
         &self.varying
     }
 
-    /// Number of parameters and of what is computed of them.
+    /// The number of parameters and of results of the first part.
     pub(crate) fn parameters_len(&self) -> usize {
         self.numbers.len()
     }
 
-    /// The parameters, then what is computed of them: what the rest takes for parameters.
+    /// The parameters, then the results of the first part: the parameters of the rest.
     pub(crate) fn numbers(&mut self, p: &[f64]) -> &[f64] {
         if !self.is_known {
             self.compute(p);

@@ -8,7 +8,7 @@ use crate::compiled::failure::EvaluationFailure;
 /// A pivot of the constraints this small against their largest coefficient is rounding.
 const VANISHING_PIVOT: f64 = 1e-12;
 
-/// A row to spare is taken where it has a pivot larger by the inverse of this.
+/// A spare row replaces another one if its pivot is larger by the inverse of this.
 const SPARE: f64 = 1e-2;
 
 /// The symmetric matrix
@@ -16,10 +16,10 @@ const SPARE: f64 = 1e-2;
 ///   ⎡ M  Cᵀ ⎤
 ///   ⎣ C  0  ⎦
 ///
-/// with M of k rows and C of m, of which r are independent, as a rule all. C is eliminated first, always by the
-/// largest coefficient left, so that r unknowns depend on the others, w_D = G w_I + C_D⁻¹ γ, and (1, Gᵀ) M (1, Gᵀ)ᵀ is
-/// factorised. The m − r rows that are left then are taken to agree with the others. The choice of the independent
-/// unknowns is made anew each time and does not show in the solution.
+/// with M of k rows and C of m, of which r are independent, usually all. C is eliminated first, by the
+/// largest remaining coefficient, so that r unknowns depend on the others, w_D = G w_I + C_D⁻¹ γ, and (1, Gᵀ)
+/// M (1, Gᵀ)ᵀ is factorised. The remaining m − r rows are assumed consistent. The independent unknowns are
+/// chosen anew each time; the solution does not depend on the choice.
 #[derive(Clone, Debug)]
 pub(crate) struct Saddle {
     k: usize,
@@ -37,10 +37,10 @@ pub(crate) struct Saddle {
     dependence: Vec<f64>,
     reduced: DenseLdl,
     full: Pattern,
-    /// Room for a right-hand side.
+    /// Storage for a right-hand side.
     room: Vec<f64>,
-    /// Room for the factorisation: weights of unknowns, sizes of rows, M_DD G + M_DI over M_ID G + M_II, the reduced mass and
-    /// the sizes of its diagonal.
+    /// Storage for the factorisation: weights of unknowns, sizes of rows, M_DD G + M_DI over M_ID G + M_II,
+    /// the reduced mass and the sizes of its diagonal.
     weights: Vec<f64>,
     row_sizes: Vec<f64>,
     moved: Vec<f64>,
@@ -49,14 +49,14 @@ pub(crate) struct Saddle {
 }
 
 impl Saddle {
-    /// That of k unknowns and m ≤ k multipliers.
+    /// The matrix of k unknowns and m ≤ k multipliers.
     #[cfg(test)]
     pub(crate) fn new(k: usize, m: usize) -> Saddle {
         Saddle::of_rank(k, m, m)
     }
 
-    /// That of k unknowns and m multipliers, `rank` ≤ k of whose rows are independent: those after the first of them as
-    /// many are to be taken instead of these only where these are nearly dependent.
+    /// The matrix of k unknowns and m multipliers, `rank` ≤ k of whose rows are independent. The rows after
+    /// the first `rank` are spare: they replace others only where these are nearly dependent.
     pub(crate) fn of_rank(k: usize, m: usize, rank: usize) -> Saddle {
         let free = k - rank;
         Saddle {
@@ -79,12 +79,12 @@ impl Saddle {
         }
     }
 
-    /// Factorises the matrix, of which `values` stand at the places `lower` on and below the diagonal; all are
+    /// Factorises the matrix, given by its `values` at the places `lower` on and below the diagonal; all are
     /// finite.
     ///
     /// # Errors
-    /// [`EvaluationFailure::Constraint`] with k and the index of the constraint that the others leave nothing to restrict;
-    /// [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes.
+    /// [`EvaluationFailure::Constraint`] with k and the index of the constraint that the others leave nothing
+    /// to restrict; [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes.
     pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), EvaluationFailure> {
         self.eliminate(lower, values)?;
         self.express_dependent();
@@ -94,7 +94,7 @@ impl Saddle {
         outcome.map_err(|failure| failure.at_place(|index| self.columns[self.rank + index]))
     }
 
-    /// As [`factorise`](Saddle::factorise), but only so far that the dependent unknowns are known.
+    /// As [`factorise`](Saddle::factorise), but ends once the dependent unknowns are known.
     ///
     /// # Errors
     /// As there.
@@ -118,7 +118,7 @@ impl Saddle {
         &self.columns[..self.rank]
     }
 
-    /// Whether spare rows are among those taken for independent.
+    /// Whether spare rows replace others.
     pub(crate) fn takes_spare(&self) -> bool {
         self.rows[..self.rank].iter().any(|&row| row >= self.rank)
     }
@@ -215,7 +215,7 @@ impl Saddle {
         (self.moved, self.reduced_mass, self.reduced_sizes) = (moved, reduced, sizes);
     }
 
-    /// The sum of the absolute values of all that the entry i of the diagonal of the reduced mass is the sum of.
+    /// The sum of the absolute values of all terms of the diagonal entry i of the reduced mass.
     fn size_of_reduced(&self, i: usize) -> f64 {
         let (m, free) = (self.rank, self.k - self.rank);
         let g = |row: usize| self.dependence[row * free + i].abs();
@@ -223,7 +223,7 @@ impl Saddle {
         self.mass(m + i, m + i).abs() + 2.0 * across(m + i) + (0..m).map(|d| g(d) * across(d)).sum::<f64>()
     }
 
-    /// A row of r − M w, of which the first `known` entries of w count, in the order of the elimination.
+    /// A row of r − M w with the first `known` entries of w, in the order of the elimination.
     fn rest(&self, right: &[f64], w: &[f64], row: usize, known: usize) -> f64 {
         right[self.columns[row]] - (0..known).map(|s| self.mass(row, s) * w[s]).sum::<f64>()
     }
@@ -286,7 +286,7 @@ mod tests {
     use super::*;
     use crate::random::numbers;
 
-    /// M = Nᵀ N + 1 and C, both of random numbers, as one symmetric matrix.
+    /// M = Nᵀ N + 1 and C, both random, as one symmetric matrix.
     fn random(k: usize, m: usize, next: &mut impl FnMut() -> f64) -> Vec<Vec<f64>> {
         let n: Vec<f64> = (0..k * k).map(|_| next()).collect();
         let mut whole = vec![vec![0.0; k + m]; k + m];
@@ -336,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mass_without_inertia_of_its_own_is_held_by_a_constraint() {
+    fn a_massless_unknown_is_determined_by_a_constraint() {
         // M = diag(1, 0), w_1 = w_2
         let whole = [vec![1.0, 0.0, 1.0], vec![0.0, 0.0, -1.0], vec![1.0, -1.0, 0.0]];
         let (pattern, values) = lower(&whole);
@@ -349,7 +349,7 @@ mod tests {
 
     #[test]
     fn a_constraint_that_depends_on_others_is_found() {
-        // Twice the same, in other units.
+        // The same constraint twice, in different units.
         let whole = [
             vec![1.0, 0.0, 1.0, 1e6],
             vec![0.0, 1.0, 2.0, 2e6],
@@ -363,7 +363,7 @@ mod tests {
 
     #[test]
     fn a_spare_row_takes_over_where_the_first_ones_are_dependent() {
-        // w_1 = w_2 twice, and w_2 = w_3 to spare: M = 1, r = (3, 0, 0).
+        // w_1 = w_2 twice, and a spare w_2 = w_3: M = 1, r = (3, 0, 0).
         let whole = [
             vec![1.0, 0.0, 0.0, 1.0, 1.0, 0.0],
             vec![0.0, 1.0, 0.0, -1.0, -1.0, 1.0],
@@ -378,7 +378,7 @@ mod tests {
         assert!(saddle.takes_spare());
         let mut solution = [3.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         saddle.solve(&mut solution);
-        // The reactions are 2 and 1, that of the row left over 0.
+        // The reactions are 2 and 1, that of the unused row 0.
         assert_eq!(solution[..3], [1.0; 3]);
         assert_eq!((solution[3] + solution[4], solution[5]), (2.0, 1.0));
     }

@@ -4,8 +4,8 @@
 //!
 //!   S λ = γ − C a,   η̇ = a + Y λ,   S = C Y,   Y = M⁻¹ Cᵀ,   a = M⁻¹ r,
 //!
-//! which takes O(N c) operations and c³ for c constraints, where the mass matrix bordered by C takes N³. S squares the condition of C:
-//! where a pivot of it is small, the bordered matrix is what the equations are solved with.
+//! which takes O(N c) operations and c³ for c constraints, where the mass matrix bordered by C takes N³. S
+//! squares the condition of C: where one of its pivots is small, the bordered matrix is used instead.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Program};
 
@@ -14,25 +14,26 @@ use crate::compiled::elimination::pivots::check;
 use crate::compiled::point::Point;
 use crate::tree::equations::TreeEquations;
 
-/// What is left of an entry on the diagonal of S where digits begin to be lost.
+/// The remainder of a diagonal entry of S at which digits begin to be lost.
 const SMALL_PIVOT: f64 = 1e-4;
 
 /// η̇ and λ of a tree with loops.
 #[derive(Clone, Debug)]
 pub(crate) struct Schur {
-    /// Of (t, y): a, γ − C a, the lower triangle of S column after column, Y, then pivots of M and what these are left of.
+    /// From (t, y): a, γ − C a, the lower triangle of S column after column, Y, then pivots of M and their
+    /// diagonal entries.
     equations: Evaluator,
     values: Vec<f64>,
-    /// Number of η̇, of constraints, and of pivots.
+    /// The numbers of η̇, of constraints, and of pivots.
     k: usize,
     m: usize,
     watched: usize,
-    /// Where Y is not zero.
+    /// The pattern of Y.
     solved: Pattern,
 }
 
 impl Schur {
-    /// Of a tree with the rows of C and γ; none where a joint has no inertia but by a loop.
+    /// The solution for a tree with the rows of C and γ; `None` if a joint has inertia only through a loop.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -70,14 +71,14 @@ impl Schur {
         Ok(Some(Schur { equations, values: vec![0.0; outputs.len()], k, m, watched: watched.len(), solved }))
     }
 
-    /// Operations of an evaluation; one of its factors takes as long as `of_a_loop` of straight-line code.
+    /// The operations of an evaluation, each of a factorisation counted as `of_a_loop` of straight-line code.
     pub(crate) fn operations(&self, of_a_loop: usize) -> usize {
         let m = self.m;
         let factors = m * m * m / 6 + 2 * m * m + self.solved.len();
         self.equations.program().cost().total() + of_a_loop * factors
     }
 
-    /// Writes η̇, then λ, and zeros after them; false where they are to be found in another way.
+    /// Writes η̇, then λ, and zeros after them; false where another way has to be taken.
     pub(crate) fn solve(&mut self, Point { t, y, p }: Point<'_>, unknowns: &mut [f64]) -> bool {
         self.equations.eval(t, y, p, &mut self.values);
         let (k, m) = (self.k, self.m);
@@ -101,12 +102,12 @@ impl Schur {
     }
 }
 
-/// Where the column b of a lower triangle begins, its diagonal first.
+/// The start of column b of a lower triangle, diagonal first.
 fn column(m: usize, b: usize) -> usize {
     b * m - b * b.saturating_sub(1) / 2
 }
 
-/// S = L D Lᵀ in place: D on the diagonal, L below. False where a pivot is small, or no number.
+/// S = L D Lᵀ in place: D on the diagonal, L below. False if a pivot is small or NaN.
 fn factorised(s: &mut [f64], m: usize) -> bool {
     for b in 0..m {
         let at = column(m, b);
@@ -148,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn factors_solve_and_small_pivots_are_seen() {
+    fn factors_solve_and_small_pivots_are_detected() {
         // S = Nᵀ N with N = ((2, 1, 0), (0, 1, 3), (1, 0, 1)), of determinant 25.
         let whole = [[5.0, 2.0, 1.0], [2.0, 2.0, 3.0], [1.0, 3.0, 10.0]];
         let lower = || (0..3).flat_map(|b| (b..3).map(move |a| whole[a][b])).collect::<Vec<f64>>();
@@ -162,7 +163,7 @@ mod tests {
         solve(&s, &mut found);
         assert!(found.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-13), "{found:?}");
 
-        // The third row that of the first two, but for 1e-6 of it.
+        // The third row is the sum of the first two, up to 1e-6.
         let mut s = vec![5.0, 2.0, 7.0, 2.0, 4.0, 11.0 * (1.0 + 1e-6)];
         assert!(!factorised(&mut s, 3));
         assert!(!factorised(&mut [f64::NAN], 1));

@@ -16,12 +16,13 @@ pub(crate) enum Solver {
 }
 
 impl Solver {
-    /// That of `size` unknowns, the last `multipliers` of which are multipliers, of independent constraints.
+    /// The matrix of `size` unknowns, the last `multipliers` of which are multipliers of independent
+    /// constraints.
     pub(crate) fn new(size: usize, multipliers: usize) -> Solver {
         Solver::of_rank(size, multipliers, multipliers)
     }
 
-    /// The same of constraints of which `rank` are independent.
+    /// The same for constraints of which `rank` are independent.
     pub(crate) fn of_rank(size: usize, multipliers: usize, rank: usize) -> Solver {
         match multipliers {
             0 => Solver::Ldl(DenseLdl::new(size)),
@@ -29,7 +30,7 @@ impl Solver {
         }
     }
 
-    /// Factorises the matrix, of which `values` stand at the places `lower` on and below the diagonal; all are
+    /// Factorises the matrix, given by its `values` at the places `lower` on and below the diagonal; all are
     /// finite.
     ///
     /// # Errors
@@ -42,7 +43,8 @@ impl Solver {
         }
     }
 
-    /// Operations to factorise the matrix of `size` unknowns with so many `multipliers`, and to solve with it once, about.
+    /// The approximate number of operations to factorise a matrix with so many unknowns and multipliers, and
+    /// to solve with it once.
     pub(crate) fn operations(&self, size: usize, multipliers: usize) -> usize {
         let k = size - multipliers;
         match self {
@@ -57,7 +59,7 @@ impl Solver {
         }
     }
 
-    /// Whether multipliers of constraints to spare stand for others.
+    /// Whether multipliers of spare constraints replace others.
     pub(crate) fn takes_spare(&self) -> bool {
         match self {
             Solver::Ldl(_) => false,

@@ -21,12 +21,12 @@ use crate::compiled::point::Point;
 pub(crate) struct Unrolled {
     /// Outputs: ẏ, then the pivots and the diagonal entries of M that change with the state.
     rates: Evaluator,
-    /// The same, faster, where parameters determine much of it.
+    /// A faster form of the same, where much depends on parameters alone.
     prologue: Option<Box<Prologue>>,
     outputs: Vec<f64>,
     pivots: Pivots,
     jacobian: Option<Jacobian>,
-    /// Of the state (y, v).
+    /// (∂ẏ/∂y) v from the state (y, v).
     jvp: Option<Evaluator>,
     /// y, v
     known: Vec<f64>,
@@ -34,7 +34,7 @@ pub(crate) struct Unrolled {
     time_derivative: Option<Columns>,
     observables: Evaluator,
     backend: Backend,
-    /// Of the outputs of `rates`, once they have been asked for.
+    /// The series of the outputs of `rates`, made on first use.
     series: Option<TaylorSeries>,
 }
 
@@ -43,8 +43,8 @@ pub(crate) struct Unrolled {
 enum Jacobian {
     /// Each entry an expression.
     Columns(Columns),
-    /// Column after column as products with unit vectors: of large trees, whose entries would be as many expressions as there are
-    /// pairs of bodies, each of them long.
+    /// Column after column as products with unit vectors: for large trees, where each pair of bodies has a
+    /// long entry.
     Products(Pattern),
 }
 
@@ -95,7 +95,7 @@ impl Unrolled {
         })
     }
 
-    /// Says that the parameters may have changed.
+    /// Announces that the parameters may have changed.
     pub(crate) fn forget(&mut self) {
         self.pivots.forget();
         if let Some(prologue) = &mut self.prologue {
@@ -103,7 +103,7 @@ impl Unrolled {
         }
     }
 
-    /// Says that the parameters in these places too may change at any time.
+    /// Adds places of parameters that may change at each evaluation.
     pub(crate) fn vary(&mut self, places: &[usize], backend: Backend) {
         if let Some(prologue) = self.prologue.take() {
             let varying = [prologue.varying(), places].concat();
@@ -111,7 +111,7 @@ impl Unrolled {
         }
     }
 
-    /// The numbers that the machine code takes for parameters.
+    /// The numbers that the machine code takes as parameters.
     pub(crate) fn code_parameters<'a>(&'a mut self, p: &'a [f64]) -> &'a [f64] {
         match &mut self.prologue {
             Some(prologue) => prologue.numbers(p),
@@ -158,8 +158,7 @@ impl Unrolled {
         }
         let (rates, moving) = self.outputs.split_at(y.len());
         self.pivots.check(y, p, moving)?;
-        // One pass with an early end, which keeps it number by number: a copy in wider pieces would wait for the numbers just
-        // written.
+        // One number at a time, with an early exit: a wider copy would wait for the numbers just written.
         for (ydot, &rate) in ydot.iter_mut().zip(rates) {
             *ydot = rate;
             if !rate.is_finite() {
@@ -189,7 +188,7 @@ impl Unrolled {
         Ok(series)
     }
 
-    /// f for many states at once; none where it is interpreted.
+    /// f for many states at once; `None` if it is interpreted.
     pub(crate) fn lanes(&mut self, dim: usize, p: &[f64]) -> Option<LaneField> {
         if self.backend != Backend::Fastest {
             return None;
@@ -212,7 +211,7 @@ impl Unrolled {
     }
 
     pub(crate) fn fixed_pivots(&mut self, dim: usize, p: &[f64]) -> &[f64] {
-        // Of parameters alone, whatever the state is.
+        // Independent of the state.
         self.pivots.fixed(&self.known[..dim], p)
     }
 

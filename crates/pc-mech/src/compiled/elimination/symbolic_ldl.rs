@@ -11,32 +11,32 @@ use crate::tree::equations::TreeEquations;
 
 /// The inverse of a symmetric matrix in the form in which it is applied. Zeros of the matrix cost nothing.
 pub(crate) enum Factors<'g> {
-    /// L D Lᵀ in the order of elimination that fills in least.
+    /// L D Lᵀ in the order of elimination with least fill-in.
     Ldl(Ldl<'g>),
-    /// The inverse itself, for a small matrix of both signs, such as that of L = ẋẏ: a pivot may vanish where it is regular.
-    /// And for any without a usable pivot on its diagonal, and one of two rows whose determinant is much shorter than its
-    /// pivots.
+    /// The inverse itself: for a small indefinite matrix, such as that of L = ẋẏ, where a pivot may vanish
+    /// though the matrix is regular; for a matrix without a usable pivot on its diagonal; and for one of two
+    /// rows whose determinant is much shorter than its pivots.
     Inverse(Matrix<Expr<'g>>),
     /// Joint after joint.
     Tree(Rc<TreeEquations<'g>>),
 }
 
-/// The rows up to which a matrix of both signs is inverted whole; the inverse of more is long.
+/// The most rows of an indefinite matrix that is inverted as a whole; the inverse of more is long.
 const MOST_INVERTED: usize = 3;
 
-/// What vanishes where M is singular, or where its factors have no numbers.
+/// An expression that vanishes where M is singular, or where its factors are undefined.
 pub(crate) struct Watched<'g> {
-    /// The unknown that is undetermined there.
+    /// The index of the unknown that is undetermined there.
     pub(crate) place: usize,
     pub(crate) pivot: Expr<'g>,
-    /// What its rounding is proportional to.
+    /// The scale of its rounding error.
     pub(crate) size: Expr<'g>,
 }
 
 /// L is unit lower triangular in the order of elimination, D diagonal; both indexed as M is.
 pub(crate) struct Ldl<'g> {
     order: Vec<usize>,
-    /// When each row is eliminated.
+    /// The turn at which each row is eliminated.
     turn: Vec<usize>,
     /// The L_iq of each row i that are neither 0 nor on the diagonal, as (q, L_iq).
     rows: Vec<Entries<'g>>,
@@ -61,8 +61,8 @@ impl<'g> Factors<'g> {
         }
     }
 
-    /// The pivots D with the diagonal of M, of which they are what is left; or the determinant of an inverted M of few rows,
-    /// with what that of its largest entry would be.
+    /// The pivots D with the diagonal entries of M that they remain from; or the determinant of an inverted M
+    /// of few rows, with the scale of it by its largest entry.
     pub(crate) fn watched(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Vec<Watched<'g>> {
         let rows = m.rows();
         match self {
@@ -112,7 +112,7 @@ impl<'g> Factors<'g> {
         }
     }
 
-    /// What is not 0 of M⁻¹ r, with its place, for the entries of r that are not 0.
+    /// The nonzero entries of M⁻¹ r with their places, from those of r.
     pub(crate) fn solve_nonzero(&self, graph: &'g Graph, right: &[(usize, Expr<'g>)]) -> Entries<'g> {
         match self {
             _ if right.is_empty() => Vec::new(),
@@ -134,8 +134,8 @@ impl<'g> Ldl<'g> {
         graph.exact_root(self.diagonal[s]) * graph.sum(below.chain([eta[s]]))
     }
 
-    /// Whether two rows have a determinant that is much shorter than the pivots of which it is the product: of a relativistic
-    /// particle it is a power of what stands under the root of its Lagrangian.
+    /// Whether two rows have a determinant that is much shorter than the pivots, whose product it is: for a
+    /// relativistic particle it is a power of the radicand in its Lagrangian.
     fn is_longer(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> bool {
         let (2, Some(&last)) = (m.rows(), self.order.last()) else { return false };
         if !graph.know_root_powers(&m.nonzero_entries()) {
@@ -145,7 +145,7 @@ impl<'g> Ldl<'g> {
         determinant(graph, m).is_some_and(|determinant| determinant.tree_cost().saturating_mul(2) <= pivot)
     }
 
-    /// Whether D has entries of both signs at some point; parameters that are positive as a rule are so there.
+    /// Whether D has entries of both signs at a point with positive parameters.
     fn has_both_signs(&self, graph: &'g Graph) -> bool {
         let symbols = graph.symbols_of(&self.diagonal);
         [0.0, 0.2, 0.6, 1.7].into_iter().any(|spread| {
@@ -156,8 +156,9 @@ impl<'g> Ldl<'g> {
         })
     }
 
-    /// Eliminates one row after the other, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always the row that has
-    /// the fewest entries left, of these one whose pivot is a symbol: a wheel before the body that carries it. `None` if the diagonal that is left is zero.
+    /// Eliminates row by row, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always a row with the fewest
+    /// entries left, preferably with a symbol as pivot: a wheel before the body that carries it. `None` if
+    /// the remaining diagonal is zero.
     fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {
         let k = m.rows();
         let mut schur: Vec<BTreeMap<usize, Expr<'g>>> = (0..k).map(|i| m.nonzero(i).collect()).collect();
@@ -168,7 +169,7 @@ impl<'g> Ldl<'g> {
             columns: vec![Vec::new(); k],
             diagonal: vec![Expr::ONE; k],
         };
-        // The rows that are left and have a pivot, by their number of entries; of these a symbol first.
+        // The remaining rows with a usable pivot, by their number of entries; among equals a symbol first.
         let usable = |schur: &[BTreeMap<usize, Expr<'g>>], p: usize| {
             schur[p].get(&p).map(|pivot| (schur[p].len(), pivot.tree_cost() > 0, p))
         };
@@ -182,7 +183,7 @@ impl<'g> Ldl<'g> {
             for row in before.into_iter().flatten() {
                 open.remove(&row);
             }
-            let d = eliminated.remove(&pivot)?; // the pivot is there, as its row was usable
+            let d = eliminated.remove(&pivot)?; // a usable row has its pivot
             ldl.diagonal[pivot] = d;
             for (&i, &s) in &eliminated {
                 let l = s / d;
@@ -204,7 +205,7 @@ impl<'g> Ldl<'g> {
         Some(ldl)
     }
 
-    /// As `solve`, of those unknowns alone that the entries of r reach.
+    /// As `solve`, for those unknowns alone that depend on the given entries of r.
     fn solve_nonzero(&self, graph: &'g Graph, right: &[(usize, Expr<'g>)]) -> Entries<'g> {
         let mut z: BTreeMap<usize, Expr<'g>> = right.iter().copied().collect();
         let zero = |z: &BTreeMap<usize, Expr<'g>>, i: usize| z.get(&i).copied().unwrap_or(Expr::ZERO);
@@ -255,9 +256,9 @@ fn rest<'g>(graph: &'g Graph, r: Expr<'g>, l: &Entries<'g>, z: impl Fn(usize) ->
 mod tests {
     use super::*;
 
-    /// On a chain, an arrow and a ring with a hub, for each unit vector and for a few entries at once.
+    /// For a chain, an arrow and a ring with a hub, with each unit vector and with a few entries at once.
     #[test]
-    fn what_right_sides_reach_is_solved_as_the_whole_is() {
+    fn sparse_right_sides_have_the_full_solution() {
         let graph = Graph::new();
         let k = 9;
         let patterns: [fn(usize, usize) -> bool; 3] = [

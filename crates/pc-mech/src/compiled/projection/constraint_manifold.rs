@@ -8,43 +8,45 @@ use crate::compiled::point::Point;
 use crate::compiled::projection::followers::Followers;
 use crate::compiled::running_error::Measured;
 
-/// Steps from afar, where they are damped. Near the surface each is the square of the one before, and a handful is all
-/// there are.
+/// The most steps; distant ones are damped. Near the surface convergence is quadratic and a handful suffices.
 pub(super) const MOST_STEPS: usize = 50;
 
-/// How often a step is halved before the way is taken to lead nowhere.
+/// The most halvings of a step before the projection fails.
 const HALVINGS: i32 = 20;
 
-/// What is left of a step where Newton's method converges by squares; one that leaves more is damped, or is rounding.
+/// The ratio of successive steps in quadratic convergence; with a larger one the step is damped, or consists
+/// of rounding.
 const CONVERGING: f64 = 0.25;
 
-/// What a single rounding may leave of f, in units of the bound of all. To move a state for it would put noise into the
-/// differences from which an integrator foresees the motion.
+/// The residual of f that a single rounding may cause, in units of the bound of all. Moving a state for it
+/// would add noise to the differences from which an integrator predicts the motion.
 const ONE_ROUNDING: f64 = 0.125;
 
-/// A step that errors of f of so many times their bounds would call for is rounding: f has its own, and so have the
-/// coefficients of the equations of the step.
+/// A step that errors of f of this many times their bounds could cause is rounding: f has errors of its own,
+/// and so have the coefficients of the linear equations.
 const ROUNDINGS: f64 = 4.0;
 
-/// A step so short against the state is rounding by constraints that are taken though others would determine it a hundred
-/// times better.
+/// A step this short against the state is rounding if the active constraints determine it a hundred times
+/// worse than others would.
 const ROUNDING: f64 = 1e-12;
 
-/// Where f has no bound of its error, at an edge of its domain, a step this short against the state is rounding.
+/// A step this short against the state is rounding where the error of f has no bound, at an edge of its
+/// domain.
 const SHORT: f64 = 1e-8;
 
-/// What a surface is made of, in expressions of t, x, η and parameters.
+/// The conditions that define a surface, as expressions in t, x, η and parameters.
 #[derive(Debug)]
 pub(crate) struct Conditions<'a, 'g> {
-    /// f(t, x), those that there are.
+    /// f(t, x) for the constraints on positions.
     pub(crate) positions: &'a [Expr<'g>],
-    /// The index of the constraint of each of these.
+    /// The index of the constraint of each f.
     pub(crate) places: Vec<usize>,
-    /// g(t, x, η), one a constraint; ḟ = g for those with a position.
+    /// g(t, x, η) for each constraint; ḟ = g for those on positions.
     pub(crate) velocities: &'a [Expr<'g>],
-    /// Whether all of these are affine in η.
+    /// Whether every g is affine in η.
     pub(crate) affine: bool,
-    /// What vanishes where these do, and of which constraints it is.
+    /// Functions that vanish where the constraints hold, with the names of the constraints that they stand
+    /// for.
     pub(crate) followers: &'a [(String, Expr<'g>)],
     /// b η
     pub(crate) displacements: &'a [Expr<'g>],
@@ -53,19 +55,19 @@ pub(crate) struct Conditions<'a, 'g> {
     pub(crate) bordered: &'a [Expr<'g>],
     /// Number of quasi-velocities.
     pub(crate) quasi_velocities: usize,
-    /// Number of constraints that are independent.
+    /// The number of independent constraints.
     pub(crate) rank: usize,
 }
 
 /// The states (x, η) with f(t, x) = 0 and g(t, x, η) = 0.
 ///
-/// A state is moved there by the shortest way in the kinetic metric: first x by δx = b δπ with δπ in the span of
-/// M⁻¹ ∂f/∂π, then η to the nearest that there is.
+/// A state is moved there by the shortest way in the kinetic metric: first x by δx = b δπ with δπ in the span
+/// of M⁻¹ ∂f/∂π, then η to the nearest solution.
 #[derive(Clone, Debug)]
 pub(crate) struct Surface {
     pub(super) coordinates: usize,
     pub(super) k: usize,
-    /// Number of constraints that are independent.
+    /// The number of independent constraints.
     pub(super) rank: usize,
     pub(super) positions: Measured,
     pub(super) places: Vec<usize>,
@@ -75,7 +77,7 @@ pub(crate) struct Surface {
     pub(super) lower: Pattern,
     pub(super) bordered: Evaluator,
     pub(super) entries: Vec<f64>,
-    /// Where the diagonal of the mass matrix stands among the entries.
+    /// The places of the diagonal of the mass matrix among the entries.
     diagonal: Vec<Option<usize>>,
     /// Masses by which steps of the quasi-velocities are measured, all positive.
     pub(super) weights: Vec<f64>,
@@ -85,13 +87,13 @@ pub(crate) struct Surface {
     /// x, then δπ.
     pub(super) displaced: Vec<f64>,
     room: Room,
-    /// The velocities from which the nearest are looked for.
+    /// The velocities to which the nearest solution is sought.
     pub(super) given: Vec<f64>,
-    /// Whether g is affine in η, so that one step leads to the nearest.
+    /// Whether g is affine in η, so that one step leads to the nearest solution.
     pub(super) affine: bool,
 }
 
-/// Room for a step of Newton's method: where it begins, what it changes, and the errors of f there.
+/// Storage for a step of Newton's method: its start, its change, and the errors of f there.
 #[derive(Clone, Debug, Default)]
 struct Room {
     start: Vec<f64>,
@@ -99,7 +101,7 @@ struct Room {
     errors: Vec<f64>,
 }
 
-/// What of a state is moved.
+/// The part of a state that is moved.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Part {
     /// x, to f = 0.
@@ -145,7 +147,7 @@ impl Surface {
         })
     }
 
-    /// Writes f where a constraint has a position and g where it has none, one number a constraint.
+    /// Writes f for constraints on positions and g for the others.
     pub(crate) fn residuals(&mut self, at: Point<'_>, residuals: &mut [f64]) {
         residuals.copy_from_slice(self.velocities.eval(at));
         for (&place, &value) in self.places.iter().zip(self.positions.eval(at)) {
@@ -156,8 +158,9 @@ impl Surface {
     /// Moves `y` to the surface.
     ///
     /// # Errors
-    /// [`EvaluationFailure::NoProjection`] if the way leads nowhere, [`EvaluationFailure::Constraint`] where the surface
-    /// has an edge, [`EvaluationFailure::Departed`] where what followed from the constraints does not.
+    /// [`EvaluationFailure::NoProjection`] if no step leads closer, [`EvaluationFailure::Constraint`] where
+    /// the surface is singular, [`EvaluationFailure::Departed`] where a condition that should follow from the
+    /// constraints does not.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         self.factorise(t, y, p)?;
         if !self.places.is_empty() {
@@ -167,7 +170,7 @@ impl Surface {
         self.followers.check(t, y, p)
     }
 
-    /// Moves the η of `y` to g = 0, and leaves x where it is.
+    /// Moves the η of `y` to g = 0; x is unchanged.
     ///
     /// # Errors
     /// As [`project`](Surface::project).
@@ -193,12 +196,13 @@ impl Surface {
         self.solver.factorise(&self.lower, &self.entries)
     }
 
-    /// Newton's method for f(t, x) = 0 or for g(t, x, η) = 0, which comes to its end at once where g is affine in η;
-    /// leaves the matrix factorised where it ends.
+    /// Newton's method for f(t, x) = 0 or for g(t, x, η) = 0, which ends after one step where g is affine in
+    /// η; the matrix stays factorised at the end point.
     ///
-    /// Lengths of steps are those of δπ, with the diagonal of M for a metric, and so know no units of f. A state is on the
-    /// surface where f is no larger than the bound of its rounding errors, where a step changes no digit, and where a step is
-    /// no longer than such errors would call for: then one whole step more is all that can help.
+    /// Steps are measured as δπ, in the metric of the diagonal of M, and so independently of the units of f.
+    /// A state is on the surface where f is within the bound of its rounding errors, where a step changes no
+    /// digit, or where a step is no longer than such errors would cause: then one more full step is the last
+    /// improvement.
     pub(super) fn project_part(
         &mut self,
         part: Part,
@@ -233,7 +237,8 @@ impl Surface {
             start.clear();
             start.extend_from_slice(&y[range.clone()]);
             self.move_by(part, Point { t, y, p }, change);
-            // Constraints that depend on those which are taken are satisfied to the roundings of these, not to their own.
+            // Constraints that depend on the active ones hold within the rounding of those, not within their
+            // own.
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
             let has_spare = self.rank < self.velocities.values().len();
             if has_spare && largest(change) <= ROUNDING * largest(start) {
@@ -268,16 +273,16 @@ impl Surface {
         Err(EvaluationFailure::NoProjection { unknowns: self.k })
     }
 
-    /// Halves a step until the next one, with the same matrix, is shorter (the natural monotonicity test of P. Deuflhard,
-    /// Numer. Math. 22, 1974, 289–315), `length` being that of the whole step; none if it never is.
+    /// Halves a step until the next one, with the same matrix, is shorter (the natural monotonicity test of
+    /// P. Deuflhard, Numer. Math. 22, 1974, 289–315); `length` is that of the full step. `None` if no
+    /// fraction is accepted.
     fn damped(&mut self, length: f64, mut go: impl FnMut(&mut Surface, f64) -> Option<f64>) -> Option<f64> {
         (0..=HALVINGS)
             .map(|halvings| 0.5f64.powi(halvings))
             .find(|&fraction| go(self, fraction).is_some_and(|next| next <= (1.0 - fraction / 4.0) * length))
     }
 
-    /// Whether errors of f no larger than these bounds may call for a step of this length, with the matrix as it is
-    /// factorised.
+    /// Whether errors of f within these bounds may cause a step of this length, with the factorised matrix.
     fn is_rounding(
         &mut self,
         part: Part,
@@ -308,7 +313,8 @@ impl Surface {
         }
     }
 
-    /// Leaves in `change` the step that the values call for, with the matrix as it is factorised; its length.
+    /// Computes the step for the current values into `change`, with the factorised matrix. Returns its
+    /// length.
     fn step(&mut self, part: Part) -> f64 {
         let multipliers = &mut self.change[self.k..];
         match part {
@@ -325,13 +331,13 @@ impl Surface {
         self.length()
     }
 
-    /// The length of the δπ in `change`; its square may be too small or too large for a number.
+    /// The length of the δπ in `change`, whose square may underflow or overflow.
     fn length(&self) -> f64 {
         let components = || self.change.iter().zip(&self.weights).map(|(change, mass)| change * mass.sqrt());
         components().fold(0.0, f64::hypot)
     }
 
-    /// Leaves in `moved` what the step changes of x or of η.
+    /// Computes the change of x or of η by the step into `moved`.
     pub(super) fn move_by(&mut self, part: Part, Point { t, y, p }: Point<'_>, moved: &mut Vec<f64>) {
         let (n, k) = (self.coordinates, self.k);
         moved.clear();

@@ -1,14 +1,15 @@
-//! Conditions that follow from those that are held, looked at on the way.
+//! Conditions that follow from the constraints, checked along the way.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
 
 use crate::compiled::failure::EvaluationFailure;
 
-/// What a condition that follows from others may be off, in displacements of a component of the state, absolute or relative
-/// whichever is larger: what is held is so to rounding, and this is a hundred times what a start may be off.
+/// The greatest error of a derived condition, as a displacement of a component of the state, absolute or
+/// relative, whichever is larger: constraints hold to rounding, and this is a hundred times the tolerance of
+/// a start.
 const OFF: f64 = 1e-6;
 
-/// Functions of the state that vanish where others do, each of a constraint.
+/// Functions of the state that vanish where the constraints hold, each standing for a constraint.
 #[derive(Clone, Debug)]
 pub(crate) struct Followers {
     names: Vec<String>,
@@ -19,7 +20,7 @@ pub(crate) struct Followers {
 }
 
 impl Followers {
-    /// Those of constraints of these names.
+    /// The functions with the names of their constraints.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -40,7 +41,7 @@ impl Followers {
         })
     }
 
-    /// That all vanish at a state.
+    /// Checks that all vanish at a state.
     ///
     /// # Errors
     /// [`EvaluationFailure::Departed`] for the first that does not.

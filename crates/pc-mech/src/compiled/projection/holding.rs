@@ -1,4 +1,4 @@
-//! The way to the surface on which some components of the state stay as they are.
+//! Projection to the surface with some components of the state unchanged.
 
 use pc_algebra::Matrix;
 
@@ -10,13 +10,13 @@ use crate::numeric::least_squares::LeastSquares;
 /// A combination of rows this small against them is rounding.
 pub(super) const DEPENDENT: f64 = 1e-12;
 
-/// The same at places that are near those where constraints depend on others.
+/// The same bound near places where constraints become dependent.
 pub(super) const NEARLY_DEPENDENT: f64 = 1e-7;
 
-/// A step so short against the state is rounding.
+/// A step this short against the state is rounding.
 const SHORT: f64 = 1e-13;
 
-/// The components of a state (x, η) that are not to be moved, by their indices among the x and among the η.
+/// The components of a state (x, η) that stay unchanged, by their indices among the x and among the η.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PrescribedComponents<'a> {
     pub(crate) coordinates: &'a [usize],
@@ -24,13 +24,14 @@ pub(crate) struct PrescribedComponents<'a> {
 }
 
 impl Surface {
-    /// Moves what is not `held` of `y` to the surface, x and then η, by the shortest steps δπ in the kinetic metric with
+    /// Moves the components of `y` that are not `held` to the surface, x and then η, by the shortest steps δπ
+    /// in the kinetic metric with
     ///
-    ///   (∂f/∂π) δπ = −f,   (b δπ)_i = 0 of the x_i held,   and   C δη = −g,   δη_s = 0 of the η_s held.
+    ///   (∂f/∂π) δπ = −f,   (b δπ)_i = 0 for the x_i held,   and   C δη = −g,   δη_s = 0 for the η_s held.
     ///
     /// # Errors
-    /// [`EvaluationFailure::NoProjection`] if the way leads nowhere; [`EvaluationFailure::Constraint`] for a constraint
-    /// that what is held leaves nothing to restrict.
+    /// [`EvaluationFailure::NoProjection`] if no step leads closer; [`EvaluationFailure::Constraint`] for a
+    /// constraint on held components alone.
     pub(crate) fn project_holding(
         &mut self,
         (t, y, p): (f64, &mut [f64], &[f64]),
@@ -100,7 +101,8 @@ impl Surface {
         held.iter().map(|&held| (0..self.k).map(|s| f64::from(u8::from(s == held))).collect()).collect()
     }
 
-    /// The δ with the least ½ δᵀ M δ that the values of a part call for and that leaves `fixed` · δ = 0, from
+    /// The δ of least ½ δᵀ M δ that solves the linearised conditions of a part and leaves `fixed` · δ = 0,
+    /// from
     ///
     ///   M δ + Aᵀ μ = 0,   A δ = α,
     ///
@@ -141,7 +143,7 @@ impl Surface {
             Ok(LeastSquares::of(&first).map_err(failed)?.rank(DEPENDENT))
         };
         let of_held = rank(held)?;
-        // Where not all constraints are independent, nothing is found that what is held leaves nothing to.
+        // With dependent constraints, one on held components alone cannot be identified.
         let dependent = c.len() - self.rank;
         if rank(rows.len())? + dependent < of_held + indices.len() {
             let mut before = of_held;

@@ -1,4 +1,4 @@
-//! First integrals that a motion is kept at.
+//! First integrals that a motion keeps.
 
 use pc_expr::{Backend, Evaluator, Expr, Program};
 
@@ -8,36 +8,36 @@ use crate::compiled::point::Point;
 use crate::compiled::running_error::Measured;
 use crate::error::{IntegralError, MechError};
 
-/// Newton's method comes near by the square of the distance; from where it does not in so many steps, it does not.
+/// The most steps; Newton's method converges quadratically, or fails.
 const MOST_STEPS: usize = 50;
 
-/// After a step so short against the state the next one would be rounding.
+/// A step this short against the state is the last: the next would be rounding.
 const SHORT: f64 = 1e-8;
 
-/// Roundings in the value of an integral, in units of what its gradient and its value are.
+/// Rounding errors in the value of an integral, in units of its gradient and its value.
 const ROUNDINGS: f64 = 4.0;
 
-/// A gradient of which less than this is left beside those before it adds nothing to them.
+/// A gradient of which less than this is independent of those before it adds nothing.
 const DEPENDENT: f64 = 1e-10;
 
 /// First integrals I_j(t, y) of a motion, compiled with their gradients, to keep it at their values: see
 /// [`Motion::keep`](crate::Motion::keep).
 #[derive(Clone, Debug)]
 pub struct KeptIntegrals {
-    /// Of the integrals.
+    /// The names of the integrals.
     pub(super) names: Vec<String>,
-    /// The constraints, if there are any, which are not to be left on the way, then the integrals.
+    /// The constraints, if there are any, which hold along the way, then the integrals.
     values: Measured,
     /// ∂I_j/∂t, then ∂I_j/∂y_i for each i, one after the other.
     gradients: Evaluator,
-    /// Zeros of the constraints, then the values of the integrals at the start.
+    /// Zeros for the constraints, then the values of the integrals at the start.
     levels: Vec<f64>,
-    /// Number of first-order states, which a projection leaves alone.
+    /// The number of first-order states, which a projection leaves unchanged.
     states: usize,
     pub(crate) room: Room,
 }
 
-/// Room for the gradients, for directions that are orthogonal, one after the other, for the shortest change, and for a state.
+/// Storage for the gradients, for orthogonal directions, for the shortest change, and for a state.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Room {
     entries: Vec<f64>,
@@ -47,7 +47,7 @@ pub(crate) struct Room {
 }
 
 impl<'g> FirstOrder<'g> {
-    /// The integrals of these names, kept where `held` vanish.
+    /// The integrals of these names, kept while `held` vanish.
     pub(super) fn kept<S: AsRef<str>>(
         &self,
         names: &[S],
@@ -85,8 +85,8 @@ impl<'g> FirstOrder<'g> {
 }
 
 impl KeptIntegrals {
-    /// The rates of change of the integrals at (t, y), where ẏ = `rates`, each with the sum of the absolute values of its
-    /// terms.
+    /// The rates of change of the integrals at (t, y), where ẏ = `rates`, each with the sum of the absolute
+    /// values of its terms.
     pub(super) fn rates_of_change(&mut self, at: Point<'_>, rates: &[f64]) -> Vec<(f64, f64)> {
         let held = self.held();
         self.find_gradients(at);
@@ -97,7 +97,7 @@ impl KeptIntegrals {
         self.room.entries.chunks_exact(at.y.len() + 1).skip(held).map(along).collect()
     }
 
-    /// Takes the values at (t, y) for those to be kept.
+    /// Takes the values at (t, y) as those to keep.
     pub(crate) fn set_levels(&mut self, at: Point<'_>) {
         let held = self.held();
         self.levels.copy_from_slice(self.values.eval(at));
@@ -109,7 +109,7 @@ impl KeptIntegrals {
         self.levels.len() - self.names.len()
     }
 
-    /// Leaves (∂I_j/∂t, ∂I_j/∂y) in `entries`, one row for each.
+    /// Computes (∂I_j/∂t, ∂I_j/∂y) into `entries`, one row for each integral.
     fn find_gradients(&mut self, Point { t, y, p }: Point<'_>) {
         self.gradients.eval(t, y, p, &mut self.room.entries);
     }
@@ -117,8 +117,8 @@ impl KeptIntegrals {
     /// Newton's method for I(t, y) = I_0, each step the shortest.
     ///
     /// # Errors
-    /// [`EvaluationFailure::NotKept`] if the steps do not become shorter, [`EvaluationFailure::Expr`] for values that are
-    /// not finite.
+    /// [`EvaluationFailure::NotKept`] if the steps do not become shorter, [`EvaluationFailure::Expr`] for
+    /// values that are not finite.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         let (mut first, mut before) = (None, f64::INFINITY);
         for _ in 0..MOST_STEPS {
@@ -144,8 +144,9 @@ impl KeptIntegrals {
         Err(EvaluationFailure::NotKept)
     }
 
-    /// Leaves in `change` the shortest δ with ∂I_j/∂y · δ = I_j − I_j0, by orthogonalising the gradients one after the
-    /// other. A difference that is rounding of the terms of I_j moves nothing: near an equilibrium it would far.
+    /// Computes into `change` the shortest δ with ∂I_j/∂y · δ = I_j − I_j0, by orthogonalising the gradients
+    /// one after the other. A difference that is rounding of the terms of I_j changes nothing: near an
+    /// equilibrium it would cause a large step.
     fn find_shortest(&mut self, at: Point<'_>) -> Result<(), EvaluationFailure> {
         self.find_gradients(at);
         let Room { entries, basis, change, .. } = &mut self.room;
@@ -157,7 +158,7 @@ impl KeptIntegrals {
             row[1 + dim - self.states..].fill(0.0);
             let gradient = &row[1..];
             let difference = self.values.values()[place] - self.levels[place];
-            // At the edge of the domain of a function that is part of it an integral may have no bound.
+            // At the edge of the domain of a function the error of an integral may have no bound.
             let error =
                 Some(self.values.error(place)).filter(|error| error.is_finite()).unwrap_or_else(|| {
                     let terms: f64 = gradient.iter().zip(at.y).map(|(g, y)| (g * y).abs()).sum();

@@ -1,4 +1,4 @@
-//! Motions that are kept at first integrals.
+//! Motions that keep first integrals.
 
 use crate::compiled::motion::Motion;
 use crate::compiled::point::Point;
@@ -9,18 +9,18 @@ use crate::equations::poincare::Equations;
 use crate::error::{IntegralError, MechError};
 use pc_expr::VectorField;
 
-/// A rate of change that is larger than rounding of its terms by this is one.
+/// A rate of change counts if it is larger than the rounding of its terms by this factor.
 const RATE: f64 = 1e-9;
 
-/// A rate that changes by more than this part of it where digits that are rounding change is rounding itself.
+/// A rate is rounding itself if it changes by more than this part when digits that are rounding change.
 const UNCERTAIN: f64 = 1.0 / 64.0;
 
-/// How often such digits are changed, and by how much.
+/// The number of such changes of digits, and their size.
 const PROBES: u64 = 8;
 const LAST_DIGITS: f64 = 8.0 * f64::EPSILON;
 
-/// An integral is tried along so many steps, each twice the one before; the first changes the state by about this part
-/// of it, with an error far below [`RATE`].
+/// The number of steps along which an integral is tested, each twice the one before; the first changes the
+/// state by about this part of it, with an error far below [`RATE`].
 const STEPS: usize = 8;
 const FIRST_STEP: f64 = 1e-4;
 
@@ -100,7 +100,8 @@ impl Motion {
         Ok(self)
     }
 
-    /// Makes the values at (t, y) those to be [kept](Motion::keep) from now on: at another start, or with other parameters.
+    /// Makes the values at (t, y) those to be [kept](Motion::keep) from now on: at another start, or with
+    /// other parameters.
     ///
     /// # Errors
     /// As for [`keep`](Motion::keep).
@@ -120,14 +121,14 @@ impl Motion {
     fn try_to_keep(&mut self, integrals: &mut KeptIntegrals, t: f64, y: &[f64]) -> Result<(), MechError> {
         let rates = self.rates(t, y)?;
         self.check(integrals, t, y, &rates)?;
-        // At rest much that changes has no rate: a few short steps show it.
+        // At rest many quantities that change have no rate yet: a few short steps show it.
         let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
         let (mut now, mut state) = (t, y.to_vec());
         let mut step = FIRST_STEP * largest(y).max(1.0) / largest(&rates).max(1.0);
         for _ in 0..STEPS {
             let Ok(next) = self.runge_kutta(now, &state, step) else { break };
             (now, state) = (now + step, next);
-            // Off the constraints reactions do work.
+            // Off the constraints, reactions do work.
             if self.project(now, &mut state).is_err() {
                 break;
             }
@@ -157,8 +158,8 @@ impl Motion {
         Ok(())
     }
 
-    /// Whether the rate of change of an integral at (t, y) is rounding of ẏ: it is another where the last digits of the state
-    /// and of the equations are. Which of them change, and how, is the same on every run.
+    /// Whether the rate of change of an integral at (t, y) is rounding of ẏ: it changes with the last digits
+    /// of the state and of the equations. Those changes are the same on every run.
     fn is_uncertain(
         &mut self,
         integrals: &mut KeptIntegrals,
@@ -181,13 +182,13 @@ impl Motion {
         })
     }
 
-    /// The same motion, projected to its constraints alone.
+    /// The motion projected to its constraints alone.
     pub fn without_kept(mut self) -> Motion {
         self.set_kept(None);
         self
     }
 
-    /// The state a step of the classical method later.
+    /// The state after a step of the classical Runge–Kutta method.
     fn runge_kutta(&mut self, t: f64, y: &[f64], step: f64) -> Result<Vec<f64>, MechError> {
         let along =
             |rates: &[f64], h: f64| y.iter().zip(rates).map(|(y, rate)| y + h * rate).collect::<Vec<_>>();

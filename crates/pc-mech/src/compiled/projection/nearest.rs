@@ -1,4 +1,4 @@
-//! The nearest of the velocities that satisfy constraints, where these are not linear in them.
+//! The nearest velocities that satisfy constraints nonlinear in them.
 
 use pc_algebra::Matrix;
 
@@ -8,16 +8,17 @@ use crate::compiled::projection::constraint_manifold::{MOST_STEPS, Part, Surface
 use crate::compiled::projection::holding::{DEPENDENT, NEARLY_DEPENDENT};
 use crate::numeric::least_squares::LeastSquares;
 
-/// The square of a way so short against the velocities is rounding, and by it Newton's way misses the nearest point.
+/// The square of a displacement this short against the velocities is rounding, and with it the error of
+/// Newton's steps.
 const SHORT: f64 = 1e-8;
 
-/// Newton's method for the nearest point leaves the square of a step, which is rounding of one so short.
+/// A step this short is the last for the nearest point: its square, the remaining error, is rounding.
 const LAST: f64 = 1e-7;
 
-/// A way so short against the velocities is rounding of the linear equations.
+/// A displacement this short against the velocities is rounding of the linear equations.
 const ROUNDING: f64 = 1e-14;
 
-/// How often a step is halved before its direction is given up.
+/// The most halvings of a step before its direction is given up.
 const HALVINGS: i32 = 20;
 
 /// M and C = ∂g/∂η by rows.
@@ -27,11 +28,11 @@ struct Coefficients {
 }
 
 impl Surface {
-    /// Moves the η of `y` to the nearest with g(t, x, η) = 0 in the kinetic metric of the velocities there are; leaves the
-    /// matrix factorised where it ends.
+    /// Moves the η of `y` to the nearest with g(t, x, η) = 0 in the kinetic metric; the matrix stays
+    /// factorised at the end point.
     ///
     /// # Errors
-    /// [`EvaluationFailure::NoProjection`] if the way leads nowhere.
+    /// [`EvaluationFailure::NoProjection`] if no step leads closer.
     pub(super) fn project_to_nearest(
         &mut self,
         t: f64,
@@ -52,17 +53,17 @@ impl Surface {
         outcome
     }
 
-    /// The places of η.
+    /// The range of η in a state.
     fn moving(&self) -> std::ops::Range<usize> {
         self.coordinates..self.coordinates + self.k
     }
 
-    /// Moves η from where Newton's method has come to along g = 0 to where
+    /// Moves η along g = 0, from the end of Newton's method, to where
     ///
     ///   M (η − η₀) = Cᵀ μ.
     ///
-    /// The steps to g = 0 are each the shortest, but not all of them together, and which way they take depends on the
-    /// quasi-velocities. Where g is affine in η there is one step, and nothing to do.
+    /// Each step to g = 0 is the shortest, but not all of them together, and their path depends on the
+    /// quasi-velocities. Where g is affine in η the single step is the answer.
     fn approach(
         &mut self,
         given: &[f64],
@@ -84,7 +85,7 @@ impl Surface {
         for _ in 0..MOST_STEPS {
             let eta = y[moving.clone()].to_vec();
             let (back, steepest) = self.tangents(given, &mass, Point { t, y, p })?;
-            // Where M is no metric along g = 0 no point is the nearest.
+            // Where M is not positive along g = 0, no point is the nearest.
             let slope = dot(&steepest, &times(&mass, &steepest));
             let end = |step: &[f64]| eta.iter().zip(step).map(|(a, b)| a + b).collect::<Vec<f64>>();
             if slope <= 0.0 || slope.is_nan() || !self.is_longer(ROUNDING, &end(&steepest), &eta) {
@@ -112,7 +113,7 @@ impl Surface {
         Err(failed)
     }
 
-    /// Whether the way between two velocities is longer than a part of the first.
+    /// Whether the distance between two velocities is greater than a part of the first.
     fn is_longer(&self, part: f64, a: &[f64], b: &[f64]) -> bool {
         self.speed(a.iter().zip(b).map(|(a, b)| a - b)) > part * self.speed(a.iter().copied())
     }
@@ -122,7 +123,8 @@ impl Surface {
         eta.zip(&self.weights).map(|(eta, weight)| eta * weight.sqrt()).fold(0.0, f64::hypot)
     }
 
-    /// Along g = 0: the step of Newton's method to the nearest point, and the steepest way there; both zero where it is.
+    /// Along g = 0: the step of Newton's method to the nearest point, and the steepest way there; both zero
+    /// where it is.
     ///
     ///   (M − ∂(Cᵀμ)/∂η) δ + Cᵀ ν = −M z,   C δ = 0,   where   M z + Cᵀ μ = M (η − η₀),   C z = 0.
     fn tangents(
@@ -136,7 +138,7 @@ impl Surface {
         let way: Vec<f64> = y[moving.clone()].iter().zip(given).map(|(a, b)| a - b).collect();
         let (z, multipliers) = self.along(mass, &rows, &times(mass, &way))?;
         let mut curved = mass.to_vec();
-        // Central quotients in units of the fastest velocity: their error slows the method down, and no more.
+        // Central differences in units of the fastest velocity: their error only slows the method down.
         let fastest = self.speed(y[moving.clone()].iter().copied()).max(self.speed(given.iter().copied()));
         let mut beside = y.to_vec();
         for s in 0..self.k {
@@ -148,7 +150,7 @@ impl Surface {
             };
             let ends = (turned(y[place] + half), turned(y[place] - half));
             beside[place] = y[place];
-            // At the edge of where g is defined the curvature does without.
+            // At the edge of the domain of g the curvature is left out.
             let (Ok(ahead), Ok(behind)) = ends else { continue };
             for (r, curved) in curved.iter_mut().enumerate() {
                 let quotient = |a: usize| (ahead[a][r] - behind[a][r]) / (2.0 * half);

@@ -1,4 +1,4 @@
-//! Something with mass.
+//! Particles and rigid bodies alike.
 
 use pc_expr::{Expr, Graph};
 
@@ -7,7 +7,7 @@ use crate::system::bodies::moving::{Moving, Share};
 use crate::system::bodies::particle::Particle;
 use crate::system::bodies::rigid_body::RigidBody;
 
-/// Something with mass.
+/// A particle or a rigid body.
 #[derive(Clone, Debug)]
 pub(crate) enum Body<'g> {
     Particle(Particle<'g>),
@@ -27,7 +27,7 @@ impl<'g> Body<'g> {
         }
     }
 
-    /// m g · r, what L has of it in a field of gravity.
+    /// m g · r, the term of L in a field of gravity.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError)

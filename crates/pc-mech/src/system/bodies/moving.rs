@@ -6,14 +6,14 @@ use pc_expr::{Expr, SymbolPlaces};
 use crate::error::{BodyError, MechError};
 use crate::system::states::check_no_state;
 
-/// What a body adds to a system.
+/// The contribution of a body to a system.
 #[derive(Clone, Debug)]
 pub(crate) struct Share<'g> {
     /// T in terms of (t, x, η).
     pub(crate) kinetic: Expr<'g>,
-    /// Q_1..Q_k, those aside that come from the force function.
+    /// Q_1..Q_k, without those that follow from the force function.
     pub(crate) forces: Vec<Expr<'g>>,
-    /// U(t, x), which has to be part of L.
+    /// U(t, x), which is a term of L.
     pub(crate) force_function: Expr<'g>,
     /// ṙ
     pub(crate) velocity: Vec<Expr<'g>>,
@@ -26,7 +26,7 @@ pub(crate) struct Moving<'a, 'g> {
     pub(crate) frame: &'a Frame<'g>,
     pub(crate) eta: &'a [Expr<'g>],
     states: &'a [(Expr<'g>, Expr<'g>)],
-    /// Each x_i' with b_is η_s + b_i0, but for those that are the name of a quasi-velocity.
+    /// Each x_i' with b_is η_s + b_i0, except those that are themselves quasi-velocities.
     velocities: Vec<(Expr<'g>, Expr<'g>)>,
 }
 

@@ -7,10 +7,10 @@ use crate::system::bodies::moving::{Moving, Share};
 
 /// A mass point m at the place r(t, x), given by its one, two or three Cartesian components in an inertial frame.
 ///
-/// Its velocity is ṙ = X_0 r + η_s X_s r, its kinetic energy ½ m |ṙ|². A force F on it, with components along the
-/// same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ by the symbols `x'`. One that depends on the place
-/// alone, is homogeneous in r and has a force function, F · X_s r = X_s U, counts in the energy: U is added to L, and
-/// nothing to Q_s. So does a single component with this property.
+/// Its velocity is ṙ = X_0 r + η_s X_s r, its kinetic energy ½ m |ṙ|². A force F on it, with components along
+/// the same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ by the symbols `x'`. One
+/// that depends on the place alone, is homogeneous in r and has a force function, F · X_s r = X_s U, counts
+/// in the energy: U is added to L, and nothing to Q_s. So does a single component with this property.
 ///
 /// ```
 /// use pc_mech::{Graph, Particle, System};
@@ -78,7 +78,7 @@ impl<'g> Particle<'g> {
         if let Some(force) = &self.force {
             shape("the force on a body", force.len(), self.position.len())?;
             let force = moving.in_quasi_velocities(force);
-            // The whole, or those of its components that have a force function.
+            // The whole force, or those of its components that have a force function.
             let parts = match self.force_function(&force, moving, &displacements) {
                 Some(function) => {
                     force_function = function;
@@ -99,9 +99,9 @@ impl<'g> Particle<'g> {
         Ok(Share { kinetic, forces, force_function, velocity, angular_velocity: None })
     }
 
-    /// U(t, x) with F · X_s r = X_s U, of a force that depends on the place alone. With F homogeneous of degree d in r, as a
-    /// constant force, that of a spring and that of gravitation are, U = F · r/(d + 1) by Euler's theorem: where F · X_s r is
-    /// the same multiple of X_s (F · r) for all s, its 1-form is exact.
+    /// U(t, x) with F · X_s r = X_s U, for a force that depends on the place alone. If F is homogeneous of
+    /// degree d in r, as constant forces, springs and gravitation are, U = F · r/(d + 1) by Euler's theorem:
+    /// where F · X_s r is the same multiple of X_s (F · r) for all s, its 1-form is exact.
     fn force_function(
         &self,
         force: &[Expr<'g>],
@@ -114,7 +114,7 @@ impl<'g> Particle<'g> {
             return None;
         }
         let product = graph.dot(force.iter().copied(), self.position.iter().copied());
-        // Of a uniform force that needs no test, which rounding in the frame may fail.
+        // For a uniform force this needs no test, which rounding in the frame could fail.
         if !force.iter().any(|f| moving.frame.coordinates().iter().any(|&x| f.depends_on(x))) {
             return Some(product);
         }
@@ -133,15 +133,15 @@ impl<'g> Particle<'g> {
     }
 }
 
-/// The multiple of 1/12 that a quotient is but for rounding, as that of coefficients with √2 may be: 1/(d + 1) of the degrees d
-/// that forces have is one. Any other number is left as it is.
+/// The nearest multiple of 1/12 to a quotient with rounding errors, such as one of coefficients with √2, as
+/// 1/(d + 1) is such a multiple for the usual degrees d. Any other number is returned unchanged.
 fn simple(quotient: Number) -> Number {
     let twelfths = (12.0 * quotient.to_f64()).round();
     let is_near = (12.0 * quotient.to_f64() - twelfths).abs() <= 1e-13 * twelfths.abs();
     if is_near && twelfths.abs() < 1e6 { Number::ratio(twelfths as i64, 12) } else { quotient }
 }
 
-/// The vector whose only component is the i-th of another.
+/// The vector with the i-th component of another one, and zeros.
 fn component<'g>(vector: &[Expr<'g>], i: usize) -> Vec<Expr<'g>> {
     let mut part = vec![Expr::ZERO; vector.len()];
     part[i] = vector[i];

@@ -9,10 +9,10 @@ use crate::system::bodies::particle::Particle;
 
 /// A rigid body: mass m, place r(t, x), inertia I, and how it turns.
 ///
-/// Its kinetic energy is ½ m |ṙ|² + ½ ω·Iω (König). That is right if r is the **mass centre** and I is taken about it, and
-/// also if r is any point of the body that is **at rest** (as the fixed point of a top) and I is taken about that
-/// point. For any other point r the energy has the further term m ṙ·(ω × s), s from r to the mass centre, which is not
-/// supported: give the mass centre.
+/// Its kinetic energy is ½ m |ṙ|² + ½ ω·Iω (König). That is right if r is the **mass centre** and I is taken
+/// about it, and also if r is any point of the body that is **at rest** (as the fixed point of a top) and I
+/// is taken about that point. For any other point r the energy has the further term m ṙ·(ω × s), s from r to
+/// the mass centre, which is not supported: give the mass centre.
 ///
 /// The angular velocity ω has components along axes in which I is constant, in general axes fixed in the body. It
 /// follows from a [rotation](RigidBody::rotating), or is [given](RigidBody::turning).
@@ -67,7 +67,7 @@ impl<'g, E: Into<Expr<'g>>> From<[E; 6]> for Inertia<'g> {
 }
 
 impl<'g> Inertia<'g> {
-    /// The same with each entry replaced.
+    /// The matrix with each entry replaced.
     pub(crate) fn map<'n>(&self, put: impl Fn(Expr<'g>) -> Expr<'n>) -> Inertia<'n> {
         Inertia(self.0.map(put))
     }
@@ -202,8 +202,8 @@ fn angular_velocities<'g>(
     Ok(rates.into_iter().map(angular).collect())
 }
 
-/// Whether RᵀR is a multiple of the unit matrix and R no reflection. Where n > k that may be so on the surface of the
-/// motion only, which is not known here.
+/// Whether RᵀR is a multiple of the unit matrix and R no reflection. Where n > k this may hold only on the
+/// surface of the motion, which is unknown here.
 fn check_rotation<'g>(rotation: &Matrix<Expr<'g>>, moving: &Moving<'_, 'g>) -> Result<(), MechError> {
     if moving.frame.coordinates().len() > moving.frame.operators() {
         return Ok(());

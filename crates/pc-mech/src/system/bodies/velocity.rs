@@ -2,7 +2,7 @@
 
 use pc_expr::Expr;
 
-/// How a body moves: ṙ of its point and ω, affine functions of η.
+/// The velocities of a body: ṙ of its point and ω, affine functions of η.
 #[derive(Clone, Debug)]
 pub struct BodyVelocity<'g> {
     pub(crate) name: String,
@@ -27,7 +27,7 @@ impl<'g> BodyVelocity<'g> {
     }
 }
 
-/// The bodies of a system, and what its Lagrangian has beside them.
+/// The bodies of a system, and the other terms of its Lagrangian.
 #[derive(Clone, Debug)]
 pub(crate) struct Bodies<'g> {
     pub(crate) list: Vec<BodyVelocity<'g>>,

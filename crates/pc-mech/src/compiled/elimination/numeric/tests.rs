@@ -1,4 +1,4 @@
-//! Factorised in numbers against written out.
+//! Factorisation in numbers against M⁻¹ written out.
 
 use pc_expr::{Graph, VectorField};
 
@@ -42,8 +42,7 @@ fn state(dim: usize) -> Vec<f64> {
     (0..dim).map(|i| (0.7 * i as f64).cos()).collect()
 }
 
-/// Relative to the largest entry: rounding of two factorisations of a matrix whose condition is some
-/// hundreds.
+/// Relative to the largest entry: rounding of two factorisations of a matrix of condition some hundreds.
 fn assert_close(found: &[f64], expected: &[f64]) {
     let size = expected.iter().fold(0.0f64, |size, v| size.max(v.abs()));
     for (i, (a, b)) in found.iter().zip(expected).enumerate() {
@@ -120,9 +119,9 @@ fn sixteen_full_rows_and_long_chains_are_written_out() {
     motion.rhs(0.0, &state(80), &mut [0.0; 80]).unwrap();
 }
 
-/// Two systems that do not know each other: the pattern has two blocks, the velocities their places.
+/// Two uncoupled systems: the pattern has two blocks, and velocities where they belong.
 #[test]
-fn uncoupled_bodies_stay_apart_in_the_pattern() {
+fn uncoupled_bodies_have_separate_blocks() {
     let graph = Graph::new();
     let equations = System::builder(&graph)
         .coordinates(["a", "b", "c", "d"])
@@ -143,7 +142,7 @@ fn uncoupled_bodies_stay_apart_in_the_pattern() {
     compare(&equations);
 }
 
-/// L = ẋẏ has no pivot on its diagonal: however long, it is not factorised in numbers.
+/// L = ẋẏ has no pivot on its diagonal: it is not factorised in numbers, however long.
 #[test]
 fn without_pivots_the_inverse_is_written_out() {
     let graph = Graph::new();
@@ -161,7 +160,8 @@ fn without_pivots_the_inverse_is_written_out() {
     assert_eq!(ydot, [2.0, 3.0, -0.5, -0.25]);
 }
 
-/// M = ((sin x, 1), (1, sin x)) of both signs is regular where its pivot sin x vanishes: there ẍ = −ẋẏ, ÿ = (ẏ² − ẋ²)/2.
+/// M = ((sin x, 1), (1, sin x)) is indefinite, and regular where its pivot sin x vanishes: there ẍ = −ẋẏ, ÿ =
+/// (ẏ² − ẋ²)/2.
 #[test]
 fn a_metric_of_both_signs_is_regular_where_a_pivot_vanishes() {
     let graph = Graph::new();
