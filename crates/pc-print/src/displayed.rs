@@ -13,7 +13,7 @@ use crate::mathml;
 use crate::page::{Page, page, sheet_of};
 use crate::part::{Heading, Part, Parts, Row};
 use crate::sheet::{Balance, Brackets, Sheet};
-use crate::text::no_brackets;
+use crate::text::{LEFT_OUT, no_brackets};
 use crate::theory;
 use crate::theory::description::{Section, Side};
 use crate::theory::options::TheoryOptions;
@@ -122,8 +122,7 @@ pub fn displayed_system(assembly: &Assembly<'_>, layout: &Layout) -> Result<Vec<
         rows.push(Row::Function { letter: "L", value: one(lagrangian) });
         parts.push(Part { heading: Heading::Lagrangian, rows });
         let forces = system.quasi_velocities().iter().zip(system.forces()).filter(|(_, q)| !q.is_zero());
-        let forces =
-            forces.map(|(eta, &q)| Row::Equation { left: paper.symbol(&format!("Q_{eta}")), right: one(q) });
+        let forces = forces.map(|(eta, &q)| Row::Force { quasi_velocity: eta.to_string(), value: one(q) });
         parts.push(Part { heading: Heading::Forces, rows: forces.collect() });
     }
     let given: Vec<Given<'_>> = assembly
@@ -144,7 +143,7 @@ pub fn displayed_system(assembly: &Assembly<'_>, layout: &Layout) -> Result<Vec<
         })
         .collect();
     if brackets.nonzero.is_empty() {
-        let notes = vec![no_brackets(brackets.commute).to_owned()];
+        let notes = vec![no_brackets(&brackets).to_owned()];
         displayed.insert(1, DisplayedPart { title: Heading::Brackets.text(), display: None, notes });
     }
     assembly.within_limits()?;
@@ -241,8 +240,11 @@ fn notes(sheet: &Sheet<'_>, part: &Part<'_>) -> Vec<String> {
                 _ => None,
             })
             .collect(),
-        Heading::Brackets if part.rows.is_empty() => vec![no_brackets(sheet.brackets.commute).to_owned()],
-        Heading::Brackets => algebra(&sheet.brackets),
+        Heading::Brackets if part.rows.is_empty() => vec![no_brackets(&sheet.brackets).to_owned()],
+        Heading::Brackets => {
+            let left_out = sheet.brackets.left_out.then(|| LEFT_OUT.to_owned());
+            algebra(&sheet.brackets).into_iter().chain(left_out).collect()
+        }
         heading => latex::remark(sheet, heading).map(str::to_owned).into_iter().collect(),
     }
 }

@@ -5,24 +5,26 @@ use std::fmt::Write as _;
 use pc_expr::{Names, Style, Written};
 use pc_mech::{Expr, Graph};
 
+use crate::constraints::kind_in_words;
 use crate::layout::Layout;
 use crate::lines::columns;
 use crate::part::{Heading, Part, Parts, Row};
 use crate::sheet::{Bracket, Sheet};
+use crate::theory::description::in_text;
 
-/// A display for each part of the equations, with a comment above it.
+/// A paragraph with a display for each part of the equations.
 pub(crate) fn page(heading: &str, sheet: &Sheet<'_>, layout: &Layout, page: &Graph) -> String {
     let parts = Parts::new(sheet, layout, page, false);
     let mut text = format!("% {heading} (needs amsmath)\n");
+    // Long displays go on over the next page.
+    text += "\\begingroup\n\\allowdisplaybreaks\n";
     for (part, display) in displays(&sheet.brackets.operators, layout, &parts) {
         let Some(display) = display else { continue };
-        let remark = remark(sheet, part.heading);
-        let title = part.heading.text();
-        let title = remark.map_or_else(|| title.to_owned(), |remark| format!("{title}. {remark}"));
+        let remark = remark(sheet, part.heading).map_or_else(String::new, |remark| format!(" {remark}"));
         // Writing to a string cannot fail.
-        let _ = write!(text, "\n% {title}\n{display}\n");
+        let _ = write!(text, "\n\\paragraph{{{}.}}{remark}\n{display}\n", part.heading.text());
     }
-    text
+    text + "\\endgroup\n"
 }
 
 /// The remark on a part.
@@ -111,7 +113,10 @@ impl<'p> Latex<'_, 'p> {
 
     fn rows(&self, part: &Part<'p>) -> Vec<String> {
         let rows = part.rows.iter().filter_map(|row| match row {
-            Row::Constraint { left, .. } => Some(self.vanishing(self.terms(*left))),
+            Row::Constraint { name, left, kind } => {
+                let note = format!("\\quad \\text{{({}, {})}}", in_text(name), kind_in_words(*kind));
+                Some(self.vanishing(self.terms(*left)) + &note)
+            }
             Row::Equation { left, right } => Some(self.equation(self.terms(*left), self.terms(*right))),
             Row::Function { letter, value } => {
                 Some(self.equation(vec![((*letter).to_owned(), 1)], self.terms(*value)))
@@ -127,6 +132,10 @@ impl<'p> Latex<'_, 'p> {
                     .iter()
                     .map(|&(x, c)| (c, format!("\\frac{{\\partial}}{{\\partial {}}}", self.set.text(x))));
                 Some(self.equation(vec![(left, 3)], self.combination(components)))
+            }
+            Row::Force { quasi_velocity, value } => {
+                let left = format!("Q_{{{}}}", self.set.name(quasi_velocity));
+                Some(self.equation(vec![(left, 3)], self.terms(*value)))
             }
             Row::Entry { .. } => None,
         });
@@ -185,6 +194,11 @@ impl<'p> Latex<'_, 'p> {
             let right = joined(self.flowed(right, width + 3), "&\\quad");
             let left = left.into_iter().map(|(term, _)| term).collect::<Vec<_>>().join(" ");
             return format!("  {} &= {right}", whole(left));
+        }
+        let whole_width = width + right.iter().map(|(_, width)| width + 1).sum::<usize>() + 2;
+        if whole_width <= self.layout.width {
+            let side = |terms: Terms| terms.into_iter().map(|(term, _)| term).collect::<Vec<_>>().join(" ");
+            return format!("  & {} = {}", whole(side(left)), whole(side(right)));
         }
         let left = joined(self.flowed(left, 0), "&\\quad");
         let right = joined(self.flowed(right, HANGING), "&\\qquad");

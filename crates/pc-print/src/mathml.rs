@@ -203,6 +203,10 @@ impl<'p> Set<'_, 'p> {
                 let components = components.iter().map(|&(x, c)| (c, partial(&self.set.text(x))));
                 self.equation(vec![(left, 3)], self.combination(components))
             }
+            Row::Force { quasi_velocity, value } => {
+                let left = format!("<msub><mi>Q</mi>{}</msub>", self.set.name(quasi_velocity));
+                self.equation(vec![(left, 3)], self.terms(*value))
+            }
             Row::Entry { .. } => Vec::new(),
         });
         rows.flatten().collect()

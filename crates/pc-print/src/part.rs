@@ -65,6 +65,8 @@ pub(crate) enum Row<'p> {
     Bracket(Bracket<'p>),
     /// X_s = Σ b_is ∂/∂x_i, by the name of η_s; X_0 without one.
     Operator { quasi_velocity: Option<String>, components: Vec<(Expr<'p>, Expr<'p>)> },
+    /// Q_s = value, by the name of η_s.
+    Force { quasi_velocity: String, value: Expr<'p> },
     /// An entry M_rs.
     Entry { place: [usize; 2], value: Expr<'p> },
     /// A function with its letter.
@@ -79,7 +81,9 @@ impl<'p> Row<'p> {
             Row::Equation { left, right } => vec![Side::Sum(*left), Side::Sum(*right)],
             Row::Bracket(bracket) => bracket.components.iter().map(|&(_, c)| Side::Factor(c)).collect(),
             Row::Operator { components, .. } => components.iter().map(|&(_, c)| Side::Factor(c)).collect(),
-            Row::Entry { value, .. } | Row::Function { value, .. } => vec![Side::Sum(*value)],
+            Row::Force { value, .. } | Row::Entry { value, .. } | Row::Function { value, .. } => {
+                vec![Side::Sum(*value)]
+            }
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
 use pc_expr::{Function, Given, Graph};
-use pc_mech::{Canonical, Equations, Expr, Matrix, System};
+use pc_mech::{Canonical, Constraint, Equations, Expr, Matrix, System};
 use pc_model::Assembly;
 use pc_nonholo::Kind;
 
@@ -88,6 +88,8 @@ pub struct Brackets<'p> {
     pub nonzero: Vec<Bracket<'p>>,
     /// Whether the free operators commute.
     pub commute: bool,
+    /// Whether components along nonholonomic constraints are missing.
+    pub left_out: bool,
     /// The name of their algebra, if it is a known one.
     pub algebra: Option<&'static str>,
 }
@@ -109,8 +111,10 @@ impl<'p> Sheet<'p> {
         let writing = Writing::new(system, system.quasi_velocities(), page);
         let right = writing.all(equations.right_hand_side());
         let written = writing.multiplied_out(&right, equations.written(page));
+        let mass = writing.matrix(equations.mass_matrix());
+        let energy = writing.energy(equations, &mass);
         let balance = Balance::Velocities {
-            mass: writing.matrix(equations.mass_matrix()),
+            mass,
             accelerations: system.quasi_velocities().iter().map(|eta| writing.rate(eta)).collect(),
             written,
             right,
@@ -120,7 +124,7 @@ impl<'p> Sheet<'p> {
             vanishing: &derived.vanishing,
             velocities: equations.velocities(),
             states: &rates,
-            energy: equations.energy(),
+            energy,
         };
         writing.sheet(assembly, derived, &parts, balance)
     }
@@ -149,7 +153,7 @@ impl<'p> Sheet<'p> {
             vanishing: &[],
             velocities: equations.velocities(),
             states: equations.state_rates(),
-            energy: equations.hamiltonian(),
+            energy: writing.one(equations.hamiltonian()),
         };
         let derived = Derived { reactions: Vec::new(), ..derived.clone() };
         writing.sheet(assembly, &derived, &parts, balance)
@@ -157,11 +161,11 @@ impl<'p> Sheet<'p> {
 }
 
 /// Parts of the equations that have different names in different forms.
-struct Parts<'a, 'g> {
+struct Parts<'a, 'g, 'p> {
     vanishing: &'a [Expr<'g>],
     velocities: &'a [Expr<'g>],
     states: &'a [Expr<'g>],
-    energy: Expr<'g>,
+    energy: Expr<'p>,
 }
 
 /// The expressions of a system rebuilt in the graph of a page.
@@ -203,6 +207,33 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         if self.page.size(&products) > longest { right.to_vec() } else { products }
     }
 
+    /// The energy; as ½ M_rs η_r η_s and what is left at rest, if that is shorter beside the printed `mass` matrix.
+    fn energy(&self, equations: &Equations<'g>, mass: &Matrix<Expr<'p>>) -> Expr<'p> {
+        let (graph, eta) = (self.system.graph(), self.system.quasi_velocities());
+        let energy = equations.energy();
+        let whole = self.one(energy);
+        let at_rest: Vec<(Expr<'g>, Expr<'g>)> = eta.iter().map(|&eta| (eta, Expr::ZERO)).collect();
+        let rest = graph.substitute(&[energy], &at_rest)[0];
+        let squares = |matrix: &Matrix<Expr<'g>>| {
+            let row = |r: usize| matrix.nonzero(r).map(move |(s, entry)| 0.5 * entry * eta[r] * eta[s]);
+            graph.sum((0..matrix.rows()).flat_map(row))
+        };
+        if rest.is_undefined() || !(squares(equations.mass_matrix()) + rest - energy).is_zero() {
+            return whole;
+        }
+        let moving = self.all(eta);
+        let below = |r: usize| mass.nonzero(r).filter(move |&(s, _)| s <= r);
+        let term = |r: usize, s: usize, entry: Expr<'p>| match r == s {
+            true => 0.5 * entry * moving[r].square(),
+            false => entry * moving[r] * moving[s],
+        };
+        let moving = (0..mass.rows()).flat_map(|r| below(r).map(move |(s, entry)| term(r, s, entry)));
+        let divided = self.page.sum(moving.chain([self.one(rest)]));
+        let printed = mass.nonzero_entries();
+        let beside = |energy: Expr<'p>| self.page.size(&[&printed[..], &[energy]].concat());
+        if beside(divided) < beside(whole) { divided } else { whole }
+    }
+
     /// Each ẋ_i with its value, sines and cosines merged where that is shorter: the rates of links by the law of sines.
     fn rates(&self, values: &[Expr<'g>]) -> Vec<(Expr<'p>, Expr<'p>)> {
         let (graph, x) = (self.system.graph(), self.system.frame().coordinates());
@@ -218,6 +249,15 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         self.system.frame().coordinates().iter().map(|x| self.rate(x)).zip(shorter).collect()
     }
 
+    /// The brackets, with the components along the `vanishing` quasi-velocities as far as the form has them.
+    fn brackets(&self, derived: &Derived<'g>, vanishing: &[Expr<'g>]) -> Brackets<'p> {
+        let system = self.system;
+        let is_within = system.structure().operators() == system.quasi_velocities().len();
+        let is_nonholonomic = |(_, kind): &(Constraint<'g>, Kind)| matches!(kind, Kind::Nonholonomic { .. });
+        let left_out = (is_within || vanishing.is_empty()) && derived.constraints.iter().any(is_nonholonomic);
+        Brackets { left_out, ..Brackets::of(system, vanishing, self.page) }
+    }
+
     /// The symbol of a rate.
     fn rate(&self, x: &Expr<'g>) -> Expr<'p> {
         self.page.symbol(&format!("{x}'"))
@@ -227,7 +267,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         &self,
         assembly: &Assembly<'g>,
         derived: &Derived<'g>,
-        parts: &Parts<'_, 'g>,
+        parts: &Parts<'_, 'g, 'p>,
         balance: Balance<'p>,
     ) -> Sheet<'p> {
         let system = self.system;
@@ -260,10 +300,10 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
             constraints,
             frame: (self.matrix(frame.b()), self.all(frame.b0())),
             rates: self.rates(parts.velocities),
-            brackets: Brackets::of(system, parts.vanishing, self.page),
+            brackets: self.brackets(derived, parts.vanishing),
             balance,
             states: with_rates(&states, parts.states),
-            energy: self.one(parts.energy),
+            energy: parts.energy,
             energy_remark: derived.energy_remark,
             reactions: reactions.collect(),
             definitions,
@@ -287,6 +327,7 @@ impl<'p> Brackets<'p> {
             operators,
             nonzero: pairs.collect(),
             commute: nonzero.is_empty() && system.frame().restricted(free.len()).commutes(),
+            left_out: false,
             algebra: recognised(structure).filter(|_| vanishing.is_empty()),
         }
     }

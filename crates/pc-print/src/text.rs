@@ -8,7 +8,7 @@ use crate::layout::Layout;
 use crate::lines::{columns, combined};
 use crate::operations::Operations;
 use crate::part::{Heading, Part, Parts, Row, entry_name};
-use crate::sheet::{Balance, Bracket, Sheet};
+use crate::sheet::{Balance, Bracket, Brackets, Sheet};
 
 /// Matrices of more columns are written entry by entry.
 const WIDEST_MATRIX: usize = 96;
@@ -108,7 +108,11 @@ impl<'p> Text<'_, 'p> {
                 let remark = self.sheet.energy_remark.map(|remark| format!("({remark})"));
                 self.layout.flowed("", &self.written.terms(*value)).into_iter().chain(remark).collect()
             }
-            Row::Equation { .. } | Row::Bracket(_) | Row::Operator { .. } | Row::Entry { .. } => Vec::new(),
+            Row::Equation { .. }
+            | Row::Bracket(_)
+            | Row::Operator { .. }
+            | Row::Force { .. }
+            | Row::Entry { .. } => Vec::new(),
         }
     }
 
@@ -134,7 +138,9 @@ impl<'p> Text<'_, 'p> {
             lines.push(format!("the algebra {known}"));
         }
         if lines.is_empty() {
-            lines.push(no_brackets(self.sheet.brackets.commute).to_owned());
+            lines.push(no_brackets(&self.sheet.brackets).to_owned());
+        } else if self.sheet.brackets.left_out {
+            lines.push(format!("({LEFT_OUT})"));
         }
         lines
     }
@@ -180,13 +186,16 @@ impl<'p> Text<'_, 'p> {
 }
 
 /// The line printed if all brackets within the frame are zero.
-pub(crate) fn no_brackets(commute: bool) -> &'static str {
-    if commute {
+pub(crate) fn no_brackets(brackets: &Brackets<'_>) -> &'static str {
+    if brackets.commute {
         "all operators commute"
     } else {
-        "none within the frame, which is not closed: the constraints are not integrable"
+        "only along the constraints, which are not integrable: these components are left out"
     }
 }
+
+/// The remark on brackets of which only the components within the frame are printed.
+pub(crate) const LEFT_OUT: &str = "components along the constraints are left out";
 
 /// A matrix by rows, the columns under each other, if it is not too wide.
 fn matrix(cells: &[Vec<String>]) -> Option<Vec<String>> {

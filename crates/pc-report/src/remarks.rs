@@ -5,7 +5,7 @@ use pc_model::Assembly;
 /// The constraints that were dropped, each with the reason.
 pub fn dropped(assembly: &Assembly<'_>) -> Vec<(String, String)> {
     let reason = |names: &[String]| match names {
-        [] => "says nothing".to_owned(),
+        [] => "holds whatever the motion".to_owned(),
         names => format!("follows from {}", names.join(", ")),
     };
     let redundant = assembly.constraints.redundant().iter();

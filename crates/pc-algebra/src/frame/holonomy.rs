@@ -56,6 +56,13 @@ impl<'g> Frame<'g> {
 
     /// π_m with dπ_m = ω^m, if it is found.
     fn quasi_coordinate(&self, m: usize) -> Option<Expr<'g>> {
+        let is_rate = |i: &usize| {
+            let mut row = self.b().nonzero(*i);
+            self.b0()[*i].is_zero() && row.next() == Some((m - 1, Expr::ONE)) && row.next().is_none()
+        };
+        if let Some(i) = (0..self.coordinates().len()).find(is_rate) {
+            return Some(self.coordinates()[i]);
+        }
         if self.coordinates().len() != self.operators() {
             return None;
         }

@@ -60,6 +60,9 @@ pub enum ConservationVerdict<'g> {
         rate: Expr<'g>,
         /// Its value at the start, if it has one.
         at_start: Option<f64>,
+        /// The part of its terms that is left in their sum at the start, from 0 to 1: no more than rounding where the function is
+        /// an integral.
+        part_left: Option<f64>,
     },
 }
 
@@ -91,6 +94,18 @@ impl<'g> Integrals<'g> {
                 integral.name = name;
             }
         }
+    }
+
+    /// Drops integrals that were found by an ansatz and are functions of others that are `known` to be constant, such as the
+    /// constraints on positions.
+    pub fn drop_functions_of(&mut self, system: &System<'g>, known: &[Expr<'g>]) {
+        let (graph, state) = (system.graph(), system.state());
+        let known: Vec<Vec<Expr<'g>>> = known.iter().map(|&f| graph.gradient(f, &state)).collect();
+        let rank = graph.generic_rank(&known);
+        self.list.retain(|integral| {
+            let rows = || [known.as_slice(), &[graph.gradient(integral.value, &state)]].concat();
+            integral.origin != Origin::Found || graph.generic_rank(&rows()) > rank
+        });
     }
 
     /// Marks the energy as proved to be conserved, by a theorem where its rate along the equations is not

@@ -108,15 +108,16 @@ impl<'a, 'g> Search<'a, 'g> {
             Ok(Conservation::Conserved) => ConservationVerdict::Conserved,
             Ok(Conservation::ConservedHere) => ConservationVerdict::ConservedHere,
             Ok(Conservation::ConservedBetweenJumps) => ConservationVerdict::BetweenJumps,
-            Ok(Conservation::Changing(rate)) => self.changing(rate),
+            Ok(Conservation::Changing(rate)) => self.changing(function, rate),
             Err(_) => ConservationVerdict::NoFunction,
         }
     }
 
-    fn changing(&self, rate: Expr<'g>) -> ConservationVerdict<'g> {
+    fn changing(&self, function: Expr<'g>, rate: Expr<'g>) -> ConservationVerdict<'g> {
         let value = self.graph.evaluate(&[rate], &self.near.centre).ok();
         let at_start = value.map(|values| values[0]).filter(|value| value.is_finite());
-        ConservationVerdict::Rate { rate, at_start }
+        let part_left = self.rates.part_left(function, &self.near.centre).ok().flatten();
+        ConservationVerdict::Rate { rate, at_start, part_left }
     }
 
     pub(super) fn bind(&self, function: Expr<'g>) -> Expr<'g> {
@@ -140,8 +141,8 @@ impl<'a, 'g> Search<'a, 'g> {
     fn energy(&self) -> Integral<'g> {
         let value = self.equations.energy();
         let verdict = match self.verdict(value) {
-            ConservationVerdict::Rate { .. } if self.unconstrained => {
-                let rate = self.system().energy_rate();
+            ConservationVerdict::Rate { rate, .. } => {
+                let rate = self.power(rate).unwrap_or(rate);
                 let vanishes_here = self.bind(rate).is_zero();
                 if vanishes_here && self.rates.has_jumps(value) {
                     ConservationVerdict::BetweenJumps
@@ -150,7 +151,7 @@ impl<'a, 'g> Search<'a, 'g> {
                 } else if vanishes_here {
                     ConservationVerdict::ConservedHere
                 } else {
-                    self.changing(rate)
+                    self.changing(value, rate)
                 }
             }
             verdict => verdict,
@@ -163,6 +164,18 @@ impl<'a, 'g> Search<'a, 'g> {
             jumps: false,
             dependent: false,
         }
+    }
+
+    /// The rate of the energy without accelerations: the power of the forces and what depends on time. Under constraints that
+    /// are homogeneous in the velocities, c_0r^m = 0, reactions have no power; that it is the `rate` along the equations is then
+    /// looked at.
+    fn power(&self, rate: Expr<'g>) -> Option<Expr<'g>> {
+        if self.unconstrained {
+            return Some(self.system().energy_rate());
+        }
+        let is_homogeneous = self.system().structure().nonzero().all(|(r, ..)| r > 0);
+        let power = is_homogeneous.then(|| self.system().energy_rate())?;
+        self.near.vanishes(self.graph, rate - power).then_some(power)
     }
 
     /// The momenta of cyclic displacements that are not declared, for the values of the parameters.

@@ -283,8 +283,9 @@ fn positive<'g>(system: &System<'g>, density: Expr<'g>, at: &[(Expr<'g>, f64)]) 
     let fixed = |factor: Expr<'g>| !variables.iter().any(|&z| factor.depends_on(z));
     let without = |density: Expr<'g>, parameter: Expr<'g>| {
         let short = graph.substitute(&[density], &[(parameter, Expr::ONE)])[0];
-        let is_factor = !short.is_undefined() && !short.is_zero() && fixed(density / short);
-        if is_factor { short } else { density }
+        // The quotient depends on other parameters where this one is part of a sum.
+        let is_factor = || graph.are_made_of(&[density / short], &[parameter])[0];
+        if !short.is_undefined() && !short.is_zero() && is_factor() { short } else { density }
     };
     let density = system.parameters().iter().fold(density, |density, &(p, _)| without(density, p));
     let density = if fixed(density) { Expr::ONE } else { density };

@@ -182,12 +182,28 @@ pub(super) fn juxtaposed(factors: &[String]) -> String {
     text
 }
 
+/// Whether each bracket in a text closes one that was opened in it.
+fn is_balanced(text: &str) -> bool {
+    let mut depth = 0;
+    for c in text.chars() {
+        match c {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            _ => {}
+        }
+        if depth < 0 {
+            return false;
+        }
+    }
+    depth == 0
+}
+
 /// Factors above or below a fraction bar, where a single sum needs no brackets.
 pub(super) fn alone(mut factors: Vec<Piece>) -> String {
     if factors.len() == 1 {
         let text = factors.remove(0).text;
         let bracketed = text.strip_prefix('(').and_then(|inner| inner.strip_suffix(')'));
-        return bracketed.filter(|inner| !inner.contains(['(', ')'])).map_or(text.clone(), str::to_owned);
+        return bracketed.filter(|inner| is_balanced(inner)).map_or(text.clone(), str::to_owned);
     }
     juxtaposed(&factors.into_iter().map(|p| p.at_least(Binding::Product)).collect::<Vec<String>>())
 }

@@ -46,10 +46,15 @@ pub(crate) enum Verdict {
     Proved,
     /// For the present values of the parameters.
     ProvedHere,
-    /// The numbers leave this part of the terms, or differ by this much.
+    /// In numbers this part of the terms of an identity is left.
     Disproved {
-        /// The distance from holding.
+        /// From 0 to 1.
         margin: f64,
+    },
+    /// Of the stability of a motion from which others depart.
+    Unstable {
+        /// The largest real part of an eigenvalue.
+        growth: f64,
     },
     /// Neither.
     Open,
@@ -82,7 +87,7 @@ impl Verdict {
     pub(crate) fn word(self) -> &'static str {
         match self {
             Verdict::Proved | Verdict::ProvedHere => "proved",
-            Verdict::Disproved { .. } => "disproved",
+            Verdict::Disproved { .. } | Verdict::Unstable { .. } => "disproved",
             Verdict::Open => "open",
         }
     }
@@ -91,8 +96,10 @@ impl Verdict {
     pub(crate) fn in_words(self) -> String {
         match self {
             Verdict::ProvedHere => "proved for these parameters".to_owned(),
-            Verdict::Disproved { margin } => format!("disproved, by {}", short(margin, 3)),
-            Verdict::Proved | Verdict::Open => self.word().to_owned(),
+            Verdict::Disproved { margin } => {
+                format!("disproved: {} % of its terms are left", short(100.0 * margin, 3))
+            }
+            Verdict::Unstable { .. } | Verdict::Proved | Verdict::Open => self.word().to_owned(),
         }
     }
 }

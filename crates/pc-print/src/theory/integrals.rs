@@ -1,9 +1,9 @@
 //! The integrals of the motion, and the fields of displacements to which they belong.
 
 use pc_analysis::{
-    AnsatzSearch, ConservationVerdict, Integral, Integrals, NoetherField, Origin, PolynomialAnsatz, Rates,
+    AnsatzSearch, ConservationVerdict, Integral, Integrals, NoetherField, Origin, PolynomialAnsatz,
 };
-use pc_mech::{Equations, Expr, Identity, Neighbourhood, Number, Style, System};
+use pc_mech::{Constraint, Equations, Expr, Identity, Multipliers, Neighbourhood, Number, Style, System};
 use pc_model::{Assembly, ConstraintFormulation, Model, ModelError};
 
 use crate::derived::energy_remark;
@@ -34,8 +34,19 @@ pub fn integrals_of<'g>(
     {
         integrals.add_energy_of_all(equations, near, energy);
     }
+    drop_constraints(&mut integrals, assembly, equations);
     say_what_jumps(&mut integrals, assembly);
     integrals
+}
+
+/// Drops functions of the constraints on positions, which the ansatz finds again.
+fn drop_constraints<'g>(integrals: &mut Integrals<'g>, assembly: &Assembly<'g>, equations: &Equations<'g>) {
+    let constraints = assembly.constraints.multipliers().map(Multipliers::constraints).unwrap_or_default();
+    let positions = constraints.iter().filter(|constraint| constraint.is_holonomic(&assembly.system));
+    let positions: Vec<Expr<'g>> = positions.map(Constraint::expression).collect();
+    if !positions.is_empty() {
+        integrals.drop_functions_of(equations.system(), &positions);
+    }
 }
 
 /// Names momenta by their displacements.
@@ -78,6 +89,7 @@ pub(crate) fn found<'g>(
     let mut integrals = integrals_of(assembly, &ground.equations, &ground.near, false);
     let ansatz = PolynomialAnsatz { degree: options.degree, functions: functions? };
     let made = ground.placed(integrals.add_polynomials(&ground.equations, &ground.near, &ansatz))?;
+    drop_constraints(&mut integrals, assembly, &ground.equations);
     say_what_jumps(&mut integrals, assembly);
     Ok((integrals, made))
 }
@@ -88,9 +100,8 @@ pub(crate) fn section<'g>(
     (integrals, made): &(Integrals<'g>, AnsatzSearch),
     options: &TheoryOptions,
 ) -> Section<'g> {
-    let rates = Rates::poincare(&ground.equations);
     let entry = |integral: &Integral<'g>| {
-        let (verdict, words) = verdict(ground, &rates, integral);
+        let (verdict, words) = verdict(ground, integral);
         let of_rate = match integral.verdict {
             ConservationVerdict::Rate { rate, .. } => {
                 let rate = ground.free.graph().shorten(&[rate], ground.free.quasi_velocities())[0];
@@ -110,7 +121,7 @@ pub(crate) fn section<'g>(
 }
 
 /// The verdict on an integral: if its rate is not proved to vanish, numbers at the start may refute it.
-fn verdict(ground: &Ground<'_, '_>, rates: &Rates<'_>, integral: &Integral<'_>) -> (Verdict, Option<String>) {
+fn verdict(ground: &Ground<'_, '_>, integral: &Integral<'_>) -> (Verdict, Option<String>) {
     let between = integral.jumps.then(|| "between events".to_owned());
     match integral.verdict {
         ConservationVerdict::Conserved => (Verdict::Proved, between),
@@ -119,9 +130,8 @@ fn verdict(ground: &Ground<'_, '_>, rates: &Rates<'_>, integral: &Integral<'_>) 
         ConservationVerdict::NoFunction => {
             (Verdict::Open, Some("it is not a function of time and state alone".to_owned()))
         }
-        ConservationVerdict::Rate { at_start, rate } => {
-            let left = rates.part_left(integral.value, &ground.near.centre).ok().flatten();
-            let verdict = left.map_or(Verdict::Open, |left| Verdict::of(Identity::of(left)));
+        ConservationVerdict::Rate { at_start, rate, part_left } => {
+            let verdict = part_left.map_or(Verdict::Open, |left| Verdict::of(Identity::of(left)));
             let at_start = at_start.map(|rate| format!("its rate at the start is {}", short(rate, 4)));
             let frame = ground.free.frame();
             // Points other than the start are used only if all states are possible.

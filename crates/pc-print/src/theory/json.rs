@@ -46,7 +46,7 @@ fn entry(entry: &Entry<'_>) -> Value {
             Verdict::ProvedHere => {
                 insert("for_these_parameters", json!(true));
             }
-            Verdict::Disproved { margin } => {
+            Verdict::Disproved { margin } | Verdict::Unstable { growth: margin } => {
                 insert("margin", json!(margin));
             }
             Verdict::Proved | Verdict::Open => {}

@@ -80,7 +80,7 @@ fn entry<'g>(number: usize, found: &FoundSteadyMotion) -> Entry<'g> {
         Stability::ByFirstApproximation(Of::Stable | Of::AsymptoticallyStable) => Verdict::Proved,
         Stability::ByFirstApproximation(Of::Unstable) => {
             let growth = motion.eigenvalues.iter().map(|value| value.real).fold(0.0, f64::max);
-            Verdict::Disproved { margin: growth }
+            Verdict::Unstable { growth }
         }
         Stability::ByFirstApproximation(Of::Undecided) | Stability::Undecided { .. } => Verdict::Open,
     };

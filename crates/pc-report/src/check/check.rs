@@ -287,7 +287,9 @@ fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
     let binding = assembly.constraints.classified().iter().map(|verdict| {
         let words = kind_in_words(verdict.kind);
         let words = match verdict.kind {
-            Kind::Nonholonomic { residual } => format!("{words}, by {} in a bracket", short(residual, 3)),
+            Kind::Nonholonomic { residual } => {
+                format!("{words}: {} of the terms of a bracket are left", short(residual, 3))
+            }
             Kind::Position | Kind::Integrable | Kind::Nonlinear => words.to_owned(),
         };
         (verdict.constraint.clone(), words)

@@ -33,7 +33,7 @@ pub(super) fn holonomic(frame: &FrameFacts<'_>, width: usize) -> Vec<String> {
     }
     let holonomic = frame.holonomy.iter().filter_map(|(name, rate)| match rate {
         QuasiVelocityKind::RateOf(Some(pi)) => Some(format!("{name} = d({})/dt", pi.display(Style::Book))),
-        QuasiVelocityKind::RateOf(None) => Some(format!("{name} = dπ/dt")),
+        QuasiVelocityKind::RateOf(None) => Some(format!("{name}, the rate of a function that is not found")),
         QuasiVelocityKind::RateOfNothing(_) => None,
     });
     let lines = wrapped(holonomic, width);

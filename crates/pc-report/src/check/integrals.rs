@@ -1,7 +1,7 @@
 //! The conserved quantities, in words.
 
 use pc_analysis::{ConservationVerdict, Integral, Origin};
-use pc_mech::Style;
+use pc_mech::{Identity, Style};
 use pc_print::{columns, short};
 use serde_json::{Value, json};
 
@@ -31,12 +31,13 @@ fn words(verdict: ConservationVerdict<'_>, jumps: bool) -> String {
         ConservationVerdict::NoFunction => {
             "not decided: it is not a function of time and state alone".to_owned()
         }
-        // A rate at the level of rounding is zero.
-        ConservationVerdict::Rate { at_start: Some(rate), .. } if rate.abs() < 1e-12 => {
-            "not proved to be conserved, though it does not change at the start".to_owned()
+        ConservationVerdict::Rate { at_start: Some(rate), part_left: Some(left), .. }
+            if matches!(Identity::of(left), Identity::Disproved { .. }) =>
+        {
+            format!("not conserved: changes at the rate {} at the start", short(rate, 4))
         }
-        ConservationVerdict::Rate { at_start: Some(rate), .. } => {
-            format!("not proved to be conserved: changes at the rate {} at the start", short(rate, 4))
+        ConservationVerdict::Rate { at_start: Some(_), .. } => {
+            "not proved to be conserved, though it does not change at the start".to_owned()
         }
         ConservationVerdict::Rate { at_start: None, .. } => "not proved to be conserved".to_owned(),
     }
@@ -45,7 +46,7 @@ fn words(verdict: ConservationVerdict<'_>, jumps: bool) -> String {
 /// The verdict, with the formula of an integral that is not declared, and that of the rate of the energy.
 pub(super) fn lines(integral: &Integral<'_>) -> Vec<String> {
     let words = words(integral.verdict, integral.jumps);
-    if let (Origin::Energy, ConservationVerdict::Rate { rate, at_start }) =
+    if let (Origin::Energy, ConservationVerdict::Rate { rate, at_start, .. }) =
         (&integral.origin, integral.verdict)
     {
         let formula = rate.display(Style::Book);
@@ -79,7 +80,7 @@ pub(super) fn object(integral: &Integral<'_>) -> Value {
         "how": how(&integral.origin),
         "verdict": words(integral.verdict, integral.jumps),
     });
-    if let ConservationVerdict::Rate { rate, at_start } = integral.verdict {
+    if let ConservationVerdict::Rate { rate, at_start, .. } = integral.verdict {
         object["rate"] = json!(rate.to_string());
         object["rate_at_start"] = json!(at_start);
     }
