@@ -39,7 +39,7 @@ fn forms_are_printed_under_their_names() {
         let alike = |text: &str| text.replace("m a² + J", "J + m a²");
         assert!(alike(&text).contains(equation), "{text}");
         let page = said(&[&arguments[..], &["--format", "latex"]].concat());
-        assert!(page.contains("% Equations\n\\begin{align*}"), "{page}");
+        assert!(page.contains("\\paragraph{Equations.}\n\\begin{align*}"), "{page}");
         let object = said(&[&arguments[..], &["--format", "json"]].concat());
         let object: serde_json::Value = serde_json::from_str(&object).expect("JSON");
         if form == "hamel" {

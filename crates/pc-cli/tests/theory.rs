@@ -103,19 +103,15 @@ fn section<'a>(text: &'a str, title: &str) -> &'a str {
 /// Numbers at the start, or beside it where all states are possible, disprove what changes.
 #[test]
 fn a_changing_function_is_disproved_with_a_margin() {
-    for (model, margin) in [("damped-oscillator", "0.0769"), ("rotating-oscillator", "0.739")] {
+    for (model, margin) in [("damped-oscillator", 0.0769), ("rotating-oscillator", 0.739)] {
         let text = said(&[model]);
         let integrals = section(&text, "Integrals");
-        assert!(
-            integrals.contains(&format!("(disproved, by {margin})\n      d/dt energy = ")),
-            "{integrals}"
-        );
+        assert!(integrals.contains("(disproved)\n      d/dt energy = "), "{integrals}");
+        let object: Value = serde_json::from_str(&said(&[model, "--format", "json"])).expect("JSON");
+        let mut entries = object["integrals"].as_array().into_iter().flatten();
+        let energy = entries.find(|entry| entry["name"] == "energy").expect("the energy");
+        assert!((energy["margin"].as_f64().expect("a number") - margin).abs() < 1e-3, "{energy}");
     }
-    let object: Value =
-        serde_json::from_str(&said(&["damped-oscillator", "--format", "json"])).expect("JSON");
-    let energy = object["integrals"].as_array().into_iter().flatten().find(|entry| entry["name"] == "energy");
-    let margin = energy.expect("the energy")["margin"].as_f64().expect("a margin");
-    assert!(margin > 1e-6 && margin < 1.0, "{margin}");
 }
 
 /// In the coefficients of what is found stand parameters, no numbers in their place.
@@ -179,7 +175,7 @@ fn a_verdict_on_an_action_is_one_of_three() {
     assert!(section(&proved, "Hamilton–Jacobi").contains("(proved)"), "{proved}");
     let (_, refuted) = said_of(&action("l*φ - E*t + m*r"), &[]);
     let lines = section(&refuted, "Hamilton–Jacobi");
-    assert!(lines.contains("(disproved, by ") && lines.contains("refuted: X_0 S + H is "), "{lines}");
+    assert!(lines.contains("(disproved)") && lines.contains("refuted: X_0 S + H is "), "{lines}");
     assert!(lines.contains("not complete: ∂(X_s S)/∂α has rank 1 of 2"), "{lines}");
     // Nonholonomic systems have no such equation.
     let held = "[coordinates]\nx = 1\ny = 0.5\nz = 0\n[constraints]\nc = \"z' - y*x'\"\n[lagrangian]\nkinetic = \"(x'^2 + y'^2 + z'^2)/2\"\n\

@@ -288,8 +288,8 @@ fn positive<'g>(system: &System<'g>, density: Expr<'g>, at: &[(Expr<'g>, f64)]) 
         if !short.is_undefined() && !short.is_zero() && is_factor() { short } else { density }
     };
     let density = system.parameters().iter().fold(density, |density, &(p, _)| without(density, p));
-    let density = if fixed(density) { Expr::ONE } else { density };
-    let density = density * density.numerical_factor().recip();
+    let factors = graph.factors(density).into_iter().filter(|&(factor, _)| !fixed(factor));
+    let density = factors.fold(Expr::ONE, |product, (factor, exponent)| product * factor.powi(exponent));
     let momenta: Vec<_> = system.momentum_symbols().into_iter().zip(system.momenta()).collect();
     let of_velocities = graph.substitute(&[density], &momenta);
     let value = graph.evaluate(&of_velocities, at).map_or(1.0, |values| values[0]);

@@ -47,7 +47,7 @@ fn the_energy_is_that_of_all_velocities_in_every_form() {
         }
     }
     let derived = stdout(&pc(SLEIGH, &["derive", "-", "--form", "canonical"]));
-    assert!(derived.contains("none within the frame, which is not closed"), "{derived}");
+    assert!(derived.contains("only along the constraints, which are not integrable"), "{derived}");
 }
 
 /// λ = v ω (m − m² a²/(m a² + J)) of the blade along the motion.

@@ -15,7 +15,7 @@ fn all_forms_are_printed() {
         (
             SLEIGH,
             sleigh_line,
-            "% Constraints\n\\begin{align*}\n  \\dot{y}",
+            "\\paragraph{Constraints.}\n\\begin{align*}\n  \\dot{y}",
             "y'*cos(phi) - x'*sin(phi)",
             [
                 ("poincare", "  omega' (m a² + J) = -m a v omega\n"),
@@ -27,7 +27,7 @@ fn all_forms_are_printed() {
         (
             SPHERE,
             sphere_line,
-            "% Constraints\n\\begin{align*}\n  x^{2}",
+            "\\paragraph{Constraints.}\n\\begin{align*}\n  x^{2}",
             "x^2 - l^2 + y^2 + z^2",
             [
                 ("poincare", "  z' = -(x x' + y y')/z\n"),

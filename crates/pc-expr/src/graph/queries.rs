@@ -68,6 +68,28 @@ impl Graph {
         self.with(|dag| Cone::below(dag, roots).order.len())
     }
 
+    /// The factors of a product with their exponents, without its number; the expression itself if it is no product.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, m] = graph.symbols(["x", "m"]);
+    /// let mut factors = graph.factors(-2.0 * m * (x + m).square());
+    /// factors.sort_by_key(|&(_, exponent)| exponent);
+    /// assert_eq!(factors, [(m, 1), (x + m, 2)]);
+    /// ```
+    pub fn factors<'g>(&'g self, product: Expr<'g>) -> Vec<(Expr<'g>, i32)> {
+        let product = (product * product.numerical_factor().recip()).atom_in(self);
+        let factors = self.with(|dag| match product {
+            Atom::Constant(_) => Vec::new(),
+            Atom::Node(node) => match dag.node(node) {
+                Node::Product { factors } => dag.factors(factors).to_vec(),
+                _ => vec![(node, 1)],
+            },
+        });
+        factors.into_iter().map(|(node, exponent)| (self.expr(Atom::Node(node)), exponent)).collect()
+    }
+
     /// The symbols in `outputs`, in order of creation.
     pub fn symbols_of<'g>(&'g self, outputs: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let atoms: Vec<Atom> = outputs.iter().map(|x| x.atom_in(self)).collect();

@@ -96,10 +96,7 @@ impl Verdict {
     pub(crate) fn in_words(self) -> String {
         match self {
             Verdict::ProvedHere => "proved for these parameters".to_owned(),
-            Verdict::Disproved { margin } => {
-                format!("disproved: {} % of its terms are left", short(100.0 * margin, 3))
-            }
-            Verdict::Unstable { .. } | Verdict::Proved | Verdict::Open => self.word().to_owned(),
+            _ => self.word().to_owned(),
         }
     }
 }

@@ -284,16 +284,9 @@ fn steady_motion<'g>(
 
 /// The constraints, dropped ones last, each with its kind.
 fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
-    let binding = assembly.constraints.classified().iter().map(|verdict| {
-        let words = kind_in_words(verdict.kind);
-        let words = match verdict.kind {
-            Kind::Nonholonomic { residual } => {
-                format!("{words}: {} of the terms of a bracket are left", short(residual, 3))
-            }
-            Kind::Position | Kind::Integrable | Kind::Nonlinear => words.to_owned(),
-        };
-        (verdict.constraint.clone(), words)
-    });
+    let classified = assembly.constraints.classified().iter();
+    let binding =
+        classified.map(|verdict| (verdict.constraint.clone(), kind_in_words(verdict.kind).to_owned()));
     let redundant = dropped(assembly).into_iter().map(|(name, reason)| (name, format!("{reason}; dropped")));
     binding.chain(redundant).collect()
 }

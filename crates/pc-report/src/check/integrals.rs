@@ -51,11 +51,11 @@ pub(super) fn lines(integral: &Integral<'_>) -> Vec<String> {
     {
         let formula = rate.display(Style::Book);
         let at_start = at_start.map_or_else(String::new, |rate| format!(", {} at the start", short(rate, 4)));
-        return vec![if columns(&formula) <= WIDEST {
-            format!("dE/dt = {formula}{at_start}")
-        } else {
-            words
-        }];
+        return match columns(&formula) {
+            width if width > WIDEST => vec![words],
+            width if width + columns(&at_start) <= WIDEST => vec![format!("dE/dt = {formula}{at_start}")],
+            _ => vec![format!("dE/dt = {formula}"), at_start.trim_start_matches(", ").to_owned()],
+        };
     }
     match integral.origin {
         Origin::DeclaredCasimir => vec![format!("{words}, a Casimir")],
