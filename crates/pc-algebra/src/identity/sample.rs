@@ -72,7 +72,7 @@ impl<'g> Neighbourhood<'g> {
     /// let [x, y] = graph.symbols(["x", "y"]);
     /// let near = Neighbourhood::default();
     /// assert_eq!(near.residual(&graph, &[vec![1e-10 * x]]), 1.0);
-    /// // log(xy) = log x + log y is nothing that the graph knows.
+    /// // log(xy) = log x + log y is unknown to the graph.
     /// let zero = [(x * y).log(), -x.log(), -y.log()];
     /// assert!(near.residual(&graph, &[zero.to_vec()]) < 1e-15);
     /// ```

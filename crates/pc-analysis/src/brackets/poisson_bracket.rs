@@ -277,8 +277,8 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.defect(f, g, h))
     }
 
-    /// The functions, and what their brackets, the brackets of these and so on add to them: functionally independent,
-    /// the given ones first as far as they are independent. Brackets of integrals are integrals.
+    /// The functions, their brackets, the brackets of these and so on, as far as they are functionally
+    /// independent, the given ones first. Brackets of integrals are integrals.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).
