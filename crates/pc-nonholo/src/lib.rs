@@ -85,7 +85,7 @@
 //! use pc_mech::{Constraint, Graph, System};
 //! use pc_nonholo::Adapted;
 //!
-//! // A disk of unit mass and radius, its mass in the rim, that rolls upright: ψ its direction, φ its turning.
+//! // A disk of unit mass and radius, its mass in the rim, that rolls upright: ψ its heading, φ its rotation.
 //! let graph = Graph::new();
 //! let disk = System::builder(&graph)
 //!     .coordinates(["x", "y", "ψ", "φ"])

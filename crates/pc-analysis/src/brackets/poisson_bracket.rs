@@ -100,7 +100,7 @@ impl<'g> PoissonBracket<'g> {
     /// let builder = System::builder(&graph).coordinates(["x"]);
     /// let particle = builder.lagrangian(|_, _, v| v[0].square() / 2.0).build()?;
     /// assert_eq!(PoissonBracket::new(&particle).of(x.square(), p)?, 2.0 * x);
-    /// assert!(PoissonBracket::new(&particle).of(x, graph.symbol("x'")).is_err()); // p_x is meant
+    /// assert!(PoissonBracket::new(&particle).of(x, graph.symbol("x'")).is_err()); // the variable is p_x
     /// # Ok::<(), pc_analysis::AnalysisError>(())
     /// ```
     pub fn new(system: &System<'g>) -> PoissonBracket<'g> {

@@ -37,7 +37,7 @@ impl<'g> Multipliers<'g> {
     /// ```
     /// use pc_mech::{Constraint, Graph, System};
     ///
-    /// // A pendulum: of ẋ and ẏ one is free.
+    /// // A pendulum: one of ẋ and ẏ is free.
     /// let graph = Graph::new();
     /// let pendulum = System::builder(&graph)
     ///     .coordinates(["x", "y"])

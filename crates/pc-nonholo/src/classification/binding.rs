@@ -39,7 +39,7 @@ pub struct Redundant {
 /// use pc_mech::{Constraint, Graph, System};
 /// use pc_nonholo::Binding;
 ///
-/// // Two cranks on one pin (x, y): the second is as good as a bar that keeps a = b, and one condition is too many.
+/// // Two cranks on one pin (x, y): the second one amounts to a bar that keeps a = b, and one condition is redundant.
 /// let graph = Graph::new();
 /// let cranks = System::builder(&graph)
 ///     .coordinates(["a", "b", "x", "y"])

@@ -9,7 +9,7 @@ use crate::equations::poincare::Equations;
 use crate::error::{IntegralError, MechError};
 use pc_expr::VectorField;
 
-/// A rate of change counts if it is larger than the rounding of its terms by this factor.
+/// A rate of change counts above this part of the size of its terms, which is far above rounding.
 const RATE: f64 = 1e-9;
 
 /// A rate is rounding itself if it changes by more than this part when digits that are rounding change.
