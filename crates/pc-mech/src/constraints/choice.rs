@@ -13,7 +13,7 @@ const MOST_TRIED: usize = 20;
 /// operations.
 const MOST_SOLVED: usize = 3;
 const LONGEST_TRIED: u32 = 1000;
-/// A choice is regular if its determinant, in the kinetic metric, is this part of the largest: the motion
+/// A choice is regular if its determinant, in the kinetic metric, is at least this part of the largest: the motion
 /// then stays away from singular equations for a while.
 const REGULAR: f64 = 0.5;
 /// The part of the largest pivot that the shortest one may have: equations lose a digit by it. (Few choices
