@@ -109,7 +109,7 @@ impl<'g> Neighbourhood<'g> {
         [1.0, 0.0, -1.0, 0.3, 3.0, 10.0, -10.0].into_iter().map(about).find(has_numbers).unwrap_or_default()
     }
 
-    /// Whether an expression is zero, or no more than rounding wherever it has values near by, although the graph does
+    /// Whether an expression is zero, or at most rounding wherever it has values near by, although the graph does
     /// not fold it to zero.
     pub fn vanishes(&self, graph: &'g Graph, expression: Expr<'g>) -> bool {
         if expression.constant().is_some() {

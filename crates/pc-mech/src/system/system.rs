@@ -94,7 +94,7 @@ impl<'g> System<'g> {
     }
 
     /// The acceleration of gravity of a [tree](System::tree), along the axes of the world; zero of a system
-    /// that is none.
+    /// without one.
     pub fn gravity(&self) -> [Expr<'g>; 3] {
         self.tree.as_ref().map_or([Expr::ZERO; 3], |tree| tree.gravity)
     }

@@ -286,8 +286,8 @@ impl<'g> ConstraintTreatment<'g> {
 
     /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Under constraints held by
     /// multipliers they use the requested independent quasi-velocities, or those whose equations are shortest among
-    /// those regular at `at`, and observables have the reactions put in. Where a constraint is not affine in the
-    /// velocities, those of all of them, with the reactions put in.
+    /// those regular at `at`, and observables have the reactions substituted. Where a constraint is not affine in the
+    /// velocities, those of all of them, with the reactions substituted.
     ///
     /// # Errors
     /// [`NonholoError`] if they cannot be derived.
