@@ -1,6 +1,6 @@
 //! The equations of a model in print: as in a book, in LaTeX for a paper, as JSON for programs.
 //!
-//! A [`page`] is the output of `pc derive` and of `pc_system_print` of the C interface. Its parts are public,
+//! A [`page`](page()) is the output of `pc derive` and of `pc_system_print` of the C interface. Its parts are public,
 //! too: the [`Derived`] equations in each [`Form`], the [`Sheet`] of their printed expressions, and the
 //! [cost](Operations) of a right-hand side. The [`theory`](theory()) is the output of `pc theory` and
 //! `pc_system_theory`.
