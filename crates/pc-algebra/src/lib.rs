@@ -26,7 +26,7 @@
 //! If the commutators are combinations of the operators again, \[X_r, X_s\] = c_rs^m X_m (5) with r, s from 0
 //! and m from 1, the frame is closed and the c_rs^m are its [`StructureCoefficients`].
 //! [`Frame::structure_coefficients`] finds them from b alone, equal to (6), and names the pair where there
-//! are none:
+//! is no combination:
 //!
 //! ```
 //! use pc_algebra::{EulerAngles, Frame, LieAlgebra, LieGroup, Neighbourhood};

@@ -12,7 +12,7 @@ use roots::vanishes;
 
 /// The most steps of Newton's method for one position.
 const MOST_STEPS: usize = 100;
-/// The residual that counts as zero, relative to its rounding error.
+/// The residual that counts as zero, relative to |∂F/∂x| (1 + |x|).
 const ENOUGH: f64 = 1e-12;
 
 /// A complete integral S(t, x, α) of Hamilton–Jacobi's equation, from which the motions follow by Jacobi's

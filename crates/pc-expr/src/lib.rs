@@ -22,7 +22,7 @@
 //! # Ok::<(), pc_expr::ExprError>(())
 //! ```
 //!
-//! # Rooms, in the order of the flow
+//! # Modules, in the order of the flow
 //!
 //! `parse` text → syntax tree · `graph` expressions · `identity` equality, decided by fingerprints · `calculus`
 //! derivatives and short forms · `print` text and LaTeX · `program` chosen outputs as a tape · `kernel` running a tape

@@ -92,7 +92,7 @@ fn forms_that_are_singular_at_different_points_are_equal() {
 }
 
 /// A factor alone or inside a product, under a root or not, is the same divisor; an expression that never
-/// vanishes is none.
+/// vanishes is no divisor.
 #[test]
 fn equal_divisors_in_different_forms_are_recognised() {
     let graph = Graph::new();

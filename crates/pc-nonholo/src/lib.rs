@@ -46,8 +46,8 @@
 //!
 //! d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s, r, s = 1..l, m = 1..k (30),
 //!
-//! the constraints put in after differentiation, so that all k momenta count. [`Constrained`] derives them, and the
-//! reactions that the dropped equations are off by,
+//! the constraints being substituted after differentiation, so that all k momenta count. [`Constrained`]
+//! derives them, and the reactions that the dropped equations are off by,
 //!
 //! λ_α = D_t p_α − (c_rα^m η_r + c_0α^m) p_m − X_α L − Q_α.
 //!
@@ -85,7 +85,7 @@
 //! use pc_mech::{Constraint, Graph, System};
 //! use pc_nonholo::Adapted;
 //!
-//! // A disk of unit mass and radius, its mass in the rim, that rolls upright: ψ its direction, φ its turning.
+//! // A disk of unit mass and radius, its mass in the rim, that rolls upright: ψ its heading, φ its rotation.
 //! let graph = Graph::new();
 //! let disk = System::builder(&graph)
 //!     .coordinates(["x", "y", "ψ", "φ"])

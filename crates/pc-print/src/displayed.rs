@@ -68,7 +68,7 @@ pub struct DisplayedTheory {
     pub latex: Option<String>,
 }
 
-/// Formulas that belong together, with what is known of them.
+/// Formulas that belong together, with the results on them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplayedEntry {
     /// Its name.
@@ -85,12 +85,12 @@ pub struct DisplayedEntry {
     pub spectrum: Vec<(f64, f64)>,
 }
 
-/// What equations are derived from: the operators X_s = b_is ∂/∂x_i of the frame and their brackets (5), T, U
-/// and L, forces.
+/// The data of the derivation: the operators X_s = b_is ∂/∂x_i of the frame and their brackets (5), T, U and
+/// L, forces.
 ///
-/// U = L where all quasi-velocities vanish, T = L − U; where the frame moves by itself, what is not of degree
-/// 0 in the quasi-velocities is not T alone, and L is shown alone. Of a large tree of bodies L is longer than
-/// a page and is left out.
+/// U = L where all quasi-velocities vanish, T = L − U; if the frame itself moves, the terms of other degree
+/// than 0 in the quasi-velocities are more than T, and only L is shown. For a large tree of bodies L is
+/// longer than a page and is left out.
 ///
 /// # Errors
 /// [`ModelError`] if a limit is reached.

@@ -1,9 +1,9 @@
 //! The equations of a model in print: as in a book, in LaTeX for a paper, as JSON for programs.
 //!
-//! A [`page`] is what `pc derive` and `pc_system_print` of the C interface show. Its parts are there too:
-//! what is [derived](Derived) in each [`Form`], the [`Sheet`] of expressions that is printed of it, and the
-//! [cost](Operations) of a right-hand side. The [`theory`](theory()) is what `pc theory` and
-//! `pc_system_theory` show.
+//! A [`page`](page()) is the output of `pc derive` and of `pc_system_print` of the C interface. Its parts are public,
+//! too: the [`Derived`] equations in each [`Form`], the [`Sheet`] of their printed expressions, and the
+//! [cost](Operations) of a right-hand side. The [`theory`](theory()) is the output of `pc theory` and
+//! `pc_system_theory`.
 //!
 //! An [`Assembly`](pc_model::Assembly) becomes text. Read `form` and `derived` first, the equations with
 //! their constraints and reactions; then `sheet`, the expressions to print, and `operations`, their cost;

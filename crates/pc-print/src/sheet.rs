@@ -56,7 +56,7 @@ pub enum Balance<'p> {
         mass: Matrix<Expr<'p>>,
         /// η̇
         accelerations: Vec<Expr<'p>>,
-        /// r as it is computed.
+        /// r in the form that is computed.
         right: Vec<Expr<'p>>,
         /// r as sums of products of quasi-velocities, where it is a polynomial.
         written: Vec<Expr<'p>>,
@@ -72,7 +72,7 @@ pub enum Balance<'p> {
         /// η as functions of y; none where the equations are not closed, and η in them stands for the
         /// solution of y = ∂L/∂η.
         velocities: Option<Vec<Expr<'p>>>,
-        /// r as it is computed.
+        /// r in the form that is computed.
         right: Vec<Expr<'p>>,
         /// r as sums of products of momenta, where it is a polynomial.
         written: Vec<Expr<'p>>,

@@ -44,7 +44,7 @@ pub struct Record {
     pub fine: Option<Samples>,
     /// The summary of the motion, lines with labels; the same on every run.
     pub summary: Vec<(String, Vec<String>)>,
-    /// Whether the energy, the last of what is conserved, is an integral.
+    /// Whether the energy, the last of the conserved columns, is an integral.
     pub keeps_energy: bool,
     /// The times at which events occurred.
     pub events: Vec<f64>,

@@ -80,7 +80,7 @@ impl<'g> Elimination<'g> {
     /// ```
     /// # use pc_algebra::{Frame, LieAlgebra, Matrix, Neighbourhood};
     /// # use pc_expr::{Expr, Graph};
-    /// // Without coordinates only the algebra knows that η_3 = 0 is kept by [X_1, X_2] = X_2 and not by that of so(3).
+    /// // Without coordinates the algebra decides: [X_1, X_2] = X_2 is compatible with η_3 = 0, so(3) is not.
     /// let graph = Graph::new();
     /// let frame = Frame::new(&graph, graph.symbol("t"), vec![], Matrix::from_fn(0, 3, |_, _| Expr::ZERO), vec![])?;
     /// let plane = frame.eliminated(&[2], Matrix::from_fn(1, 2, |_, _| Expr::ZERO), vec![Expr::ZERO])?;

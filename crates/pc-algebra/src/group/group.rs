@@ -87,7 +87,7 @@ pub trait LieGroup {
     /// The element nearest to coordinates that have drifted off the group.
     ///
     /// # Errors
-    /// [`AlgebraError::NoNearestElement`] where there is none.
+    /// [`AlgebraError::NoNearestElement`] if there is no nearest one.
     fn project(&self, g: &[f64]) -> Result<Vec<f64>, AlgebraError>;
 
     /// The matrix b of ẋ = b η (3), n × k, at coordinates `x` of length n.

@@ -12,7 +12,7 @@ use pc_expr::{Function, Number, Scalar};
 const CHANGE: f64 = 1e-12;
 
 /// A number and its weight: the size of the terms that it was added up from, so that its rounding error is of
-/// the order of the weight times the unit of rounding. What is given exactly has weight 0.
+/// the order of the weight times the unit of rounding. Exact numbers have weight 0.
 ///
 ///   w(a + b) = w(a) + w(b),   w(a b) = max(|a b|, |a| w(b), w(a) |b|),   w(f(a)) = max(|f|, |f'| w(a)),
 ///

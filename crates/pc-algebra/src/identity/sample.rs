@@ -72,7 +72,7 @@ impl<'g> Neighbourhood<'g> {
     /// let [x, y] = graph.symbols(["x", "y"]);
     /// let near = Neighbourhood::default();
     /// assert_eq!(near.residual(&graph, &[vec![1e-10 * x]]), 1.0);
-    /// // log(xy) = log x + log y is nothing that the graph knows.
+    /// // log(xy) = log x + log y is unknown to the graph.
     /// let zero = [(x * y).log(), -x.log(), -y.log()];
     /// assert!(near.residual(&graph, &[zero.to_vec()]) < 1e-15);
     /// ```
@@ -109,7 +109,7 @@ impl<'g> Neighbourhood<'g> {
         [1.0, 0.0, -1.0, 0.3, 3.0, 10.0, -10.0].into_iter().map(about).find(has_numbers).unwrap_or_default()
     }
 
-    /// Whether an expression is zero, or no more than rounding wherever it has values near by, although the graph does
+    /// Whether an expression is zero, or at most rounding wherever it has values near by, although the graph does
     /// not fold it to zero.
     pub fn vanishes(&self, graph: &'g Graph, expression: Expr<'g>) -> bool {
         if expression.constant().is_some() {

@@ -56,7 +56,7 @@ fn common_divisor(a: &BigRational, b: &BigRational) -> BigRational {
 /// The entries of `matrix` as rationals.
 ///
 /// # Errors
-/// [`AlgebraError::IrrationalEntry`] naming the first that is none.
+/// [`AlgebraError::IrrationalEntry`] naming the first entry that is not.
 pub(crate) fn exact_matrix(
     what: &'static str,
     matrix: &Matrix<Number>,

@@ -17,11 +17,11 @@ const ROUNDING: f64 = 1e-13;
 
 /// The inverse of a square matrix; `None` if its determinant is identically zero.
 ///
-/// Its entries are regular wherever the matrix is. Constant pivots that are not small against their row are eliminated
-/// first. What is left is solved block after block of its block triangular form, small blocks by cofactors over their
-/// determinant, larger ones by orthogonalisation: no divisor vanishes where the matrix is regular,
-/// whatever the state. Constants that cancel up to rounding count as zero; so does a divisor that is no more than
-/// rounding at random points, though the graph does not fold it.
+/// Its entries are regular wherever the matrix is. Constant pivots that are not small against their row are
+/// eliminated first. The remaining matrix is solved block by block of its block triangular form, small blocks
+/// by cofactors over their determinant, larger ones by orthogonalisation: no divisor vanishes where the
+/// matrix is regular, at any state. Constants that cancel up to rounding count as zero; so does a divisor
+/// that is at most rounding at random points, even if the graph does not fold it.
 ///
 /// Uncoupled rows and columns are inverted separately.
 pub fn inverse<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {

@@ -19,7 +19,7 @@ impl<'g> PoissonBracket<'g> {
 
     /// The Casimirs that are linear combinations of `functions` with rational coefficients; a basis of them.
     ///
-    /// Each is proved: (C, z_i) is folded to zero. [`linear_relations`](pc_mech::Graph::linear_relations) says what
+    /// Each is proved: (C, z_i) is folded to zero. See [`linear_relations`](pc_mech::Graph::linear_relations) for what
     /// may be missed.
     ///
     /// # Errors

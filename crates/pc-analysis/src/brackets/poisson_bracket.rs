@@ -100,7 +100,7 @@ impl<'g> PoissonBracket<'g> {
     /// let builder = System::builder(&graph).coordinates(["x"]);
     /// let particle = builder.lagrangian(|_, _, v| v[0].square() / 2.0).build()?;
     /// assert_eq!(PoissonBracket::new(&particle).of(x.square(), p)?, 2.0 * x);
-    /// assert!(PoissonBracket::new(&particle).of(x, graph.symbol("x'")).is_err()); // p_x is meant
+    /// assert!(PoissonBracket::new(&particle).of(x, graph.symbol("x'")).is_err()); // the variable is p_x
     /// # Ok::<(), pc_analysis::AnalysisError>(())
     /// ```
     pub fn new(system: &System<'g>) -> PoissonBracket<'g> {
@@ -277,8 +277,8 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.defect(f, g, h))
     }
 
-    /// The functions, and what their brackets, the brackets of these and so on add to them: functionally independent,
-    /// the given ones first as far as they are independent. Brackets of integrals are integrals.
+    /// The functions, their brackets, the brackets of these and so on, as far as they are functionally
+    /// independent, the given ones first. Brackets of integrals are integrals.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).

@@ -25,7 +25,7 @@ impl<'g> Rates<'g> {
     /// The functions are of (t, x, η) or (t, x, y), and may contain parameters. Each integral is proved: its rate is
     /// folded to zero. Parameters are unknowns that the coefficients do not contain:
     /// [bind](Rates::with_parameters_bound) them to search for given values.
-    /// [`linear_relations`](pc_expr::Graph::linear_relations) says what else may be missed.
+    /// See [`linear_relations`](pc_expr::Graph::linear_relations) for what else may be missed.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of something that is not of the motion.

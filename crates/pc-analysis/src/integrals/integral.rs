@@ -121,7 +121,7 @@ impl<'g> Integrals<'g> {
         }
     }
 
-    /// Marks the conserved functions that resets may change: resets that do not leave the function as it is for every
+    /// Marks the conserved functions that resets may change: resets that do not leave the function unchanged for every
     /// state, or that are `projected` to constraints. A reset is a list of components of the `system`'s state, each
     /// with its new value.
     pub fn jump<'r>(

@@ -153,7 +153,7 @@ impl<'g> Rates<'g> {
         })
     }
 
-    /// The rate relative to its terms, |df/dt|/Σ|∂f/∂z_i ż_i|, at a point, from 0 to 1: no more than rounding where f
+    /// The rate relative to its terms, |df/dt|/Σ|∂f/∂z_i ż_i|, at a point, from 0 to 1: at most rounding if f
     /// is an integral. None where all terms vanish, or are not numbers.
     ///
     /// # Errors

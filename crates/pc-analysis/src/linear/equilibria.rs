@@ -73,7 +73,7 @@ pub struct FoundEquilibrium {
     pub linearization: Linearization,
     /// The results on its stability.
     pub motion: NearbySteadyMotion,
-    /// The dimension of the family of which it is one, beside what cyclic coordinates make of it; 0 if it is isolated.
+    /// The dimension of its family, without that due to cyclic coordinates; 0 if it is isolated.
     pub family: usize,
     /// The number of members of the family that were found.
     pub members: usize,
@@ -93,7 +93,7 @@ const FALLING: f64 = 1e-3;
 const SAME_ENERGY: f64 = 1e-9;
 
 impl EquilibriumSearch {
-    /// Bounds a coordinate or first-order state: starts are in the box, and what is found outside is left out.
+    /// Bounds a coordinate or first-order state: starts are in the box, and results outside are left out.
     #[must_use]
     pub fn within(mut self, name: impl Into<String>, low: f64, high: f64) -> EquilibriumSearch {
         self.bounds.push((name.into(), low, high));

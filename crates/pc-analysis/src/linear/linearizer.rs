@@ -105,7 +105,7 @@ pub(super) struct Evaluated {
     pub(super) mass: Option<Matrix<f64>>,
     pub(super) directions: Directions,
     pub(super) velocities: Velocities,
-    /// ∂h/∂y and ∂h/∂u with the accelerations put in.
+    /// ∂h/∂y and ∂h/∂u with the accelerations substituted.
     pub(super) outputs: Matrix<f64>,
     pub(super) outputs_by_inputs: Matrix<f64>,
 }

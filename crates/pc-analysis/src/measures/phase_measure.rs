@@ -49,17 +49,18 @@ impl<'g> MeasureSearch<'g> {
     /// system](pc_nonholo::Constrained::free_system).
     ///
     /// Where forces other than those of L are functions of the place, or gyroscopic, phase volume grows at
-    /// the rate η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: by (10) what H adds cancels, that
-    /// of c_rs^m by its antisymmetry. N = 1 is a density if this vanishes; with n = k, rank b = k, it is N =
-    /// 1/det b, by which dx dy is Liouville's dx dp: y = bᵀp; and where n − k conditions f(t, x) = 0 are
-    /// kept, with any choice of as many dependent coordinates x_D and the others x_I, N = det(∂f/∂x_D)/det
-    /// b_I: that of Liouville on each surface f = const. Where no f are known N is tried as a product of
-    /// powers of coordinates, their sines and cosines. For dx dη it is multiplied by det M. `positions` are f
-    /// of a holonomic system, declared integrals of the place are others; `None` says that it is not
-    /// holonomic.
+    /// the rate η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: by (10) the terms of H cancel,
+    /// those of c_rs^m by its antisymmetry. N = 1 is a density if this vanishes. With n = k and rank b = k it
+    /// is N = 1/det b, by which dx dy is Liouville's dx dp: y = bᵀp. Where n − k functions f(t, x) are
+    /// constant, with any choice of as many dependent coordinates x_D and the others x_I, it is N =
+    /// det(∂f/∂x_D)/det b_I: Liouville's on each surface f = const. If no f are known, N is sought as a
+    /// product of powers of coordinates, their sines and cosines. For dx dη it is multiplied by det M.
+    /// `positions` are f of a holonomic system, and declared integrals of the place are others; `None` means
+    /// that it is not holonomic.
     ///
-    /// Else one with these and the factors of [`invariant_measure`] is looked for, then one that has momenta among its
-    /// factors also; this is left out for more than six quasi-velocities and for long equations.
+    /// Otherwise a density with these factors and those of [`invariant_measure`] is sought, then one that has
+    /// momenta among its factors as well; this is left out for more than six quasi-velocities and for long
+    /// equations.
     ///
     /// `at` are values of time, state and parameters, where N is positive.
     ///

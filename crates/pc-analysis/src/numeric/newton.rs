@@ -22,7 +22,7 @@ pub(crate) struct Iterate {
 }
 
 impl Iterate {
-    /// |F| relative to the effect of rounding z, |∂F/∂z| (1 + |z|).
+    /// |F| relative to the effect of a change of z by its own size, |∂F/∂z| (1 + |z|).
     pub(crate) fn relative_residual(&self) -> f64 {
         let residual = norm(&self.values);
         if residual == 0.0 { 0.0 } else { residual / (norm(&self.slopes.entries()) * self.scale()) }

@@ -7,7 +7,7 @@ use crate::error::AnalysisError;
 
 /// A system without its cyclic coordinates x_c, whose momenta p_c = ∂L/∂ẋ_c are constants of the motion:
 ///
-///   R(t, x, ẋ, p) = L − p_c ẋ_c with ẋ_c put in,   d/dt ∂R/∂ẋ_i − ∂R/∂x_i = Q_i
+///   R(t, x, ẋ, p) = L − p_c ẋ_c with ẋ_c substituted,   d/dt ∂R/∂ẋ_i − ∂R/∂x_i = Q_i
 ///
 /// for the other coordinates x_i (E. J. Routh, 1877). Others write −R.
 #[derive(Clone, Debug)]

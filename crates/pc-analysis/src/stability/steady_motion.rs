@@ -98,7 +98,7 @@ impl SteadyMotion {
     ///
     /// Steady motions come in families, so that these equations do not determine y: the iteration goes to a
     /// solution near the guess, and components can be [fixed](SteadyOptions::fixed). For a time-dependent
-    /// system what is found is an equilibrium of the rates at that time.
+    /// system the result is an equilibrium of the rates at that time.
     ///
     /// # Errors
     /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::NotSmooth`] where the

@@ -1,7 +1,7 @@
-//! Short forms: expressions rebuilt as polynomials whose coefficients no longer contain what they do not depend on.
+//! Short forms: expressions rebuilt as polynomials whose coefficients are free of symbols that cancel.
 //!
-//! Correctness does not depend on this module: a form is adopted only where its fingerprint says that it is the same
-//! function, and only where it is cheaper. With [`Folding::Structural`] expressions stay as they are.
+//! Correctness does not depend on this module: a form is adopted only if its fingerprint shows the same
+//! function, and only if it is cheaper. With [`Folding::Structural`] expressions are unchanged.
 
 use crate::calculus::polynomial::Polynomial;
 use crate::graph::expr::Expr;

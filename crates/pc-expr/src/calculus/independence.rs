@@ -44,7 +44,7 @@ impl Graph {
     }
 
     /// e with sin z and cos z at a point of the circle, and z at a number, that leave its value unchanged; e
-    /// itself if there are none. The first point that adds no new divisor is taken, else the first.
+    /// itself if none exist. The first point that adds no new divisor is taken, else the first.
     fn at_regular_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
         self.most_regular(e, self.forms_without(e, z, true))
     }

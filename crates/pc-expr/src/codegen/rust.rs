@@ -36,7 +36,7 @@ pub(crate) fn string(text: &str) -> String {
     format!("{text:?}")
 }
 
-/// A function of the module `math`: its name there, how `std` computes it, and what `libm` calls it.
+/// A function of the module `math`: its name there, its expression with `std`, and its name in `libm`.
 struct Library {
     name: &'static str,
     arguments: &'static str,

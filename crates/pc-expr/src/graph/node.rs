@@ -1,4 +1,4 @@
-//! Nodes: what an expression is made of.
+//! Nodes: the parts of expressions.
 
 use std::hash::{Hash, Hasher};
 
@@ -95,7 +95,7 @@ pub enum Folding {
     /// Merge nodes whose fingerprints agree; see [`Graph`](crate::Graph).
     #[default]
     ByValue,
-    /// Merge only what is written alike.
+    /// Merge only expressions that are written alike.
     Structural,
 }
 

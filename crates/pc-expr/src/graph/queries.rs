@@ -37,8 +37,8 @@ impl Graph {
     /// let graph = Graph::new();
     /// let [a, b, c] = graph.symbols(["a", "b", "c"]);
     /// let step = graph.keep(a - b);
-    /// assert_eq!(graph.size(&[step + c]), 5); // a, b, a − b, c and the sum, of three terms else
-    /// assert_eq!(step + c, a + c - b); // of one value all the same
+    /// assert_eq!(graph.size(&[step + c]), 5); // a, b, a − b, c and the sum; without `keep` a sum of three terms
+    /// assert_eq!(step + c, a + c - b); // the values are equal nevertheless
     /// ```
     pub fn keep<'g>(&'g self, x: Expr<'g>) -> Expr<'g> {
         let atom = x.atom_in(self);

@@ -131,7 +131,7 @@ impl<const C: u64> Residue<C> {
     }
 }
 
-/// 2⁶⁴ over the golden ratio: by what the state of splitmix64 grows.
+/// 2⁶⁴ over the golden ratio: the increment of the state of splitmix64.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// The finaliser of splitmix64.

@@ -1,6 +1,7 @@
-//! Linear algebra over fingerprints: what holds for almost all values of the symbols.
+//! Linear algebra over fingerprints: results for almost all values of the symbols.
 //!
-//! Values may contain roots, whose products need the laws of these; that is why elimination is not that of `echelon`.
+//! Values may contain roots, whose products need their laws; elimination therefore differs from that of
+//! `echelon`.
 
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;

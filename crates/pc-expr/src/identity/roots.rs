@@ -1,9 +1,9 @@
 //! Sums of products of roots, Σ_S c_S Π_R R^{k_R}, with coefficients in the two prime fields.
 //!
-//! A root is an unknown R of which R^q is known, as it is of √e and |e| (q = 2) and of e^{1/q}. The powers
-//! R^k with k < q are kept apart and R^q is replaced by its value, so that what follows from these laws alone
-//! is seen, and nothing else: no sign is ever chosen, √(x²) is neither x nor −x. As long as roots are few,
-//! that is: beyond [`MOST_TERMS`] a value is just the number that it has where the roots are random.
+//! A root is an unknown R with known R^q, as for √e and |e| (q = 2) and e^{1/q}. The powers R^k with k < q
+//! are kept separate and R^q is replaced by its value, which decides exactly the consequences of these laws:
+//! no sign is ever chosen, √(x²) is neither x nor −x. This holds while roots are few: beyond [`MOST_TERMS`] a
+//! value is just its number for random roots.
 
 use std::sync::Arc;
 
@@ -228,7 +228,7 @@ impl Roots {
             }
             same
         });
-        // What is raised to its order is a value of older roots, which may meet theirs here.
+        // A root raised to its order is a value of older roots, which may also occur here.
         let mut full = Vec::new();
         for (root, k) in &mut roots {
             let Root { order, power, .. } = &self.roots[*root as usize];

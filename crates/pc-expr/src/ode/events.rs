@@ -92,9 +92,9 @@ impl Event {
 /// Events of a motion: functions g(t, y), evaluated all at once, and resets y⁺ = R(t, y⁻).
 ///
 /// An event occurs where its function passes through zero in its direction: where it changes its sign, or
-/// comes to zero to stay there. A function that touches zero, and is back on its side within the resolution
-/// of time, causes none. A function that is zero at the start, or is brought to zero by a reset, has to leave
-/// zero first. A reset that carries a function from one sign to the other is no passage through zero.
+/// reaches zero and stays there. A function that touches zero, and returns to its side within the resolution
+/// of time, causes none. A function that is zero at the start, or after a reset, has to leave zero first. A
+/// change of sign by a reset is not a passage through zero.
 pub trait Events {
     /// The events, in the order in which simultaneous ones are handled.
     fn events(&self) -> &[Event];
@@ -106,7 +106,7 @@ pub trait Events {
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
 
     /// The program whose outputs are the first functions, of (t, y) and parameters, with the values of these,
-    /// if there is one. Methods that know the motion as a function of time find all roots of those.
+    /// if there is one. Methods with the motion as a function of time find all their roots.
     fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
         None
     }

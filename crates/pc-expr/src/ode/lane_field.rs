@@ -4,31 +4,31 @@ use std::sync::Arc;
 
 use crate::program::program::Program;
 
-/// f of one member of an ensemble as a program, which its members may have in common, and numbers of its own.
+/// f of one member of an ensemble: a program, which members may share, and parameters of its own.
 #[derive(Clone, Debug)]
 pub struct LaneField {
-    /// The rates, then the pivots that are watched, then the sizes that these are compared with.
+    /// The rates, then the watched pivots, then the sizes with which these are compared.
     pub program: Arc<Program>,
-    /// The numbers that the program takes for parameters.
+    /// The values of the program's parameters.
     pub parameters: Vec<f64>,
     /// Which states are regular.
     pub watched: Watched,
 }
 
-/// Pivots that must not vanish, as far as they do not depend on the state, and how those are found among the
-/// outputs of a [`LaneField`] that do.
+/// The pivots that must not vanish: the smallest of those independent of the state, and the places of the
+/// others among the outputs of a [`LaneField`].
 ///
-/// A state is regular where each pivot is larger than `vanishing` times the largest of all sizes. Where not,
-/// the member is integrated alone, where it is examined more closely.
+/// A state is regular if each pivot is larger than `vanishing` times the largest of all sizes. Otherwise the
+/// member is integrated alone, with a closer examination.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Watched {
     /// The number of pivots after the rates.
     pub pivots: usize,
-    /// The smallest of those that the state does not change.
+    /// The smallest pivot independent of the state.
     pub smallest: f64,
-    /// The largest of such sizes.
+    /// The largest size independent of the state.
     pub largest: f64,
-    /// The bound of what is small against them.
+    /// The ratio to the largest size below which a pivot vanishes.
     pub vanishing: f64,
 }
 

@@ -138,8 +138,7 @@ pub trait VectorField {
         TimeDependence::Unknown
     }
 
-    /// The Taylor series of the motion, ready to be expanded, with what has to keep its sign along it and
-    /// what it costs.
+    /// The Taylor series of the motion, ready to be expanded, with its branch functions and its cost.
     ///
     /// # Errors
     /// [`Failure`] with the reason why there is none: f has to be a program.
@@ -163,8 +162,8 @@ pub trait VectorField {
         Err(Failure::fatal(NoSeries))
     }
 
-    /// f as a program to be evaluated at many states at once, with the parameters as they are; none where it
-    /// is more than that, or is to be interpreted.
+    /// f as a program for many states at once, with the present parameters; `None` if f is more than a
+    /// program, or is interpreted.
     fn lanes(&mut self) -> Option<LaneField> {
         None
     }

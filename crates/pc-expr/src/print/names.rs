@@ -56,7 +56,7 @@ impl<'g> Side<'g> {
     }
 }
 
-/// A name with what it stands for.
+/// A name with its value.
 #[derive(Clone, Debug)]
 pub struct Name<'g> {
     /// The name.

@@ -31,7 +31,7 @@ impl Multipliers<'_> {
     /// ```
     /// use pc_mech::{Constraint, Graph, System, VectorField};
     ///
-    /// // A pendulum of mass 2 in Cartesian coordinates, where it is level.
+    /// // A pendulum of mass 2 in Cartesian coordinates, in a horizontal position.
     /// let graph = Graph::new();
     /// let pendulum = System::builder(&graph)
     ///     .coordinates(["x", "y"])

@@ -237,8 +237,8 @@ impl Motion {
         }
     }
 
-    /// The motion of a system that does not [lead](VectorField::leads) past a place where definitions of
-    /// quasi-velocities by velocities do not determine the ones by the others.
+    /// The motion of a system that does not [lead](VectorField::leads) past a place where velocities and the
+    /// quasi-velocities defined by them do not determine each other.
     ///
     /// # Errors
     /// [`MechError`] if the frame contains a symbol that is neither a coordinate nor a parameter.
@@ -374,8 +374,8 @@ impl Motion {
         }
     }
 
-    /// The numbers that [`machine_code`](Motion::machine_code) takes for parameters, for their current
-    /// values: these, and what is computed of them alone. None where M is factorised in numbers.
+    /// The parameters of [`machine_code`](Motion::machine_code), for the current values: these, and results
+    /// that depend on them alone. `None` if M is factorised in numbers.
     pub fn code_parameters(&mut self) -> Option<&[f64]> {
         match &mut self.form {
             Form::Unrolled(unrolled) => Some(unrolled.code_parameters(&self.parameters)),

@@ -240,7 +240,7 @@ impl VectorField for Motion {
 }
 
 impl Motion {
-    /// Why there are no series, if there are none.
+    /// The reason why there are no series, if there are none.
     fn check_series(&self) -> Result<(), Failure> {
         let because = match &self.form {
             Form::Unrolled(_) if self.signals.is_empty() => return Ok(()),

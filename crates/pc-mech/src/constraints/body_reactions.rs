@@ -54,14 +54,14 @@ impl<'g> Multipliers<'g> {
     ///   Σ (F · ∂ṙ/∂η_s + N · ∂ω/∂η_s) = λ_α C_αs,   s = 1..k.
     ///
     /// The force on a body is determined by this if ṙ can be varied independently of the velocities of all
-    /// other bodies, of its own ω, and of what has kinetic energy without being a body: if the rank of all
-    /// these derivatives is that of ∂ṙ/∂η and that of the others together. It is determined up to a part
-    /// normal to all ṙ that the coordinates allow, which is left out: that part belongs to whatever holds the
-    /// coordinates. For torques likewise, with ω.
+    /// other bodies, of its own ω, and of other velocities in the kinetic energy: if the rank of all these
+    /// derivatives is that of ∂ṙ/∂η plus that of the others. It is determined up to a part normal to all ṙ
+    /// that the coordinates allow, which is left out: that part belongs to the supports behind the
+    /// coordinates. The same holds for torques, with ω.
     ///
-    /// Where velocities are tied together by the choice of coordinates, as those of two masses on a rod by its angle,
-    /// the forces between them are not those of constraints, and share the load in a way that virtual work does not
-    /// determine.
+    /// Where the choice of coordinates ties velocities together, as the angle of a rod does for two masses on
+    /// it, the forces between them are not reactions of constraints, and share the load in a way that virtual
+    /// work leaves undetermined.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, Particle, System};

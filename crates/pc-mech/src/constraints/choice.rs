@@ -13,7 +13,7 @@ const MOST_TRIED: usize = 20;
 /// operations.
 const MOST_SOLVED: usize = 3;
 const LONGEST_TRIED: u32 = 1000;
-/// A choice is regular if its determinant, in the kinetic metric, is this part of the largest: the motion
+/// A choice is regular if its determinant, in the kinetic metric, is at least this part of the largest: the motion
 /// then stays away from singular equations for a while.
 const REGULAR: f64 = 0.5;
 /// The part of the largest pivot that the shortest one may have: equations lose a digit by it. (Few choices
@@ -37,7 +37,7 @@ impl<'g> Multipliers<'g> {
     /// ```
     /// use pc_mech::{Constraint, Graph, System};
     ///
-    /// // A pendulum: of ẋ and ẏ one is free.
+    /// // A pendulum: one of ẋ and ẏ is free.
     /// let graph = Graph::new();
     /// let pendulum = System::builder(&graph)
     ///     .coordinates(["x", "y"])

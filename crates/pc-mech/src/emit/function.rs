@@ -12,7 +12,7 @@ pub struct SourceFunction<'g> {
 }
 
 impl<'g> SourceFunction<'g> {
-    /// A function of this name, an identifier, that writes these values, each with a word for what it is.
+    /// A function of this name, an identifier, that writes these values, each with a word for its meaning.
     /// They may contain the [symbols of the accelerations](crate::System::accelerations). The purpose ends
     /// the sentence “Writes …”.
     pub fn new(

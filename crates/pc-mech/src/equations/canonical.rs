@@ -320,7 +320,7 @@ impl<'g> Canonical<'g> {
         )
     }
 
-    /// The [first-order](Canonical::first_order) system with what is observed along it.
+    /// The [first-order](Canonical::first_order) system with its observables.
     pub(crate) fn observed_first_order(&self) -> Result<FirstOrder<'g>, MechError> {
         let (observables, conserved) = (self.observables()?, self.system.integrals.len() + 1);
         Ok(FirstOrder { observables, conserved, ..self.first_order() })

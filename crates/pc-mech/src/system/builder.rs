@@ -212,7 +212,7 @@ impl<'g> SystemBuilder<'g> {
     }
 
     /// Adds to the Lagrangian in velocities L(t, x, ẋ): the closure receives the velocities in place of η, for which
-    /// ẋ = b η + b_0 (3) is put in. The coordinates may be redundant.
+    /// ẋ = b η + b_0 (3) is substituted. The coordinates may be redundant.
     ///
     /// ```
     /// # use pc_mech::{Graph, System};

@@ -226,7 +226,7 @@ impl Signals {
         self.list.iter().map(|signal| signal.place)
     }
 
-    /// Whether there are none.
+    /// Whether there are no inputs.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }

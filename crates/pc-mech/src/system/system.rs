@@ -94,7 +94,7 @@ impl<'g> System<'g> {
     }
 
     /// The acceleration of gravity of a [tree](System::tree), along the axes of the world; zero of a system
-    /// that is none.
+    /// without one.
     pub fn gravity(&self) -> [Expr<'g>; 3] {
         self.tree.as_ref().map_or([Expr::ZERO; 3], |tree| tree.gravity)
     }
@@ -146,7 +146,7 @@ impl<'g> System<'g> {
         self.quasi_velocities.iter().map(|eta| self.graph().symbol(&format!("{eta}'"))).collect()
     }
 
-    /// The run-time inputs of what is compiled: the parameters, then the external forces, which are zero until they
+    /// The run-time inputs of compiled programs: the parameters, then the external forces, which are zero until they
     /// are set.
     pub(crate) fn run_time_inputs(&self) -> Vec<(Expr<'g>, f64)> {
         let external = self.external.iter().map(|&(_, symbol)| (symbol, 0.0));

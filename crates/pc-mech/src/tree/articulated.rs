@@ -153,7 +153,7 @@ pub(crate) struct Freedom<'g> {
     inverse: Expr<'g>,
     /// Φ s/(s·Φ s), zero at its own component.
     factors: Spatial<'g>,
-    /// s·Φ s with the size of the terms it remains from, if it may vanish.
+    /// s·Φ s with the size of its terms before elimination, if it may vanish.
     pub(crate) watched: Option<(Expr<'g>, Expr<'g>)>,
     /// Whether s·Φ s is identically zero: no inertia resists the direction.
     pub(crate) is_massless: bool,

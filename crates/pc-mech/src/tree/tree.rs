@@ -75,7 +75,7 @@ impl<'g> Tree<'g> {
     /// # Errors
     /// [`TreeError`] for two bodies of one name, a parent that there is not, parents in a circle, an axis
     /// without a direction, or a list of names that does not fit its joint; [`BodyError`](crate::BodyError)
-    /// for a rotation that is none.
+    /// for a matrix that is not a rotation.
     pub fn new(
         graph: &'g Graph,
         bodies: impl IntoIterator<Item = TreeBody<'g>>,

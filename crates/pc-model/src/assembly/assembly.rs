@@ -29,7 +29,8 @@ pub struct Assembly<'g> {
     pub declared: usize,
     /// The events, in the order in which simultaneous ones are handled.
     pub events: Vec<Event<'g>>,
-    /// The definitions of the text with ẋ = b η + b_0 put in, as far as they mean the same wherever they are used.
+    /// The definitions of the text with ẋ = b η + b_0 substituted, as far as they mean the same wherever they
+    /// are used.
     pub definitions: Vec<(String, Expr<'g>)>,
     /// The quasi-velocities given in addition to those of the text, as linear forms in those of the system.
     pub given: Vec<(Expr<'g>, Expr<'g>)>,

@@ -20,8 +20,8 @@ struct Resultants<'g> {
 }
 
 impl<'g> Assembler<'g, '_> {
-    /// The system with the forces and torques of the reactions on bodies put into its integrals and outputs,
-    /// and as more outputs where all reactions are to be observed; and what of them is not determined, in
+    /// The system with the forces and torques of the reactions on bodies substituted in its integrals and
+    /// outputs, and added as outputs if all reactions are to be observed; with the undetermined ones, in
     /// words.
     ///
     /// # Errors

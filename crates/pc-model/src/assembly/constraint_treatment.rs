@@ -184,8 +184,9 @@ impl<'g> ConstraintTreatment<'g> {
         &self.classified
     }
 
-    /// The number of combinations of the nonholonomic constraints that are integrable though no single constraint is: see
-    /// [`ConstraintClassification::integrable_combinations`](pc_nonholo::ConstraintClassification::integrable_combinations).
+    /// The number of combinations of the nonholonomic constraints that are integrable though no single
+    /// constraint is: see
+    /// [`ConstraintClassification`](pc_nonholo::ConstraintClassification::integrable_combinations).
     pub fn integrable_combinations(&self) -> usize {
         self.combinations
     }
@@ -249,7 +250,7 @@ impl<'g> ConstraintTreatment<'g> {
         })
     }
 
-    /// The symbols λ of the reactions with what they are in the frame of
+    /// The symbols λ of the reactions with their values in the frame of
     /// [`constrained`](ConstraintTreatment::constrained), functions of time, coordinates and free quasi-velocities, or
     /// of all where constraints are not affine in them; none where integrable constraints are held by multipliers.
     /// They contain the symbols of the accelerations where that is shorter.
@@ -285,8 +286,8 @@ impl<'g> ConstraintTreatment<'g> {
 
     /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Under constraints held by
     /// multipliers they use the requested independent quasi-velocities, or those whose equations are shortest among
-    /// those regular at `at`, and observables have the reactions put in. Where a constraint is not affine in the
-    /// velocities, those of all of them, with the reactions put in.
+    /// those regular at `at`, and observables have the reactions substituted. Where a constraint is not affine in the
+    /// velocities, those of all of them, with the reactions substituted.
     ///
     /// # Errors
     /// [`NonholoError`] if they cannot be derived.

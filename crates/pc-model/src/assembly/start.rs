@@ -12,7 +12,7 @@ use crate::model::model::Model;
 use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
-/// The remainder of a unit vector that depends on others, above rounding.
+/// The greatest remainder of a unit vector that depends on others: rounding.
 const DEPENDENT: f64 = 1e-9;
 
 /// Velocities that differ by less than this, absolute or relative, whichever is larger, are equal.

@@ -16,15 +16,15 @@ pub struct Document {
     pub source: Source,
     /// `[model]`
     pub model: Heading,
-    /// `[parameters]`: what stays adjustable, each with its number, or an expression in those before it.
+    /// `[parameters]`, which stay adjustable, each with its number, or an expression in those before it.
     pub parameters: Vec<NamedExpression>,
     /// `[inputs]`
     pub inputs: Vec<Input>,
     /// `[definitions]`
     pub definitions: Vec<NamedExpression>,
-    /// Coordinates, each with its start value: those of joints, then what else is in `[coordinates]`.
+    /// Coordinates, each with its start value: those of joints, then the others of `[coordinates]`.
     pub coordinates: Vec<NamedExpression>,
-    /// Quasi-velocities: those of joints unless all velocities are `x'`, then what else is in
+    /// Quasi-velocities: those of joints unless all velocities are `x'`, then the others of
     /// `[quasi_velocities]` except entries `"x'"`.
     pub quasi_velocities: Vec<QuasiVelocity>,
     /// Entries `"x'" = value` of `[quasi_velocities]`: start velocities by the names of coordinates, without prime.

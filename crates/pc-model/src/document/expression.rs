@@ -41,7 +41,7 @@ impl Expression {
     /// The expression that a whole text consists of.
     ///
     /// # Errors
-    /// [`ModelError`] if it is none.
+    /// [`ModelError`] if it is not one.
     pub(crate) fn of(source: &Source) -> Result<Expression, ModelError> {
         let text = source.text();
         let ast = parse(text).map_err(|error| {

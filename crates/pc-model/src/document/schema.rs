@@ -2,7 +2,8 @@
 
 /// The JSON Schema (draft 7) of the text format, for editors: the sections, their entries and the types of
 /// these. A text that it refuses is refused by [`Document::parse`](crate::Document::parse); names,
-/// expressions and what must hold between sections it does not know.
+/// expressions and conditions between sections are beyond it.
 ///
-/// It is kept by hand; the tests compare each of its entries and choices with those that the reader accepts.
+/// It is written by hand; the tests compare each of its entries and choices with those that the reader
+/// accepts.
 pub const SCHEMA: &str = include_str!("../../model.schema.json");

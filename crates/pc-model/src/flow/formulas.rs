@@ -13,7 +13,7 @@ use crate::names::stage::Stage;
 
 impl<'g> Assembly<'g> {
     /// The parameters that follow others, by their places, each as a function of those that follow none.
-    /// `model` is what this was assembled from.
+    /// `model` is the one assembled here.
     ///
     /// # Errors
     /// [`ModelError`] for an expression that means nothing; it would not have been assembled.

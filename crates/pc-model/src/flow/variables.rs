@@ -5,7 +5,7 @@ use pc_mech::{Canonical, Equations, LegendreTransform, System};
 use crate::assembly::assembly::Assembly;
 use crate::diagnostics::error::ModelError;
 
-/// The variables of the state beside the coordinates, and so which equations of motion.
+/// The variables of the state in addition to the coordinates, which decide the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variables {
     /// The quasi-velocities of (9), or of (30): independent ones if constraints make the others vanish, all of them

@@ -20,7 +20,7 @@ impl GivenQuasiVelocity {
     /// The quasi-velocity of a name and a text.
     ///
     /// # Errors
-    /// [`ModelError`] if the name is none or is taken, or the text is no expression.
+    /// [`ModelError`] if the name is invalid or taken, or the text is not an expression.
     pub(crate) fn new(
         document: &Document,
         taken: &[&str],

@@ -30,16 +30,16 @@ pub struct Redundant {
 /// The constraints of a system by rank: those that bind it, and those that follow from them.
 ///
 /// Conditions on velocities are C η + c_0, conditions on positions have the coefficients C_s = X_s f, c_0 =
-/// X_0 f. What is dependent at almost all states is found exactly. An overconstrained mechanism has
-/// conditions that are dependent only where all of them hold: where the start shows this, it is tested
-/// numerically at places around it that satisfy all conditions on positions, and one of these is redundant if
-/// it vanishes wherever, near the start, those before it do.
+/// X_0 f. Dependence at almost all states is found exactly. An overconstrained mechanism has conditions that
+/// are dependent only where all of them hold: if the start shows this, it is tested numerically at places
+/// around it that satisfy all conditions on positions, and a condition is redundant if it vanishes near the
+/// start wherever those before it do.
 ///
 /// ```
 /// use pc_mech::{Constraint, Graph, System};
 /// use pc_nonholo::Binding;
 ///
-/// // Two cranks on one pin (x, y): the second is as good as a bar that keeps a = b, and one condition is too many.
+/// // Two cranks on one pin (x, y): the second one amounts to a bar that keeps a = b, and one condition is redundant.
 /// let graph = Graph::new();
 /// let cranks = System::builder(&graph)
 ///     .coordinates(["a", "b", "x", "y"])

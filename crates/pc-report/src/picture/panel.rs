@@ -22,7 +22,7 @@ pub struct Panel {
 /// The scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// As they are.
+    /// Values themselves.
     Linear,
     /// Values are decimal logarithms.
     Decades,

@@ -8,7 +8,7 @@ use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::first_order::FirstOrder;
 
-/// A pivot this small against the diagonal entry it remains from is rounding.
+/// A pivot this small against its diagonal entry before elimination is rounding.
 const VANISHING_PIVOT: f64 = 1e-14;
 
 /// A diagonal entry this small against the largest may be the square of a rounding error, as sin² π is.

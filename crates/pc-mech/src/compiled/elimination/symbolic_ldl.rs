@@ -61,8 +61,8 @@ impl<'g> Factors<'g> {
         }
     }
 
-    /// The pivots D with the diagonal entries of M that they remain from; or the determinant of an inverted M
-    /// of few rows, with the scale of it by its largest entry.
+    /// The pivots D with the diagonal entries of M before elimination; or the determinant of an inverted M of
+    /// few rows, with its scale by the largest entry.
     pub(crate) fn watched(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Vec<Watched<'g>> {
         let rows = m.rows();
         match self {

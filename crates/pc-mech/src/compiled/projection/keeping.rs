@@ -9,7 +9,7 @@ use crate::equations::poincare::Equations;
 use crate::error::{IntegralError, MechError};
 use pc_expr::VectorField;
 
-/// A rate of change counts if it is larger than the rounding of its terms by this factor.
+/// A rate of change counts above this part of the size of its terms, which is far above rounding.
 const RATE: f64 = 1e-9;
 
 /// A rate is rounding itself if it changes by more than this part when digits that are rounding change.
@@ -62,17 +62,17 @@ impl<'g> Multipliers<'g> {
 }
 
 impl Motion {
-    /// The same motion with a [projection](pc_expr::VectorField::project) to the values that these integrals have at
-    /// (t, y), beside that to its constraints: the shortest way in the components of the state as they are. Asked for
-    /// after each step, it changes the state by no more than the error of the step.
+    /// The same motion with a [projection](pc_expr::VectorField::project) to the values of these integrals at
+    /// (t, y), after that to its constraints: the shortest way in the components of the state. Applied after
+    /// each step, it changes the state by at most the error of the step.
     ///
-    /// An integral whose gradient depends on those before it, such as the energy at rest, is not kept there. A
-    /// quantity that jumps on the way, such as the energy where a potential is a step, is not an integral there, and
-    /// keeping it changes the motion.
+    /// An integral whose gradient depends on those before it, such as the energy at rest, is not kept there.
+    /// A quantity that jumps along the motion, such as the energy where a potential is a step, is not an
+    /// integral there, and keeping it changes the motion.
     ///
     /// # Errors
-    /// [`IntegralError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later; what the
-    /// equations of motion report at (t, y).
+    /// [`IntegralError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later;
+    /// errors of the equations of motion at (t, y).
     ///
     /// ```
     /// use pc_mech::{Graph, System, VectorField};
