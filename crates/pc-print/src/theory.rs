@@ -3,9 +3,10 @@
 //! An assembled model becomes text. Read `description` first, the content whatever the format; then `ground`, from
 //! which all parts start, and the parts: `brackets`, `integrals`, `measure`, `action`, `steady`, `routh`. `names` writes the
 //! formulas, with names for what is long; `text`, `latex` and `json` are the three ways to print, `folded` breaks long formulas into several lines, and `page` puts
-//! these together.
+//! these together. `bracket_of` is the bracket of two functions, for programs.
 
 pub(crate) mod action;
+pub(crate) mod bracket_of;
 pub(crate) mod brackets;
 pub(crate) mod description;
 pub(crate) mod folded;
