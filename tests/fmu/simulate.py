@@ -10,7 +10,6 @@ import csv
 import ctypes
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import fmpy
@@ -111,11 +110,8 @@ def check_models(program, place):
             pc(program, "emit", model, "--fmu", version, "-o", fmu)
             valid(fmu)
             for kind, within in (("ModelExchange", exchange), ("CoSimulation", tolerance)):
-                begins = time.monotonic()
                 names, found = simulate(fmu, kind, columns, within)
                 compare(f"{model}, FMI {version}, {kind}", columns, names, found)
-                if time.monotonic() - begins > 60.0:
-                    raise Disagreement(f"{fmu.name}, {kind}: it took more than a minute")
 
 
 def controller(x, angle, v, rate):

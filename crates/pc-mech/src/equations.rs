@@ -2,10 +2,11 @@
 //!
 //! A [`System`](crate::System) has [`Equations`](poincare::Equations) M η̇ = r, or, by the `legendre` transformation,
 //! [`Canonical`](canonical::Canonical) ones; `momenta` expresses functions of velocities in momenta, `book` writes the
-//! equations as sums of products.
+//! equations as sums of products, and `functions` compiles expressions of their state.
 
 pub(crate) mod book;
 pub(crate) mod canonical;
+pub(crate) mod functions;
 pub(crate) mod legendre;
 pub(crate) mod momenta;
 pub(crate) mod poincare;

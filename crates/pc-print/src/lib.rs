@@ -56,6 +56,7 @@ pub use lines::{columns, combination};
 pub use operations::{Operations, counted};
 pub use page::{Page, page};
 pub use sheet::{Balance, Bracket, Brackets, Sheet, recognised};
+pub use theory::bracket_of::bracket_of;
 pub use theory::integrals::integrals_of;
 pub use theory::measure::reducing_multiplier;
 pub use theory::options::TheoryOptions;

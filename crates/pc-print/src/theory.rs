@@ -4,8 +4,10 @@
 //! common basis of all parts, and the parts: `brackets`, `integrals`, `measure`, `action`, `steady`, `routh`.
 //! `names` writes the formulas, with names for long expressions; `text`, `latex` and `json` are the three
 //! ways to print, `folded` breaks long formulas into several lines, and `page` combines these.
+//! `bracket_of` is the bracket of two functions, for programs.
 
 pub(crate) mod action;
+pub(crate) mod bracket_of;
 pub(crate) mod brackets;
 pub(crate) mod description;
 pub(crate) mod folded;

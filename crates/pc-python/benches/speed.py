@@ -5,9 +5,12 @@ the other in turns; the minimum and the median of each are shown, and the ratio 
 """
 
 import ctypes
+import os
+import signal
 import statistics
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -50,6 +53,37 @@ def kernel(path: str, states: np.ndarray) -> Callable[[np.ndarray], object]:
     call.argtypes = [ctypes.c_double, numbers, ctypes.c_size_t, numbers, ctypes.c_void_p]
     given = states.ctypes.data_as(numbers)
     return lambda rates: call(0.0, given, len(states), rates.ctypes.data_as(numbers), made)
+
+
+def seconds_after_ctrl_c(work: Callable[[], object]) -> float:
+    """How long work goes on after Ctrl-C."""
+    sent = []
+
+    def send() -> None:
+        sent.append(time.perf_counter())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(0.3, send)
+    timer.start()
+    try:
+        work()
+    except KeyboardInterrupt:
+        return time.perf_counter() - sent[0]
+    raise RuntimeError("the work has ended by itself")
+
+
+def interruptions(system: chetaev.System, states: np.ndarray) -> None:
+    """Ctrl-C in all that takes long."""
+    works: dict[str, Callable[[], object]] = {
+        "run": lambda: system.run(1e7, samples=2, rtol=1e-12),
+        "sweep": lambda: system.sweep({"mg": np.linspace(0.5, 1.0, 100)}, t_end=1e6),
+        "lyapunov": lambda: system.lyapunov(3, interval=1e5, intervals=100),
+        "system(t, states)": lambda: [system(0.0, states) for _ in range(1000)],
+        "system.jac(t, states)": lambda: [system.jac(0.0, states) for _ in range(1000)],
+        "system.observe(t, states)": lambda: [system.observe(0.0, states) for _ in range(1000)],
+    }
+    for name, work in works.items():
+        print(f"  {name:34} {max(seconds_after_ctrl_c(work) for _ in range(5)):9.3f} s, the worst of 5")
 
 
 def main() -> None:
@@ -101,6 +135,9 @@ def main() -> None:
                 times.append(time.perf_counter() - began)
             best = min(times)
         print(f"  {threads} {best / STATES * 1e9:9.1f} ns a state")
+
+    print("work goes on after Ctrl-C for")
+    interruptions(system, rows.T)
 
 
 if __name__ == "__main__":

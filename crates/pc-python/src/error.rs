@@ -2,7 +2,6 @@
 
 use std::error::Error as _;
 
-use pc_analysis::AnalysisError;
 use pc_mech::{Failure, MechError};
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_report::ReportError;
@@ -28,8 +27,6 @@ pub(crate) enum Error {
     Mech(#[from] MechError),
     #[error(transparent)]
     Failure(#[from] Failure),
-    #[error(transparent)]
-    Analysis(#[from] AnalysisError),
     #[error(transparent)]
     Verify(#[from] VerifyError),
     #[error(transparent)]
@@ -117,7 +114,7 @@ impl From<Error> for PyErr {
             Error::Solve(SolveError::Integration(_) | SolveError::Setup { .. }) => {
                 raised(py, "IntegrationError", chain(&error))
             }
-            Error::Analysis(_) | Error::Verify(_) | Error::Unsupported { .. } | Error::Busy => {
+            Error::Verify(_) | Error::Unsupported { .. } | Error::Busy => {
                 raised(py, "ChetaevError", chain(&error))
             }
             Error::Choice { .. }

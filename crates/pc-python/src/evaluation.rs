@@ -1,5 +1,8 @@
 //! Rates and their Jacobian at a state, and at each of many in an array.
 
+use std::ops::RangeInclusive;
+use std::time::{Duration, Instant};
+
 use numpy::prelude::*;
 use numpy::{PyArray1, PyArray2, PyArrayDyn, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pc_mech::Failure;
@@ -12,8 +15,11 @@ use pyo3::prelude::*;
 use crate::error::Error;
 use crate::system::SystemCore;
 
-/// Evaluations between two looks at signals, some hundredths of a second.
-const BETWEEN_SIGNALS: usize = 1 << 17;
+/// States computed before the first look at signals; how many then is a matter of the time they take.
+const FIRST_PART: usize = 1 << 8;
+
+/// Between two looks at signals: well below the tenth of a second in which Ctrl-C is to end work, and long beside a look.
+const BETWEEN_SIGNALS: RangeInclusive<Duration> = Duration::from_millis(5)..=Duration::from_millis(20);
 
 /// States that are gathered at once where an array has them across, so that they stay in the nearest cache.
 const BLOCK: usize = 64;
@@ -149,8 +155,9 @@ impl SystemCore {
         let mut flow = self.take();
         let mut outcome = Ok(());
         let mut failed = 0;
-        for from in (0..count).step_by(BETWEEN_SIGNALS) {
-            let to = (from + BETWEEN_SIGNALS).min(count);
+        let (mut from, mut length) = (0, FIRST_PART);
+        while from < count {
+            let (to, began) = ((from + length).min(count), Instant::now());
             let (flow, values, evaluate) = (&mut flow.1, &mut values[..], &mut quantity.evaluate);
             let mut guarded = |t: f64, y: &[f64], target: &mut [f64]| match evaluate(flow, t, y, target) {
                 Ok(()) => Ok(()),
@@ -169,6 +176,13 @@ impl SystemCore {
             if outcome.is_err() {
                 break;
             }
+            let took = began.elapsed();
+            if took < *BETWEEN_SIGNALS.start() {
+                length *= 2;
+            } else if took > *BETWEEN_SIGNALS.end() {
+                length = (length / 2).max(BLOCK);
+            }
+            from = to;
             py.check_signals()?;
         }
         self.put_back(flow);

@@ -26,6 +26,8 @@ use pyo3::prelude::*;
 /// The native part of the package.
 #[pymodule]
 mod _native {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use crate::dense::DenseCore;
     #[pymodule_export]
@@ -36,4 +38,9 @@ mod _native {
     use crate::sweep::draw;
     #[pymodule_export]
     use crate::system::SystemCore;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
 }

@@ -7,8 +7,8 @@ use numpy::prelude::*;
 use pc_expr::Events;
 use pc_model::{Flow, Model, Variables, deep};
 use pc_solve::{
-    Ending, Occurrence, Options, Sensitivities, Solution, Solve, SolveError, Statistics, Trajectory,
-    solve_with_sensitivities_and_events,
+    Ending, Occurrence, Options, Sensitivities, Solution, Solve, SolveError, SolveFailure, Statistics,
+    Trajectory, solve_with_sensitivities_and_events,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,21 +31,6 @@ pub(crate) struct Outcome {
     /// One row after the other.
     values: Vec<f64>,
     residuals: Vec<(String, f64)>,
-}
-
-/// The motion of a flow as far as it can be computed, and why not further.
-pub(crate) fn follow(
-    flow: &mut Flow,
-    t_start: f64,
-    times: &[f64],
-    options: &Options,
-    step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-) -> (Solution, Option<SolveError>) {
-    let solve = Solve::new(&mut flow.motion, t_start, &flow.start).method(options).events(&mut flow.events);
-    match solve.run_observed(times, step) {
-        Ok(solution) => (solution, None),
-        Err(failure) => (failure.reached, Some(failure.error)),
-    }
 }
 
 /// The numbers of parameters.
@@ -79,11 +64,11 @@ fn integrated(
         }
     }
     let mut matrices: Vec<Vec<f64>> = Vec::new();
+    let (motion, start, events) = (&mut flow.motion, &flow.start, &mut flow.events);
+    let go_on = |_: f64, _: &[f64]| ControlFlow::Continue(());
     let (solution, error) = match parameters.is_empty() {
-        true => follow(&mut flow, t_start, times, options, |_, _| ControlFlow::Continue(())),
+        true => Solve::new(motion, t_start, start).method(options).events(events).follow(times, go_on),
         false => {
-            let (motion, start, events) = (&mut flow.motion, &flow.start, &mut flow.events);
-            let go_on = |_: f64, _: &[f64]| ControlFlow::Continue(());
             let solved = solve_with_sensitivities_and_events(
                 motion,
                 (t_start, start),
@@ -93,10 +78,7 @@ fn integrated(
                 events,
                 go_on,
             );
-            let (reached, error) = match solved {
-                Ok(reached) => (reached, None),
-                Err(failure) => (failure.reached, Some(failure.error)),
-            };
+            let (reached, error) = SolveFailure::split(solved);
             matrices = reached.trajectory.iter().map(|(_, _, matrix)| matrix.to_vec()).collect();
             let trajectory = reached.trajectory.motion().clone();
             (Solution { trajectory, occurrences: reached.occurrences, ending: reached.ending }, error)

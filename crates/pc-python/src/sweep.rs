@@ -9,14 +9,13 @@ use numpy::prelude::*;
 use numpy::{PyArray1, PyArray2};
 use pc_expr::{Cancel, Events};
 use pc_model::{Flow, Model, Prototype, Variables};
-use pc_solve::{Ending, Ensemble, Options, Solution, Stop, member_stream};
+use pc_solve::{Ending, Ensemble, Options, Solution, Solve, Stop, member_stream};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rand_distr::{Distribution, LogNormal, Normal, Uniform};
 
 use crate::error::{Error, chain};
 use crate::model::renewed;
-use crate::motion::follow;
 use crate::plan::Plan;
 use crate::system::{SystemCore, derived};
 use crate::task::attended;
@@ -88,7 +87,8 @@ impl Members {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         };
-        let (solution, error) = follow(&mut flow, self.t_start, &self.times, &self.options, observer);
+        let solve = Solve::new(&mut flow.motion, self.t_start, &flow.start).method(&self.options);
+        let (solution, error) = solve.events(&mut flow.events).follow(&self.times, observer);
         let Solution { trajectory, ending, .. } = solution;
         let (status, message) = match (&error, ending) {
             (Some(error), _) => ("failed", chain(error)),

@@ -3,14 +3,14 @@
 import doctest
 import importlib
 import pathlib
-import re
 
 import pytest
+from quick_start import README, programs
 
 import chetaev
 
-README = pathlib.Path(__file__).parents[1] / "README.md"
-MODULES = [f"chetaev{name}" for name in ("", *(f"._{m}" for m in "builder errors expressions model motion sweep system".split()))]
+BOOK = pathlib.Path(__file__).parents[3] / "docs/python.md"
+MODULES = [f"chetaev{name}" for name in ("", *(f"._{m}" for m in "builder errors events expressions model motion printed quantities sweep system values".split()))]
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -21,12 +21,14 @@ def test_docstrings(name: str) -> None:
     assert outcome.failed == 0
 
 
-def test_readme() -> None:
-    blocks = re.findall(r"^```python\n(.*?)^```", README.read_text(encoding="utf-8"), flags=re.M | re.S)
-    assert len(blocks) >= 4
+@pytest.mark.parametrize("page", [README, BOOK], ids=lambda page: page.name)
+def test_programs_of_pages(page: pathlib.Path) -> None:
+    if not page.exists():
+        pytest.skip(f"{page} belongs to the repository")
+    assert len(programs(page)) >= 4
     names: dict[str, object] = {}
-    for block in blocks:
-        exec(compile(block, str(README), "exec"), names)
+    for program in programs(page):
+        exec(compile(program, str(page), "exec"), names)
 
 
 def test_every_public_name_is_documented() -> None:

@@ -6,7 +6,7 @@ use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{announce_and_run, cargo, succeeds, target_directory, workspace_root};
+use crate::command::{announce_and_run, built_program, cargo, succeeds, target_directory, workspace_root};
 use crate::error::Error;
 use crate::tools::Machine;
 use crate::{c_fresh, c_interface, c_numbers, install, setup};
@@ -106,12 +106,9 @@ pub(crate) fn quick() -> Result<(), Error> {
         return Ok(());
     }
     let (built, place) = (target_directory()?.join("debug"), target_directory()?.join("c-examples/quick"));
-    let (shared, libraries, pc) = (built.join("deps/libpc.so"), place.join("lib"), built.join("pc"));
+    let (shared, libraries, pc) = (built.join("deps/libpc.so"), place.join("lib"), built_program()?);
     if !shared.exists() {
         announce_and_run(&mut cargo(&["build", "--package", "pc-capi", "--lib"]))?;
-    }
-    if !pc.exists() {
-        announce_and_run(&mut cargo(&["build", "--package", "pc-cli", "--bin", "pc"]))?;
     }
     let wrong = |source| Error::File { path: libraries.display().to_string(), source };
     fs::create_dir_all(&libraries).map_err(wrong)?;

@@ -33,6 +33,18 @@ pub(crate) fn target_directory() -> Result<PathBuf, Error> {
     Ok(target.map_or_else(|| workspace_root().join("target"), Path::to_path_buf))
 }
 
+/// The program `pc` of the last build for debugging; built where there is none.
+///
+/// # Errors
+/// That of the build.
+pub(crate) fn built_program() -> Result<PathBuf, Error> {
+    let program = target_directory()?.join("debug/pc");
+    if !program.exists() {
+        announce_and_run(&mut cargo(&["build", "--package", "pc-cli", "--bin", "pc"]))?;
+    }
+    Ok(program)
+}
+
 /// Runs to the end with our own input and output.
 ///
 /// # Errors

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::io;
+use std::path::Path;
 use std::process::{ExitCode, ExitStatus};
 
 use crate::counts::Counts;
@@ -33,6 +34,8 @@ pub(crate) enum Error {
     Numbers { example: String, wrong: String },
     /// The wheel of the Python package is not as it should be.
     Package { wrong: String },
+    /// A command needs what this machine does not have and the workspace does without.
+    Unavailable { what: String },
     /// Installing on a system that has other names and tools for it.
     NotLinux { system: String },
     /// Every test binary was empty, or none was run.
@@ -40,6 +43,11 @@ pub(crate) enum Error {
 }
 
 impl Error {
+    /// That of a file which cannot be read, written or removed.
+    pub(crate) fn of_file(path: &Path, source: io::Error) -> Error {
+        Error::File { path: path.display().to_string(), source }
+    }
+
     /// 2 for a wrong command line, 1 for everything else.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
@@ -70,6 +78,7 @@ impl fmt::Display for Error {
             Error::Installed { wrong } => write!(f, "the installed library: {wrong}"),
             Error::Numbers { example, wrong } => write!(f, "the example {example}: {wrong}"),
             Error::Package { wrong } => write!(f, "the Python package: {wrong}"),
+            Error::Unavailable { what } => f.write_str(what),
             Error::NotLinux { system } => write!(
                 f,
                 "installing is made for Linux; on {system} take the library from target/release and the headers from \

@@ -1,31 +1,31 @@
 //! `cargo xtask fmu`: FMUs of models, validated and simulated by FMPy, against the numbers of the program `pc`.
 
-use std::fs;
-use std::process::Command;
-
-use crate::command::{announce_and_run, cargo, target_directory, workspace_root};
+use crate::command::{announce_and_run, built_program, cargo, target_directory, workspace_root};
 use crate::error::Error;
+use crate::python_environment::Environment;
 use crate::setup;
 
-/// The importer, and the packages that it needs.
+/// The importer, which brings what it needs.
 const PACKAGES: [&str; 1] = ["fmpy>=0.3.22,<0.4"];
 
-/// Builds `pc`, makes a virtual environment in target/fmu unless there is one, and runs `tests/fmu/simulate.py` in it.
+/// Builds `pc` and runs `tests/fmu/simulate.py` with it.
 ///
 /// # Errors
-/// That of the first program that is wrong; without `python3` that it cannot be started.
+/// That of the first program that is wrong; [`Error::Unavailable`] without Python or the package index.
 pub(crate) fn run() -> Result<(), Error> {
-    setup::native_tools_and_cpp()?;
+    setup::native_tools()?;
     announce_and_run(&mut cargo(&["build", "--package", "pc-cli", "--bin", "pc"]))?;
-    let (target, place) = (target_directory()?, target_directory()?.join("fmu"));
-    let python = place.join("venv/bin/python");
-    // Whatever stands in the way of one, the message says it.
-    fs::create_dir_all(&place).map_err(|source| Error::File { path: place.display().to_string(), source })?;
-    if !python.exists() {
-        announce_and_run(Command::new("python3").args(["-m", "venv"]).arg(place.join("venv")))?;
-    }
-    announce_and_run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(PACKAGES))?;
-    let mut simulate = Command::new(&python);
+    quick()
+}
+
+/// The same with the program that the tests have built.
+///
+/// # Errors
+/// As there.
+pub(crate) fn quick() -> Result<(), Error> {
+    let place = target_directory()?.join("fmu");
+    let environment = Environment::kept(&place.join("environment"), &PACKAGES)?;
+    let mut simulate = environment.python();
     simulate.current_dir(workspace_root()).arg("tests/fmu/simulate.py");
-    announce_and_run(simulate.arg(target.join("debug/pc")).arg(&place))
+    announce_and_run(simulate.arg(built_program()?).arg(&place))
 }

@@ -7,7 +7,7 @@ use crate::cargo_tools::CargoTool;
 use crate::command::{announce_and_run, announce_and_tee, cargo};
 use crate::counts::{Counter, Counts};
 use crate::error::Error;
-use crate::{attack, book, c_examples, setup};
+use crate::{attack, book, c_examples, fmu, python, setup};
 
 const DENY: CargoTool = CargoTool { name: "cargo-deny", version: "~0.20" };
 
@@ -23,6 +23,7 @@ pub(crate) fn run(quick: bool) -> Result<(), Error> {
         ["clippy", "-p", "pc-solve", "--lib", "--no-default-features", "--", "-D", "warnings"];
     cargo_stage("lints without SUNDIALS", &mut cargo(&without_sundials))?;
     let counts = tests()?;
+    let mut without = Vec::new();
     if !quick {
         stage("attack", attack::quick)?;
         stage("C examples", c_examples::quick)?;
@@ -30,8 +31,13 @@ pub(crate) fn run(quick: bool) -> Result<(), Error> {
         cargo_stage("documentation", doc.env("RUSTDOCFLAGS", "-D warnings"))?;
         stage("book", book::run)?;
         stage("licences", licences)?;
+        without.extend(stage_if_possible("the Python package", python::quick)?);
+        without.extend(stage_if_possible("FMUs", fmu::quick)?);
     }
     println!("\nall of it: {}", seconds(start.elapsed()));
+    for missing in without {
+        println!("skipped: {missing}");
+    }
     println!("{counts}");
     Ok(())
 }
@@ -68,11 +74,38 @@ fn stage(title: &str, work: impl FnOnce() -> Result<(), Error>) -> Result<(), Er
     println!("\n== {title}");
     let start = Instant::now();
     let outcome = work();
-    let verdict = if outcome.is_ok() { "passed" } else { "failed" };
+    let verdict = match &outcome {
+        Ok(()) => "passed",
+        Err(Error::Unavailable { .. }) => "skipped",
+        Err(_) => "failed",
+    };
     println!("== {title} {verdict} in {}", seconds(start.elapsed()));
     outcome
 }
 
+/// A stage that needs what a machine need not have: then it is said what is missing.
+fn stage_if_possible(title: &str, work: impl FnOnce() -> Result<(), Error>) -> Result<Option<String>, Error> {
+    match stage(title, work) {
+        Ok(()) => Ok(None),
+        Err(Error::Unavailable { what }) => Ok(Some(format!("{title}: {what}"))),
+        Err(error) => Err(error),
+    }
+}
+
 fn seconds(time: Duration) -> String {
     format!("{:.1} s", time.as_secs_f64())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_missing_is_said_and_what_is_wrong_fails() {
+        let unavailable = || Err(Error::Unavailable { what: "no Python".to_owned() });
+        let said = stage_if_possible("FMUs", unavailable).unwrap();
+        assert_eq!(said.as_deref(), Some("FMUs: no Python"));
+        assert_eq!(stage_if_possible("FMUs", || Ok(())).unwrap(), None);
+        assert!(stage_if_possible("FMUs", || Err(Error::NoTests)).is_err());
+    }
 }

@@ -2,17 +2,16 @@
 
 use std::ffi::c_char;
 
-use pc_analysis::{AnalysisError, PoissonBracket};
+use ::pc_model::{Model, Variables};
 use pc_expr::Evaluator;
-use pc_mech::{Expr, MechError};
-use pc_model::{Assembly, Model, ModelError};
+use pc_print::bracket_of;
 
 use crate::api::rates::{State, Target, slices};
 use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::pointer::text;
 use crate::ffi::status::pc_status;
-use crate::machinery::mechanics::{compile, evaluate};
+use crate::machinery::mechanics::evaluate;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes the Poisson bracket of coordinates and momenta (12) of two functions at (t, y),
@@ -51,42 +50,13 @@ pub unsafe extern "C" fn pc_system_bracket(
 
 /// (f, g) as a function of t and (x, η), η those of the state.
 fn derived(inventory: &Inventory, model: &Model, f: &str, g: &str) -> Result<Evaluator, CallError> {
-    let graph = model.graph();
-    let assembly = model.assemble(&graph)?;
-    if assembly.constraints.nonlinear().is_some() {
-        let why = "a constraint is not affine in the velocities";
-        return Err(CallError::Unsupported { what: "a bracket", why });
-    }
     if !inventory.variables.are_own() {
         let why = "the system is in other coordinates and quasi-velocities than those of the model";
         return Err(CallError::Unsupported { what: "a bracket", why });
     }
-    let canonical = assembly.canonical_in(::pc_model::Variables::Momenta)?;
-    assembly.placed(canonical.closed_quasi_velocities())?;
-    let bracket = match assembly.placed(assembly.constraints.constrained(&assembly.at_start()))? {
-        Some(constrained) => placed(&assembly, PoissonBracket::almost_poisson(&constrained))?,
-        None => PoissonBracket::new(canonical.system()),
-    };
-    let all = assembly.system.quasi_velocities();
-    let of_free = assembly.quasi_velocities_of(canonical.system().quasi_velocities())?;
-    let known: Vec<(Expr<'_>, Expr<'_>)> = all.iter().copied().zip(of_free).collect();
-    let in_momenta = |text: &str| -> Result<Expr<'_>, CallError> {
-        let function = model.function(&assembly, text)?;
-        Ok(canonical.in_momenta(graph.substitute(&[function], &known)[0]))
-    };
-    let value = placed(&assembly, bracket.of(in_momenta(f)?, in_momenta(g)?))?;
-    let momenta = canonical.momenta().iter().copied().zip(canonical.momenta_of_velocities().iter().copied());
-    let value = graph.substitute(&[value], &momenta.collect::<Vec<_>>())[0];
-    let equations = assembly.equations_in(::pc_model::Variables::QuasiVelocities)?;
-    Ok(assembly.placed(compile(&equations, &[value], &[]))?)
-}
-
-/// What came of an analysis, an error put at the place in the model that is to blame.
-fn placed<T>(assembly: &Assembly<'_>, found: Result<T, AnalysisError>) -> Result<T, ModelError> {
-    found.or_else(|error| match error {
-        AnalysisError::Nonholo(error) => assembly.placed(Err(error)),
-        AnalysisError::Mech(error) => assembly.placed(Err(error)),
-        AnalysisError::Expr(error) => assembly.placed(Err(MechError::from(error))),
-        other => Err(assembly.not_derived(other.to_string())),
-    })
+    let graph = model.graph();
+    let assembly = model.assemble(&graph)?;
+    let value = bracket_of(model, &assembly, f, g)?;
+    let equations = assembly.equations_in(Variables::QuasiVelocities)?;
+    Ok(assembly.placed(equations.functions(&[value], &[]))?)
 }

@@ -1,8 +1,8 @@
 //! The parts of the equations as functions of the state.
 
 use ::pc_model::{Assembly, Model, Variables};
-use pc_expr::{Evaluator, Inputs, Program};
-use pc_mech::{Backend, Equations, Expr, MechError};
+use pc_expr::Evaluator;
+use pc_mech::{Expr, MechError};
 
 use crate::ffi::call_error::CallError;
 
@@ -39,7 +39,7 @@ impl Mechanics {
         let forces: Vec<Expr<'_>> =
             equations.system().external_forces().iter().map(|&(_, symbol)| symbol).collect();
         let compiled =
-            |values: &[Expr<'g>], forces: &[Expr<'g>]| assembly.placed(compile(&equations, values, forces));
+            |values: &[Expr<'g>], forces: &[Expr<'g>]| assembly.placed(equations.functions(values, forces));
         Ok(Mechanics {
             mass: compiled(&equations.mass_matrix().entries(), &[])?,
             structure: compiled(&coefficients.collect::<Vec<_>>(), &[])?,
@@ -48,22 +48,6 @@ impl Mechanics {
             complete: !variables.has_momenta() && !held,
         })
     }
-}
-
-/// `values` as functions of t, (x, η), the parameters and `forces`.
-pub(crate) fn compile<'g>(
-    equations: &Equations<'g>,
-    values: &[Expr<'g>],
-    forces: &[Expr<'g>],
-) -> Result<Evaluator, MechError> {
-    let system = equations.system();
-    let parameters = system.parameters().iter().map(|&(symbol, _)| symbol);
-    let inputs = Inputs {
-        time: Some(system.frame().time()),
-        state: system.state(),
-        parameters: parameters.chain(forces.iter().copied()).collect(),
-    };
-    Ok(Evaluator::new(Program::new(system.graph(), &inputs, values)?, Backend::Interpreter))
 }
 
 /// The values at (t, state), if all are numbers.

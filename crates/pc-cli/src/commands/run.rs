@@ -8,7 +8,7 @@ use pc_model::{Assembly, Flow, Model, Variables};
 use pc_print::energy_remark;
 use pc_report::dropped;
 use pc_report::picture::{Drawing, Picture, Wanted};
-use pc_solve::{self as solver, Events, Solution, Trajectory};
+use pc_solve::{self as solver, Events, Solution, Solve, Trajectory};
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::forms::RunForm;
@@ -17,7 +17,6 @@ use crate::args::options::{Outputs, RunArguments};
 use crate::error::CliError;
 use crate::motion::checkpoint::Checkpoints;
 use crate::motion::fine;
-use crate::motion::follow::follow;
 use crate::motion::given::{Given, note_residuals};
 use crate::motion::interrupt;
 use crate::motion::memory;
@@ -154,7 +153,10 @@ fn integrate_into(
         (None, Some(derivatives), _) => {
             derivatives.follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer)
         }
-        (None, None, None) => follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer),
+        (None, None, None) => Solve::new(&mut flow.motion, plan.t_start, &flow.start)
+            .method(&plan.options())
+            .events(&mut flow.events)
+            .follow(&plan.times(), observer),
     };
     let wall = start.elapsed();
     drop(progress);

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use pc_model::{Flow, Model};
-use pc_solve::{Checkpoint, CheckpointError, Ending, Solution, SolveError, solve_checkpointed};
+use pc_solve::{Checkpoint, CheckpointError, Ending, Solution, SolveError, SolveFailure, solve_checkpointed};
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::forms::RunForm;
@@ -125,10 +125,7 @@ impl Checkpoints {
         let parts = || (flow.motion.clone(), flow.events.clone());
         let (times, options) = (plan.times(), plan.options());
         let solved = solve_checkpointed(&options, parts, from, &times, self.every, save, step);
-        let (motion, error) = match solved {
-            Ok(motion) => (motion, None),
-            Err(failure) => (failure.reached, Some(failure.error)),
-        };
+        let (motion, error) = SolveFailure::split(solved);
         let is_ended = error.as_ref().is_some_and(|error: &SolveError| error.ended().is_some());
         if motion.ending == Some(Ending::Stopped) || is_ended {
             let path = self.place.path().display();

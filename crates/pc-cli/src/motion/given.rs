@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use pc_model::Flow;
-use pc_solve::{Solution, Solve, SolveError};
+use pc_solve::{Solution, Solve, SolveError, SolveFailure};
 
 use crate::error::CliError;
 use crate::motion::interrupt;
@@ -44,10 +44,7 @@ impl<'s, 'p> Given<'s, 'p> {
         let options = plan.options();
         let solve =
             Solve::new(&mut flow.motion, plan.t_start, &flow.start).method(&options).events(&mut flow.events);
-        match solve.run_given(&plan.times(), |t, y| self.take(t, y), step) {
-            Ok(solution) => (solution, None),
-            Err(failure) => (failure.reached, Some(failure.error)),
-        }
+        SolveFailure::split(solve.run_given(&plan.times(), |t, y| self.take(t, y), step))
     }
 
     /// Whether a row could not be written.

@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 
 use pc_model::{Flow, Model, UnknownParameter};
 use pc_solve::{
-    Options, Sensitivities, SensitivitySolution, Solution, SolveError, solve_with_sensitivities_and_events,
+    Options, Sensitivities, SensitivitySolution, Solution, SolveError, SolveFailure,
+    solve_with_sensitivities_and_events,
 };
 
 use crate::args::forms::RunForm;
@@ -67,10 +68,7 @@ impl Derivatives {
             events,
             output,
         );
-        let (reached, error) = match solved {
-            Ok(reached) => (reached, None),
-            Err(failure) => (failure.reached, Some(failure.error)),
-        };
+        let (reached, error) = SolveFailure::split(solved);
         let SensitivitySolution { trajectory, occurrences, ending } = reached;
         self.matrices = trajectory.iter().map(|(_, _, matrix)| matrix.to_vec()).collect();
         (Solution { trajectory: trajectory.motion().clone(), occurrences, ending }, error)

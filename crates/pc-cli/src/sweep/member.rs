@@ -6,12 +6,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use pc_expr::{LaneField, VectorField};
 use pc_model::{Flow, Model, ModelError, Prototype};
-use pc_solve::{Ending, Events, Options, Solution, Stop, Trajectory};
+use pc_solve::{Ending, Events, Options, Solution, Solve, Stop, Trajectory};
 
 use super::design::Design;
 use super::record::{Record, Status};
 use crate::args::forms::RunForm;
-use crate::motion::follow::follow;
 use crate::motion::interrupt;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
@@ -103,7 +102,8 @@ impl Members {
                 ControlFlow::Continue(())
             }
         };
-        let (motion, error) = follow(&mut flow, self.t_start, &self.times, &self.options, observer);
+        let solve = Solve::new(&mut flow.motion, self.t_start, &flow.start).method(&self.options);
+        let (motion, error) = solve.events(&mut flow.events).follow(&self.times, observer);
         let Solution { trajectory, ending, .. } = motion;
         if ending == Some(Ending::Stopped) || error.as_ref().is_some_and(|error| error.ended().is_some()) {
             return None;

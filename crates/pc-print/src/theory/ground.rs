@@ -59,14 +59,19 @@ impl<'a, 'g> Ground<'a, 'g> {
 
     /// The result of an analysis, with its error located at the entry of the file that causes it.
     pub(crate) fn placed<T>(&self, found: Result<T, AnalysisError>) -> Result<T, ModelError> {
-        found.or_else(|error| match error {
-            AnalysisError::Nonholo(error) => self.assembly.placed(Err(error)),
-            AnalysisError::Mech(error) => self.assembly.placed(Err(error)),
-            AnalysisError::Expr(error) => self.assembly.placed(Err(MechError::from(error))),
-            other => Err(self.assembly.not_derived(other.to_string())),
-        })
+        placed(self.assembly, found)
     }
 }
 
-const NONLINEAR: &str = "a constraint is not affine in the velocities";
+/// The same of a model without its equations.
+pub(crate) fn placed<T>(assembly: &Assembly<'_>, found: Result<T, AnalysisError>) -> Result<T, ModelError> {
+    found.or_else(|error| match error {
+        AnalysisError::Nonholo(error) => assembly.placed(Err(error)),
+        AnalysisError::Mech(error) => assembly.placed(Err(error)),
+        AnalysisError::Expr(error) => assembly.placed(Err(MechError::from(error))),
+        other => Err(assembly.not_derived(other.to_string())),
+    })
+}
+
+pub(crate) const NONLINEAR: &str = "a constraint is not affine in the velocities";
 const NOT_CLOSED: &str = "the momenta are not solved for the velocities in closed form";

@@ -32,6 +32,7 @@ from chetaev._errors import (
     ModelError,
     UnknownNameError,
 )
+from chetaev._events import Event
 from chetaev._expressions import (
     Expression,
     abs_,
@@ -58,12 +59,14 @@ from chetaev._expressions import (
     tan,
     tanh,
 )
-from chetaev._model import Check, Equations, Model, Page, Theory
+from chetaev._model import Model
 from chetaev._motion import Motion, Occurrence
+from chetaev._native import __version__
+from chetaev._printed import Check, Equations, Page, Theory
+from chetaev._quantities import Bracket, Lyapunov
 from chetaev._sweep import Sweep
-from chetaev._system import Bracket, Event, Lyapunov, System
+from chetaev._system import System
 
-__version__ = "0.1.0"
 
 __all__ = [
     "Bracket",
@@ -86,6 +89,7 @@ __all__ = [
     "System",
     "Theory",
     "UnknownNameError",
+    "__version__",
     "abs_",
     "acos",
     "asin",

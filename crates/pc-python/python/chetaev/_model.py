@@ -1,8 +1,7 @@
-"""Models, and what is printed of them."""
+"""Models."""
 
 from __future__ import annotations
 
-import html
 import json
 import os
 from collections.abc import Mapping, Sequence
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from chetaev import _native
 from chetaev._errors import UnknownNameError
+from chetaev._printed import Check, Equations, Theory
 
 if TYPE_CHECKING:
     from chetaev._builder import Builder
@@ -165,7 +165,7 @@ class Model:
         >>> check.data["rank"]
         2
         """
-        text, data = self._core.changed(changes(**settings)).check()
+        text, data = self._changed(settings).check()
         return Check(text, json.loads(data))
 
     def derive(
@@ -191,8 +191,10 @@ class Model:
         Euler's top: Poincaré's equations
         ...
         """
-        core = self._core.changed(changes(**settings))
-        return Equations(core, self._form(form), width, inline)
+        return Equations(self, self._form(form), width, inline, settings)
+
+    def _changed(self, settings: Mapping[str, Any]) -> _native.ModelCore:
+        return self._core.changed(changes(**settings))
 
     def _form(self, form: str | None) -> str:
         return form or self._core.simulation()["form"] or "poincare"
@@ -209,7 +211,7 @@ class Model:
         **settings
             As for :meth:`system`.
         """
-        return Theory(self._core.changed(changes(**settings)), degree, [str(f) for f in functions])
+        return Theory(self, degree, [str(f) for f in functions], settings)
 
     def system(self, form: str | None = None, **settings: Any) -> System:
         """The equations of motion, compiled.
@@ -260,178 +262,3 @@ class Model:
 
     def _core_names(self) -> list[str]:
         return [name for name, _ in self._core.start()]
-
-
-class Check:
-    """What can be said of a model before it is run.
-
-    Attributes
-    ----------
-    text : str
-        For people.
-    data : dict
-        For programs.
-    """
-
-    __slots__ = ("data", "text")
-
-    def __init__(self, text: str, data: dict[str, Any]) -> None:
-        self.text = text
-        self.data = data
-
-    def __str__(self) -> str:
-        return self.text
-
-    def __repr__(self) -> str:
-        return self.text
-
-    def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(self.text)}</pre>"
-
-
-class Equations:
-    """Equations of motion, in print.
-
-    In a notebook they show themselves as formulas. ``print`` shows them as text.
-    """
-
-    __slots__ = ("_core", "_inline", "_width", "form", "text")
-
-    def __init__(self, core: _native.ModelCore, form: str, width: int, inline: bool) -> None:
-        self._core = core
-        self._width = width
-        self._inline = inline
-        self.form = form
-        self.text = self._printed("text")
-
-    def _printed(self, language: str) -> str:
-        return self._core.printed(self.form, language, self._width, self._inline)
-
-    def __str__(self) -> str:
-        return self.text
-
-    def __repr__(self) -> str:
-        return self.text
-
-    def latex(self) -> str:
-        """The equations for a paper, with amsmath.
-
-        Examples
-        --------
-        >>> print(Model.builtin("euler-top").derive().latex())  # doctest: +ELLIPSIS
-        %...
-        """
-        return self._printed("latex")
-
-    def data(self) -> dict[str, Any]:
-        """The equations for programs: kinematics, structure coefficients, mass matrix, right-hand sides, operations."""
-        found: dict[str, Any] = json.loads(self._printed("json"))
-        return found
-
-    def html(self) -> str:
-        """The equations for a browser, in MathML."""
-        name, plain, parts = self._core.displayed(self.form, self._inline)
-        shown = [f"<p><b>{html.escape(name)}</b></p>"]
-        if plain is not None:
-            shown.append(f"<pre>{html.escape(plain)}</pre>")
-        for title, formulas, notes in parts:
-            shown.append(f"<p><i>{html.escape(title)}</i></p>")
-            if formulas is not None:
-                shown.append(f'<div style="overflow-x: auto">{formulas}</div>')
-            shown.extend(f"<p>{html.escape(note)}</p>" for note in notes)
-        return "\n".join(shown)
-
-    def _repr_html_(self) -> str:
-        return self.html()
-
-    def _repr_latex_(self) -> str:
-        # Notebooks know no comments outside formulas.
-        return "\n".join(line for line in self.latex().splitlines() if not line.startswith("%"))
-
-    def sympy(self) -> dict[str, Any]:
-        """The equations as expressions of SymPy.
-
-        Returns
-        -------
-        dict
-            ``coordinates``, ``quasi_velocities`` and ``parameters`` (lists of symbols), ``velocities`` (ẋ, a column), and, for equations
-            in velocities, ``mass_matrix``, ``right_hand_side`` of M η̇ = r and ``energy``; for canonical ones ``momenta``, ``rates`` (ẏ) and
-            ``hamiltonian``. Names are real symbols; velocities are called ``x'``, accelerations ``x''``.
-
-        Examples
-        --------
-        >>> equations = Model.builtin("euler-top").derive().sympy()
-        >>> equations["mass_matrix"].shape
-        (3, 3)
-        """
-        from chetaev._sympy import equations
-
-        return equations(self.data())
-
-    def c(self, name: str = "model", *, jacobian: bool = True) -> dict[str, str]:
-        """The equations as C without dependencies: names of files with their texts."""
-        return dict(self._core.source(self.form, "c", name, jacobian))
-
-    def rust(self, name: str = "model", *, jacobian: bool = True) -> dict[str, str]:
-        """The equations as Rust without dependencies: names of files with their texts."""
-        return dict(self._core.source(self.form, "rust", name, jacobian))
-
-
-class Theory:
-    """The analysis of a model, in print."""
-
-    __slots__ = ("_arguments", "_core", "text")
-
-    def __init__(self, core: _native.ModelCore, degree: int, functions: Sequence[str]) -> None:
-        self._core = core
-        self._arguments = (degree, functions)
-        self.text = core.theory("text", degree, functions)
-
-    def __str__(self) -> str:
-        return self.text
-
-    def __repr__(self) -> str:
-        return self.text
-
-    def latex(self) -> str:
-        """For a paper."""
-        return self._core.theory("latex", *self._arguments)
-
-    def data(self) -> dict[str, Any]:
-        """For programs."""
-        found: dict[str, Any] = json.loads(self._core.theory("json", *self._arguments))
-        return found
-
-    def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(self.text)}</pre>"
-
-
-class Page:
-    """A page for a browser, without anything from elsewhere; in a notebook it shows itself in a frame.
-
-    Attributes
-    ----------
-    html : str
-        The page.
-    """
-
-    __slots__ = ("_height", "html")
-
-    def __init__(self, html: str, height: int = 560) -> None:
-        self.html = html
-        self._height = height
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the page to a file."""
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(self.html)
-
-    def _repr_html_(self) -> str:
-        # Scripts of the page run in the frame, and see nothing of the notebook.
-        return (
-            f'<iframe sandbox="allow-scripts" style="width: 100%; height: {self._height}px; border: 0" '
-            f'srcdoc="{html.escape(self.html)}"></iframe>'
-        )
-
-    def __repr__(self) -> str:
-        return f"<Page of {len(self.html)} characters>"

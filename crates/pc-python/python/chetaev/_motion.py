@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from chetaev._errors import ChetaevError, UnknownNameError
-from chetaev._model import Page
+from chetaev._printed import Page
 
 if TYPE_CHECKING:
     import numpy as np

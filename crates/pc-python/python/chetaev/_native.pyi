@@ -7,7 +7,9 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import disjoint_base
 
-__all__ = ["DenseCore", "Function", "ModelCore", "SystemCore", "builtin_names", "draw"]
+__all__ = ["DenseCore", "Function", "ModelCore", "SystemCore", "__version__", "builtin_names", "draw"]
+
+__version__: str
 
 _Floats = npt.NDArray[np.float64]
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from chetaev import _native
-from chetaev._builder import formula, number, quoted
-from chetaev._errors import ChetaevError, IntegrationError
-from chetaev._model import Model, Page, changes
+from chetaev._errors import IntegrationError
+from chetaev._events import Event
+from chetaev._model import Model
+from chetaev._printed import Page
+from chetaev._quantities import Bracket, Lyapunov
 from chetaev._values import Values
 
 if TYPE_CHECKING:
@@ -23,69 +24,6 @@ if TYPE_CHECKING:
 
 #: Rows of a motion if nobody says how many.
 SAMPLES = 201
-
-
-@dataclass(frozen=True)
-class Event:
-    """An event of a run, beside those of the text.
-
-    Parameters
-    ----------
-    when : expression
-        It occurs where this vanishes.
-    direction : str
-        ``"rising"``, ``"falling"`` or ``"both"``.
-    terminal : bool
-        Whether it ends the motion.
-    reset : mapping
-        New values of coordinates and quasi-velocities.
-    """
-
-    when: Any
-    direction: str = "both"
-    terminal: bool = False
-    reset: Mapping[str, Any] = field(default_factory=dict)
-
-    def text(self, name: str) -> str:
-        """The section of a text."""
-        lines = [
-            f"[events.{quoted(name)}]",
-            f"when = {formula(self.when)}",
-            f"direction = {quoted(self.direction)}",
-            f"terminal = {'true' if self.terminal else 'false'}",
-        ]
-        lines += [f"reset.{quoted(variable)} = {formula(value)}" for variable, value in self.reset.items()]
-        return "\n".join(lines) + "\n"
-
-
-class Lyapunov(NamedTuple):
-    """Lyapunov exponents of a motion."""
-
-    #: The largest exponents, in 1/time.
-    exponents: Floats
-    #: Their means after each interval: a row for each.
-    history: Floats
-
-
-class Bracket:
-    """The Poisson bracket (f, g) (12) of two functions of the state, a function of time and state."""
-
-    __slots__ = ("_function", "_arguments")
-
-    def __init__(self, system: System, f: str, g: str) -> None:
-        self._arguments = (system, f, g)
-        self._function = system.poisson_bracket(f, g)
-
-    def __call__(self, t: float, y: npt.ArrayLike) -> float:
-        import numpy as np
-
-        return self._function.at(float(t), np.asarray(y, dtype=float).tolist())
-
-    def __reduce__(self) -> tuple[type[Bracket], tuple[System, str, str]]:
-        return Bracket, self._arguments
-
-    def __repr__(self) -> str:
-        return f"<Bracket ({self._arguments[1]}, {self._arguments[2]})>"
 
 
 class System(_native.SystemCore):
@@ -118,7 +56,7 @@ class System(_native.SystemCore):
         settings = {**settings}
         settings["parameters"] = dict(settings.get("parameters") or {})
         settings["start"] = dict(settings.get("start") or {})
-        self = super().__new__(cls, model._core.changed(changes(**settings)), form)
+        self = super().__new__(cls, model._changed(settings), form)
         assert isinstance(self, System)
         self._model = model
         self._form = form

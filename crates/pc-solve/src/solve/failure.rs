@@ -17,6 +17,14 @@ pub struct SolveFailure<R = Trajectory> {
 }
 
 impl<R> SolveFailure<R> {
+    /// What was reached, all of it unless the integration failed, and why not more: for whoever shows both.
+    pub fn split(outcome: Result<R, Box<SolveFailure<R>>>) -> (R, Option<SolveError>) {
+        match outcome {
+            Ok(reached) => (reached, None),
+            Err(failure) => (failure.reached, Some(failure.error)),
+        }
+    }
+
     pub(crate) fn map<T>(self, part: impl FnOnce(R) -> T) -> SolveFailure<T> {
         SolveFailure { reached: part(self.reached), error: self.error }
     }

@@ -136,6 +136,15 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         }
     }
 
+    /// As [`run_observed`](Solve::run_observed): the motion as far as it can be computed, and why not further.
+    pub fn follow(
+        self,
+        times: &[f64],
+        step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> (Solution, Option<SolveError>) {
+        SolveFailure::split(self.run_observed(times, step))
+    }
+
     /// As [`run_observed`](Solve::run_observed), and gives each (t, y) to `output`, which may stop it, instead of
     /// keeping it: the trajectory of the solution has only the statistics.
     ///

@@ -1,0 +1,43 @@
+"""What is known of a system beside its rates."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from chetaev._system import System
+
+    Floats = npt.NDArray[np.float64]
+
+
+class Lyapunov(NamedTuple):
+    """Lyapunov exponents of a motion."""
+
+    #: The largest exponents, in 1/time.
+    exponents: Floats
+    #: Their means after each interval: a row for each.
+    history: Floats
+
+
+class Bracket:
+    """The Poisson bracket (f, g) (12) of two functions of the state, a function of time and state."""
+
+    __slots__ = ("_function", "_arguments")
+
+    def __init__(self, system: System, f: str, g: str) -> None:
+        self._arguments = (system, f, g)
+        self._function = system.poisson_bracket(f, g)
+
+    def __call__(self, t: float, y: npt.ArrayLike) -> float:
+        import numpy as np
+
+        return self._function.at(float(t), np.asarray(y, dtype=float).tolist())
+
+    def __reduce__(self) -> tuple[type[Bracket], tuple[System, str, str]]:
+        return Bracket, self._arguments
+
+    def __repr__(self) -> str:
+        return f"<Bracket ({self._arguments[1]}, {self._arguments[2]})>"
