@@ -8,7 +8,7 @@ use crate::args::checkpoint::CheckpointArguments;
 use crate::args::drawn::DrawnArguments;
 use crate::args::forms::{RunForm, run_form};
 use crate::args::options;
-use crate::args::options::{IntegrationArguments, ModelArguments, Outputs, RunArguments, VelocityArguments};
+use crate::args::options::{IntegrationArguments, ModelArguments, RunArguments, VelocityArguments};
 
 /// The motion on a page.
 #[derive(Clone, Debug, Args)]
@@ -83,7 +83,7 @@ impl ShownArguments {
             integration: self.integration.clone(),
             form: self.form,
             project: self.project.clone(),
-            outputs: Some(Outputs::Reactions),
+            outputs: None,
             no_verify: false,
             output: None,
             plot: None,

@@ -24,6 +24,7 @@ pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
     if arguments.no_run {
         return destination.write_page(&report(&model, None)?);
     }
+    model.observe_reactions(!model.document().constraints.is_empty());
     let run = match integrated(&mut model, &arguments.shown) {
         Err(CliError::NoEnd { .. }) => None,
         run => Some(run?),
@@ -59,10 +60,9 @@ pub fn page(model: &Model, run: &Run) -> Result<String, CliError> {
     Ok(report(model, Some(&run.record()))?)
 }
 
-/// The motion with the reactions of constraints.
+/// The motion, smooth where it is drawn.
 fn integrated(model: &mut Model, shown: &ShownArguments) -> Result<Run, CliError> {
     let arguments = shown.as_run();
-    model.observe_reactions(!model.document().constraints.is_empty());
     for name in &arguments.project {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
