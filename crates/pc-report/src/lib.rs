@@ -26,6 +26,7 @@
 
 mod check;
 mod error;
+mod frame;
 mod page;
 pub mod picture;
 mod record;

@@ -1,7 +1,7 @@
 //! Pictures: of a motion, of a sweep, of eigenvalues, for a page and for files.
 //!
 //! A [`Record`](crate::Record) becomes [`Panel`]s of curves that one scale shows well, several panels a [`Picture`], and that a
-//! [`Drawing`]: lines, texts and areas that can be written in any format. Read `panel`, what stands on common axes; `scales`, which
+//! [`Drawing`]: lines, areas and texts that can be written in any format. Read `panel`, what stands on common axes; `scales`, which
 //! curves do; `motion`, the panels of a motion; `axes`, round numbers; `simplify`, the points that are seen; `chart`, a panel
 //! drawn; `drawing` and `svg`, what is drawn and how it is written; `sheet`, panels under each other; `plane`, eigenvalues.
 

@@ -26,12 +26,12 @@ struct Module {
 
 impl Crate {
     pub(crate) fn read(folder: &Path) -> Self {
-        let modules = modules::read(folder).into_iter();
-        let module = |(path, read)| {
+        let mut modules = BTreeMap::new();
+        for (path, read) in modules::read(folder) {
             let module = Module::of(&path, read);
-            (path, module)
-        };
-        Self { modules: modules.map(module).collect() }
+            modules.insert(path, module);
+        }
+        Self { modules }
     }
 
     /// Of each file the files whose names it uses.

@@ -94,7 +94,7 @@ fn origin(modules: &Modules, here: &[String], path: &[String]) -> Origin {
 
 /// What is implemented: functions of public types, public or foreign traits for them, and public traits for foreign types.
 fn implementations(modules: &Modules, names: &BTreeMap<String, Origin>) -> BTreeMap<Origin, Vec<Item>> {
-    let mut found: BTreeMap<Origin, Vec<(String, Item)>> = BTreeMap::new();
+    let mut found: BTreeMap<Origin, Vec<((bool, String), Item)>> = BTreeMap::new();
     let is_offered = |origin: &Origin| names.values().any(|known| known == origin);
     for (path, module) in modules {
         for item in &module.items {
@@ -109,16 +109,18 @@ fn implementations(modules: &Modules, names: &BTreeMap<String, Origin>) -> BTree
                 _ => continue,
             };
             if let Some(shown) = shown(implementation.clone()) {
-                let order = prettyplease::unparse(&syn::File {
+                let text = prettyplease::unparse(&syn::File {
                     shebang: None,
                     attrs: Vec::new(),
                     items: vec![shown.clone()],
                 });
+                // Functions of a type come before what it implements.
+                let order = (implementation.trait_.is_some(), text);
                 found.entry(owner).or_default().push((order, shown));
             }
         }
     }
-    let sorted = |(origin, mut items): (Origin, Vec<(String, Item)>)| {
+    let sorted = |(origin, mut items): (Origin, Vec<((bool, String), Item)>)| {
         items.sort_by(|a, b| a.0.cmp(&b.0));
         (origin, items.into_iter().map(|(_, item)| item).collect())
     };
