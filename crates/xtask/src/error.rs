@@ -36,6 +36,8 @@ pub(crate) enum Error {
     Package { wrong: String },
     /// A command needs what this machine does not have and the workspace does without.
     Unavailable { what: String },
+    /// Links of the book lead nowhere.
+    Links { lost: Vec<String> },
     /// Installing on a system that has other names and tools for it.
     NotLinux { system: String },
     /// Every test binary was empty, or none was run.
@@ -79,6 +81,7 @@ impl fmt::Display for Error {
             Error::Numbers { example, wrong } => write!(f, "the example {example}: {wrong}"),
             Error::Package { wrong } => write!(f, "the Python package: {wrong}"),
             Error::Unavailable { what } => f.write_str(what),
+            Error::Links { lost } => write!(f, "links that lead nowhere:\n  {}", lost.join("\n  ")),
             Error::NotLinux { system } => write!(
                 f,
                 "installing is made for Linux; on {system} take the library from target/release and the headers from \
