@@ -1,8 +1,6 @@
 //! The method that options choose.
 
-use std::sync::Arc;
-
-use pc_expr::{Program, VectorField};
+use pc_expr::{PolynomialMotion, VectorField};
 
 #[cfg(feature = "cvode")]
 use crate::auto::switch::Auto;
@@ -159,14 +157,8 @@ impl<F: VectorField> Stepper for Chosen<F> {
         each!(self, method => method.statistics())
     }
 
-    fn separate_roots(
-        &mut self,
-        program: &Arc<Program>,
-        parameters: &[f64],
-        span: (f64, f64),
-        times: &mut Vec<f64>,
-    ) -> bool {
-        each!(self, method => method.separate_roots(program, parameters, span, times))
+    fn polynomial<'a>(&'a mut self, room: &'a mut Vec<f64>) -> Result<PolynomialMotion<'a>, SolveError> {
+        each!(self, method => method.polynomial(room))
     }
 
     fn tolerance(&self, i: usize, y: f64) -> f64 {

@@ -118,7 +118,7 @@ fn goes_on(parts: Parts, y0: &[f64], times: &[f64], options: &Options, steps: u6
 fn a_motion_with_events_goes_on_from_any_checkpoint_with_the_same_bits() {
     let block = [-1.0, 0.0, 1.0];
     let times: Vec<f64> = (0..=60).map(|i| 0.2 * f64::from(i)).collect();
-    for method in [Method::Adams, Method::Bdf] {
+    for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
         for (steps, rtol) in [(1, 1e-3), (2, 1e-3), (7, 1e-6), (30, 1e-7), (1_000_000, 1e-7)] {
             let options = Options::new(method).relative_tolerance(rtol).absolute_tolerance(1e-2 * rtol);
             // The first step of a leg, which is estimated to be far shorter.

@@ -1,8 +1,13 @@
 //! Events: times against closed forms, order, resets, directions.
 
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+mod fields;
+
 use std::cell::RefCell;
 use std::ops::ControlFlow::{Break, Continue};
 
+use pc_expr::ProgramField;
 use pc_solve::{
     Accumulation, Code, Cvode, Ending, Event, Events, Failure, FnEvents, Integration, Method, Observed,
     Occurrence, Options, Reason, Solve, SolveError, VectorField, from_fn,
@@ -20,13 +25,16 @@ fn field(rates: fn(f64, &[f64]) -> Vec<f64>, dim: usize) -> impl VectorField + C
     })
 }
 
-fn falling() -> impl VectorField + Clone {
-    field(|_, y| vec![y[1], -1.0], 2)
+fn falling() -> ProgramField {
+    fields::field(|_, [_y, v]| [v, (-1.0).into()])
 }
 
-fn oscillator() -> impl VectorField + Clone {
-    field(|_, y| vec![y[1], -y[0]], 2)
+fn oscillator() -> ProgramField {
+    fields::oscillator()
 }
+
+/// The methods for fields that are closures.
+const FOR_CLOSURES: [Method; 4] = [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto];
 
 fn bounce(restitution: f64) -> FnEvents<'static> {
     FnEvents::new().with_reset(
@@ -54,7 +62,7 @@ fn integration(error: SolveError) -> pc_solve::IntegrationError {
 /// 2, exact in both methods: what is left is the rounding of the location, 1e-15 of the time, and of the speeds.
 #[test]
 fn a_ball_bounces_when_it_should() {
-    for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
+    for method in Method::ALL {
         for restitution in [0.5_f64, 0.9] {
             let outputs: Vec<f64> = (1..=40).map(|i| f64::from(i) * 0.1).collect();
             let motion = Solve::new(falling(), 0.0, &[1.0, 0.0])
@@ -97,9 +105,9 @@ fn a_ball_bounces_when_it_should() {
 /// The bounces accumulate at √2 (1 + 2e/(1 − e)).
 #[test]
 fn bounces_that_accumulate_are_an_error_with_their_limit() {
-    for restitution in [0.1, 0.5, 0.9] {
+    for (method, restitution) in Method::ALL.into_iter().flat_map(|m| [0.1, 0.5, 0.9].map(|e| (m, e))) {
         let failure = Solve::new(falling(), 0.0, &[1.0, 0.0])
-            .method(&sharp(Method::Adams))
+            .method(&sharp(method))
             .events(bounce(restitution))
             .run(&[1.0, 100.0])
             .unwrap_err();
@@ -109,10 +117,10 @@ fn bounces_that_accumulate_are_an_error_with_their_limit() {
         assert!(failure.reached.ending.is_none());
         let error = integration(failure.error);
         let text = error.to_string();
-        let Reason::Accumulation { event, occurrences, t } = error.reason else { panic!("{text}") };
+        let Reason::Accumulation { event, occurrences, t } = error.reason else { panic!("{method}: {text}") };
         assert_eq!((event.as_str(), occurrences), ("bounce", failure.reached.occurrences.len() as u64));
         // The rest, 1e-5 of the first flight at most, is extrapolated from flights whose heights the tolerances hardly resolve.
-        assert!((t - limit).abs() < 1e-8 * limit, "{restitution}: {t} is not {limit}");
+        assert!((t - limit).abs() < 1e-8 * limit, "{method}, {restitution}: {t} is not {limit}");
         assert!(error.time <= t && t - error.time <= 1e-5 * 2.0 * 2.0_f64.sqrt() * restitution);
         assert!(text.starts_with("the event bounce occurs without end near t = "), "{text}");
     }
@@ -128,7 +136,7 @@ fn bounces_that_accumulate_are_an_error_with_their_limit() {
 #[test]
 fn zeros_are_found_once_in_their_direction() {
     let half = std::f64::consts::FRAC_PI_2;
-    for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
+    for method in Method::ALL {
         for end in [30.0, -30.0] {
             let events = FnEvents::new()
                 .with(Event::new("both"), |_, y| Ok(y[0]))
@@ -159,7 +167,7 @@ fn zeros_are_found_once_in_their_direction() {
 /// Functions of time alone: what is left is the location, to 1e-12 of the time as promised.
 #[test]
 fn a_time_is_located_to_rounding() {
-    for end in [1.0, 1e6, 1e-6] {
+    for (method, end) in FOR_CLOSURES.into_iter().flat_map(|m| [1.0, 1e6, 1e-6].map(|end| (m, end))) {
         for part in [0.1234567, 0.5, 0.999] {
             let at = part * end;
             for function in [
@@ -171,13 +179,13 @@ fn a_time_is_located_to_rounding() {
                 let events = FnEvents::new().with(Event::new("then"), move |t, _| Ok(function(t)));
                 let still = field(|_, _| vec![0.0], 1);
                 let motion = Solve::new(still, 0.0, &[1.0])
-                    .method(&Options::default())
+                    .method(Options::new(method))
                     .events(events)
                     .run(&[end])
                     .unwrap();
                 let found = times(&motion.occurrences);
-                assert_eq!(found.len(), 1, "{end} {part}");
-                assert!((found[0] - at).abs() <= 1e-12 * at, "{} is not {at}", found[0]);
+                assert_eq!(found.len(), 1, "{method}: {end} {part}");
+                assert!((found[0] - at).abs() <= 1e-12 * at, "{method}: {} is not {at}", found[0]);
             }
         }
     }
@@ -185,29 +193,32 @@ fn a_time_is_located_to_rounding() {
 
 #[test]
 fn a_function_that_is_zero_at_the_start_has_to_leave_first() {
-    // sin t leaves zero at once and is back at π.
-    let events = FnEvents::new().with(Event::new("zero"), |_, y| Ok(y[0]));
-    let motion = Solve::new(oscillator(), 0.0, &[0.0, 1.0])
-        .method(&sharp(Method::Adams))
-        .events(events)
-        .run(&[4.0])
-        .unwrap();
-    let found = times(&motion.occurrences);
-    assert!(found.len() == 1 && (found[0] - std::f64::consts::PI).abs() < 1e-11, "{found:?}");
-    // What is zero all the time never occurs.
-    let events = FnEvents::new().with(Event::new("nothing"), |_, _| Ok(0.0));
-    let motion = Solve::new(oscillator(), 0.0, &[0.0, 1.0])
-        .method(&Options::default())
-        .events(events)
-        .run(&[4.0])
-        .unwrap();
-    assert!(motion.occurrences.is_empty());
+    for method in Method::ALL {
+        // sin t leaves zero at once and is back at π.
+        let events = FnEvents::new().with(Event::new("zero"), |_, y| Ok(y[0]));
+        let motion = Solve::new(oscillator(), 0.0, &[0.0, 1.0])
+            .method(&sharp(method))
+            .events(events)
+            .run(&[4.0])
+            .unwrap();
+        let found = times(&motion.occurrences);
+        let is_found = found.len() == 1 && (found[0] - std::f64::consts::PI).abs() < 1e-11;
+        assert!(is_found, "{method}: {found:?}");
+        // What is zero all the time never occurs.
+        let events = FnEvents::new().with(Event::new("nothing"), |_, _| Ok(0.0));
+        let motion = Solve::new(oscillator(), 0.0, &[0.0, 1.0])
+            .method(Options::new(method))
+            .events(events)
+            .run(&[4.0])
+            .unwrap();
+        assert!(motion.occurrences.is_empty());
+    }
 }
 
 /// y = (t − 1)² − depth: no event above zero, two close ones below, found within steps that begin and end above.
 #[test]
 fn grazing_functions_cause_no_event() {
-    for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
+    for method in FOR_CLOSURES {
         for (depth, expected) in [(-1e-6, 0), (1e-4, 2), (1e-8, 2), (1e-12, 2)] {
             let f: f64 = depth;
             let events = FnEvents::new().with(Event::new("graze"), move |_, y| Ok(y[0] - f));
@@ -296,31 +307,31 @@ fn outputs_at_events() {
 
 #[test]
 fn a_terminal_event_is_the_last_output() {
-    let events = FnEvents::new()
-        .with(Event::new("other"), |t, _| Ok(t - 0.5))
-        .with(Event::new("floor").falling().terminal(true), |_, y| Ok(y[0]));
-    let motion = Solve::new(falling(), 0.0, &[1.0, 0.0])
-        .method(&sharp(Method::Adams))
-        .events(events)
-        .run(&[0.0, 1.0, 2.0, 3.0])
-        .unwrap();
-    assert_eq!(motion.ending, Some(Ending::Event { event: 1 }));
-    assert!(!motion.trajectory.is_complete());
-    let landing = 2.0_f64.sqrt();
-    let found = motion.trajectory.times();
-    assert_eq!(found[..2], [0.0, 1.0]);
-    assert!(found.len() == 3 && (found[2] - landing).abs() < 1e-13);
+    for method in Method::ALL {
+        let events = FnEvents::new()
+            .with(Event::new("other"), |t, _| Ok(t - 0.5))
+            .with(Event::new("floor").falling().terminal(true), |_, y| Ok(y[0]));
+        let motion = Solve::new(falling(), 0.0, &[1.0, 0.0])
+            .method(&sharp(method))
+            .events(events)
+            .run(&[0.0, 1.0, 2.0, 3.0])
+            .unwrap();
+        assert_eq!(motion.ending, Some(Ending::Event { event: 1 }));
+        assert!(!motion.trajectory.is_complete());
+        let landing = 2.0_f64.sqrt();
+        let found = motion.trajectory.times();
+        assert_eq!(found[..2], [0.0, 1.0]);
+        assert!(found.len() == 3 && (found[2] - landing).abs() < 1e-13, "{method}: {found:?}");
 
-    // It can go on from there, and does not meet the event again.
-    let events = FnEvents::new().with(Event::new("floor").terminal(true), |_, y| Ok(y[0]));
-    let mut hybrid = Integration::new(falling(), 0.0, &[1.0, 0.0], &sharp(Method::Bdf))
-        .unwrap()
-        .with_events(events)
-        .unwrap();
-    assert_eq!(hybrid.advance_to(3.0, |_| Continue(())).unwrap(), Ending::Event { event: 0 });
-    assert!((hybrid.time() - landing).abs() < 1e-12);
-    assert_eq!(hybrid.advance_to(3.0, |_| Continue(())).unwrap(), Ending::Completed);
-    assert!((hybrid.state()[0] + 3.5).abs() < 1e-11);
+        // It can go on from there, and does not meet the event again.
+        let events = FnEvents::new().with(Event::new("floor").terminal(true), |_, y| Ok(y[0]));
+        let start = Solve::new(falling(), 0.0, &[1.0, 0.0]).method(sharp(method)).events(events);
+        let mut hybrid = start.start().unwrap();
+        assert_eq!(hybrid.advance_to(3.0, |_| Continue(())).unwrap(), Ending::Event { event: 0 });
+        assert!((hybrid.time() - landing).abs() < 1e-12, "{method}");
+        assert_eq!(hybrid.advance_to(3.0, |_| Continue(())).unwrap(), Ending::Completed);
+        assert!((hybrid.state()[0] + 3.5).abs() < 1e-11, "{method}");
+    }
 }
 
 #[test]
@@ -349,7 +360,7 @@ fn observers_may_stop() {
 /// The work before restarts is counted, and each evaluation of the field is.
 #[test]
 fn statistics_continue_over_restarts() {
-    for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
+    for method in FOR_CLOSURES {
         let calls = std::cell::Cell::new(0);
         let counted = from_fn(2, |_, y: &[f64], ydot: &mut [f64]| {
             calls.set(calls.get() + 1);
@@ -368,31 +379,33 @@ fn statistics_continue_over_restarts() {
 /// Options stay over a restart: the first step is the one given, the largest is kept, nothing is evaluated beyond the end.
 #[test]
 fn options_stay_over_restarts() {
-    let farthest = std::cell::Cell::new(0.0_f64);
-    let fall = from_fn(2, |t: f64, y: &[f64], ydot: &mut [f64]| {
-        farthest.set(farthest.get().max(t));
-        ydot.copy_from_slice(&[y[1], -1.0]);
-        Ok(())
-    });
-    let options = Options::new(Method::Adams).initial_step(1e-6).max_step(0.01).stop_time(3.0);
-    let mut hybrid =
-        Integration::new(fall, 0.0, &[1.0, 0.0], &options).unwrap().with_events(bounce(0.5)).unwrap();
-    let mut ends = vec![0.0];
-    let landing = 2.0_f64.sqrt();
-    hybrid
-        .run_observed(
-            &[3.0],
-            Observed::new(|_, _| Continue(())).occurrences(|_| Continue(())).steps(|t, _| {
-                ends.push(t);
-                Continue(())
-            }),
-        )
-        .unwrap();
-    let lengths: Vec<f64> = ends.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    assert!(lengths.iter().all(|&length| length <= 0.01 * (1.0 + 1e-12)));
-    let after = ends.iter().position(|&t| (t - landing).abs() < 1e-9).unwrap();
-    assert!((lengths[after] - 1e-6).abs() < 1e-12, "{}", lengths[after]);
-    assert_eq!(farthest.get(), 3.0);
+    for method in FOR_CLOSURES {
+        let farthest = std::cell::Cell::new(0.0_f64);
+        let fall = from_fn(2, |t: f64, y: &[f64], ydot: &mut [f64]| {
+            farthest.set(farthest.get().max(t));
+            ydot.copy_from_slice(&[y[1], -1.0]);
+            Ok(())
+        });
+        let options = Options::new(method).initial_step(1e-6).max_step(0.01).stop_time(3.0);
+        let start = Solve::new(fall, 0.0, &[1.0, 0.0]).method(options).events(bounce(0.5));
+        let mut hybrid = start.start().unwrap();
+        let mut ends = vec![0.0];
+        let landing = 2.0_f64.sqrt();
+        hybrid
+            .run_observed(
+                &[3.0],
+                Observed::new(|_, _| Continue(())).occurrences(|_| Continue(())).steps(|t, _| {
+                    ends.push(t);
+                    Continue(())
+                }),
+            )
+            .unwrap();
+        let lengths: Vec<f64> = ends.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        assert!(lengths.iter().all(|&length| length <= 0.01 * (1.0 + 1e-12)), "{method}");
+        let after = ends.iter().position(|&t| (t - landing).abs() < 1e-9).unwrap();
+        assert!((lengths[after] - 1e-6).abs() < 1e-12, "{method}: {}", lengths[after]);
+        assert_eq!(farthest.get(), 3.0);
+    }
 }
 
 /// A pendulum in the plane, kept on its circle by projection, bounces off the vertical: functions and resets see states on
@@ -421,36 +434,38 @@ fn projected_states() {
             Ok(())
         }
     }
-    let off = |y: &[f64]| (y[0].hypot(y[1]) - 1.0).abs().max((y[0] * y[2] + y[1] * y[3]).abs());
-    let worst = std::cell::Cell::new(0.0_f64);
-    let wall = FnEvents::new().with_reset(
-        Event::new("wall").falling(),
-        |_, y| {
-            worst.set(worst.get().max(off(y)));
-            Ok(y[0])
-        },
-        |_, y| {
-            y[2] *= -1.0;
-            y[3] = 7.0; // off the circle: to be projected
-            Ok(())
-        },
-    );
-    let options = Options::default();
-    let motion = Solve::new(Circle, 0.0, &[1.0, 0.0, 0.0, 0.0])
-        .method(&options)
-        .events(wall)
-        .run(&[10.0, 20.0, 30.0])
-        .unwrap();
-    assert!(worst.get() < 1e-15);
-    assert!(motion.occurrences.len() > 5);
-    assert!(motion.occurrences.iter().all(|o| off(&o.state_after) < 1e-15 && o.state_after[2] > 0.0));
-    // A half swing from rest at the horizontal to the wall and back takes twice K(1/2) = 1.854…, every time.
-    let quarter = 1.854_074_677_301_371_9;
-    for (n, time) in times(&motion.occurrences).into_iter().enumerate() {
-        let expected = quarter * (2 * n + 1) as f64;
-        assert!((time - expected).abs() < 1e-6, "{n}: {time} is not {expected}"); // 1000 rtol
+    for method in FOR_CLOSURES {
+        let off = |y: &[f64]| (y[0].hypot(y[1]) - 1.0).abs().max((y[0] * y[2] + y[1] * y[3]).abs());
+        let worst = std::cell::Cell::new(0.0_f64);
+        let wall = FnEvents::new().with_reset(
+            Event::new("wall").falling(),
+            |_, y| {
+                worst.set(worst.get().max(off(y)));
+                Ok(y[0])
+            },
+            |_, y| {
+                y[2] *= -1.0;
+                y[3] = 7.0; // off the circle: to be projected
+                Ok(())
+            },
+        );
+        let options = Options::new(method);
+        let motion = Solve::new(Circle, 0.0, &[1.0, 0.0, 0.0, 0.0])
+            .method(&options)
+            .events(wall)
+            .run(&[10.0, 20.0, 30.0])
+            .unwrap();
+        assert!(worst.get() < 1e-15);
+        assert!(motion.occurrences.len() > 5);
+        assert!(motion.occurrences.iter().all(|o| off(&o.state_after) < 1e-15 && o.state_after[2] > 0.0));
+        // A half swing from rest at the horizontal to the wall and back takes twice K(1/2) = 1.854…, every time.
+        let quarter = 1.854_074_677_301_371_9;
+        for (n, time) in times(&motion.occurrences).into_iter().enumerate() {
+            let expected = quarter * (2 * n + 1) as f64;
+            assert!((time - expected).abs() < 1e-6, "{method}, {n}: {time} is not {expected}"); // 1000 rtol
+        }
+        assert!(motion.trajectory.iter().all(|(_, y)| off(y) < 1e-15));
     }
-    assert!(motion.trajectory.iter().all(|(_, y)| off(y) < 1e-15));
 }
 
 /// `Events` by hand, borrowed.
@@ -485,47 +500,54 @@ fn events_are_given_back() {
 /// A saw tooth: none of many events is lost or found twice, and each resets exactly at its time.
 #[test]
 fn many_events() {
-    let clock = field(|_, _| vec![1.0], 1);
-    let tooth = FnEvents::new().with_reset(
-        Event::new("tooth").rising(),
-        |_, y| Ok(y[0] - 1.0),
-        |_, y| {
-            y[0] = 0.0;
-            Ok(())
-        },
-    );
-    let mut saw =
-        Integration::new(clock, 0.0, &[0.0], &Options::default()).unwrap().with_events(tooth).unwrap();
-    let mut count = 0;
-    let check = |occurrence: &Occurrence| {
-        count += 1;
-        // Each event is located to 1e-15 of its time, and the errors add up.
-        assert!((occurrence.time - f64::from(count)).abs() < 1e-15 * f64::from(count * count + 10));
-        Continue(())
-    };
-    assert_eq!(saw.advance_to(20_000.5, check).unwrap(), Ending::Completed);
-    assert_eq!(count, 20_000);
+    for method in FOR_CLOSURES {
+        let clock = field(|_, _| vec![1.0], 1);
+        let tooth = FnEvents::new().with_reset(
+            Event::new("tooth").rising(),
+            |_, y| Ok(y[0] - 1.0),
+            |_, y| {
+                y[0] = 0.0;
+                Ok(())
+            },
+        );
+        let start = Solve::new(clock, 0.0, &[0.0]).method(Options::new(method)).events(tooth);
+        let mut saw = start.start().unwrap();
+        let mut count = 0;
+        let check = |occurrence: &Occurrence| {
+            count += 1;
+            // Each event is located to 1e-15 of its time, and the errors add up.
+            let error = (occurrence.time - f64::from(count)).abs();
+            assert!(error < 1e-15 * f64::from(count * count + 10), "{method}: {count}");
+            Continue(())
+        };
+        assert_eq!(saw.advance_to(20_000.5, check).unwrap(), Ending::Completed);
+        assert_eq!(count, 20_000, "{method}");
+    }
 }
 
 /// A call that would go through events without end comes to one.
 #[test]
 fn events_do_not_lift_the_limit_of_steps() {
-    let zeros = FnEvents::new().with(Event::new("zero"), |_, y| Ok(y[0]));
-    let options = Options::default().max_steps(200);
-    let mut motion =
-        Integration::new(oscillator(), 0.0, &[1.0, 0.0], &options).unwrap().with_events(zeros).unwrap();
-    let error = motion.advance_to(1e12, |_| Continue(())).unwrap_err();
-    assert_eq!(error.code(), Some(Code::TooMuchWork));
-    let reached = motion.time();
-    assert!((2.0..1e3).contains(&reached), "{reached}");
-    // The next call has as many.
-    assert_eq!(motion.advance_to(reached + 1.0, |_| Continue(())).unwrap(), Ending::Completed);
+    for method in Method::ALL {
+        let zeros = FnEvents::new().with(Event::new("zero"), |_, y| Ok(y[0]));
+        let options = Options::new(method).max_steps(200);
+        let start = Solve::new(oscillator(), 0.0, &[1.0, 0.0]).method(options).events(zeros);
+        let mut motion = start.start().unwrap();
+        let error = motion.advance_to(1e12, |_| Continue(())).unwrap_err();
+        assert_eq!(error.code(), Some(Code::TooMuchWork), "{method}");
+        let reached = motion.time();
+        assert!((2.0..1e3).contains(&reached), "{method}: {reached}");
+        // The next call has as many.
+        assert_eq!(motion.advance_to(reached + 1.0, |_| Continue(())).unwrap(), Ending::Completed);
+    }
 }
 
 /// Steps that end at t = 0, where a time has no size of its own.
 #[test]
 fn passages_before_time_zero_are_located() {
-    for (start, at, passages) in [(-1.0, -0.1, 1), (1.0, 0.1, 1), (10.0, 0.03, 4)] {
+    let cases = [(-1.0, -0.1, 1), (1.0, 0.1, 1), (10.0, 0.03, 4)];
+    for (method, (start, at, passages)) in FOR_CLOSURES.into_iter().flat_map(|m| cases.map(|case| (m, case)))
+    {
         let clock = from_fn(1, |_t, _y, rate| {
             rate[0] = 1.0;
             Ok(())
@@ -533,11 +555,11 @@ fn passages_before_time_zero_are_located() {
         let events =
             FnEvents::default().with(Event::new("noon"), move |t: f64, _y: &[f64]| Ok((t - at).sin()));
         let found = Solve::new(clock, start, &[start])
-            .method(&Options::default())
+            .method(Options::new(method))
             .events(events)
             .run(&[0.0])
             .unwrap();
-        assert_eq!(found.occurrences.len(), passages, "{start}");
+        assert_eq!(found.occurrences.len(), passages, "{method}: {start}");
         let last = found.occurrences.last().unwrap().time;
         assert!((last - at).abs() < 1e-12 * start.abs().max(1.0), "{last} for {at}");
     }
@@ -546,7 +568,7 @@ fn passages_before_time_zero_are_located() {
 /// An event is found where it was without the others.
 #[test]
 fn another_event_hides_no_passages() {
-    let times = |second: bool| {
+    let times = |method: Method, second: bool| {
         let clock = from_fn(1, |_t, _y, rate| {
             rate[0] = 1.0;
             Ok(())
@@ -556,10 +578,12 @@ fn another_event_hides_no_passages() {
         if second {
             events = events.with(Event::new("once"), |_t: f64, y: &[f64]| Ok(y[0] - 40.0));
         }
-        let options = Options::default().initial_step(1.0);
+        let options = Options::new(method).initial_step(1.0);
         let found = Solve::new(clock, 0.0, &[0.0]).method(&options).events(events).run(&[100.0]).unwrap();
         found.occurrences.iter().map(|o| (o.time * 1e6).round() / 1e6).collect::<Vec<_>>()
     };
-    assert_eq!(times(false), [28.0, 32.0]);
-    assert_eq!(times(true), [28.0, 32.0, 40.0]);
+    for method in FOR_CLOSURES {
+        assert_eq!(times(method, false), [28.0, 32.0], "{method}");
+        assert_eq!(times(method, true), [28.0, 32.0, 40.0], "{method}");
+    }
 }

@@ -1,14 +1,20 @@
 //! Motions known in closed form.
 //!
-//! Both methods control the local error, which adds up over an interval; 1000 times the relative tolerance is the
+//! All methods control the local error, which adds up over an interval; 1000 times the relative tolerance is the
 //! margin allowed for that here, over intervals in which neighbouring motions do not spread.
 
-use pc_solve::{Method, NonlinearSolver, Options, VectorField, from_fn, solve};
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+mod fields;
+
+use fields::{field, oscillator};
+use pc_expr::ProgramField;
+use pc_solve::{Method, NonlinearSolver, Options, solve};
 
 const RTOL: f64 = 1e-9;
 const MARGIN: f64 = 1e3 * RTOL;
 
-/// Each method with each nonlinear solver.
+/// Each method, those of CVODES with each nonlinear solver.
 fn all_options() -> Vec<Options> {
     let mut all = Vec::new();
     for method in [Method::Adams, Method::Bdf] {
@@ -16,15 +22,14 @@ fn all_options() -> Vec<Options> {
             all.push(Options::new(method).nonlinear_solver(solver).relative_tolerance(RTOL));
         }
     }
+    let explicit = [Method::Dop853, Method::Taylor, Method::Auto];
+    all.extend(explicit.map(|method| Options::new(method).relative_tolerance(RTOL)));
     all
 }
 
-fn oscillator() -> impl VectorField {
-    from_fn(2, |_t, y, ydot| {
-        ydot[0] = y[1];
-        ydot[1] = -y[0];
-        Ok(())
-    })
+/// The free top with I = (1, 2, 3).
+fn top() -> ProgramField {
+    field(|_, [a, b, c]| [-b * c, c * a, -a * b / 3.0])
 }
 
 #[track_caller]
@@ -63,11 +68,7 @@ fn linear_oscillator_backwards() {
 #[test]
 fn exponential_with_a_tolerance_for_each_component() {
     for options in all_options() {
-        let decay = from_fn(2, |_t, y, ydot| {
-            ydot[0] = -y[0];
-            ydot[1] = -1e-6 * y[1];
-            Ok(())
-        });
+        let decay = field(|_, [x, y]| [-x, y * -1e-6]);
         let options = options.absolute_tolerance(vec![1e-12, 1e-18]);
         let motion = solve(decay, 1.0, &[1.0, 1e-6], &[2.0, 3.0], &options).unwrap();
         for (t, y) in motion.iter() {
@@ -80,12 +81,12 @@ fn exponential_with_a_tolerance_for_each_component() {
 #[test]
 fn right_hand_side_of_time() {
     for options in all_options() {
-        let field = from_fn(1, |t, _y, ydot| {
-            ydot[0] = 2.0 * t;
-            Ok(())
-        });
-        let motion = solve(field, -1.0, &[1.0], &[0.5, 3.0], &options).unwrap();
+        let rising = field(|t, [_y]| [t * 2.0]);
+        let motion = solve(rising, -1.0, &[1.0], &[0.5, 3.0], &options).unwrap();
         assert_near(motion.states(), &[0.25, 9.0]);
+        let falling = field(|t, [_y]| [t * 2.0]);
+        let motion = solve(falling, 3.0, &[9.0], &[0.5, -1.0], &options).unwrap();
+        assert_near(motion.states(), &[0.25, 1.0]);
     }
 }
 
@@ -97,34 +98,27 @@ fn right_hand_side_of_time() {
 fn free_top_on_the_separatrix() {
     let root3 = 3.0_f64.sqrt();
     for options in all_options() {
-        let top = from_fn(3, |_t, w, wdot| {
-            wdot[0] = -w[1] * w[2];
-            wdot[1] = w[2] * w[0];
-            wdot[2] = -w[0] * w[1] / 3.0;
-            Ok(())
-        });
-        let motion = solve(top, 0.0, &[root3, 0.0, 1.0], &[1.0, 2.0, 3.0], &options).unwrap();
-        for (t, w) in motion.iter() {
-            let sech = 1.0 / t.cosh();
-            let growth = t.exp();
-            let scaled = |w: [f64; 3]| w.map(|x| x / growth);
-            assert_near(&scaled([w[0], w[1], w[2]]), &scaled([root3 * sech, root3 * t.tanh(), sech]));
+        for times in [[1.0, 2.0, 3.0], [-1.0, -2.0, -3.0]] {
+            let motion = solve(top(), 0.0, &[root3, 0.0, 1.0], &times, &options).unwrap();
+            for (t, w) in motion.iter() {
+                let sech = 1.0 / t.cosh();
+                let growth = t.abs().exp();
+                let scaled = |w: [f64; 3]| w.map(|x| x / growth);
+                assert_near(&scaled([w[0], w[1], w[2]]), &scaled([root3 * sech, root3 * t.tanh(), sech]));
+            }
         }
     }
 }
 
 /// The same top off the separatrix: start (1, 0, 1), ω = (cn t, sn t, dn t) with parameter m = 1/3; the values at
-/// t = 20 were computed in extended precision.
+/// t = 20 were computed in extended precision; at −20 sn has the other sign.
 #[test]
 fn free_top() {
     for options in all_options() {
-        let top = from_fn(3, |_t, w, wdot| {
-            wdot[0] = -w[1] * w[2];
-            wdot[1] = w[2] * w[0];
-            wdot[2] = -w[0] * w[1] / 3.0;
-            Ok(())
-        });
-        let motion = solve(top, 0.0, &[1.0, 0.0, 1.0], &[20.0], &options).unwrap();
-        assert_near(motion.state(0), &[0.7098439425137012, -0.7043589832440595, 0.9135787546280825]);
+        for end in [20.0_f64, -20.0] {
+            let motion = solve(top(), 0.0, &[1.0, 0.0, 1.0], &[end], &options).unwrap();
+            let sn = (-0.7043589832440595_f64).copysign(-end);
+            assert_near(motion.state(0), &[0.7098439425137012, sn, 0.9135787546280825]);
+        }
     }
 }

@@ -190,7 +190,9 @@ pub struct pc_solver_options {
     pub max_step: f64,
     /// A time beyond which the equations are never evaluated; infinity, the default, for none.
     pub stop_time: f64,
-    /// Events are looked for at the ends of so many equal parts of each step, at least 1; 4 by
+    /// Events whose functions are not expressions of the state alone (those of the program's own,
+    /// and those read through constraints, momenta or tables) are looked for at the ends of so
+    /// many equal parts of each step, at least 1, and closer where the values leave doubt; 4 by
     /// default. Between two such places an even number of zeros may be missed.
     pub samples_per_step: u32,
     /// 0: room for a choice to come.

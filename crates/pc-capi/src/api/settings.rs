@@ -175,7 +175,7 @@ pub unsafe extern "C" fn pc_model_set_event_search(
     unsafe { draft(model, error, "pc_model_set_event_search", write) }
 }
 
-/// Sets the method by which the program `pc` runs the model: "adams", "bdf".
+/// Sets the method by which the program `pc` runs the model: "auto", "adams", "bdf", "dop853", "taylor".
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_method(
     model: *mut pc_model,

@@ -142,8 +142,8 @@ pub struct TheoryArguments {
 /// The search for events.
 #[derive(Clone, Debug, Default, Args)]
 pub struct EventArguments {
-    /// Search for events at the ends of N equal parts of each step; else as in the file, else 4. Between two such
-    /// places an even number of zeros may be missed
+    /// Search for events of what follows through constraints, from momenta or from tables at the ends of N equal parts of each step, and
+    /// closer where that leaves doubt; else as in the file, else 4. Between two such places an even number of zeros may be missed
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub samples_per_step: Option<u32>,
     /// Events that follow each other ever faster are an error once the time left until they accumulate is this
@@ -161,7 +161,7 @@ pub struct IntegrationArguments {
     /// Absolute tolerance; else that of the file, else 1e-12
     #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = positive)]
     pub atol: Option<f64>,
-    /// Largest step; else that of the file, else unlimited. Events that come and go within a step are not seen
+    /// Largest step; else that of the file, else unlimited
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = positive)]
     pub max_step: Option<f64>,
     /// Events.

@@ -12,9 +12,12 @@ use crate::time_profile::jet::Jet;
 
 /// The shortest interval that is resolved, as a part of the whole.
 const RESOLVED: f64 = 1e-14;
-/// The most intervals examined: enough for hundreds of roots, and a bound for a function that consists of
-/// rounding errors.
+/// The most intervals examined: enough for hundreds of roots.
 const MOST: usize = 4096;
+/// A function that is nothing but rounding takes them all; each time half as many are looked at next, down to these.
+const FEW: usize = 64;
+/// Roots, by intervals that may have one, after which the search ends: who looks for the first does not need them all.
+const ENOUGH: usize = 32;
 
 /// A polynomial motion y(t₀ + s) = Σ_k c_k sᵏ.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +52,11 @@ pub struct RootSeparation {
     /// The components that the outputs contain.
     used: Vec<bool>,
     registers: Vec<Jet>,
+    /// How many intervals are looked at next.
+    most: usize,
     local: Vec<f64>,
+    open: Vec<(f64, f64)>,
+    at_middle: Vec<Jet>,
 }
 
 impl RootSeparation {
@@ -64,7 +71,15 @@ impl RootSeparation {
             }
         }
         let registers = vec![Jet::constant(0.0); program.registers_len()];
-        RootSeparation { program, used, registers, local: Vec::new() }
+        RootSeparation {
+            program,
+            used,
+            registers,
+            most: MOST,
+            local: Vec::new(),
+            open: Vec::new(),
+            at_middle: Vec::new(),
+        }
     }
 
     /// The program.
@@ -72,8 +87,8 @@ impl RootSeparation {
         &self.program
     }
 
-    /// Appends places s, from the first to the last of these, between which each output has at most one root
-    /// along the motion; the last place is among them.
+    /// Appends places s, in order from the first to the last of these, between which each output has at most one root along the motion. The
+    /// last of these is one, unless many roots lie before it: then the places end where the next ones begin.
     ///
     /// # Panics
     /// If the motion or the parameters are not those of the program.
@@ -94,17 +109,18 @@ impl RootSeparation {
         for (register, &value) in inputs.iter_mut().zip(parameters) {
             *register = Jet::constant(value);
         }
-        let mut open = vec![(first, last)];
+        self.open.clear();
+        self.open.push((first, last));
         // The end of the last interval that may contain a root.
-        let (mut looked, mut run) = (0, first);
-        while let Some((a, b)) = open.pop() {
+        let (mut looked, mut run, mut roots) = (0, first, 0);
+        while let Some((a, b)) = self.open.pop() {
             looked += 1;
             let (clear, single) = self.look(motion, (a, b));
             let is_short = (b - a).abs() <= RESOLVED * (last - first).abs();
-            if !(clear || single || is_short || looked > MOST) {
+            if !(clear || single || is_short || looked > self.most) {
                 let middle = 0.5 * (a + b);
-                open.push((middle, b));
-                open.push((a, middle));
+                self.open.push((middle, b));
+                self.open.push((a, middle));
                 continue;
             }
             if !clear {
@@ -112,16 +128,23 @@ impl RootSeparation {
                 if a != run {
                     places.push(0.5 * (run + a));
                 }
+                if roots == ENOUGH {
+                    break;
+                }
                 if a != first {
                     places.push(a);
                 }
-                run = b;
+                // What is not told apart may be one touch in many intervals.
+                (run, roots) = (b, roots + usize::from(single));
             }
         }
-        if run != last {
-            places.push(0.5 * (run + last));
+        if self.open.is_empty() {
+            if run != last {
+                places.push(0.5 * (run + last));
+            }
+            places.push(last);
         }
-        places.push(last);
+        self.most = if looked > self.most { self.most / 2 } else { 2 * self.most }.clamp(FEW, MOST);
     }
 
     /// Whether no output has a root in an interval; whether none has more than one.
@@ -129,15 +152,14 @@ impl RootSeparation {
         let (middle, radius) = (0.5 * (a + b), 0.5 * (b - a).abs());
         self.set_motion(motion, middle, 0.0);
         self.run();
-        let program = &self.program;
-        let at_middle: Vec<Jet> =
-            program.outputs().iter().map(|output| self.registers[output.index()]).collect();
+        self.at_middle.clear();
+        self.at_middle.extend(self.program.outputs().iter().map(|output| self.registers[output.index()]));
         self.set_motion(motion, middle, radius);
         self.run();
         let around = Interval { lo: -radius, hi: radius };
         let squares = Interval { lo: 0.0, hi: 0.5 * radius * radius };
         let (mut clear, mut single) = (true, true);
-        for (output, at) in self.program.outputs().iter().zip(at_middle) {
+        for (output, &at) in self.program.outputs().iter().zip(&self.at_middle) {
             let jet = self.registers[output.index()];
             let excludes = |interval: Interval| interval.lo > 0.0 || interval.hi < 0.0;
             let values =

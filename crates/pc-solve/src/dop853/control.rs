@@ -23,6 +23,8 @@ pub(super) struct Control {
     pub(super) absolute: Vec<f64>,
     pub(super) longest: f64,
     pub(super) shortest: f64,
+    /// How long the first step after a start is tried, if that is given.
+    pub(super) initial: Option<f64>,
     /// How long the next step is tried, if that is known.
     pub(super) next: Option<f64>,
 }
@@ -40,6 +42,7 @@ impl Control {
             absolute,
             longest: options.max_step.unwrap_or(f64::INFINITY),
             shortest: options.min_step.unwrap_or(0.0),
+            initial: options.initial_step,
             next: options.initial_step,
         }
     }

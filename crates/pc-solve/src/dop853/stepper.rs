@@ -91,7 +91,7 @@ impl<F: VectorField> Stepper for Dop853<F> {
         (self.has_rates, self.has_polynomial) = (false, false);
         // What follows a jump may change faster than what was before it: a step as long as the last would pass over an event that
         // comes back at once, as the next impact of a ball does whose bounces accumulate.
-        self.control.next = None;
+        self.control.next = self.control.initial;
         self.stiffness.restart();
         self.statistics.limited_steps += self.places.limited;
         self.places.restart();

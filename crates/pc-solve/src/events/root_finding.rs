@@ -2,6 +2,7 @@
 
 use pc_expr::Direction;
 
+use crate::events::closer::look_closer;
 use crate::events::samples::{Look, Sample};
 
 /// Times closer than so many units of rounding are the same: events between are simultaneous.
@@ -129,8 +130,8 @@ impl Sides {
     /// Looks from `from` for the first passage, with values by `evaluate`.
     ///
     /// The functions are seen at these `times`, the last of which is where to look to, at first also near `from` while one of them
-    /// is at zero, and at the vertex of the parabola through three of these values in sequence where it suggests that a
-    /// function passes through zero twice.
+    /// is at zero. Unless the times separate the roots they are also seen [where there is doubt](look_closer), and at the vertex of the
+    /// parabola through three of the values in sequence where it suggests that a function passes through zero twice.
     pub(crate) fn first<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         from: Sample,
@@ -158,6 +159,9 @@ impl Sides {
                     break;
                 }
             }
+        }
+        if !look.separated {
+            fault = look_closer(&left, &mut samples, look).or(fault);
         }
         let mut hidden = Vec::new();
         for k in 1..samples.len() {

@@ -12,6 +12,8 @@ pub(crate) struct Look<'a, F> {
     pub(crate) evaluate: F,
     /// How many functions there are.
     pub(crate) functions: usize,
+    /// Whether it is known that no function has more than one root between two of the times that it is looked at.
+    pub(crate) separated: bool,
     pub(crate) room: &'a mut Room,
 }
 

@@ -1,6 +1,8 @@
 //! The front of an integration: up to where it is known what occurs.
 
-use pc_expr::{Events, Failure, VectorField};
+use std::sync::Arc;
+
+use pc_expr::{Events, Failure, RootSeparation, VectorField};
 
 use crate::error::{NonFinite, Reason, SolveError};
 use crate::events::root_finding::Passage;
@@ -42,7 +44,10 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             self.output.copy_from_slice(&self.front_state);
         }
         let mut times = std::mem::take(&mut self.times);
-        self.look_at(to, &mut times);
+        let separated = match self.look_at(to, &mut times) {
+            Ok(separated) => separated,
+            Err(error) => return Err(self.stay(error)),
+        };
         let (engine, events) = (&mut self.engine, &mut self.events);
         let mut blamed = 0;
         let evaluate = |t: f64, values: &mut [f64]| {
@@ -54,7 +59,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             values_at(events, t, state, values, &mut blamed)
                 .map_err(|failure| SearchFailure::Event(t, failure))
         };
-        let mut look = Look { evaluate, functions: self.front.values.len(), room: &mut self.room };
+        let functions = self.front.values.len();
+        let mut look = Look { evaluate, functions, separated, room: &mut self.room };
         let from = look.copy(&self.front);
         self.sides_after.clone_from(&self.sides);
         let found = self.sides_after.first(from, &times, &mut look);
@@ -82,24 +88,44 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(())
     }
 
-    /// Writes the times up to `to`, the last of them, at which the functions of events are looked at: such that each has at most one root
-    /// between two of them where the method and the events know that, and the ends of equal parts else.
-    fn look_at(&mut self, to: f64, times: &mut Vec<f64>) {
+    /// Writes the times, up to `to` or to a time before at which the search is to end, at which the functions of events are looked at. Where
+    /// these are a program the times separate their roots along the polynomial of the step; for others, where states are read through
+    /// constraints or as momenta or functions are closures, they are the ends of equal parts. Whether all roots are separated.
+    fn look_at(&mut self, mut to: f64, times: &mut Vec<f64>) -> Result<bool, SolveError> {
         times.clear();
         let from = self.front.t;
-        let mut all = false;
-        if let Some((program, parameters)) = self.events.program() {
-            let separated = self.engine.separate_roots(program, parameters, (from, to), times);
-            all = separated && program.outputs_len() == self.events.events().len();
+        let mut separated = false;
+        let program = self.events.program();
+        if let Some((program, parameters)) =
+            program.filter(|(program, _)| program.state_len() == self.engine.field().dim())
+        {
+            let separation = match &mut self.separation {
+                Some(known) if Arc::ptr_eq(known.program(), program) => known,
+                other => other.insert(RootSeparation::new(Arc::clone(program))),
+            };
+            let motion = self.engine.polynomial(&mut self.coefficients)?;
+            let start = motion.start;
+            separation.separate(motion, (from - start, to - start), parameters, times);
+            let ends_before = times.last() != Some(&(to - start));
+            times.iter_mut().for_each(|time| *time += start);
+            // What lies at the ends or beyond by rounding is not looked at.
+            let direction = 1.0_f64.copysign(to - from);
+            times.retain(|time| (time - from) * direction > 0.0 && (to - time) * direction > 0.0);
+            if ends_before {
+                to = times.pop().unwrap_or(to);
+            }
+            // The polynomial is not that of states that are projected.
+            separated =
+                program.outputs_len() == self.events.events().len() && !self.engine.field().has_projection();
         }
-        if all {
-            return;
+        if !separated {
+            let (pieces, length) = (self.engine.limits().samples_per_step, to - from);
+            times.extend((1..pieces).map(|k| from + length * (f64::from(k) / f64::from(pieces))));
+            times.sort_unstable_by(|a, b| ((a - b) * length).total_cmp(&0.0));
+            times.dedup();
         }
-        let (pieces, length) = (self.engine.limits().samples_per_step, to - from);
-        times.extend((1..pieces).map(|k| from + length * (f64::from(k) / f64::from(pieces))));
         times.push(to);
-        times.sort_unstable_by(|a, b| ((a - b) * length).total_cmp(&0.0));
-        times.dedup();
+        Ok(separated)
     }
 
     /// Whether the end is so near to a restart that no step can go there. Then it is where the integration is.

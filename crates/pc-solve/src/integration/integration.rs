@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use pc_expr::{Direction, Event, Events, VectorField};
+use pc_expr::{Direction, Event, Events, RootSeparation, VectorField};
 
 use crate::error::{InputError, SolveError};
 use crate::events::events::{Accumulation, History, NoEvents};
@@ -70,8 +70,11 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) output: Vec<f64>,
     /// Room for the end of a step.
     pub(crate) ahead: Vec<f64>,
-    /// Room for the times at which functions of events are looked at.
+    /// Room for the times at which functions of events are looked at, and for the polynomial of a step.
     pub(crate) times: Vec<f64>,
+    pub(crate) coefficients: Vec<f64>,
+    /// Of the roots of those functions that are a program.
+    pub(crate) separation: Option<RootSeparation>,
     /// Whether there has been no step since a new start on the way.
     pub(crate) restarted: bool,
     /// Whether the motion has been started anew from a state that it did not come to by itself.
@@ -125,6 +128,8 @@ impl<S: Stepper> Integration<S> {
             noise: Vec::new(),
             beyond: Vec::new(),
             times: Vec::new(),
+            coefficients: Vec::new(),
+            separation: None,
             restarted: false,
             jumped: false,
         }
@@ -170,6 +175,8 @@ impl<S: Stepper> Integration<S> {
             noise: Vec::new(),
             beyond: Vec::new(),
             times: Vec::new(),
+            coefficients: Vec::new(),
+            separation: None,
             restarted: self.restarted,
             jumped: self.jumped,
         };

@@ -1,8 +1,6 @@
 //! Methods that make steps.
 
-use std::sync::Arc;
-
-use pc_expr::{Failure, Program, VectorField};
+use pc_expr::{Failure, PolynomialMotion, VectorField};
 
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::integration::checks::finite;
@@ -125,16 +123,20 @@ pub trait Stepper {
         &[]
     }
 
-    /// Adds times between `from` and `to`, both in the last step, in the order of the integration and with `to` as the last, between which
-    /// each output of a program along the motion has at most one root. False, with none added, if the method does not know that.
-    fn separate_roots(
-        &mut self,
-        _program: &Arc<Program>,
-        _parameters: &[f64],
-        _span: (f64, f64),
-        _times: &mut Vec<f64>,
-    ) -> bool {
-        false
+    /// The states along the last step as a polynomial about its [centre](Stepper::centre), with room for its coefficients; those inside
+    /// are not projected.
+    ///
+    /// # Errors
+    /// [`SolveError::Integration`]
+    fn polynomial<'a>(&'a mut self, room: &'a mut Vec<f64>) -> Result<PolynomialMotion<'a>, SolveError> {
+        let (centre, degree) = (self.centre(), self.last_step().degree.unwrap_or(0));
+        room.clear();
+        let mut factorial = 1.0;
+        for k in 0..=degree {
+            factorial *= f64::from(k.max(1));
+            room.extend(self.interpolate(centre, k)?.iter().map(|derivative| derivative / factorial));
+        }
+        Ok(PolynomialMotion { start: centre, coefficients: room })
     }
 
     /// The error of a failure beyond the end of the last step, where the stepper then stands.

@@ -20,6 +20,9 @@ pub enum Method {
 }
 
 impl Method {
+    /// All of them.
+    pub const ALL: [Method; 5] = [Method::Bdf, Method::Adams, Method::Dop853, Method::Taylor, Method::Auto];
+
     /// The highest order of the family.
     pub fn highest_order(self) -> u32 {
         match self {

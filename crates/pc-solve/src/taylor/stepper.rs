@@ -1,8 +1,6 @@
 //! Taylor's method as a stepper.
 
-use std::sync::Arc;
-
-use pc_expr::{PolynomialMotion, Program, RootSeparation, VectorField};
+use pc_expr::{PolynomialMotion, VectorField};
 
 use crate::error::{IntegrationError, Reason, SolveError};
 use crate::foresight::places::Places;
@@ -55,8 +53,6 @@ pub struct Taylor<F> {
     pub(super) direction: f64,
     pub(super) time: f64,
     pub(super) places: Places,
-    /// Of the events that were asked about last.
-    pub(super) separation: Option<RootSeparation>,
     pub(super) state: Vec<f64>,
     pub(super) slope: Vec<f64>,
     pub(super) rates: Vec<f64>,
@@ -112,7 +108,6 @@ impl<F: VectorField> Taylor<F> {
             direction: 0.0,
             time: t0,
             places,
-            separation: None,
             state: zeros(),
             slope: zeros(),
             rates: zeros(),
@@ -260,32 +255,8 @@ impl<F: VectorField> Stepper for Taylor<F> {
         self.statistics
     }
 
-    fn separate_roots(
-        &mut self,
-        program: &Arc<Program>,
-        parameters: &[f64],
-        (from, to): (f64, f64),
-        times: &mut Vec<f64>,
-    ) -> bool {
-        if program.state_len() != self.series.dim {
-            return false;
-        }
-        let separation = match &mut self.separation {
-            Some(known) if Arc::ptr_eq(known.program(), program) => known,
-            other => other.insert(RootSeparation::new(Arc::clone(program))),
-        };
-        let motion = PolynomialMotion { start: self.start, coefficients: &self.series.coefficients };
-        let (start, low) = (self.start, self.start_low);
-        let place = |t: f64| (t - start) - low;
-        separation.separate(motion, (place(from), place(to)), parameters, times);
-        // What lies beyond by rounding is not looked at.
-        times.pop();
-        for time in &mut *times {
-            *time += start + low;
-        }
-        times.retain(|time| (time - from) * (to - time) > 0.0);
-        times.push(to);
-        true
+    fn polynomial<'a>(&'a mut self, _room: &'a mut Vec<f64>) -> Result<PolynomialMotion<'a>, SolveError> {
+        Ok(PolynomialMotion { start: self.start, coefficients: &self.series.coefficients })
     }
 
     fn tolerance(&self, i: usize, y: f64) -> f64 {

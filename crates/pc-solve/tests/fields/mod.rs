@@ -61,18 +61,30 @@ pub(crate) fn top_integrals(y: &[f64]) -> [f64; 2] {
     [kinetic + potential, y[3] * y[3] + y[4] * y[4] + y[5] * y[5]]
 }
 
-/// Events whose functions are a program, without resets.
+/// What a reset writes to a state.
+pub(crate) type Reset = fn(&mut [f64]);
+
+/// Events whose functions are a program.
 pub(crate) struct ProgramEvents {
     events: Vec<Event>,
+    resets: Vec<Option<Reset>>,
     program: Arc<Program>,
     kernel: Interpreter,
 }
 
 impl ProgramEvents {
+    /// Those that change nothing.
     pub(crate) fn new(program: Program) -> ProgramEvents {
+        let events = (0..program.outputs_len()).map(|i| (Event::new(format!("g{i}")), None)).collect();
+        ProgramEvents::with(program, events)
+    }
+
+    /// These events, each with its reset if it has one.
+    pub(crate) fn with(program: Program, events: Vec<(Event, Option<Reset>)>) -> ProgramEvents {
         let program = Arc::new(program);
-        let events = (0..program.outputs_len()).map(|i| Event::new(format!("g{i}"))).collect();
-        ProgramEvents { events, kernel: Interpreter::new(Arc::clone(&program)), program }
+        let (events, resets) =
+            events.into_iter().map(|(event, reset)| (event.resetting(reset.is_some()), reset)).unzip();
+        ProgramEvents { events, resets, kernel: Interpreter::new(Arc::clone(&program)), program }
     }
 }
 
@@ -88,5 +100,12 @@ impl Events for ProgramEvents {
 
     fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
         Some((&self.program, &[]))
+    }
+
+    fn reset(&mut self, event: usize, _t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        if let Some(reset) = self.resets[event] {
+            reset(y);
+        }
+        Ok(())
     }
 }
