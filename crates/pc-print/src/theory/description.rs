@@ -3,7 +3,6 @@
 use pc_mech::{Expr, Identity, Style};
 
 use crate::mathml;
-use crate::words::short;
 
 /// The results on a model, part by part.
 #[derive(Clone, Debug)]
