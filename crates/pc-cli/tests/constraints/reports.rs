@@ -66,7 +66,7 @@ fn dropped_constraints_are_reported() {
         "{text}"
     );
     let check = stdout(&pc(&twice, &["check", "-"]));
-    let lines = "constraints        length: holonomic\n                     nothing: says nothing; dropped\n                     \
+    let lines = "constraints        length: holonomic\n                     nothing: holds whatever the motion; dropped\n                     \
                  speed: follows from length; dropped\n";
     assert!(check.contains(lines), "{check}");
     let report = json_of(&twice, &["check", "-", "--format", "json"]);
