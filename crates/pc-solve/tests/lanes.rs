@@ -87,7 +87,7 @@ fn neither_lanes_nor_threads_nor_windows_change_a_bit() {
         assert!(motion.is_complete() && motion.statistics().lane_steps == motion.statistics().steps);
         assert!(motion.statistics().steps > 5 && motion.times() == times);
     }
-    for (threads, lanes) in [(1, 1), (1, 4), (2, 8), (2, 3), (5, 8)] {
+    for (threads, lanes) in [(1, 1), (1, 4), (2, 8), (2, 3), (5, 8), (1, 16), (2, 13)] {
         let other = motions(&ensemble(threads, lanes), 61, make, (0.0, &times), &options(1e-9));
         assert_eq!(other, first, "{threads} threads, {lanes} lanes");
     }
@@ -111,6 +111,7 @@ fn lanes_are_single_motions_within_the_tolerance() {
     for (t0, times) in [(0.0, [0.1, 1.0, 3.5, 10.0]), (1.0, [0.8, 0.1, -0.9, -3.0])] {
         for rtol in [1e-6, 1e-9, 1e-12] {
             let found = motions(&ensemble(1, 8), 40, make, (t0, &times), &options(rtol));
+            let mut steps = [0; 2];
             for (member, motion) in found.iter().enumerate() {
                 let (single, start) = make(member as u64).unwrap();
                 let exact = solve(single.clone(), t0, &start, &times, &options(1e-14)).unwrap();
@@ -118,10 +119,12 @@ fn lanes_are_single_motions_within_the_tolerance() {
                     assert!((a - b).abs() <= 300.0 * rtol * (1.0 + b.abs()), "{member}: {a} {b} at {rtol:e}");
                 }
                 let single = solve(single, t0, &start, &times, &options(rtol)).unwrap();
-                let (steps, expected) = (motion.statistics().steps as f64, single.statistics().steps as f64);
-                // Lengths are known to three digits; where the friction turns, that may decide on a step.
-                assert!((steps - expected).abs() <= 4.0 + 0.1 * expected, "{steps} steps, not {expected}");
+                steps[0] += motion.statistics().steps;
+                steps[1] += single.statistics().steps;
             }
+            // Lengths are known to two digits. Where the friction turns, that decides on many a step of one member.
+            let [found, expected] = steps.map(|steps| steps as f64);
+            assert!((found - expected).abs() <= 0.05 * expected, "{found} steps, not {expected}");
         }
     }
 }

@@ -13,13 +13,18 @@
 //! too many — is integrated once more from its start by `Dop853`, alone, whose result or error stands.
 //!
 //! `plan` says what can be integrated so; `field` evaluates f on a tape, `step`, `start` and `dense` are the tapes of a `problem`, `kernels`
-//! what they become for a program; `block` is eight lanes at work.
+//! what they become for a program, which a `shelf` keeps. An `octet` is eight lanes at work; a `block` lets two of them take turns, and
+//! fills their lanes with members that have been `waiting`.
 
 pub(crate) mod block;
 mod dense;
 mod field;
 pub(crate) mod kernels;
+pub(crate) mod members;
+mod octet;
 pub(crate) mod plan;
 mod problem;
+pub(crate) mod shelf;
 mod start;
 mod step;
+mod waiting;

@@ -36,9 +36,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::AtomicBool;
 use std::thread;
 
-use pc_expr::{LANES, VectorField};
+use pc_expr::VectorField;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
+use crate::dop853::lockstep::block::WIDTH;
+use crate::dop853::lockstep::shelf::Shelf;
 use crate::ensemble::ordered::Queue;
 use crate::ensemble::stop::Stop;
 use crate::integration::integration::Ending;
@@ -58,13 +60,17 @@ const MOST_THREADS: usize = 1024;
 const STACK: usize = 8 << 20;
 
 /// Options of the computation of an ensemble.
+///
+/// It keeps the machine code that it has made for the steps of its last members, also for its clones: integrating more of them by the same one
+/// saves making it again.
 #[derive(Debug, Clone)]
 pub struct Ensemble<'a> {
     threads: NonZeroUsize,
     window: Option<NonZeroUsize>,
     flag: Option<&'a AtomicBool>,
-    /// How many lanes of a vector are used.
+    /// How many lanes are used.
     pub(super) lanes: usize,
+    pub(super) shelf: Shelf,
 }
 
 impl Default for Ensemble<'_> {
@@ -77,7 +83,7 @@ impl<'a> Ensemble<'a> {
     /// A thread for each core.
     pub fn new() -> Self {
         let threads = thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-        Ensemble { threads, window: None, flag: None, lanes: LANES }
+        Ensemble { threads, window: None, flag: None, lanes: WIDTH, shelf: Shelf::default() }
     }
 
     /// The number of threads, at most 1024. The results are the same for any number.
@@ -91,8 +97,8 @@ impl<'a> Ensemble<'a> {
         Ensemble { window: Some(members), ..self }
     }
 
-    /// How many members are integrated [beside each other](Ensemble::map_in_lanes) by a thread, at most, and unless given, as many as a
-    /// vector has lanes: eight. The results are the same for any number.
+    /// How many members are integrated [beside each other](Ensemble::map_in_lanes) by a thread, at most; 16 unless given, in two
+    /// vectors of eight. The results are the same for any number.
     pub fn lanes(self, lanes: NonZeroUsize) -> Self {
         Ensemble { lanes: lanes.get(), ..self }
     }
@@ -108,7 +114,7 @@ impl<'a> Ensemble<'a> {
     /// `make` gives a member its vector field and its state at `t0`. It is called on the thread that integrates.
     ///
     /// By [`Method::Dop853`](crate::Method::Dop853), members whose fields are [programs](VectorField::lanes) that do not read time
-    /// are integrated eight at a time, each in a lane of a vector, as [`map_in_lanes`](Ensemble::map_in_lanes) says.
+    /// are integrated sixteen at a time, each in a lane of a vector, as [`map_in_lanes`](Ensemble::map_in_lanes) says.
     ///
     /// # Errors
     /// [`EnsembleError`] if threads cannot be started. An error of a member is its result.

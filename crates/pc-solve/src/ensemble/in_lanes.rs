@@ -2,13 +2,15 @@
 
 use std::collections::VecDeque;
 use std::ops::{ControlFlow, Range};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use pc_expr::LaneField;
 
-use crate::dop853::lockstep::block::{Block, Members};
+use crate::dop853::lockstep::block::Block;
 use crate::dop853::lockstep::kernels::Kernels;
+use crate::dop853::lockstep::members::{Members, Source};
 use crate::dop853::lockstep::plan::Plan;
+use crate::dop853::lockstep::shelf::Shelf;
 use crate::ensemble::ensemble::{Ensemble, EnsembleError, Panicked, caught};
 use crate::ensemble::ordered::Queue;
 use crate::ensemble::stop::Stop;
@@ -18,9 +20,6 @@ use crate::settings::options::Options;
 
 /// Members are handed out in groups of up to so many: a group takes longer than handing it out.
 const GROUP: u64 = 64;
-
-/// Kernels of so many different programs are kept.
-const KEPT: usize = 8;
 
 impl Ensemble<'_> {
     /// Integrates members beside each other, as far as that can be, and gives what comes of each to `consume` in their order.
@@ -58,13 +57,15 @@ impl Ensemble<'_> {
         let groups = 0..count.div_ceil(size);
         let of_group =
             |group: u64| members.start + group * size..(members.start + (group + 1) * size).min(members.end);
-        let shared = Mutex::new(VecDeque::new());
+        // A thread takes no more than its part of few members.
+        let fair = count.div_ceil(self.workers() as u64);
+        let width = self.lanes.min(usize::try_from(fair).unwrap_or(usize::MAX));
         let worker = |queue: &Queue<'_, Group<T>>, stop: &Stop<'_>| {
             let mut supply = Supply {
                 queue,
                 stop,
                 plan: &plan,
-                shared: &shared,
+                shelf: &self.shelf,
                 kernels: None,
                 of_group: &of_group,
                 begin: &begin,
@@ -74,7 +75,7 @@ impl Ensemble<'_> {
                 held: None,
             };
             while let Some(kernels) = supply.prepare() {
-                Block::new(&plan, &kernels, self.lanes).run(&mut supply);
+                Block::new(&plan, &kernels, width).run(&mut supply);
             }
             supply.give_up();
         };
@@ -89,9 +90,6 @@ impl Ensemble<'_> {
         self.of_items(groups, (window / size).max(1), worker, &mut consume_group)
     }
 }
-
-/// The kernels of a field; none where there can be none.
-type Made = (LaneField, Option<Arc<Kernels>>);
 
 /// The results of a group, as far as there are any.
 type Group<T> = Vec<Option<Result<T, Panicked>>>;
@@ -112,7 +110,7 @@ struct Supply<'a, 'q, 's, C, T, G, B, L, A> {
     stop: &'a Stop<'s>,
     plan: &'a Plan,
     /// Kernels that any thread has made.
-    shared: &'a Mutex<VecDeque<Made>>,
+    shelf: &'a Shelf,
     kernels: Option<Arc<Kernels>>,
     of_group: &'a G,
     begin: &'a B,
@@ -136,7 +134,9 @@ where
 {
     /// The kernels for the next member in a lane; none if there is no member left.
     fn prepare(&mut self) -> Option<Arc<Kernels>> {
-        while let Some((member, known, field, start)) = self.held.take().or_else(|| self.first(true)) {
+        while let Some((member, known, field, start)) =
+            self.held.take().or_else(|| self.first(Source::Awaited))
+        {
             match self.kernels_of(&field) {
                 Some(kernels) => {
                     self.kernels = Some(Arc::clone(&kernels));
@@ -150,9 +150,9 @@ where
     }
 
     /// The next member that can be in a lane, of any program.
-    fn first(&mut self, is_idle: bool) -> Option<Begun<C>> {
+    fn first(&mut self, from: Source) -> Option<Begun<C>> {
         while !self.stop.requested() {
-            let member = self.next_member(is_idle)?;
+            let member = self.next_member(from)?;
             match caught(|| (self.begin)(member)) {
                 Ok((known, Some((field, start)))) => return Some((member, known, field, start)),
                 Ok((known, None)) => self.do_alone(member, known),
@@ -162,11 +162,15 @@ where
         None
     }
 
-    /// The next member of the groups on the way, or of a new one, for which to wait if nothing else is to be done.
-    fn next_member(&mut self, is_idle: bool) -> Option<u64> {
+    /// The next member of the groups on the way, or of a new one.
+    fn next_member(&mut self, from: Source) -> Option<u64> {
         let has_more = |open: &Open<T>| open.next < open.members.end;
         if !self.open.back().is_some_and(has_more) {
-            let number = if is_idle { self.queue.begin() } else { self.queue.begin_if_room() }?;
+            let number = match from {
+                Source::AtHand => return None,
+                Source::Available => self.queue.begin_if_room(),
+                Source::Awaited => self.queue.begin(),
+            }?;
             let members = (self.of_group)(number);
             let missing = (members.end - members.start) as usize;
             let results = (0..missing).map(|_| None).collect();
@@ -181,16 +185,7 @@ where
         if let Some(kernels) = self.kernels.as_ref().filter(|kernels| kernels.are_of(field)) {
             return Some(Arc::clone(kernels));
         }
-        // While one thread makes them, the others wait for them.
-        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = shared.iter().find(|(of, _)| Kernels::same_program(of, field));
-        if let Some((_, kernels)) = known {
-            return kernels.clone();
-        }
-        let kernels = Kernels::new(field, self.plan, None).map(Arc::new);
-        shared.truncate(KEPT - 1);
-        shared.push_front((field.clone(), kernels.clone()));
-        kernels
+        self.shelf.kernels(field, self.plan)
     }
 
     fn do_alone(&mut self, member: u64, known: C) {
@@ -228,10 +223,10 @@ where
 {
     type Name = (u64, C);
 
-    fn next(&mut self, is_idle: bool) -> Option<((u64, C), LaneField, Vec<f64>)> {
+    fn next(&mut self, from: Source) -> Option<((u64, C), LaneField, Vec<f64>)> {
         let (member, known, field, start) = match self.held.take() {
             Some(begun) => begun,
-            None => self.first(is_idle)?,
+            None => self.first(from)?,
         };
         if self.kernels.as_ref().is_some_and(|kernels| kernels.are_of(&field)) {
             return Some(((member, known), field, start));

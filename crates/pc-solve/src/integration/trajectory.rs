@@ -24,6 +24,12 @@ impl Trajectory {
         }
     }
 
+    /// With room for so many outputs.
+    pub(crate) fn with_capacity(dim: usize, outputs: usize) -> Self {
+        let (times, states) = (Vec::with_capacity(outputs), Vec::with_capacity(dim * outputs));
+        Trajectory { times, states, ..Trajectory::new(dim) }
+    }
+
     pub(crate) fn push(&mut self, t: f64, y: &[f64]) {
         self.times.push(t);
         self.states.extend_from_slice(y);

@@ -8,13 +8,17 @@ pub(super) struct Field<'a> {
     /// Number of the pivots that are watched, and what is small against the sizes.
     pub(super) pivots: usize,
     pub(super) vanishing: f64,
-    pub(super) parameters: Vec<LaneValue>,
+    /// What it takes for parameters.
+    pub(super) numbers: Vec<LaneValue>,
     /// The smallest of the pivots that do not change, and the largest of such sizes.
     pub(super) fixed: [LaneValue; 2],
 }
 
 /// The rows of a frame that a member's numbers take, after its state.
 pub(super) const FIXED: usize = 2;
+
+/// Components for which products h aⱼ are worth computing: a step has 50 of them, and saves a product in each of 11 stages.
+const MANY: usize = 5;
 
 /// Whether all is well so far: a mask, and a sum that is 0 as long as all that was looked at is finite.
 #[derive(Clone, Copy)]
@@ -23,14 +27,7 @@ pub(super) struct Health {
     finite: LaneValue,
 }
 
-impl<'a> Field<'a> {
-    /// Reads the numbers of a member from the next rows.
-    pub(super) fn new(tape: &mut LaneTape, program: &'a Program, pivots: usize, vanishing: f64) -> Self {
-        let parameters = tape.inputs(program.parameters_len());
-        let fixed = [tape.input(), tape.input()];
-        Field { program, pivots, vanishing, parameters, fixed }
-    }
-
+impl Field<'_> {
     /// f at a state; whether that is regular is noted.
     pub(super) fn rates(
         &self,
@@ -39,7 +36,7 @@ impl<'a> Field<'a> {
         health: &mut Health,
     ) -> Vec<LaneValue> {
         let t = tape.constant(0.0); // which is not read
-        let mut outputs = tape.inline(self.program, t, state, &self.parameters);
+        let mut outputs = tape.inline(self.program, t, state, &self.numbers);
         let watched = outputs.split_off(state.len());
         if self.pivots > 0 {
             let (pivots, sizes) = watched.split_at(self.pivots);
@@ -66,11 +63,12 @@ impl Health {
         Health { regular: tape.bits(u64::MAX), finite: tape.constant(0.0) }
     }
 
-    /// Notes whether these are finite.
+    /// Notes whether these are finite: whether their sum is.
     pub(super) fn look(&mut self, tape: &mut LaneTape, values: &[LaneValue]) {
         let zero = tape.constant(0.0);
-        for &value in values {
-            self.finite = tape.multiply_add(value, zero, self.finite);
+        let sum = values.iter().copied().reduce(|sum, value| tape.add(sum, value));
+        if let Some(sum) = sum {
+            self.finite = tape.multiply_add(sum, zero, self.finite);
         }
     }
 
@@ -98,7 +96,27 @@ pub(super) fn sum(tape: &mut LaneTape, a: &[f64], k: &[&[LaneValue]]) -> Vec<Lan
     sums
 }
 
+/// Two such sums at once, so that each k is read once.
+pub(super) fn sums(tape: &mut LaneTape, a: [&[f64]; 2], k: &[&[LaneValue]]) -> [Vec<LaneValue>; 2] {
+    let mut sums: [Vec<LaneValue>; 2] = Default::default();
+    for (j, k) in k.iter().enumerate() {
+        let a = a.map(|a| tape.constant(a[j]));
+        for (i, &k) in k.iter().enumerate() {
+            for (sum, a) in sums.iter_mut().zip(a) {
+                if j == 0 {
+                    sum.push(tape.multiply(k, a));
+                } else {
+                    sum[i] = tape.multiply_add(k, a, sum[i]);
+                }
+            }
+        }
+    }
+    sums
+}
+
 /// y + h Σ aⱼ kⱼ
+///
+/// Of many components by y + Σ (h aⱼ) kⱼ, with fewer operations, of which fewer wait for the last k.
 pub(super) fn advanced(
     tape: &mut LaneTape,
     y: &[LaneValue],
@@ -106,6 +124,17 @@ pub(super) fn advanced(
     a: &[f64],
     k: &[&[LaneValue]],
 ) -> Vec<LaneValue> {
-    let sums = sum(tape, a, k);
-    y.iter().zip(sums).map(|(&y, sum)| tape.multiply_add(sum, h, y)).collect()
+    if y.len() < MANY {
+        let sums = sum(tape, a, k);
+        return y.iter().zip(sums).map(|(&y, sum)| tape.multiply_add(sum, h, y)).collect();
+    }
+    let mut sums = y.to_vec();
+    for (&a, k) in a.iter().zip(k) {
+        let a = tape.constant(a);
+        let part = tape.multiply(h, a);
+        for (sum, &k) in sums.iter_mut().zip(*k) {
+            *sum = tape.multiply_add(part, k, *sum);
+        }
+    }
+    sums
 }

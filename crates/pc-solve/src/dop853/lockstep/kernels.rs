@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pc_expr::{InstructionSet, LaneField, LaneKernel, Program};
 
 use super::dense::{polynomial, value};
+use super::field::FIXED;
 use super::plan::Plan;
 use super::problem::Problem;
 use super::start::start;
@@ -16,10 +17,11 @@ const LONGEST: usize = 20_000;
 /// The kernels of a program, for members of any parameters.
 #[derive(Debug, Clone)]
 pub(crate) struct Kernels {
-    program: Arc<Program>,
-    pivots: usize,
+    key: Key,
     pub(super) dim: usize,
     pub(super) parameters: usize,
+    /// The rows of a member's numbers.
+    pub(super) numbers: usize,
     pub(super) start: LaneKernel,
     pub(super) step: LaneKernel,
     /// For states inside steps, if these are asked for.
@@ -42,9 +44,10 @@ impl Kernels {
         if dim == 0 || 12 * program.code().len() > LONGEST || program.reads_time() {
             return None;
         }
-        let problem = Problem { plan, program, pivots, vanishing, absolute: plan.absolute(dim)? };
-        // The start, if it is asked for, and the end are no states inside a step.
-        let has_inside = plan.times.iter().any(|&t| t != plan.start && t != plan.end());
+        let absolute = plan.absolute(dim)?;
+        let (numbers, rest) = program.factored();
+        let problem = Problem { plan, numbers: &numbers, program: &rest, pivots, vanishing, absolute };
+        let has_inside = plan.has_inside();
         let tape = step(&problem, has_inside);
         if tape.operations() > LONGEST {
             return None;
@@ -58,10 +61,10 @@ impl Kernels {
             false => None,
         };
         Some(Kernels {
-            program: Arc::clone(program),
-            pivots,
+            key: Key::of(field),
             dim,
             parameters: program.parameters_len(),
+            numbers: rest.parameters_len() + FIXED,
             start: kernel(start(&problem))?,
             step: kernel(tape)?,
             inside,
@@ -70,20 +73,32 @@ impl Kernels {
 
     /// Whether they are those of a field.
     pub(crate) fn are_of(&self, field: &LaneField) -> bool {
-        self.pivots == field.watched.pivots && same(&self.program, &field.program)
-    }
-
-    /// Whether those of one field are those of the other.
-    pub(crate) fn same_program(a: &LaneField, b: &LaneField) -> bool {
-        a.watched.pivots == b.watched.pivots && same(&a.program, &b.program)
+        self.key.is_of(field)
     }
 }
 
-fn same(a: &Arc<Program>, b: &Arc<Program>) -> bool {
-    let bits = |program: &Program| program.constants().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
-    Arc::ptr_eq(a, b)
-        || (a.state_len(), a.parameters_len()) == (b.state_len(), b.parameters_len())
-            && a.outputs() == b.outputs()
-            && a.code() == b.code()
-            && bits(a) == bits(b)
+/// What the kernels of a plan depend on.
+#[derive(Debug, Clone)]
+pub(super) struct Key {
+    program: Arc<Program>,
+    pivots: usize,
+    vanishing: f64,
+}
+
+impl Key {
+    pub(super) fn of(field: &LaneField) -> Key {
+        let (pivots, vanishing) = (field.watched.pivots, field.watched.vanishing);
+        Key { program: Arc::clone(&field.program), pivots, vanishing }
+    }
+
+    pub(super) fn is_of(&self, field: &LaneField) -> bool {
+        let (a, b) = (&self.program, &field.program);
+        let bits = |program: &Program| program.constants().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
+        (self.pivots, self.vanishing) == (field.watched.pivots, field.watched.vanishing)
+            && (Arc::ptr_eq(a, b)
+                || (a.state_len(), a.parameters_len()) == (b.state_len(), b.parameters_len())
+                    && a.outputs() == b.outputs()
+                    && a.code() == b.code()
+                    && bits(a) == bits(b))
+    }
 }

@@ -57,6 +57,18 @@ impl Plan {
             })
     }
 
+    /// Whether the tapes of one plan are those of the other.
+    pub(super) fn is_like(&self, other: &Plan) -> bool {
+        let limits = |plan: &Plan| (plan.start, plan.end(), plan.direction, plan.relative, plan.max_steps);
+        let lengths = |plan: &Plan| (plan.longest, plan.first, plan.has_inside());
+        limits(self) == limits(other) && lengths(self) == lengths(other) && self.absolute == other.absolute
+    }
+
+    /// Whether there are output times other than the start and the end: states inside a step.
+    pub(super) fn has_inside(&self) -> bool {
+        self.times.iter().any(|&t| t != self.start && t != self.end())
+    }
+
     /// The absolute tolerance of each component; none unless there are as many.
     pub(super) fn absolute(&self, dim: usize) -> Option<Vec<f64>> {
         match &self.absolute {

@@ -1,6 +1,6 @@
 //! What the tapes are made of.
 
-use pc_expr::{LaneTape, Program};
+use pc_expr::{LaneTape, LaneValue, Program};
 
 use super::field::Field;
 use super::plan::Plan;
@@ -8,6 +8,8 @@ use super::plan::Plan;
 /// f and the plan, for the tapes.
 pub(super) struct Problem<'a> {
     pub(super) plan: &'a Plan,
+    /// What the numbers of a member are computed by from its parameters, and what f is computed by from these.
+    pub(super) numbers: &'a Program,
     pub(super) program: &'a Program,
     pub(super) pivots: usize,
     pub(super) vanishing: f64,
@@ -19,7 +21,23 @@ impl<'a> Problem<'a> {
         self.program.state_len()
     }
 
+    /// f, with the numbers of a member in the next rows.
     pub(super) fn field(&self, tape: &mut LaneTape) -> Field<'a> {
-        Field::new(tape, self.program, self.pivots, self.vanishing)
+        let numbers = tape.inputs(self.program.parameters_len());
+        self.field_of(tape, numbers)
+    }
+
+    /// f, with the parameters of a member in the next rows.
+    pub(super) fn field_of_parameters(&self, tape: &mut LaneTape) -> Field<'a> {
+        let parameters = tape.inputs(self.numbers.parameters_len());
+        let none = tape.constant(0.0);
+        let numbers = tape.inline(self.numbers, none, &[], &parameters);
+        self.field_of(tape, numbers)
+    }
+
+    fn field_of(&self, tape: &mut LaneTape, numbers: Vec<LaneValue>) -> Field<'a> {
+        let fixed = [tape.input(), tape.input()];
+        let Problem { program, pivots, vanishing, .. } = *self;
+        Field { program, pivots, vanishing, numbers, fixed }
     }
 }

@@ -6,15 +6,17 @@ use super::super::step::FIRST;
 use super::field::{Health, advanced};
 use super::problem::Problem;
 
-/// Reads y and the numbers of a member; writes ẏ, the length, and all bits where there is one.
+/// Reads y, the parameters of a member and what of its pivots does not change; writes ẏ, the numbers of the member, the length, and all
+/// bits where there is one.
 pub(super) fn start(problem: &Problem<'_>) -> LaneTape {
     let tape = &mut LaneTape::new();
     let y = tape.inputs(problem.dim());
-    let field = problem.field(tape);
+    let field = problem.field_of_parameters(tape);
     let mut health = Health::new(tape);
     let rates = field.rates(tape, &y, &mut health);
-    health.look(tape, &y);
-    health.look(tape, &rates);
+    for looked_at in [&y, &rates, &field.numbers] {
+        health.look(tape, looked_at);
+    }
     let well = health.mask(tape);
     let length = match problem.plan.first {
         Some(length) => tape.constant(length),
@@ -65,7 +67,7 @@ pub(super) fn start(problem: &Problem<'_>) -> LaneTape {
             tape.select(is_there, length, h)
         }
     };
-    for value in rates.into_iter().chain([length, well]) {
+    for value in rates.into_iter().chain(field.numbers).chain(field.fixed).chain([length, well]) {
         tape.output(value);
     }
     std::mem::take(tape)

@@ -7,7 +7,7 @@ use pc_expr::{Binary, Fused, LaneTape, LaneValue};
 
 use super::super::coefficients::{A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12, B, B3, E5};
 use super::super::control::{GROWTH, SAFETY, SHRINKING};
-use super::field::{Health, advanced, sum};
+use super::field::{Health, advanced, sum, sums};
 use super::problem::Problem;
 
 /// The rows that a step reads and replaces, before those of y, ẏ and the numbers of a member.
@@ -27,10 +27,12 @@ pub(super) enum Row {
     Steps,
     /// Tries, which these are.
     Tries,
+    /// The length of the first step with its sign, 0 before.
+    First,
 }
 
 /// How many there are.
-pub(super) const ROWS: usize = 7;
+pub(super) const ROWS: usize = 8;
 
 /// The results that have rows of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +53,7 @@ const LEFT: f64 = 0.01;
 /// The tape of a step, with the results for states inside it if these are wanted.
 pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
     let tape = &mut LaneTape::new();
-    let [t, length, due, active, refused, steps, tries] = std::array::from_fn(|_| tape.input());
+    let [t, length, due, active, refused, steps, tries, first] = std::array::from_fn(|_| tape.input());
     let dim = problem.dim();
     let (y, k1) = (tape.inputs(dim), tape.inputs(dim));
     let field = problem.field(tape);
@@ -89,14 +91,13 @@ pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
     let k11 = stage(&A11, &[&k1, &k4, &k5, &k6, &k7, &k8, &k9, &k10], false);
     let k12 = stage(&A12, &[&k1, &k4, &k5, &k6, &k7, &k8, &k9, &k10, &k11], true);
     let used: [&[LaneValue]; 8] = [&k1, &k6, &k7, &k8, &k9, &k10, &k11, &k12];
-    let slope = sum(tape, &B, &used);
+    let [slope, fifth] = sums(tape, [&B, &E5], &used);
     let y1: Vec<LaneValue> =
         y.iter().zip(&slope).map(|(&y, &slope)| tape.multiply_add(slope, h, y)).collect();
     health.look(tape, &y1);
     let k13 = field.rates(tape, &y1, &mut health);
     health.look(tape, &k13);
 
-    let fifth = sum(tape, &E5, &used);
     let third: Vec<LaneValue> = {
         let others = sum(tape, &B3.map(|b| -b), &[&k1, &k9, &k12]);
         slope.iter().zip(others).map(|(&slope, other)| tape.add(slope, other)).collect()
@@ -134,12 +135,16 @@ pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
     let stalled = tape.select(at_end, none, short);
     let counted = tape.binary(Binary::And, stands, one);
     let (steps, tries) = ([steps, tape.add(steps, counted)], [tries, tape.add(tries, one)]);
+    let zero = tape.constant(0.0);
+    let first_size = tape.size(first);
+    let is_first = tape.binary(Binary::LessOrEqual, first_size, zero);
+    let is_first = tape.binary(Binary::And, is_first, stands);
+    let first_now = tape.select(is_first, h, first);
     let most_steps = tape.constant(problem.plan.max_steps as f64);
     let too_many = tape.binary(Binary::Less, most_steps, steps[1]);
     let broken = tape.binary(Binary::Or, stalled, too_many);
     let since_due = tape.subtract(t1, due);
     let since_due = tape.multiply(since_due, direction);
-    let zero = tape.constant(0.0);
     let is_due = tape.binary(Binary::LessOrEqual, zero, since_due);
     let is_due = tape.binary(Binary::And, is_due, stands);
     let attention = tape.binary(Binary::Or, is_due, broken);
@@ -160,9 +165,14 @@ pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
     }
     let now = tape.select(stands, t1, t);
     let refused_now = tape.binary(Binary::Xor, stands, all);
-    for (input, value) in
-        [(t, now), (length, next), (refused, refused_now), (steps[0], steps[1]), (tries[0], tries[1])]
-    {
+    for (input, value) in [
+        (t, now),
+        (length, next),
+        (refused, refused_now),
+        (steps[0], steps[1]),
+        (tries[0], tries[1]),
+        (first, first_now),
+    ] {
         tape.replace(input, value);
     }
     for (old, new) in [(&y, &y1), (&k1, &k13)] {
@@ -204,19 +214,17 @@ fn error(
     tape.binary(Binary::Divide, square, both)
 }
 
-/// 1/x to five digits for a positive normal number, by its bits and two steps of Newton's method.
+/// 1/x, at most 0.3 % too small, for a positive normal number, by its bits and a step of Newton's method.
 fn inverse(tape: &mut LaneTape, x: LaneValue) -> LaneValue {
     let one = tape.constant(1.0);
     let bits = tape.bits(0x7fde_6238_22fc_16e6);
-    let mut value = tape.binary(Binary::IntegerSubtract, bits, x);
-    for _ in 0..2 {
-        let rest = tape.fused(Fused::NegateMultiplyAdd, x, value, one);
-        value = tape.multiply_add(value, rest, value);
-    }
-    value
+    let value = tape.binary(Binary::IntegerSubtract, bits, x);
+    let rest = tape.fused(Fused::NegateMultiplyAdd, x, value, one);
+    tape.multiply_add(value, rest, value)
 }
 
-/// x^(−1/16) to three digits, by its bits and two steps of Newton's method; no number where x is none or infinite.
+/// x^(−1/16), at most 1 % too small, by its bits and a step of Newton's method; no number where x is none, −∞ where x is
+/// infinite.
 fn inverse_sixteenth_root(tape: &mut LaneTape, x: LaneValue) -> LaneValue {
     // Where so little is left, the length grows by as much as it may.
     let least = tape.constant(1e-60);
@@ -225,15 +233,12 @@ fn inverse_sixteenth_root(tape: &mut LaneTape, x: LaneValue) -> LaneValue {
     // 17/16 of the bits of 1, less what logarithms taken linearly are too large by.
     let bits = tape.bits((0x3ff0_0000_0000_0000_u64 / 16) * 17 - 0x0000_c000_0000_0000);
     let sixteenth = tape.shift_right(x, 4);
-    let mut value = tape.binary(Binary::IntegerSubtract, bits, sixteenth);
-    for _ in 0..2 {
-        let mut power = value;
-        for _ in 0..4 {
-            power = tape.multiply(power, power);
-        }
-        let rest = tape.fused(Fused::NegateMultiplyAdd, x, power, one);
-        let change = tape.multiply(value, part);
-        value = tape.multiply_add(change, rest, value);
+    let value = tape.binary(Binary::IntegerSubtract, bits, sixteenth);
+    let mut power = value;
+    for _ in 0..4 {
+        power = tape.multiply(power, power);
     }
-    value
+    let rest = tape.fused(Fused::NegateMultiplyAdd, x, power, one);
+    let change = tape.multiply(value, part);
+    tape.multiply_add(change, rest, value)
 }

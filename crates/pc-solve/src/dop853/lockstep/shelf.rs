@@ -1,0 +1,40 @@
+//! Kernels that have been made.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pc_expr::LaneField;
+
+use super::kernels::{Kernels, Key};
+use super::plan::Plan;
+
+/// Kernels of so many different programs and plans are kept.
+const KEPT: usize = 8;
+
+/// The last kernels made, for all threads; clones share them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Shelf(Arc<Mutex<VecDeque<Made>>>);
+
+/// What became of a program and a plan.
+#[derive(Debug)]
+struct Made {
+    key: Key,
+    plan: Plan,
+    kernels: Option<Arc<Kernels>>,
+}
+
+impl Shelf {
+    /// The kernels of a field, which are made if they are not there; none where there can be none.
+    pub(crate) fn kernels(&self, field: &LaneField, plan: &Plan) -> Option<Arc<Kernels>> {
+        // While one thread makes them, the others wait for them.
+        let mut shelf = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let fits = |made: &&Made| made.key.is_of(field) && made.plan.is_like(plan);
+        if let Some(made) = shelf.iter().find(fits) {
+            return made.kernels.clone();
+        }
+        let kernels = Kernels::new(field, plan, None).map(Arc::new);
+        shelf.truncate(KEPT - 1);
+        shelf.push_front(Made { key: Key::of(field), plan: plan.clone(), kernels: kernels.clone() });
+        kernels
+    }
+}
