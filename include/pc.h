@@ -440,7 +440,9 @@ typedef struct {
    */
   double stop_time;
   /**
-   * Events are looked for at the ends of so many equal parts of each step, at least 1; 4 by
+   * Events whose functions are not expressions of the state alone (those of the program's own,
+   * and those read through constraints, momenta or tables) are looked for at the ends of so
+   * many equal parts of each step, at least 1, and closer where the values leave doubt; 4 by
    * default. Between two such places an even number of zeros may be missed.
    */
   uint32_t samples_per_step;
@@ -1292,7 +1294,7 @@ pc_status pc_model_set_event_search(pc_model *model,
                                     pc_error **error);
 
 /**
- * Sets the method by which the program `pc` runs the model: "adams", "bdf".
+ * Sets the method by which the program `pc` runs the model: "auto", "adams", "bdf", "dop853", "taylor".
  */
 pc_status pc_model_set_method(pc_model *model, const char *method, pc_error **error);
 

@@ -22,11 +22,12 @@ use crate::integration::stepper::Stepper;
 /// # Events
 ///
 /// Along each step the functions of the events are evaluated at states on the polynomial of the method,
-/// [projected](VectorField::project) where the field does so: at the ends of so many equal parts of the step as
-/// [asked for](crate::Options::samples_per_step), and where three of these values in sequence suggest that a function
-/// passes through zero twice. Between two of these places an even number of passages of a function may be missed; of an odd
-/// number one is found, so that its side of zero is always known. After a passage the rest of the step is searched in
-/// as many parts again.
+/// [projected](VectorField::project) where the field does so. Those that are [a program](Events::program) of the state are looked at at
+/// times [between which](pc_expr::RootSeparation) each has at most one root along that polynomial: none is lost. Others are looked at at
+/// the ends of so many equal parts of the step as [asked for](crate::Options::samples_per_step), once more between two of
+/// these where divided differences leave doubt, and where three values in sequence suggest that a function passes through zero
+/// twice. Between two of these places an even number of passages of such a function may be missed; of an odd
+/// number one is found, so that its side of zero is always known. After a passage the rest of the step is searched anew.
 ///
 /// A passage is located to 1e-15 max(|t|, h/1000) in a step of length h, and functions that pass through zero within 16
 /// times that of each other do so together: their resets are applied one after the other, in the order of

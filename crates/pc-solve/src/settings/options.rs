@@ -128,8 +128,8 @@ impl Options {
         Options { stop_time: Some(t), ..self }
     }
 
-    /// The number of equal parts of each internal step that are searched for events, at least 1 and 4 unless given;
-    /// between two such places [an even number](crate::Integration) of zeros of a function may be missed.
+    /// The number of equal parts of each internal step at whose ends functions of events are looked at that are no programs of the
+    /// state, at least 1 and 4 unless given; between two such places [an even number](crate::Integration) of their zeros may be missed.
     pub fn samples_per_step(self, parts: u32) -> Self {
         Options { samples_per_step: parts, ..self }
     }
