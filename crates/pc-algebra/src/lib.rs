@@ -79,6 +79,10 @@
 //! velocities [on the right](LieGroup::right_frame), with the opposite ones. And it gives numbers, for
 //! integrators and initial values: [`LieGroup::exp`] and its derivative, [`LieGroup::log`],
 //! [`LieGroup::compose`], [`LieGroup::project`].
+//!
+//! # Around it
+//!
+//! Below: [`pc_expr`], its expressions. Above: [pc-mech](../pc_mech/index.html), which puts a Lagrangian on a frame.
 
 mod error;
 mod frame;

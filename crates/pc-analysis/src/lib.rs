@@ -174,6 +174,11 @@
 //! Those have a bracket as well, the [almost-Poisson](PoissonBracket::almost_poisson) one, and some of
 //! Chaplygin's systems a time in which they are Lagrangian, by a [`ReducingMultiplier`].
 //! [`MeasureSearch::of`] gives all that is known for a motion.
+//!
+//! # Around it
+//!
+//! Below: [`pc_mech`] and [`pc_nonholo`], the equations whose motions these are. Above: [pc-print](../pc_print/index.html), which says it
+//! in words; [pc-cli](../pc_cli/index.html), where it is `pc theory`, `pc linearize` and `pc equilibria`.
 
 mod brackets;
 mod error;

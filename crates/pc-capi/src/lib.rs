@@ -7,6 +7,10 @@
 //! [`preamble`](crate::api::version::PREAMBLE).
 //!
 //! From Rust the functions can be called as they are from C, which is how they are tested; the layers below are nicer.
+//!
+//! # Around it
+//!
+//! Below: [pc-model](../pc_model/index.html), [`pc_print`], [`pc_verify`] and [`pc_solve`], to which the functions hand over.
 
 #![expect(unsafe_code, reason = "a C interface")]
 #![expect(non_camel_case_types, reason = "the names are those of C")]

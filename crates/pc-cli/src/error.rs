@@ -122,6 +122,9 @@ pub enum CliError {
         /// Its title.
         model: String,
     },
+    /// A frame is chosen where none is written alone.
+    #[error("--at chooses a frame, which is written by itself to `-o FILE.svg`, FILE.png or FILE.pdf")]
+    NoFrame,
     /// Neither the command line nor the model gives an end time.
     #[error(
         "{model}: no end time: give `--t-end T`, or `t_end = T` in the section [simulation] of the model"
@@ -305,6 +308,7 @@ impl CliError {
             | CliError::Definitions { .. }
             | CliError::BadValue { .. }
             | CliError::NothingToDraw { .. }
+            | CliError::NoFrame
             | CliError::NoEnd { .. }
             | CliError::EndIsStart { .. }
             | CliError::UnknownExtension { .. }

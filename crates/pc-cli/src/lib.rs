@@ -13,6 +13,12 @@
 //! ```
 //! Each command is a function of its arguments; `main` only dispatches. What a command computes goes to standard
 //! output, what it says about it to standard error.
+//!
+//! # Around it
+//!
+//! Below: [`pc_model`], the models; [`pc_print`], [`pc_report`] and [`pc_fmu`], what is written of them; [`pc_solve`], the
+//! motions; [`pc_analysis`], what can be said of these. Front pages in the order of reading: [`pc_expr`], [`pc_algebra`], [`pc_mech`],
+//! [`pc_nonholo`], [`pc_analysis`], [`pc_solve`].
 
 pub mod error;
 mod exit_code;

@@ -1,9 +1,10 @@
 //! Pictures as files.
 //!
-//! A drawing of `pc-report` becomes a bitmap or a page: `glyphs` are the outlines of the built-in font, `png` and `pdf` write, and
-//! `error` lists what can go wrong. As SVG it writes itself.
+//! A drawing of `pc-report` becomes a bitmap or a page: `glyphs` are the outlines of the built-in font, `png`, `gif` and `pdf` write,
+//! and `error` lists what can go wrong. As SVG it writes itself.
 
 pub mod error;
+pub(crate) mod gif;
 mod glyphs;
 pub(crate) mod pdf;
 pub(crate) mod png;

@@ -38,7 +38,7 @@ fn each_text_is_checked_derived_and_run() {
         for output in [pc(here, &["new", &name]), pc(here, &["new", &name, "-o", "-"])] {
             assert!(output.status.success() && output.stdout == kind.text().as_bytes(), "{name}");
         }
-        for command in ["check", "derive", "run"] {
+        for command in ["check", "derive", "run", "animate"] {
             let output = pc(here, &[command, &file]);
             assert!(output.status.success(), "{command} {file}: {}", said(&output));
             assert!(

@@ -133,3 +133,86 @@ fn frames_are_the_numbers_of_the_run() {
         assert_eq!(frames[row * width + 12..row * width + 14], [value("x2"), value("y2")], "second point");
     }
 }
+
+/// The middles of the filled circles of a picture, in order.
+fn dots(svg: &str) -> Vec<[f64; 2]> {
+    let xml = parsed(svg);
+    let filled = xml.descendants().filter(|node| {
+        node.has_tag_name("path") && node.attribute("fill").is_some_and(|fill| fill != "none")
+    });
+    let middle = |node: roxmltree::Node<'_, '_>| {
+        let path = node.attribute("d").expect("a path").trim_start_matches('M').trim_end_matches('Z');
+        let corners: Vec<[f64; 2]> = path
+            .split('L')
+            .map(|corner| {
+                let (x, y) = corner.split_once(' ').expect("two numbers");
+                [x, y].map(|number| number.parse().expect("a number"))
+            })
+            .collect();
+        let mean = |k: usize| corners.iter().map(|corner| corner[k]).sum::<f64>() / corners.len() as f64;
+        [mean(0), mean(1)]
+    };
+    filled.map(middle).collect()
+}
+
+/// A frame has the shape of the motion: lengths on paper are those of the run, all by one factor.
+#[test]
+fn a_frame_is_the_motion_on_paper() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let model = "double-pendulum-cartesian";
+    let table = text(pc(&["run", model, "--samples", "101"]));
+    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|known| *known == name).expect("a column");
+    let mut factors: Vec<f64> = Vec::new();
+    let mut before: Option<([f64; 2], [f64; 2])> = None;
+    for row in [10, 70] {
+        let value = |name: &str| rows[row + 1][column(name)].parse::<f64>().expect("a number");
+        let file = directory.path().join(format!("{row}.svg"));
+        let path = file.to_str().expect("UTF-8");
+        let at = value("t").to_string();
+        assert!(text(pc(&["animate", model, "--samples", "101", "--at", &at, "-o", path])).is_empty());
+        let [first, second] = dots(&std::fs::read_to_string(&file).expect("written"))[..] else {
+            panic!("two points are drawn");
+        };
+        let run = [[value("x1"), value("y1")], [value("x2"), value("y2")]];
+        let way = |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);
+        factors.push(way(first, second) / way(run[0], run[1]));
+        if let Some((paper, motion)) = before {
+            factors.push(way(paper, first) / way(motion, run[0]));
+        }
+        before = Some((first, run[0]));
+    }
+    // Places are written to hundredths of some hundred points.
+    assert!(factors.iter().all(|factor| (factor / factors[0] - 1.0).abs() < 1e-3), "{factors:?}");
+}
+
+#[test]
+fn films_and_frames_are_written() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let place = |name: &str| directory.path().join(name).to_str().expect("UTF-8").to_owned();
+    let film = place("swing.gif");
+    let animate = ["animate", "double-pendulum-cartesian", "--t-end", "0.4"];
+    assert!(text(pc(&[&animate[..], &["-o", &film]].concat())).is_empty());
+    let mut decoder = gif::Decoder::new(std::fs::File::open(&film).expect("written")).expect("a GIF");
+    let mut frames = 0;
+    while let Some(frame) = decoder.read_next_frame().expect("a frame") {
+        assert_eq!((frame.width, frame.height, frame.delay), (480, 360, 4));
+        frames += 1;
+    }
+    assert_eq!(frames, 11, "25 a second, and the start");
+    for (name, start) in [("swing.png", &b"\x89PNG"[..]), ("swing.pdf", b"%PDF"), ("swing.svg", b"<svg")] {
+        assert!(text(pc(&[&animate[..], &["-o", &place(name)]].concat())).is_empty());
+        assert!(std::fs::read(place(name)).expect("written").starts_with(start), "{name}");
+    }
+    let wrong = pc(&[&animate[..], &["--at", "0.1", "-o", &film]].concat());
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&wrong.stderr).contains("--at chooses a frame"));
+}
+
+/// Reactions are no part of what is drawn, and so nothing is said of them.
+#[test]
+fn an_animation_speaks_of_what_it_shows() {
+    let bicycle = pc(&["animate", "whipple-bicycle", "--t-end", "0.05"]);
+    assert!(bicycle.status.success());
+    assert_eq!(String::from_utf8_lossy(&bicycle.stderr), "");
+}

@@ -28,6 +28,11 @@
 //! derivatives and short forms · `print` text and LaTeX · `program` chosen outputs as a tape · `kernel` running a tape
 //! · `codegen` tapes as source text · `ode` the interface to integrators · `taylor` the Taylor
 //! coefficients of solutions · `time_profile` the explicit dependence of a field on time.
+//!
+//! # Around it
+//!
+//! Below: nothing of pc. Above: [pc-algebra](../pc_algebra/index.html), which makes frames of its expressions, and
+//! [pc-solve](../pc_solve/index.html), which integrates its vector fields.
 
 mod calculus;
 mod codegen;

@@ -9,6 +9,10 @@
 //! `layout`, a header in C, `description`, the XML, and `token`, which binds them; `platform`, the compiler; `fmu` puts them together.
 //! In `c`: `instance.h`, `events.h`, `variables.h`, then `step.h` and `advance.h`, the integration, and `fmi2.c` or `fmi3.c` with its
 //! headers, the interface.
+//!
+//! # Around it
+//!
+//! Below: [`pc_model`], the model. Above: [pc-cli](../pc_cli/index.html), where it is `pc emit --fmu`.
 
 mod contents;
 mod description;

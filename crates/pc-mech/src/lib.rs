@@ -210,6 +210,12 @@
 //! assert!(source.text.contains("ydot[1] = -x*k;"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Around it
+//!
+//! Below: [`pc_algebra`], frames and brackets. Above: [pc-nonholo](../pc_nonholo/index.html), constraints that are not integrable;
+//! [pc-analysis](../pc_analysis/index.html), what can be said of the motions; [pc-model](../pc_model/index.html), systems from text.
+//! Beside it, [pc-solve](../pc_solve/index.html) integrates a [`Motion`].
 
 mod compiled;
 mod constraints;

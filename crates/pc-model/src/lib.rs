@@ -24,6 +24,12 @@
 //! assert_eq!(equations.right_hand_side()[0].to_string(), "-4*x");
 //! # Ok::<(), pc_model::ModelError>(())
 //! ```
+//!
+//! # Around it
+//!
+//! Below: [`pc_nonholo`] and [`pc_mech`], what a text becomes. Above: [pc-print](../pc_print/index.html), its equations in print;
+//! [pc-verify](../pc_verify/index.html), its equations derived once more; [pc-fmu](../pc_fmu/index.html), the same model for other
+//! programs; [pc-cli](../pc_cli/index.html), the program `pc`.
 
 mod assembly;
 mod deep;

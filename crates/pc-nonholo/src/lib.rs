@@ -171,6 +171,11 @@
 //! All forms above are singular where their choice of velocities is. The equations with
 //! [`Multipliers`](pc_mech::Multipliers), M η̇ = r + Cᵀ λ, are singular only where the constraints are, nonholonomic
 //! ones included, and observe the λ: long motions are integrated in them.
+//!
+//! # Around it
+//!
+//! Below: [`pc_mech`], the systems that constraints bind. Above: [pc-model](../pc_model/index.html), which has the constraints of a text
+//! sorted, and [pc-analysis](../pc_analysis/index.html), invariant measures and Chaplygin's multiplier.
 
 mod classification;
 mod error;

@@ -24,6 +24,11 @@
 //! assert!(printed.contains("Reactions\n  λ_"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Around it
+//!
+//! Below: [`pc_model`], whose equations it prints, and [`pc_analysis`], what it says of motions. Above:
+//! [pc-report](../pc_report/index.html), all of it on one page, and [pc-cli](../pc_cli/index.html).
 
 mod bodies;
 mod constraints;

@@ -18,9 +18,15 @@
 //! assert!(page.starts_with("<!DOCTYPE html>") && page.contains("<math"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Around it
+//!
+//! Below: [`pc_print`], formulas and words, and [`pc_verify`], the second derivation. Above: [pc-cli](../pc_cli/index.html), where it is
+//! `pc report`, `pc animate` and `pc check`.
 
 mod check;
 mod error;
+mod frame;
 mod page;
 pub mod picture;
 mod record;

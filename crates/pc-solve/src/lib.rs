@@ -1,6 +1,11 @@
-//! Integration of ẏ = f(t, y) with SUNDIALS CVODES or DOP853, for any [`VectorField`].
+//! Integration of ẏ = f(t, y), for any [`VectorField`]: by SUNDIALS CVODES, DOP853 or Taylor's method.
 //!
-//! A vector field is compiled equations of motion or a closure:
+//! This page meets things in the order in which a program does: a motion in one call, its method, events, the motion as a
+//! function of time, a motion step by step, interruptions, derivatives, many motions.
+//!
+//! # A motion in one call
+//!
+//! A vector field is compiled equations of motion, a `Motion` of [pc-mech](../pc_mech/index.html), or a closure:
 //! ```
 //! use pc_solve::{Options, from_fn, solve};
 //!
@@ -18,15 +23,108 @@
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! [`Options`] chooses method and tolerances; [`Solve`] adds events and other methods, and [`Integration`] is the
-//! integration itself, step by step.
+//! [`from_fn`] takes more closures where more is known: [a Jacobian](FnField::with_jacobian), [its
+//! pattern](FnField::with_sparsity), [products with it](FnField::with_jvp), [a projection](FnField::with_projection) to
+//! invariants. Failures are values: a [`SolveFailure`] has the outputs that were reached, and a [`SolveError`] that says why
+//! not more.
 //!
-//! The methods are those of the variable-order, variable-step linear multistep code CVODE [Cohen, Hindmarsh 1996],
-//! in SUNDIALS 7 [Hindmarsh et al. 2005; Gardner et al. 2022], the explicit Runge–Kutta method [`Dop853`], and the change
-//! between both where [stiffness is seen](Method::Auto).
+//! # Method and tolerances
+//!
+//! [`Options`] chooses a [`Method`]: the variable-order multistep formulas of CVODE [Cohen, Hindmarsh 1996], in SUNDIALS 7
+//! [Hindmarsh et al. 2005; Gardner et al. 2022], which are [`Adams`](Method::Adams) and, for stiff systems,
+//! [`Bdf`](Method::Bdf); the explicit Runge–Kutta method [`Dop853`](Method::Dop853); [`Auto`](Method::Auto), which goes from
+//! that to BDF where stiffness is seen; and [`Taylor`](Method::Taylor), which needs a field that is a program. The error of
+//! a step is bounded by [`relative_tolerance`](Options::relative_tolerance) · |y| +
+//! [`absolute_tolerance`](Options::absolute_tolerance).
+//!
+//! # Events
+//!
+//! [`Solve`] is a motion still to be integrated, with a method and [`Events`]: zeros of functions, which end the motion or
+//! [reset](FnEvents::with_reset) its state. Each is located to rounding; two in one step, and resets that cause others, are
+//! told apart. Impacts that follow each other ever faster end at their [`Accumulation`].
+//! ```
+//! use pc_solve::{Event, FnEvents, Solve, from_fn};
+//!
+//! // A stone that is thrown upwards, until it is back.
+//! let fall = from_fn(2, |_t, y, ydot| { ydot[0] = y[1]; ydot[1] = -10.0; Ok(()) });
+//! let ground = FnEvents::new().with(Event::new("ground").falling().terminal(), |_t, y| Ok(y[0]));
+//! let solution = Solve::new(fall, 0.0, &[0.0, 5.0]).events(ground).run(&[0.5, 2.0])?;
+//! assert!((solution.occurrences[0].time - 1.0).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # The motion as a function of time
+//!
+//! [`Solve::dense`] keeps the polynomials of all steps: [`DenseOutput`] has y and ẏ at any time, as exact as the steps.
+//!
+//! # Step by step
+//!
+//! [`Solve::start`] gives the [`Integration`] itself, which stands at a time with a state: it steps, moves to a time, is
+//! [restarted](Integration::restart) elsewhere, or has its field [changed](Integration::change), as a simulation does that
+//! reads a controller. An [`Observer`] sees outputs, steps and occurrences of a [run](Integration::run).
+//! ```
+//! use pc_solve::{Solve, from_fn};
+//!
+//! let decay = from_fn(1, |_t, y, ydot| { ydot[0] = -y[0]; Ok(()) });
+//! let mut motion = Solve::new(decay, 0.0, &[1.0]).start()?;
+//! let half = motion.state_at(2.0_f64.ln())?[0];
+//! assert!((half - 0.5).abs() < 1e-6);
+//! motion.restart(0.0, &[4.0])?;
+//! let end = motion.step_towards(1.0)?;
+//! assert!(end > 0.0 && motion.time() == end);
+//! # Ok::<(), pc_solve::SolveError>(())
+//! ```
+//!
+//! # Interrupted, and gone on with
+//!
+//! [`solve_checkpointed`] gives a [`Checkpoint`] every so many steps. A motion that goes on from one is the motion that was
+//! never interrupted, to the last bit; a checkpoint [is bytes](Checkpoint::to_bytes) that another process can read. A
+//! [`Deadline`] in the options ends a motion that takes too long.
+//!
+//! # Derivatives
+//!
+//! S = ∂y/∂(p, y₀) is integrated with the motion by [`solve_with_sensitivities`], and jumps where an event resets the state
+//! by [`solve_with_sensitivities_and_events`]. For many parameters and one number g that depends on the motion,
+//! [`adjoint_gradient`] integrates backwards instead; g is a [`Functional`]. Integrals along a motion come
+//! [with it](solve_with_integrals), and [`lyapunov_exponents`] from the growth of its tangent vectors.
+//!
+//! # Many motions
+//!
+//! An [`Ensemble`] integrates on all cores, and fields that are programs eight at a time in the lanes of a vector. Its results
+//! come in the order of the members and are the same for any number of threads; [`member_stream`] gives each member random
+//! numbers of its own.
+//! ```
+//! use std::ops::ControlFlow;
+//! use pc_solve::{Ensemble, Method, Options, from_fn};
+//!
+//! let make = |member: u64| {
+//!     let rate = member as f64;
+//!     Ok::<_, std::convert::Infallible>((from_fn(1, move |_t, y, ydot| { ydot[0] = -rate * y[0]; Ok(()) }), vec![1.0]))
+//! };
+//! let mut ends = Vec::new();
+//! Ensemble::new().solve(0..4, make, 0.0, &[1.0], &Options::new(Method::Dop853), |_, motion| {
+//!     ends.push(motion.map_or(f64::NAN, |motion| motion.state(0)[0]));
+//!     ControlFlow::Continue(())
+//! })?;
+//! assert!((0..4).all(|member| (ends[member] - (-(member as f64)).exp()).abs() < 1e-6));
+//! # Ok::<(), pc_solve::EnsembleError>(())
+//! ```
+//!
+//! # A method of one's own
+//!
+//! [`Stepper`] is what a method has to do: make a step and know the states in it. Outputs, events, dense output and checkpoints
+//! follow. [`RungeKutta4`] is the example to read.
+//!
+//! # Without C
 //!
 //! Without the default feature `cvode` the crate builds without SUNDIALS and a C compiler. It then has [`Integration`]
-//! by any [`Stepper`], such as [`Dop853`] and [`RungeKutta4`], with events, dense output and checkpoints.
+//! by any [`Stepper`], such as [`Dop853`], [`Taylor`] and [`RungeKutta4`], with events, dense output and checkpoints.
+//!
+//! # Around it
+//!
+//! Below: [`pc_expr`], whose [`VectorField`] it integrates. Above: [pc-cli](../pc_cli/index.html), which is the program `pc`,
+//! [pc-capi](../pc/index.html), the C library. Beside it, without knowing it: [pc-mech](../pc_mech/index.html), which makes vector
+//! fields of Lagrangians.
 
 #![cfg_attr(feature = "cvode", expect(unsafe_code, reason = "calls of the C library SUNDIALS"))]
 

@@ -20,6 +20,11 @@
 //! assert!(agreement.error < 1e-13);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Around it
+//!
+//! Below: [`pc_model`], the text and the first derivation. Above: [pc-report](../pc_report/index.html) and
+//! [pc-cli](../pc_cli/index.html), which refuses a motion on which the two disagree.
 
 mod agreement;
 mod balance;

@@ -33,6 +33,8 @@ pub(crate) enum Error {
     Numbers { example: String, wrong: String },
     /// The wheel of the Python package is not as it should be.
     Package { wrong: String },
+    /// Links of the book lead nowhere.
+    Links { lost: Vec<String> },
     /// Installing on a system that has other names and tools for it.
     NotLinux { system: String },
     /// Every test binary was empty, or none was run.
@@ -70,6 +72,7 @@ impl fmt::Display for Error {
             Error::Installed { wrong } => write!(f, "the installed library: {wrong}"),
             Error::Numbers { example, wrong } => write!(f, "the example {example}: {wrong}"),
             Error::Package { wrong } => write!(f, "the Python package: {wrong}"),
+            Error::Links { lost } => write!(f, "links that lead nowhere:\n  {}", lost.join("\n  ")),
             Error::NotLinux { system } => write!(
                 f,
                 "installing is made for Linux; on {system} take the library from target/release and the headers from \

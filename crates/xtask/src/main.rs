@@ -42,7 +42,7 @@ usage: cargo xtask <command>
                    run random models and compare them with independent computations; --model shows one of them
   attack [--minutes N] [--seed S]
                    run the program on hostile models, files and checkpoints, and kill it; 10 minutes unless told
-  book             make target/book of the pages in docs, if mdbook is installed
+  book             make target/book of the pages in docs by mdbook, which is fetched from PyPI unless it is installed
   header           write include/pc.h from the sources of the C interface
   c-examples       build the examples in C and C++, run them, compare their numbers with those of `pc`, and run them
                    under sanitizers and valgrind

@@ -5,6 +5,8 @@
 
 #[path = "imports/circles.rs"]
 mod circles;
+#[path = "source/modules.rs"]
+mod modules;
 #[path = "imports/source.rs"]
 mod source;
 

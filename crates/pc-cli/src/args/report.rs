@@ -8,7 +8,7 @@ use crate::args::checkpoint::CheckpointArguments;
 use crate::args::drawn::DrawnArguments;
 use crate::args::forms::{RunForm, run_form};
 use crate::args::options;
-use crate::args::options::{IntegrationArguments, ModelArguments, Outputs, RunArguments, VelocityArguments};
+use crate::args::options::{IntegrationArguments, ModelArguments, RunArguments, VelocityArguments};
 
 /// The motion on a page.
 #[derive(Clone, Debug, Args)]
@@ -59,16 +59,22 @@ pub struct ReportArguments {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:\n  \
                         pc animate spatial-chain -o chain.html\n  \
-                        pc animate tilted-disk --t-end 20 > disk.html\n\n\
+                        pc animate tilted-disk --t-end 20 > disk.html\n  \
+                        pc animate tilted-disk -o disk.gif\n  \
+                        pc animate tilted-disk --at 12 -o disk.png\n\n\
                         What is drawn are bodies, joints and points, and the shapes of `[[draw]]` in the text of the model. The \
-                        page needs nothing beside itself; the same model gives the same bytes.")]
+                        page needs nothing beside itself. A film shows 25 frames a second of a motion of up to 10 seconds, and a \
+                        longer one in 10 seconds; a picture shows one frame. The same model gives the same bytes.")]
 pub struct AnimateArguments {
     /// The motion.
     #[command(flatten)]
     pub shown: ShownArguments,
-    /// Write the page to FILE.html instead of standard output
+    /// Write the page to FILE.html instead of standard output, a film to FILE.gif, or one frame to FILE.svg, FILE.png or FILE.pdf
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// With one frame: the one nearest to this time, else the last
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
+    pub at: Option<f64>,
 }
 
 impl ShownArguments {
@@ -83,7 +89,7 @@ impl ShownArguments {
             integration: self.integration.clone(),
             form: self.form,
             project: self.project.clone(),
-            outputs: Some(Outputs::Reactions),
+            outputs: None,
             no_verify: false,
             output: None,
             plot: None,

@@ -1,4 +1,4 @@
-//! `pc report`: all that is known of a model on one page; `pc animate`: its motion alone.
+//! `pc report`: all that is known of a model on one page; `pc animate`: its motion alone, as a page or in pictures.
 
 use pc_model::Model;
 use pc_report::{Record, Scene, animation, report};
@@ -9,10 +9,13 @@ use crate::commands::run::integrate;
 use crate::error::CliError;
 use crate::motion::plan::Plan;
 use crate::motion::run::Run;
-use crate::output::destination::Destination;
+use crate::output::destination::{Destination, Encoding};
+use crate::plot::gif::{frames, nearest};
 
 /// Points of a curve that looks smooth.
 const SMOOTH: usize = 601;
+/// Width and height of a frame.
+const PAPER: [f64; 2] = [480.0, 360.0];
 
 /// Writes the page of a model.
 ///
@@ -24,6 +27,7 @@ pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
     if arguments.no_run {
         return destination.write_page(&report(&model, None)?);
     }
+    model.observe_reactions(!model.document().constraints.is_empty());
     let run = match integrated(&mut model, &arguments.shown) {
         Err(CliError::NoEnd { .. }) => None,
         run => Some(run?),
@@ -36,18 +40,31 @@ pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
 
 const NO_END: &str = "There is no motion: the text says no end of time, and --t-end was not given.";
 
-/// Writes the page of a motion.
+/// Writes a motion as a page, a film, or a picture of one frame.
 ///
 /// # Errors
 /// [`CliError`], also where there is nothing to be drawn; of a motion that failed, what was reached has been written then.
 pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
-    let destination = Destination::page(arguments.output.as_deref())?;
+    let destination = Destination::shown(arguments.output.as_deref())?;
+    let is_frame = matches!(destination.encoding(), Encoding::Svg | Encoding::Png | Encoding::Pdf);
+    if arguments.at.is_some() && !is_frame {
+        return Err(CliError::NoFrame);
+    }
     let mut model = input::open(&arguments.shown.model)?;
     let run = integrated(&mut model, &arguments.shown)?;
     let graph = model.graph();
     let scene = Scene::of(&model, &model.assemble(&graph)?, &run.record())?;
     let scene = scene.ok_or_else(|| CliError::NothingToDraw { model: model.title().to_owned() })?;
-    destination.write_page(&animation(model.title(), &scene))?;
+    let (title, times) = (model.title(), &scene.times);
+    let drawing = |frame| scene.drawing(title, frame, PAPER);
+    match destination.encoding() {
+        Encoding::Gif => destination.write_film(frames(times).into_iter().map(drawing))?,
+        _ if is_frame => {
+            let at = arguments.at.map_or(times.len() - 1, |t| nearest(times, t));
+            destination.write_plot(&drawing(at))?;
+        }
+        _ => destination.write_page(&animation(title, &scene))?,
+    }
     run.outcome()
 }
 
@@ -59,10 +76,9 @@ pub fn page(model: &Model, run: &Run) -> Result<String, CliError> {
     Ok(report(model, Some(&run.record()))?)
 }
 
-/// The motion with the reactions of constraints.
+/// The motion, smooth where it is drawn.
 fn integrated(model: &mut Model, shown: &ShownArguments) -> Result<Run, CliError> {
     let arguments = shown.as_run();
-    model.observe_reactions(!model.document().constraints.is_empty());
     for name in &arguments.project {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }

@@ -68,8 +68,8 @@ pub enum LinearError {
     /// Newton's method did not converge.
     #[error(
         "no steady state was found near the start: the rates that should vanish have the norm {} where Newton's method \
-         ended, at {}\n  help: start nearer to one (--start NAME=VALUE), hold fewer components (--hold), or take the Jacobian \
-         of the start as it is (--at start)",
+         ended, at {}\n  help: start nearer to one (--start NAME=VALUE), which `pc equilibria` finds for those of rest, hold fewer \
+         components (--hold), or take the Jacobian of the start as it is (--at start)",
         short(*residual, 3),
         listed(state)
     )]

@@ -11,6 +11,7 @@ use crate::output::place;
 use crate::output::place::Place;
 use crate::output::stream::Stream;
 use crate::output::{csv, json, npz, standard_output};
+use crate::plot::gif::gif;
 use crate::plot::pdf::pdf;
 use crate::plot::png::png;
 
@@ -31,6 +32,8 @@ pub enum Encoding {
     Pdf,
     /// A page of a browser.
     Html,
+    /// Bitmaps one after the other.
+    Gif,
 }
 
 /// The destination of a result; the place is examined before anything is computed.
@@ -74,6 +77,28 @@ impl Destination {
         Destination::file("-o", path, &[("html", Encoding::Html), ("htm", Encoding::Html)], ".html")
     }
 
+    /// The place of a motion that is shown: a page, a film, or a picture of one frame; else, as for `-`, standard output.
+    ///
+    /// # Errors
+    /// As for [`table`](Destination::table).
+    pub fn shown(path: Option<&Path>) -> Result<Destination, CliError> {
+        let Some(path) = place::file(path) else { return Destination::page(path) };
+        let encodings = [
+            ("html", Encoding::Html),
+            ("htm", Encoding::Html),
+            ("gif", Encoding::Gif),
+            ("svg", Encoding::Svg),
+            ("png", Encoding::Png),
+            ("pdf", Encoding::Pdf),
+        ];
+        Destination::file("-o", path, &encodings, ".html, .gif, .svg, .png or .pdf")
+    }
+
+    /// How it is encoded.
+    pub fn encoding(&self) -> Encoding {
+        self.encoding
+    }
+
     fn file(
         option: &'static str,
         path: &Path,
@@ -102,9 +127,12 @@ impl Destination {
         place.write_or_keep(self.encoding == Encoding::Csv, |out| match self.encoding {
             Encoding::Json => json::write(run, out),
             Encoding::Npz => npz::write(run, out),
-            Encoding::Csv | Encoding::Svg | Encoding::Png | Encoding::Pdf | Encoding::Html => {
-                csv::write(&run.table, out)
-            }
+            Encoding::Csv
+            | Encoding::Svg
+            | Encoding::Png
+            | Encoding::Pdf
+            | Encoding::Html
+            | Encoding::Gif => csv::write(&run.table, out),
         })
     }
 
@@ -130,14 +158,25 @@ impl Destination {
     /// # Errors
     /// As for [`write_table`](Destination::write_table), and [`CliError::Plot`].
     pub fn write_plot(&self, drawing: &Drawing) -> Result<(), CliError> {
-        let bytes = match self.encoding {
+        self.write_bytes(&match self.encoding {
             Encoding::Png => png(drawing)?,
             Encoding::Pdf => pdf(drawing)?,
             _ => drawing.svg().into_bytes(),
-        };
+        })
+    }
+
+    /// Writes pictures one after the other, as GIF.
+    ///
+    /// # Errors
+    /// As for [`write_plot`](Destination::write_plot).
+    pub fn write_film(&self, drawings: impl Iterator<Item = Drawing>) -> Result<(), CliError> {
+        self.write_bytes(&gif(drawings)?)
+    }
+
+    fn write_bytes(&self, bytes: &[u8]) -> Result<(), CliError> {
         match &self.place {
-            None => standard_output::print(|out| out.write_all(&bytes)),
-            Some(place) => place.write_or_keep(false, |out| out.write_all(&bytes)),
+            None => standard_output::print(|out| out.write_all(bytes)),
+            Some(place) => place.write_or_keep(false, |out| out.write_all(bytes)),
         }
     }
 }

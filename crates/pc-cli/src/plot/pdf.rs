@@ -63,6 +63,13 @@ fn content(drawing: &Drawing, fonts: &mut Fonts<'_>) -> String {
                     to[1] - from[1]
                 ),
             ),
+            Shape::Filled { corners, ink } => {
+                add(&mut content, format_args!("{} rg\n", colour(*ink)));
+                for (i, [x, y]) in corners.iter().enumerate() {
+                    add(&mut content, format_args!("{x:.2} {y:.2} {}\n", if i == 0 { "m" } else { "l" }));
+                }
+                content += "f\n";
+            }
             Shape::Text { at, anchor, size, ink, text } => {
                 let placed = fonts.glyphs.placed(text, *anchor);
                 let start = placed.first().map_or(0.0, |first| first.x) * size / fonts.glyphs.units();

@@ -17,21 +17,23 @@ const SCALE: f32 = 2.0;
 /// # Errors
 /// [`PlotError`]
 pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, PlotError> {
-    let size = |length: f64| (length * f64::from(SCALE)).ceil() as u32;
+    encoded(&painted(drawing, SCALE, &Glyphs::new()?)?)
+}
+
+/// The pixels, of which `magnification` are a point.
+///
+/// # Errors
+/// [`PlotError`]
+pub(super) fn painted(drawing: &Drawing, magnification: f32, glyphs: &Glyphs) -> Result<Pixmap, PlotError> {
+    let size = |length: f64| (length * f64::from(magnification)).ceil() as u32;
     let (width, height) = (size(drawing.width), size(drawing.height));
     let mut pixels = Pixmap::new(width, height).ok_or(PlotError::Size { width, height })?;
     pixels.fill(tiny_skia::Color::WHITE);
-    let glyphs = Glyphs::new()?;
-    let scale = Transform::from_scale(SCALE, SCALE);
+    let scale = Transform::from_scale(magnification, magnification);
     for shape in &drawing.shapes {
         match shape {
             Shape::Line { points, ink } => {
-                let mut path = PathBuilder::new();
-                for (i, &[x, y]) in points.iter().enumerate() {
-                    let (x, y) = (x as f32, y as f32);
-                    if i == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
-                }
-                let Some(path) = path.finish() else { continue };
+                let Some(path) = path(points).finish() else { continue };
                 pixels.stroke_path(&path, &paint(*ink), &stroke(*ink), scale, None);
             }
             Shape::Area { from, to, ink } => {
@@ -41,6 +43,12 @@ pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, PlotError> {
                 if let Some(rect) = rect {
                     pixels.fill_rect(rect, &paint, scale, None);
                 }
+            }
+            Shape::Filled { corners, ink } => {
+                let mut path = path(corners);
+                path.close();
+                let Some(path) = path.finish() else { continue };
+                pixels.fill_path(&path, &paint(*ink), FillRule::Winding, scale, None);
             }
             Shape::Text { at, anchor, size, ink, text } => {
                 let unit = size / glyphs.units();
@@ -62,7 +70,16 @@ pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, PlotError> {
             }
         }
     }
-    encoded(&pixels)
+    Ok(pixels)
+}
+
+fn path(points: &[[f64; 2]]) -> PathBuilder {
+    let mut path = PathBuilder::new();
+    for (i, &[x, y]) in points.iter().enumerate() {
+        let (x, y) = (x as f32, y as f32);
+        if i == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
+    }
+    path
 }
 
 fn paint(ink: Ink) -> Paint<'static> {
@@ -84,16 +101,19 @@ fn stroke(ink: Ink) -> Stroke {
     }
 }
 
+/// Red, green and blue of each.
+pub(super) fn opaque(pixels: &Pixmap) -> Vec<u8> {
+    pixels.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
+}
+
 fn encoded(pixels: &Pixmap) -> Result<Vec<u8>, PlotError> {
     let encoding = |error: png::EncodingError| PlotError::Encode { message: error.to_string() };
-    let opaque: Vec<u8> =
-        pixels.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, pixels.width(), pixels.height());
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     let mut writer = encoder.write_header().map_err(encoding)?;
-    writer.write_image_data(&opaque).map_err(encoding)?;
+    writer.write_image_data(&opaque(pixels)).map_err(encoding)?;
     writer.finish().map_err(encoding)?;
     Ok(bytes)
 }

@@ -30,6 +30,13 @@ pub enum Shape {
         /// Its colour.
         ink: Ink,
     },
+    /// An area within corners, filled.
+    Filled {
+        /// The corners.
+        corners: Vec<[f64; 2]>,
+        /// Its colour.
+        ink: Ink,
+    },
     /// A line of text.
     Text {
         /// Its beginning, its middle, or its end, on its base line.
@@ -71,6 +78,8 @@ pub enum Ink {
     Event,
     /// The curve with this number.
     Curve(usize),
+    /// Rods and springs of what moves.
+    Rod,
     /// This red, green and blue.
     Mixed([u8; 3]),
 }
@@ -94,7 +103,7 @@ impl Ink {
     /// Red, green and blue on white.
     pub fn colour(self) -> [u8; 3] {
         match self {
-            Ink::Text => [29, 36, 48],
+            Ink::Text | Ink::Rod => [29, 36, 48],
             Ink::Soft | Ink::Axis => [91, 100, 114],
             Ink::Grid => [228, 231, 236],
             Ink::Event => [140, 148, 160],
@@ -105,7 +114,11 @@ impl Ink {
 
     /// Width of a line.
     pub fn width(self) -> f64 {
-        if let Ink::Curve(_) = self { 1.5 } else { 1.0 }
+        match self {
+            Ink::Curve(_) => 1.5,
+            Ink::Rod => 2.0,
+            _ => 1.0,
+        }
     }
 
     /// Lengths of a dash and of the gap behind it, of a line that is not solid.
@@ -115,7 +128,7 @@ impl Ink {
 }
 
 impl Drawing {
-    pub(super) fn line(&mut self, points: Vec<[f64; 2]>, ink: Ink) {
+    pub(crate) fn line(&mut self, points: Vec<[f64; 2]>, ink: Ink) {
         self.shapes.push(Shape::Line { points, ink });
     }
 
@@ -123,7 +136,11 @@ impl Drawing {
         self.shapes.push(Shape::Area { from, to, ink });
     }
 
-    pub(super) fn text(
+    pub(crate) fn filled(&mut self, corners: Vec<[f64; 2]>, ink: Ink) {
+        self.shapes.push(Shape::Filled { corners, ink });
+    }
+
+    pub(crate) fn text(
         &mut self,
         at: [f64; 2],
         anchor: Anchor,

@@ -43,6 +43,10 @@ impl Drawing {
                         hexadecimal(*ink)
                     ),
                 ),
+                Shape::Filled { corners, ink } => put(
+                    &mut svg,
+                    format_args!("<path d=\"{}Z\" fill=\"{}\"/>\n", path(corners, 2), hexadecimal(*ink)),
+                ),
                 Shape::Text { at: [x, y], anchor, size, ink, text: words } => put(
                     &mut svg,
                     format_args!(
@@ -86,6 +90,10 @@ impl Drawing {
                         from[0]
                     ),
                 ),
+                Shape::Filled { corners, ink } => put(
+                    &mut svg,
+                    format_args!("<path fill=\"{}\" d=\"{}Z\"/>\n", hexadecimal(*ink), path(corners, 1)),
+                ),
                 Shape::Text { at: [x, y], anchor, text: words, .. } => put(
                     &mut svg,
                     format_args!(
@@ -102,7 +110,7 @@ impl Drawing {
 
 fn class(ink: Ink) -> String {
     match ink {
-        Ink::Text | Ink::Soft | Ink::Axis | Ink::Mixed(_) => "axis".to_owned(),
+        Ink::Text | Ink::Soft | Ink::Axis | Ink::Rod | Ink::Mixed(_) => "axis".to_owned(),
         Ink::Grid => "grid".to_owned(),
         Ink::Event => "event".to_owned(),
         Ink::Curve(i) => format!("curve s{}", i % Ink::CURVES),

@@ -1,12 +1,12 @@
-//! The modules of a crate, the names they define and the paths they use, read from its files.
+//! The names that the modules of a crate define and the paths they use, read from its files.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use syn::Item;
 use syn::visit::{self, Visit};
-use syn::{Item, UseTree};
 
-type ModulePath = Vec<String>;
+use crate::modules::{self, Import, ModulePath, absolute, name_of};
 
 /// The modules of a crate by their paths; the root's is empty.
 pub(crate) struct Crate {
@@ -26,45 +26,12 @@ struct Module {
 
 impl Crate {
     pub(crate) fn read(folder: &Path) -> Self {
-        let mut read = Self { modules: BTreeMap::new() };
-        let root = ["lib.rs", "main.rs"].into_iter().find(|file| folder.join(file).is_file());
-        read.file(folder, root.expect("a crate has a root"), Vec::new());
-        read
-    }
-
-    fn file(&mut self, folder: &Path, name: &str, path: ModulePath) {
-        let text = std::fs::read_to_string(folder.join(name)).expect("a declared module has a file");
-        let items = syn::parse_file(&text).expect("the crate compiles").items;
-        self.module(folder, name, path, &items);
-    }
-
-    fn module(&mut self, folder: &Path, file: &str, path: ModulePath, items: &[Item]) {
-        let mut module = Module { file: file.to_owned(), ..Module::default() };
-        for item in items.iter().filter(|item| !is_test(item)) {
-            match item {
-                Item::Mod(inner) => {
-                    let mut child = path.clone();
-                    child.push(inner.ident.to_string());
-                    match &inner.content {
-                        Some((_, items)) => self.module(folder, file, child, items),
-                        None => {
-                            let beside = format!("{}.rs", child.join("/"));
-                            let within = format!("{}/mod.rs", child.join("/"));
-                            let name = if folder.join(&beside).is_file() { beside } else { within };
-                            self.file(folder, &name, child);
-                        }
-                    }
-                }
-                Item::Use(import) => module.import(&path, &[], &import.tree),
-                _ => {
-                    module.defined.extend(name_of(item));
-                    let mut paths = Paths { here: &path, found: Vec::new() };
-                    paths.visit_item(item);
-                    module.used.append(&mut paths.found);
-                }
-            }
+        let mut modules = BTreeMap::new();
+        for (path, read) in modules::read(folder) {
+            let module = Module::of(&path, read);
+            modules.insert(path, module);
         }
-        self.modules.insert(path, module);
+        Self { modules }
     }
 
     /// Of each file the files whose names it uses.
@@ -101,41 +68,36 @@ impl Crate {
 }
 
 impl Module {
-    fn import(&mut self, here: &[String], prefix: &[String], tree: &UseTree) {
-        let with = |name: &syn::Ident| [prefix, &[name.to_string()]].concat();
-        match tree {
-            UseTree::Path(path) => self.import(here, &with(&path.ident), &path.tree),
-            UseTree::Group(group) => group.items.iter().for_each(|tree| self.import(here, prefix, tree)),
-            UseTree::Glob(_) => self.globs.extend(absolute(here, prefix)),
-            UseTree::Name(name) if name.ident == "self" => self.bring(here, prefix, prefix.last()),
-            UseTree::Name(name) => self.bring(here, &with(&name.ident), Some(&name.ident)),
-            UseTree::Rename(rename) => self.bring(here, &with(&rename.ident), Some(&rename.rename)),
-        }
-    }
-
-    fn bring(&mut self, here: &[String], path: &[String], name: Option<&impl ToString>) {
-        if let (Some(path), Some(name)) = (absolute(here, path), name) {
-            self.imported.insert(name.to_string(), path);
-        }
-    }
-}
-
-/// The path from the root of the crate; a path that may be of another crate is tried from here.
-fn absolute(here: &[String], path: &[String]) -> Option<ModulePath> {
-    let mut base = match path.first()?.as_str() {
-        "crate" => Vec::new(),
-        _ => here.to_vec(),
-    };
-    for segment in path {
-        match segment.as_str() {
-            "crate" | "self" => {}
-            "super" => {
-                base.pop()?;
+    fn of(path: &[String], read: modules::Module) -> Module {
+        let mut module = Module { file: read.file, ..Module::default() };
+        for item in &read.items {
+            match item {
+                Item::Mod(_) => {}
+                Item::Use(import) => module.import(path, &import.tree),
+                _ => {
+                    module.defined.extend(name_of(item));
+                    let mut paths = Paths { here: path, found: Vec::new() };
+                    paths.visit_item(item);
+                    module.used.append(&mut paths.found);
+                }
             }
-            name => base.push(name.to_owned()),
+        }
+        module
+    }
+
+    fn import(&mut self, here: &[String], tree: &syn::UseTree) {
+        for import in modules::imports(&[], tree) {
+            match import {
+                Import::Glob(path) => self.globs.extend(absolute(here, &path)),
+                Import::Name(path, name) => {
+                    let name = if name == "self" { path.last().cloned() } else { Some(name.to_string()) };
+                    if let (Some(path), Some(name)) = (absolute(here, &path), name) {
+                        self.imported.insert(name, path);
+                    }
+                }
+            }
         }
     }
-    Some(base)
 }
 
 struct Paths<'a> {
@@ -165,33 +127,4 @@ fn names(tokens: proc_macro2::TokenStream) -> Box<dyn Iterator<Item = String>> {
         proc_macro2::TokenTree::Ident(name) => Box::new(std::iter::once(name.to_string())),
         _ => Box::new(std::iter::empty()),
     }))
-}
-
-fn name_of(item: &Item) -> Option<String> {
-    Some(match item {
-        Item::Const(item) => item.ident.to_string(),
-        Item::Enum(item) => item.ident.to_string(),
-        Item::Fn(item) => item.sig.ident.to_string(),
-        Item::Static(item) => item.ident.to_string(),
-        Item::Struct(item) => item.ident.to_string(),
-        Item::Trait(item) => item.ident.to_string(),
-        Item::Type(item) => item.ident.to_string(),
-        Item::Union(item) => item.ident.to_string(),
-        Item::Macro(item) => item.ident.as_ref()?.to_string(),
-        _ => return None,
-    })
-}
-
-fn is_test(item: &Item) -> bool {
-    let attributes = match item {
-        Item::Mod(item) => &item.attrs,
-        Item::Fn(item) => &item.attrs,
-        Item::Use(item) => &item.attrs,
-        Item::Impl(item) => &item.attrs,
-        _ => return false,
-    };
-    attributes.iter().any(|attribute| {
-        let text = attribute.meta.require_list().map(|list| list.tokens.to_string()).unwrap_or_default();
-        attribute.path().is_ident("cfg") && text == "test" || attribute.path().is_ident("test")
-    })
 }

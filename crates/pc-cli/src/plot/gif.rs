@@ -1,0 +1,84 @@
+//! Drawings one after the other, as GIF.
+
+use gif::{Encoder, Frame, Repeat};
+use pc_report::picture::Drawing;
+
+use crate::plot::error::PlotError;
+use crate::plot::glyphs::Glyphs;
+use crate::plot::png::{opaque, painted};
+
+/// Pixels of a point.
+const SCALE: f32 = 1.0;
+/// Frames of a second.
+const RATE: f64 = 25.0;
+/// Hundredths of a second that a frame stands, by that rate.
+const DELAY: u16 = 4;
+/// Frames of the longest film: what takes longer is shown faster.
+const MOST: usize = 250;
+/// How finely colours are chosen, from 1 to 30; the finest takes ten times as long, and shows no more of lines on white.
+const SPEED: i32 = 10;
+
+/// So many of the frames at `times`, by their numbers, as show the motion as fast as it is.
+pub(crate) fn frames(times: &[f64]) -> Vec<usize> {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
+    let span = last - first;
+    let intervals = (span.abs() * RATE).round().clamp(1.0, MOST as f64) as usize;
+    let time = |i: usize| first + span * i as f64 / intervals as f64;
+    (0..=intervals).map(|i| nearest(times, time(i))).collect()
+}
+
+/// The number of the time that is nearest.
+pub(crate) fn nearest(times: &[f64], time: f64) -> usize {
+    let distance = |&i: &usize| (times[i] - time).abs();
+    (0..times.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
+}
+
+/// The film, which goes round and round.
+///
+/// # Errors
+/// [`PlotError`]
+pub(crate) fn gif(drawings: impl Iterator<Item = Drawing>) -> Result<Vec<u8>, PlotError> {
+    let encoding = |error: gif::EncodingError| PlotError::Encode { message: error.to_string() };
+    let glyphs = Glyphs::new()?;
+    let mut encoder = None;
+    for drawing in drawings {
+        let pixels = painted(&drawing, SCALE, &glyphs)?;
+        let (width, height) = (pixels.width(), pixels.height());
+        let sides = u16::try_from(width).ok().zip(u16::try_from(height).ok());
+        let (wide, high) = sides.ok_or(PlotError::Size { width, height })?;
+        let encoder = match &mut encoder {
+            Some(encoder) => encoder,
+            None => {
+                let mut begun = Encoder::new(Vec::new(), wide, high, &[]).map_err(encoding)?;
+                begun.set_repeat(Repeat::Infinite).map_err(encoding)?;
+                encoder.insert(begun)
+            }
+        };
+        let mut frame = Frame::from_rgb_speed(wide, high, &opaque(&pixels), SPEED);
+        frame.delay = DELAY;
+        encoder.write_frame(&frame).map_err(encoding)?;
+    }
+    match encoder {
+        Some(encoder) => {
+            encoder.into_inner().map_err(|error| PlotError::Encode { message: error.to_string() })
+        }
+        None => Ok(Vec::new()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_film_is_as_long_as_its_motion() {
+        let times: Vec<f64> = (0..=600).map(|i| f64::from(i) / 300.0).collect();
+        let shown = frames(&times);
+        assert_eq!((shown.len(), shown[0], shown[25], shown[50]), (51, 0, 300, 600));
+        let long: Vec<f64> = (0..=600).map(|i| -f64::from(i)).collect();
+        let shown = frames(&long);
+        assert_eq!((shown.len(), shown[0], shown.last()), (MOST + 1, 0, Some(&600)));
+        assert_eq!(frames(&[1.0]), [0, 0]);
+        assert_eq!(nearest(&times, 0.0171), 5);
+    }
+}

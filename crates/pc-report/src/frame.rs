@@ -1,0 +1,9 @@
+//! A frame of a motion as a drawing, as the player of a page shows it.
+//!
+//! `camera` looks at all that moves, from where the player looks at first; `shapes` has what is drawn of each
+//! [`SceneShape`](crate::SceneShape); `frame` puts them into one [`Drawing`](crate::picture::Drawing), the farthest first.
+
+mod camera;
+#[expect(clippy::module_inception, reason = "the frame itself")]
+pub(crate) mod frame;
+mod shapes;

@@ -1,0 +1,61 @@
+//! One frame of a scene.
+
+use crate::frame::camera::{Camera, vector};
+use crate::frame::shapes;
+use crate::picture::{Anchor, Drawing, Ink};
+use crate::scene::{Scene, SceneShape};
+
+/// Height of the letters of title and clock.
+const LETTERS: f64 = 14.0;
+/// Where they stand.
+const EDGE: f64 = 12.0;
+
+impl Scene {
+    /// Frame number `number` on paper of this width and height, with the title and the time; the last one, if there are
+    /// not so many. It shows what the player of [`animation`](crate::animation) shows before the view is turned.
+    pub fn drawing(&self, title: &str, number: usize, [width, height]: [f64; 2]) -> Drawing {
+        let mut drawing = Drawing { width, height, shapes: Vec::new() };
+        let Some(last) = self.times.len().checked_sub(1) else { return drawing };
+        let number = number.min(last);
+        let camera = Camera::of(self, [width, height]);
+        let all = self.width();
+        let frame = |i: usize| &self.frames[i * all..(i + 1) * all];
+        let (mut own, mut from, mut colours) = (Vec::new(), 0, 0);
+        for shape in &self.shapes {
+            let numbers = &frame(number)[from..from + shape.numbers()];
+            let trace: Vec<[f64; 3]> = match shape {
+                SceneShape::Trace => (0..=number).map(|i| vector(frame(i), from)).collect(),
+                _ => Vec::new(),
+            };
+            let ink = Ink::Curve(colours);
+            colours += usize::from(shape.has_colour());
+            own.push((camera.project(vector(numbers, 0)).depth, shape, numbers, ink, trace));
+            from += shape.numbers();
+        }
+        own.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (_, shape, numbers, ink, trace) in own {
+            // What is not defined at this time is not there.
+            if numbers.iter().all(|number| number.is_finite()) {
+                shapes::draw(&mut drawing, &camera, shape, numbers, ink, &trace);
+            }
+        }
+        let clock = format!("t = {:.3}", self.times[number]);
+        drawing.text([EDGE, EDGE + LETTERS], Anchor::Start, LETTERS, Ink::Text, title);
+        drawing.text([width - EDGE, EDGE + LETTERS], Anchor::End, LETTERS, Ink::Soft, clock);
+        drawing
+    }
+}
+
+impl SceneShape {
+    /// Whether it is in a colour of its own.
+    fn has_colour(&self) -> bool {
+        match self {
+            SceneShape::Point(_)
+            | SceneShape::Disc
+            | SceneShape::Sphere
+            | SceneShape::Box
+            | SceneShape::Trace => true,
+            SceneShape::Line(_) | SceneShape::Axes | SceneShape::Spring | SceneShape::Text(_) => false,
+        }
+    }
+}
