@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use pc_fmu::FmuError;
-use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
+use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart, UnknownValue};
 use pc_report::ReportError;
 use pc_solve::{Code, Method, SolveError, Spent};
 use pc_verify::VerifyError;
@@ -73,9 +73,9 @@ pub enum CliError {
         /// Why.
         source: io::Error,
     },
-    /// `--set` of something that is not a parameter.
+    /// `--set` of something that is neither a parameter nor a start value.
     #[error("--set: {0}")]
-    UnknownParameter(#[from] UnknownParameter),
+    UnknownValue(#[from] UnknownValue),
     /// `--project` of something that is not an integral.
     #[error("--project: {0}")]
     UnknownIntegral(UnknownIntegral),
@@ -97,21 +97,19 @@ pub enum CliError {
         /// The first of them.
         name: String,
     },
-    /// Two `--set` of one parameter.
+    /// Two `--set` of one name.
     #[error("--set: `{name}` is given two values; leave one out")]
     SetTwice {
-        /// The parameter.
+        /// The parameter or start value.
         name: String,
     },
     /// `--set` to something that is not a number.
-    #[error("--set {name}={value}: `{value}` is not a finite number; {}", known_parameters(known))]
+    #[error("--set {name}={value}: `{value}` is not a finite number")]
     BadValue {
         /// What is set.
         name: String,
         /// As written.
         value: String,
-        /// The parameters of the model.
-        known: Vec<String>,
     },
     /// Nothing of the model can be drawn.
     #[error(
@@ -299,7 +297,7 @@ impl CliError {
             | CliError::NoSuchTag { .. }
             | CliError::SeveralFiles { .. }
             | CliError::Read { .. }
-            | CliError::UnknownParameter(_)
+            | CliError::UnknownValue(_)
             | CliError::UnknownIntegral(_)
             | CliError::Sensitivities(_)
             | CliError::NoSensitivities { .. }
@@ -345,14 +343,6 @@ impl CliError {
 
 /// How standard output is called.
 pub(crate) const STANDARD_OUTPUT: &str = "standard output";
-
-fn known_parameters(known: &[String]) -> String {
-    if known.is_empty() {
-        "this model has no parameters".to_owned()
-    } else {
-        format!("the parameters of this model are {}", known.join(", "))
-    }
-}
 
 /// Where the integration stood, with the names of the state.
 fn at(cause: &SolveError, names: &[String]) -> String {

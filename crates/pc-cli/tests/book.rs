@@ -1,4 +1,4 @@
-//! The book in `docs`: its models are sound, its commands print what it shows, its links lead somewhere.
+//! The book in `docs` and the README: models are sound, commands succeed and print what is shown, links lead somewhere.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -122,6 +122,43 @@ fn models_are_sound_and_commands_print_what_is_shown() {
         pages.into_iter().map(|page| page.join().expect("the page is right")).sum::<usize>()
     });
     assert!(tried > 60, "only {tried} examples were tried");
+}
+
+/// The lines of shell blocks that begin with the program, without the remarks behind them.
+fn shell_commands(text: &str) -> Vec<String> {
+    let shell = blocks(text).into_iter().filter(|(words, _)| words == "sh");
+    let lines: Vec<String> =
+        shell.flat_map(|(_, text)| text.lines().map(str::to_owned).collect::<Vec<_>>()).collect();
+    let commands = lines.iter().filter(|line| line.starts_with("pc "));
+    commands.map(|line| line.split(" #").next().unwrap_or_default().trim_end().to_owned()).collect()
+}
+
+/// What fills more than a screen or two is written to a file.
+const LONGEST: usize = 150;
+
+#[test]
+fn commands_that_are_named_succeed() {
+    let root = docs().join("..");
+    let readme = read(&root.join("README.md"));
+    let desk = Desk::new();
+    let model = blocks(&readme).into_iter().find(|(words, _)| words == "toml").expect("a model").1;
+    desk.write("top.toml", &model);
+    desk.write("robot.urdf", &read(&root.join("tests/robots/arm.urdf")));
+    let mut tried = 0;
+    for page in ["README.md", "docs/running.md"] {
+        for command in shell_commands(&read(&root.join(page))) {
+            println!("{page}: {command}");
+            let (said, succeeds) = desk.run(&command);
+            assert!(succeeds, "{page}: {command}\n{said}");
+            assert!(said.lines().count() < LONGEST, "{page}: {command}: {} lines", said.lines().count());
+            tried += 1;
+        }
+    }
+    assert!(tried > 14, "only {tried} commands were tried");
+    let (page, equations) = (desk.run("pc derive top.toml").0, "I3 ω3' = 0");
+    let shown = blocks(&readme).into_iter().find(|(words, text)| words == "text" && text.contains(equations));
+    let shown = shown.expect("the equations of the model").1;
+    assert!(page.contains(shown.trim_end()), "{page}");
 }
 
 /// The name by which a link finds a heading: letters and digits in lower case, hyphens for spaces.

@@ -137,7 +137,8 @@ fn parameters_are_set_where_they_are() {
         OSCILLATOR,
         &["-", &other.name(), "--set", "c=5"],
         2,
-        "pc: --set: `c` is not a parameter of this model; its parameters are k, spare\n",
+        "pc: --set: `c` is neither a parameter nor a start value of this model; its parameters are k, spare, its start values \
+         x, x'\n",
     );
 }
 

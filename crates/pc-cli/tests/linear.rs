@@ -174,7 +174,7 @@ fn the_page_shows_the_output_of_the_program() {
 /// At Ω² = g the bottom loses its stability: λ² = Ω² − g there, beside it −(Ω² − g²/Ω²).
 #[test]
 fn a_pitchfork_over_the_rate_of_the_hoop() {
-    let text = said(BEAD, "linearize", &["--start", "θ=0", "--vary", "Ω=0:2:5", "--format", "csv"]);
+    let text = said(BEAD, "linearize", &["--set", "θ=0", "--vary", "Ω=0:2:5", "--format", "csv"]);
     assert_eq!(text.lines().next(), Some("Ω,re1,im1,re2,im2"));
     for (line, turn) in text.lines().skip(1).zip([0.0f64, 0.5, 1.0, 1.5, 2.0]) {
         let row: Vec<f64> = line.split(',').map(|field| field.parse().expect("a number")).collect();
@@ -184,7 +184,7 @@ fn a_pitchfork_over_the_rate_of_the_hoop() {
         assert!((row[1].abs() - real).abs() < 1e-14 && (row[2].abs() - imaginary).abs() < 1e-14, "{line}");
         assert!((row[1] + row[3]).abs() < 1e-14 && (row[2] + row[4]).abs() < 1e-14, "{line}");
     }
-    let beside = said(BEAD, "linearize", &["--format", "json", "--start", "θ=1.2"]);
+    let beside = said(BEAD, "linearize", &["--format", "json", "--set", "θ=1.2"]);
     let beside: Value = serde_json::from_str(&beside).expect("JSON");
     let frequency = beside["eigenvalues"][0][1].as_f64().expect("a number");
     assert!((frequency - 3.75f64.sqrt()).abs() < 1e-13, "{frequency}");
@@ -266,19 +266,21 @@ fn what_is_not_defined_is_refused_with_a_cure() {
     let driven = [
         refused(DRIVEN, "linearize", &[], 4),
         refused(DRIVEN, "equilibria", &[], 4),
-        refused(BEAD, "linearize", &["--set", "g=0", "--start", "θ=0.4", "--hold", "θ"], 5),
+        refused(BEAD, "linearize", &["--set", "g=0", "--set", "θ=0.4", "--hold", "θ"], 5),
         refused(BEAD, "equilibria", &["--box", "θ=1.5..2"], 5),
         refused(BEAD, "linearize", &["--hold", "phi"], 2),
-        refused(BEAD, "linearize", &["--start", "g=1"], 2),
-        refused(BEAD, "linearize", &["--start", "θ=1", "--start", "θ=2"], 2),
+        refused(BEAD, "linearize", &["--set", "h=1"], 2),
+        refused(BEAD, "linearize", &["--set", "θ=1", "--set", "θ=2"], 2),
+        refused(BEAD, "linearize", &["--set", "θ=1", "--vary", "θ=1:2:3"], 2),
         refused(BEAD, "linearize", &["--vary", "h=1:2:3"], 2),
         refused(BEAD, "linearize", &["--set", "g=2", "--vary", "g=1:2:3"], 2),
         refused(BEAD, "linearize", &["-o", "a.xlsx"], 2),
         refused(BEAD, "equilibria", &["--box", "θ'=0..1"], 2),
         refused(CART_POLE, "equilibria", &["--box", "x=0..1"], 2),
+        refused(&CART_POLE.replace("\"push\"", "\"push + 1\""), "equilibria", &[], 5),
     ];
     insta::assert_snapshot!(driven.concat());
-    let jacobian = said(DRIVEN, "linearize", &["--at", "start", "--start", "θ=0"]);
+    let jacobian = said(DRIVEN, "linearize", &["--at", "start", "--set", "θ=0"]);
     assert!(jacobian.contains("the start, not steady"), "{jacobian}");
     let missing = refused(BEAD, "linearize", &["--plot", "a.svg"], 2);
     assert!(missing.contains("--vary"), "{missing}");

@@ -107,6 +107,53 @@ fn nothing_aliases_between_the_rows() {
     assert!(drawn.stdout == plain, "the table is the same with a picture");
 }
 
+/// v' = u, where u steps from 0 to 1 at t = 1 and back at t = 3.
+const STEPS: &str = "\
+[inputs]
+u = { times = [0, 1, 3, 4], values = [0, 1, 0, 0], interpolation = \"hold\" }
+[coordinates]
+x = 0.0
+[lagrangian]
+kinetic = \"x'^2/2\"
+[forces]
+x = \"u\"
+[outputs]
+drive = \"u\"
+[simulation]
+t_end = 4.0
+";
+
+#[test]
+fn inputs_jump_at_an_instant() {
+    let backwards = STEPS.replace("t_end = 4.0", "t_start = 4.0\nt_end = 0.0");
+    for (model, way) in [(Place::new(STEPS), "forwards"), (Place::new(&backwards), "backwards")] {
+        for method in ["adams", "dop853", "bdf", "auto"] {
+            let svg = model.picture("run", &["--method", method, "--columns", "drive"]);
+            let points = lines(&svg, FIRST).concat();
+            let [width, height] = extent(&points);
+            // A rectangle: each line is level or upright, and the upright ones stand at 1/4 and 3/4 of the time.
+            let left = points.iter().map(|p| p[0]).fold(f64::MAX, f64::min);
+            let mut jumps = Vec::new();
+            for pair in points.windows(2) {
+                let (across, up) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
+                // Times are written to a hundredth.
+                assert!(across.abs() < 0.015 || up == 0.0, "{method}, {way}: {points:?}");
+                if up != 0.0 {
+                    assert_eq!(up.abs(), height, "{method}, {way}");
+                    jumps.push((pair[0][0] - left) / width);
+                }
+            }
+            jumps.sort_by(f64::total_cmp);
+            // A hundredth, of a width above 600.
+            let close = |jump: f64, at: f64| (jump - at).abs() < 1e-4;
+            assert!(
+                jumps.len() == 2 && close(jumps[0], 0.25) && close(jumps[1], 0.75),
+                "{method}, {way}: {jumps:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_small_coordinate_has_its_own_panel() {
     let place = Place::new(OSCILLATOR);

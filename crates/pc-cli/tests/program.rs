@@ -229,8 +229,8 @@ fn wrong_usage_is_exit_2_and_suggests_a_correction() {
     refuses(&["run", "heavy-top-lagrang"], 2, "did you mean `heavy-top-lagrange`?");
     refuses(&["run", "no/such/file.toml"], 2, "no file `no/such/file.toml`");
     refuses(&["run", "."], 2, "cannot read .");
-    refuses(&["run", "euler-top", "--set", "I4=1"], 2, "its parameters are I1, I2, I3");
-    refuses(&["run", "euler-top", "--set", "I1=one"], 2, "the parameters of this model are I1, I2, I3");
+    refuses(&["run", "euler-top", "--set", "I4=1"], 2, "its parameters are I1, I2, I3, its start values ω1");
+    refuses(&["run", "euler-top", "--set", "I1=one"], 2, "`one` is not a finite number");
     refuses(&["run", "euler-top", "--set", "I1=inf"], 2, "not a finite number");
     refuses(&["run", "euler-top", "--set", "I1"], 2, "NAME=VALUE");
     refuses(

@@ -63,5 +63,5 @@ pub use flow::variables::Variables;
 pub use model::builtin::{BUILTIN, Builtin, CLASSICS, TREES};
 pub use model::given::GivenQuasiVelocity;
 pub use model::model::{Model, UnknownIntegral, UnknownParameter};
-pub use model::start::UnknownStart;
+pub use model::start::{UnknownStart, UnknownValue};
 pub use model::tags::{TAGS, Tag};

@@ -194,7 +194,7 @@ fn contradictions_name_both() {
         "v = \"x'\"\nb = \"x - 1\"",
         Category::Inconsistent,
         "m.toml:6:6: [constraints] b: the start is off the constraint `b`: it is -1, not 0\n    b = \"x - 1\"\n         \
-         ^^^^^\n  help: give a start that satisfies it, or move it there with --project-start",
+         ^^^^^\n  help: give a start that satisfies it, or move it there with --project-start (--keep NAMES holds what is to stay)",
     );
 }
 
@@ -219,7 +219,7 @@ fn constraints_on_constants_are_refused() {
 fn a_start_off_a_constraint_is_refused_or_moved() {
     let length = "length = \"x^2 + y^2 - 1\"";
     let help = "\n    length = \"x^2 + y^2 - 1\"\n              ^^^^^^^^^^^^^\n  \
-                help: give a start that satisfies it, or move it there with --project-start";
+                help: give a start that satisfies it, or move it there with --project-start (--keep NAMES holds what is to stay)";
     let off = "x = 1.0\ny = -0.8\n";
     refuses_point(
         off,
@@ -229,21 +229,22 @@ fn a_start_off_a_constraint_is_refused_or_moved() {
             "m.toml:5:11: [constraints] length: the start is off the constraint `length`: it is 0.64, not 0{help}"
         ),
     );
-    let moving = point(BELOW, "[quasi_velocities]\n\"x'\" = 1.0\n", length);
+    let given = "[quasi_velocities]\n\"x'\" = 1.0\n";
+    let moving = point(BELOW, &format!("{given}\"y'\" = 0.0\n"), length);
     refuses(
         &moving,
         Category::Inconsistent,
         &format!(
-            "m.toml:7:11: [constraints] length: the start is off the constraint `length`: its rate is 1.2, not 0{help}"
+            "m.toml:8:11: [constraints] length: the start is off the constraint `length`: its rate is 1.2, not 0{help}"
         ),
     );
-    let blade = point(BELOW, "[quasi_velocities]\n\"x'\" = 1.0\n", "blade = \"x' - x*y'\"");
+    let blade = point(BELOW, &format!("{given}\"y'\" = 0.0\n"), "blade = \"x' - x*y'\"");
     refuses(
         &blade,
         Category::Inconsistent,
-        "m.toml:7:10: [constraints] blade: the start is off the constraint `blade`: it is 1, not 0\n    \
+        "m.toml:8:10: [constraints] blade: the start is off the constraint `blade`: it is 1, not 0\n    \
          blade = \"x' - x*y'\"\n             ^^^^^^^^^\n  \
-         help: give a start that satisfies it, or move it there with --project-start",
+         help: give a start that satisfies it, or move it there with --project-start (--keep NAMES holds what is to stay)",
     );
 
     // The nearest point of the circle is on the ray, and the velocity keeps its tangential part.
@@ -264,6 +265,32 @@ fn a_start_off_a_constraint_is_refused_or_moved() {
     assert!(close(&moved(&moving), &[0.6, -0.8, 0.64, 0.48]), "{:?}", moved(&moving));
     let start = moved(&blade);
     assert!((start[2] - 0.6 * start[3]).abs() < 1e-15, "{start:?}");
+}
+
+#[test]
+fn velocities_that_are_not_given_follow_from_those_that_are() {
+    let start = |text: &str| tried(&model(text)).unwrap();
+    // x x' + y y' = 0 on the circle, x' = x y' along the blade.
+    let given = "[quasi_velocities]\n\"x'\" = 1.0\n";
+    let close =
+        |found: &[f64], expected: &[f64]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14);
+    assert!(close(&start(&point(BELOW, given, "length = \"x^2 + y^2 - 1\"")), &[0.6, -0.8, 1.0, 0.75]));
+    assert!(close(&start(&point(BELOW, given, "blade = \"x' - x*y'\"")), &[0.6, -0.8, 1.0, 1.0 / 0.6]));
+    // Where a constraint asks for motion, it has it; what it leaves open rests.
+    assert!(close(&start(&point(BELOW, "", "belt = \"x' - 3\"")), &[0.6, -0.8, 3.0, 0.0]));
+    // A disk that rolls: its centre follows from its rotations.
+    let disk = |more: &str| {
+        format!(
+            "[parameters]\nR = 0.5\n[coordinates]\nx = 0\ny = 0\nphi = 0\npsi = 1.2\n[quasi_velocities]\n\"phi'\" = 5.0\n\
+             \"psi'\" = 0.3\n{more}[constraints]\nx = \"x' - R*cos(psi)*phi'\"\ny = \"y' - R*sin(psi)*phi'\"\n\
+             [lagrangian]\nkinetic = \"x'^2 + y'^2 + phi'^2 + psi'^2\"\n"
+        )
+    };
+    let rolling = [0.0, 0.0, 0.0, 1.2, 2.5 * 1.2f64.cos(), 2.5 * 1.2f64.sin(), 5.0, 0.3];
+    assert!(close(&start(&disk("")), &rolling), "{:?}", start(&disk("")));
+    // One that the others contradict is refused, also if others could give way.
+    let error = tried(&model(&disk("\"x'\" = 0.0\n"))).unwrap_err().to_string();
+    assert!(error.contains("the start is off the constraint `x`"), "{error}");
 }
 
 /// A constraint has the same effect in all units.
@@ -405,7 +432,7 @@ fn a_quasi_velocity_that_vanishes_starts_at_zero() {
         &text("0.1"),
         Category::Inconsistent,
         "m.toml:14:9: [constraints] slip: the start is off the constraint `slip`: it is 0.1, not 0\n    slip = \"u\"\n            \
-         ^\n  help: give a start that satisfies it, or move it there with --project-start",
+         ^\n  help: give a start that satisfies it, or move it there with --project-start (--keep NAMES holds what is to stay)",
     );
     let mut moved = model(&text("0.1"));
     moved.project_start(true);

@@ -249,7 +249,7 @@ fn every_message() {
         assert_eq!(refused(text) + "\n", expected, "\n{text}");
         count += 1;
     }
-    assert_eq!(count, 111);
+    assert_eq!(count, 113);
 }
 
 #[test]

@@ -429,7 +429,7 @@ at = [[1, 0, 0], [0.5, 0, 0]]
         r#"m.toml:5:8: [loops] l: the start is off the constraint `l_1`: it is 0.5, not 0
     [loops.l]
            ^
-  help: give a start that satisfies it, or move it there with --project-start"#,
+  help: give a start that satisfies it, or move it there with --project-start (--keep NAMES holds what is to stay)"#,
     ),
     (
         "loop without axis",

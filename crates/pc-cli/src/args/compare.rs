@@ -24,7 +24,8 @@ pub struct CompareArguments {
     /// Form of the equations, one for both, or that of A and that of B; else that of each file, else poincare
     #[arg(long, value_name = "FORM[,FORM]", value_delimiter = ',', value_parser = run_form)]
     pub form: Vec<RunForm>,
-    /// Set a parameter in each model that has it (repeatable)
+    /// Give a parameter, or the start of a coordinate, velocity or first-order state, another value in each model that has it
+    /// (repeatable)
     #[arg(long, value_name = "NAME=VALUE", value_parser = options::setting)]
     pub set: Vec<Setting>,
     /// End time; else that of A, else that of B
@@ -60,7 +61,7 @@ pub struct CompareArguments {
 }
 
 impl CompareArguments {
-    /// The model of this name, its parameters as in the file.
+    /// The model of this name, its parameters and start as in the file.
     pub fn model(&self, name: &str) -> ModelArguments {
         ModelArguments {
             model: name.to_owned(),

@@ -12,13 +12,13 @@ use pc_model::{Assembly, Builtin, Document, Model, ModelError};
 use crate::args::options::{ModelArguments, Setting, VelocityArguments};
 use crate::error::CliError;
 
-/// The model that the command line names, its parameters set.
+/// The model that the command line names, its parameters and start set.
 ///
 /// `-` is standard input; a name with `/` or `.` in it, or that of an existing file, is a file; any other name is
 /// that of a built-in model.
 ///
 /// # Errors
-/// [`CliError`] if it cannot be found, read or understood, or has no such parameter.
+/// [`CliError`] if it cannot be found, read or understood, or has no such parameter or start value.
 pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
     let mut model = Model::new(document(&arguments.model)?);
     model.limit(Limits { memory: arguments.limit_memory, time: arguments.limit_time, ..Limits::default() });
@@ -30,21 +30,18 @@ pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
     Ok(model)
 }
 
-/// Sets parameters.
+/// Sets parameters and start values.
 ///
 /// # Errors
-/// [`CliError::UnknownParameter`], [`CliError::SetTwice`], [`CliError::BadValue`].
+/// [`CliError::UnknownValue`], [`CliError::SetTwice`], [`CliError::BadValue`].
 pub(crate) fn set(model: &mut Model, settings: &[Setting]) -> Result<(), CliError> {
     for (i, Setting { name, value }) in settings.iter().enumerate() {
         if settings[..i].iter().any(|known| known.name == *name) {
             return Err(CliError::SetTwice { name: name.clone() });
         }
         match value.parse::<f64>() {
-            Ok(value) if value.is_finite() => model.set(name, value)?,
-            _ => {
-                let known = model.parameters().map(|(name, _)| name.to_owned()).collect();
-                return Err(CliError::BadValue { name: name.clone(), value: value.clone(), known });
-            }
+            Ok(value) if value.is_finite() => model.set_value(name, value)?,
+            _ => return Err(CliError::BadValue { name: name.clone(), value: value.clone() }),
         }
     }
     Ok(())

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::args::options::{self, ModelArguments, Setting};
+use crate::args::options::{self, ModelArguments};
 use crate::args::sweep::{self, Vary};
 
 /// The state about which equations are linearized.
@@ -42,9 +42,9 @@ pub enum MatrixFormat {
 /// Arguments of `pc linearize`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:\n  \
-                        pc linearize furuta-pendulum --start θ=0.1\n  \
+                        pc linearize furuta-pendulum --set θ=0.1\n  \
                         pc linearize cart-pole --format json\n  \
-                        pc linearize whipple-bicycle --start roll=0 --vary v0=0:10:101 -o bicycle.csv --plot bicycle.svg\n  \
+                        pc linearize whipple-bicycle --set roll=0 --vary v0=0:10:101 -o bicycle.csv --plot bicycle.svg\n  \
                         pc linearize heavy-top-euler --at start -o top.mat\n\
                         Given are the matrices of δẏ = A δy + B δu and δh = C δy + D δu, u the [inputs] and h the [outputs] of the model, \
                         the eigenvalues and modes of A, and M, G, K, F of M q̈ + G q̇ + K q = F u where that is defined. \
@@ -55,9 +55,6 @@ pub struct LinearizeArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Give a coordinate, quasi-velocity or first-order state another start value (repeatable)
-    #[arg(long, value_name = "NAME=VALUE", value_parser = options::setting)]
-    pub start: Vec<Setting>,
     /// The state: the equilibrium or steady motion near the start, an equilibrium at rest near it, or the start as it is
     #[arg(long, value_name = "STATE", default_value = "steady")]
     pub at: At,

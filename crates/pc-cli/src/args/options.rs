@@ -10,12 +10,12 @@ use crate::args::checkpoint::CheckpointArguments;
 use crate::args::drawn::DrawnArguments;
 use crate::args::forms::{EmitForm, Form, RunForm, choice, emit_form, form, run_form};
 
-/// The model and the values of its parameters.
+/// The model, the values of its parameters, and its start.
 #[derive(Clone, Debug, Args)]
 pub struct ModelArguments {
     /// A file, `-` for standard input, or a built-in name
     pub model: String,
-    /// Set a parameter to another value than in the file (repeatable)
+    /// Give a parameter, or the start of a coordinate, velocity or first-order state, another value than in the file (repeatable)
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<Setting>,
     /// Move the start onto the constraints, by steps of Newton's method that are the shortest in the kinetic metric
@@ -75,7 +75,7 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
 /// `NAME=VALUE`, the value as written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// The parameter.
+    /// The parameter, or what has a start value.
     pub name: String,
     /// Its value as written.
     pub value: String,

@@ -1,6 +1,6 @@
 //! `pc compare`: whether two models, or two forms of one, have the same motion.
 
-use pc_model::{Model, UnknownParameter, Variables};
+use pc_model::{Model, UnknownValue, Variables};
 use pc_print::{visible, visible_json};
 
 use crate::args::compare::CompareArguments;
@@ -62,7 +62,7 @@ fn is_stopped(run: &Run) -> bool {
     matches!(run.ending, Ending::Interrupted | Ending::Ended(_))
 }
 
-/// The two models, with their parameters set.
+/// The two models, with their parameters and starts set.
 fn models(arguments: &CompareArguments) -> Result<(Model, Model), CliError> {
     if arguments.form.len() > 2 {
         return Err(CompareError::Forms { count: arguments.form.len() }.into());
@@ -73,14 +73,17 @@ fn models(arguments: &CompareArguments) -> Result<(Model, Model), CliError> {
         Some("-") if arguments.first == "-" => return Err(CompareError::StandardInput.into()),
         Some(name) => input::open(&arguments.model(name))?,
     };
-    let names =
-        |model: &Model| -> Vec<String> { model.parameters().map(|(name, _)| name.to_owned()).collect() };
+    let names = |model: &Model| [model.parameter_names(), model.start_names()].concat();
     let (of_first, of_second) = (names(&first), names(&second));
+    let both = |first: Vec<String>, second: Vec<String>| -> Vec<String> {
+        let more: Vec<String> = second.into_iter().filter(|name| !first.contains(name)).collect();
+        [first, more].concat()
+    };
     for Setting { name, .. } in &arguments.set {
         if !of_first.contains(name) && !of_second.contains(name) {
-            let more = of_second.iter().filter(|name| !of_first.contains(name));
-            let known = of_first.iter().chain(more).cloned().collect();
-            return Err(UnknownParameter { name: name.clone(), known }.into());
+            let parameters = both(first.parameter_names(), second.parameter_names());
+            let starts = both(first.start_names(), second.start_names());
+            return Err(UnknownValue { name: name.clone(), parameters, starts }.into());
         }
     }
     let known = |names: &[String]| -> Vec<Setting> {

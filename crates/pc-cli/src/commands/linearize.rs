@@ -7,7 +7,6 @@ use serde_json::{Map, Value, json};
 
 use crate::args::input;
 use crate::args::linear::{At, Cyclic, LinearizeArguments, MatrixFormat};
-use crate::args::options::Setting;
 use crate::args::sweep::Vary;
 use crate::error::CliError;
 use crate::linear::arrays::{Array, of_linearization};
@@ -29,8 +28,7 @@ use crate::report::text::{say, short};
 pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
     let destination = arguments.output.as_deref().map(Destination::of_arrays).transpose()?;
     let picture = Picture::plot(arguments.plot.as_deref())?;
-    let mut model = input::open(&arguments.model)?;
-    start_at(&mut model, arguments)?;
+    let model = input::open(&arguments.model)?;
     let graph = model.graph();
     let mut ground = Ground::new(&model, &graph)?;
     say_dropped(&ground.assembly);
@@ -70,21 +68,6 @@ pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
             print(|out| writeln!(out, "{}", visible_json(&object(&model, arguments.at, &linear))))
         }
     }
-}
-
-/// Sets the start values that the command line gives.
-fn start_at(model: &mut Model, arguments: &LinearizeArguments) -> Result<(), CliError> {
-    for (i, Setting { name, value }) in arguments.start.iter().enumerate() {
-        let is_varied = arguments.vary.as_ref().is_some_and(|vary| vary.name == *name);
-        if is_varied || arguments.start[..i].iter().any(|known| known.name == *name) {
-            return Err(LinearError::Twice { name: name.clone() }.into());
-        }
-        let number = value.parse::<f64>().ok().filter(|value| value.is_finite());
-        let number =
-            number.ok_or_else(|| LinearError::BadStart { name: name.clone(), value: value.clone() })?;
-        model.set_start(name, number).map_err(LinearError::Start)?;
-    }
-    Ok(())
 }
 
 /// Which cyclic coordinates are kept if nothing is said of them.
@@ -192,13 +175,8 @@ fn locus(
 /// The model with another value of a parameter or of the start.
 fn varied(model: &Model, name: &str, value: f64) -> Result<Model, CliError> {
     let mut varied = model.clone();
-    if varied.set(name, value).is_ok() || varied.set_start(name, value).is_ok() {
-        return Ok(varied);
-    }
-    let values = model.parameter_values();
-    let parameters = model.parameters().enumerate().filter(|&(place, _)| !values.is_table(place));
-    let known = parameters.map(|(_, (name, _))| name.to_owned()).chain(model.start_names()).collect();
-    Err(LinearError::Varied { name: name.to_owned(), known }.into())
+    varied.set_value(name, value).map_err(LinearError::Varied)?;
+    Ok(varied)
 }
 
 /// One object.

@@ -1,7 +1,7 @@
 //! What can go wrong with linearizations and equilibria.
 
 use pc_analysis::{AnalysisError, BranchCount};
-use pc_model::UnknownStart;
+use pc_model::UnknownValue;
 
 use crate::exit_code;
 use crate::report::text::short;
@@ -10,17 +10,6 @@ use crate::report::text::short;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LinearError {
-    /// `--start` of something that has no start value.
-    #[error("--start: {0}")]
-    Start(UnknownStart),
-    /// `--start` to something that is not a number.
-    #[error("--start {name}={value}: `{value}` is not a finite number")]
-    BadStart {
-        /// What is set.
-        name: String,
-        /// As written.
-        value: String,
-    },
     /// Two values for one name.
     #[error("`{name}` is given values twice; leave one out")]
     Twice {
@@ -28,16 +17,8 @@ pub enum LinearError {
         name: String,
     },
     /// `--vary` of something that is neither parameter nor start value.
-    #[error(
-        "--vary: `{name}` is neither a parameter nor a start value; there are {}",
-        known.join(", ")
-    )]
-    Varied {
-        /// As written.
-        name: String,
-        /// What there is.
-        known: Vec<String>,
-    },
+    #[error("--vary: {0}")]
+    Varied(UnknownValue),
     /// A name that is no component of the state.
     #[error("{option}: there is no component `{name}` of the state here; there are {}", known.join(", "))]
     Component {
@@ -68,7 +49,7 @@ pub enum LinearError {
     /// Newton's method did not converge.
     #[error(
         "no steady state was found near the start: the rates that should vanish have the norm {} where Newton's method \
-         ended, at {}\n  help: start nearer to one (--start NAME=VALUE), which `pc equilibria` finds for those of rest, hold fewer \
+         ended, at {}\n  help: start nearer to one (--set NAME=VALUE), which `pc equilibria` finds for those of rest, hold fewer \
          components (--hold), or take the Jacobian of the start as it is (--at start)",
         short(*residual, 3),
         listed(state)
@@ -93,7 +74,7 @@ pub enum LinearError {
     /// The rates have no derivatives where they vanish.
     #[error(
         "the rates vanish but have no derivatives at {}: the coordinates or the frame are singular there, or a force jumps\n  \
-         help: use others that are regular there, or start nearer to another steady state (--start NAME=VALUE)",
+         help: use others that are regular there, or start nearer to another steady state (--set NAME=VALUE)",
         listed(state)
     )]
     NotSmooth {
@@ -120,8 +101,12 @@ pub enum LinearError {
     },
     /// The search found nothing.
     #[error(
-        "no equilibrium was found from {starts} starts{}\n  help: widen the box (--box NAME=FROM..TO), or take more starts (--starts N)",
-        match converged { 0 => String::new(), n => format!("; {n} led to some outside the box") }
+        "no equilibrium was found from {starts} starts{}\n  help: widen the box (--box NAME=FROM..TO), or take more starts (--starts N){}",
+        match converged { 0 => String::new(), n => format!("; {n} led to some outside the box") },
+        match converged {
+            0 => "; where a force drives a coordinate on which nothing depends, there is none in any box",
+            _ => "",
+        }
     )]
     NoEquilibrium {
         /// The number of starts.
@@ -156,10 +141,8 @@ impl LinearError {
     /// Exit code of the program.
     pub fn exit_code(&self) -> u8 {
         match self {
-            LinearError::Start(_)
-            | LinearError::BadStart { .. }
-            | LinearError::Twice { .. }
-            | LinearError::Varied { .. }
+            LinearError::Twice { .. }
+            | LinearError::Varied(_)
             | LinearError::Component { .. }
             | LinearError::Box(_) => exit_code::USAGE,
             LinearError::DependsOnTime { .. }

@@ -58,7 +58,8 @@ impl<'g> Ground<'g> {
     /// or the start may lead to other equations, or the start has to be solved for.
     pub(crate) fn places(&self, model: &Model) -> Option<Vec<usize>> {
         let is_fixed = self.assembly.constraints.redundant().is_empty();
-        if !is_fixed || model.derives_start() || model.projects_start() {
+        let follows = model.derives_start() || model.completes_start() || model.projects_start();
+        if !is_fixed || follows {
             return None;
         }
         let names = model.start_names();

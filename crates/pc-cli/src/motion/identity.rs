@@ -9,13 +9,15 @@ use crate::motion::plan::Plan;
 /// Names and values in the order of their importance.
 pub(crate) type Identity = Vec<(String, String)>;
 
-/// Version, parameters, plan and text of a model.
+/// Version, parameters, start, plan and text of a model.
 pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
     let entry = |name: &str, value: String| (name.to_owned(), value);
     let mut identity = vec![entry("pc", env!("CARGO_PKG_VERSION").to_owned())];
     identity.extend(
         model.parameters().map(|(name, value)| entry(&format!("the parameter {name} ="), value.to_string())),
     );
+    let starts = model.replaced_starts().into_iter();
+    identity.extend(starts.map(|(name, value)| entry(&format!("the start {name} ="), value.to_string())));
     let tables = model.parameter_values().tables().into_iter();
     identity.extend(tables.map(|(place, table)| {
         let numbers = table.times().iter().chain(table.values()).flat_map(|number| number.to_le_bytes());

@@ -1,6 +1,6 @@
 //! The values of the members of a sweep.
 
-use pc_model::Model;
+use pc_model::{Model, UnknownValue};
 use pc_solve::member_stream;
 use rand_distr::{Distribution, LogNormal, Normal, Uniform};
 
@@ -118,15 +118,12 @@ impl Design {
 }
 
 fn target(model: &Model, name: &str) -> Result<Target, SweepError> {
-    let values = model.parameter_values();
-    let parameters = model.parameters().enumerate().filter(|&(place, _)| !values.is_table(place));
-    let parameters: Vec<String> = parameters.map(|(_, (name, _))| name.to_owned()).collect();
-    let starts = model.start_names();
+    let (parameters, starts) = (model.parameter_names(), model.start_names());
     if parameters.iter().any(|known| known == name) {
         Ok(Target::Parameter(name.to_owned()))
     } else if starts.iter().any(|known| known == name) {
         Ok(Target::Start(name.to_owned()))
     } else {
-        Err(SweepError::UnknownName { name: name.to_owned(), parameters, starts })
+        Err(SweepError::UnknownValue(UnknownValue { name: name.to_owned(), parameters, starts }))
     }
 }

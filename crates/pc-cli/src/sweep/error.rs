@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use pc_model::UnknownValue;
 use pc_solve::{EnsembleError, Spent};
 
 use crate::exit_code;
@@ -14,19 +15,8 @@ use crate::sweep::shard::Shard;
 #[non_exhaustive]
 pub enum SweepError {
     /// What is varied is not of the model.
-    #[error(
-        "`{name}` is neither a parameter nor a start value of this model; its parameters are {}, its start values {}",
-        list(parameters),
-        list(starts)
-    )]
-    UnknownName {
-        /// The name asked for.
-        name: String,
-        /// The parameters there are.
-        parameters: Vec<String>,
-        /// The coordinates and quasi-velocities there are.
-        starts: Vec<String>,
-    },
+    #[error(transparent)]
+    UnknownValue(UnknownValue),
     /// One name has values from two options.
     #[error("`{name}` is given values twice; leave one out")]
     Twice {
@@ -174,7 +164,7 @@ impl SweepError {
             SweepError::Ended { .. } => 4,
             SweepError::NoneCompleted { .. } => 5,
             SweepError::Interrupted { .. } => 130,
-            SweepError::UnknownName { .. }
+            SweepError::UnknownValue(_)
             | SweepError::Twice { .. }
             | SweepError::TooMany
             | SweepError::InUse { .. }
@@ -197,8 +187,4 @@ impl SweepError {
 
 fn numbers(shards: &[u64]) -> String {
     shards.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")
-}
-
-fn list(names: &[String]) -> String {
-    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }

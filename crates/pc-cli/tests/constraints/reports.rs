@@ -13,7 +13,7 @@ fn a_start_is_moved_on_request() {
         stderr(&refused),
         "pc: <stdin>:15:11: [constraints] length: the start is off the constraint `length`: it is 0.13, not 0\n    \
          length = \"x^2+y^2+z^2-l^2\"\n              ^^^^^^^^^^^^^^^\n  \
-         help: give a start that satisfies it, or move it there with --project-start\n"
+         help: give a start that satisfies it, or move it there with --project-start (--keep NAMES holds what is to stay)\n"
     );
     assert!(refused.stdout.is_empty());
     let (_, rows) = run(&off, &["--project-start"]);
@@ -156,9 +156,13 @@ fn a_moved_start_is_reported() {
 }
 
 #[test]
-fn an_unknown_parameter_is_reported_once() {
+fn an_unknown_name_is_reported_once() {
     let text = stderr(&pc("", &["run", "euler-top", "--set", "I4=1"]));
-    assert_eq!(text, "pc: --set: `I4` is not a parameter of this model; its parameters are I1, I2, I3\n");
+    assert_eq!(
+        text,
+        "pc: --set: `I4` is neither a parameter nor a start value of this model; its parameters are I1, I2, I3, its start values \
+         ω1, ω2, ω3\n"
+    );
 }
 
 /// Lagrange's equations need as many velocities as coordinates.

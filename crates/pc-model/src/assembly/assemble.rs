@@ -41,7 +41,10 @@ impl<'g> Assembler<'g, '_> {
                     "the frame is singular there: the matrix b of the velocities has rank {rank}, but {everywhere} at most states"
                 );
                 let document = self.model.document();
-                Err(document.error(&document.operator_place(1), MeaningError::SingularStart { cause }))
+                Err(document.error(
+                    &document.operator_place(1),
+                    MeaningError::SingularStart { cause, is_massless: false },
+                ))
             }
         }
     }

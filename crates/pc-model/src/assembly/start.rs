@@ -68,8 +68,7 @@ impl<'g> Assembler<'g, '_> {
             for coordinate in &document.coordinates {
                 let place = names().position(|name| *name == coordinate.name.text);
                 values.push(place.map_or(0.0, |place| velocities[place]));
-                // The coordinates of loops follow from each other.
-                is_given.push(place.is_some() || document.tree.is_empty());
+                is_given.push(place.is_some());
             }
             velocities.clear();
         }
@@ -122,8 +121,10 @@ impl<'g> Assembler<'g, '_> {
         let velocities = self.scope.velocities();
         let is_complete = eta[declared..].iter().all(|extra| !velocities.contains(extra));
         let unit = |s: usize| (0..eta.len()).map(|r| f64::from(u8::from(r == s))).collect::<Vec<f64>>();
-        // Loops tie velocities together: some of those of joints that are not given follow from the others.
-        let follows = !self.model.document().tree.is_empty() && !(0..declared).all(|s| given.is_given[n + s]);
+        // Constraints tie velocities together: those that are not given follow from the others, unless the start is moved anyway;
+        // where loops tie joints it is moved from there.
+        let moves = self.model.projects_start() && self.model.document().tree.is_empty();
+        let follows = !moves && !(0..declared).all(|s| given.is_given[n + s]);
         if is_complete && given.velocities.is_empty() && !follows {
             return Ok(start);
         }

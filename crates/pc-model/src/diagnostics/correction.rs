@@ -45,6 +45,9 @@ impl MeaningError {
     /// A correction.
     pub fn help(&self) -> String {
         match self {
+            MeaningError::UnknownName { name, .. } if name == "e" => {
+                "the exponential function is written `exp(x)`; another e is declared, for example in [parameters]".into()
+            }
             MeaningError::UnknownName { name, known } => suggest(name, known, "declare it, for example in [parameters]"),
             MeaningError::UnknownIntegral { name, known } => {
                 suggest(name, known, &format!("the integrals are {}", listed(known)))
@@ -63,6 +66,9 @@ impl MeaningError {
                 "declared nowhere" => suggest(name, known, &format!("an event can reset {}", listed(known))),
                 _ => format!("an event can reset {}", listed(known)),
             },
+            MeaningError::NotHere { name, place: "a start value", allowed } if name.ends_with('\'') => format!(
+                "use {allowed} only; a quasi-velocity is defined by velocities with `is`, as in `v = {{ is = \"{name}\" }}`"
+            ),
             MeaningError::NotHere { allowed, .. } => format!("use {allowed} only"),
             MeaningError::Acceleration { .. } => "accelerations can be used in [integrals] and [outputs]".into(),
             MeaningError::DivisionByZero { .. } => "the divisor is zero whatever the motion".into(),
@@ -95,7 +101,7 @@ impl MeaningError {
             }
             MeaningError::NotHolonomic { .. } => "leave out its kind, or write it as a function of coordinates and t".into(),
             MeaningError::OffConstraint { .. } => {
-                "give a start that satisfies it, or move it there with --project-start".into()
+                "give a start that satisfies it, or move it there with --project-start (--keep NAMES holds what is to stay)".into()
             }
             MeaningError::StartOpen { .. } => {
                 "start where they are determined, or define other quasi-velocities".into()
@@ -146,6 +152,11 @@ impl MeaningError {
             MeaningError::BadTable { help, .. } => (*help).into(),
             MeaningError::RateOfInput { .. } => "make it a state, whose rate is given in [states], or an input of its own".into(),
             MeaningError::ParameterNotFinite { .. } => "give the parameters in it other values".into(),
+            MeaningError::SingularStart { is_massless: true, .. } => {
+                "a mass or moment of inertia that it moves is zero, as that of a point mass on the axis of its joint, which \
+                 `center` moves off; or start where the coordinates and functions are regular"
+                    .into()
+            }
             MeaningError::NotFinite { .. } | MeaningError::SingularStart { .. } => {
                 "start where the coordinates and functions are regular".into()
             }

@@ -376,9 +376,10 @@ impl ErrorKind {
                 "give the velocities of what belongs to no joint in [kinematics]".into()
             }
             Self::NotAName { key } if key.len() > 255 => "a name has at most 255 bytes".into(),
-            Self::NotAName { .. } => {
-                "a name is a Latin or Greek letter or `_`, then letters, digits and `_`".into()
-            }
+            Self::NotAName { key } => match key.chars().find_map(plain_letter) {
+                Some((variant, letter)) => format!("for `{variant}` write `{letter}`"),
+                None => "a name is a Latin or Greek letter or `_`, then letters, digits and `_`".into(),
+            },
             Self::HiddenInLabel { .. } => {
                 "a label stands on one line, in what is printed and in columns: leave out what controls terminals, ends lines or \
                  turns the direction of writing"
@@ -432,4 +433,18 @@ fn reserved(name: &str) -> String {
         },
     };
     format!("{meaning}; choose another name, such as `{name}_1`")
+}
+
+/// A form of a letter that names do not have, with the one that they have: the sign of micro is not the letter μ.
+fn plain_letter(form: char) -> Option<(char, char)> {
+    let plain = match form {
+        'ϑ' => 'θ',
+        'ϕ' => 'φ',
+        'ϵ' => 'ε',
+        'ϱ' => 'ρ',
+        'ϰ' => 'κ',
+        'µ' => 'μ',
+        _ => return None,
+    };
+    Some((form, plain))
 }

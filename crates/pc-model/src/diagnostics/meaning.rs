@@ -423,6 +423,8 @@ pub enum MeaningError {
     SingularStart {
         /// Why.
         cause: String,
+        /// Whether a velocity moves no mass there.
+        is_massless: bool,
     },
     /// An integral to be kept that the model does not have.
     #[error("`{name}` is not an integral")]

@@ -51,6 +51,8 @@ fn help(source: &Source, message: &str, span: &Range<usize>) -> &'static str {
         "a velocity needs quotes as a key: `\"x'\" = 1.0`"
     } else if value.starts_with('\'') {
         "write expressions in double quotes; a prime ends a string in single quotes"
+    } else if is_decimal_comma(value) {
+        "the decimal separator is a point, as in `x = 2.0`"
     } else if message.starts_with("string values must be quoted") {
         "a value is a number, as `x = 1.0`, or a text in double quotes, as `kinetic = \"m/2*v^2\"`"
     } else if message.starts_with("missing escaped value") {
@@ -60,4 +62,14 @@ fn help(source: &Source, message: &str, span: &Range<usize>) -> &'static str {
     } else {
         "an entry is written `name = value` on one line, a section begins with `[name]`"
     }
+}
+
+/// Whether a value is a number whose digits a comma parts.
+fn is_decimal_comma(value: &str) -> bool {
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let value = value.split('#').next().unwrap_or_default().trim();
+    value
+        .trim_start_matches(['+', '-'])
+        .split_once(',')
+        .is_some_and(|(whole, part)| digits(whole) && digits(part))
 }

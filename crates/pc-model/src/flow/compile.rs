@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use pc_mech::{
-    Canonical, CompileOptions, Equations, KeptIntegrals, MechError, Motion, Multipliers, Signals, System,
-    VectorField,
+    Canonical, CompileOptions, Equations, EvaluationError, KeptIntegrals, MechError, Motion, Multipliers,
+    Signals, System, VectorField,
 };
 
 use crate::assembly::assembly::Assembly;
@@ -133,16 +133,19 @@ impl Model {
         t_start: f64,
         start: Vec<f64>,
     ) -> Result<(Motion, Vec<f64>), ModelError> {
-        let refuse = |cause: String| {
-            self.document().error(&self.document().energy_place(), MeaningError::SingularStart { cause })
+        let refuse = |error: &MechError| {
+            let is_massless =
+                matches!(error, MechError::Evaluation(EvaluationError::SingularMassMatrix { .. }));
+            let fault = MeaningError::SingularStart { cause: error.to_string(), is_massless };
+            self.document().error(&self.document().energy_place(), fault)
         };
-        let mut motion = compiled.map_err(|error| refuse(error.to_string()))?.driven_by(self.signals());
+        let mut motion = compiled.map_err(|error| refuse(&error))?.driven_by(self.signals());
         let mut rate = vec![0.0; start.len()];
         motion.rhs(t_start, &start, &mut rate).map_err(|failure| {
             let error = MechError::from(failure);
             match error.singular_constraint() {
                 Some(_) => self.document().constraint_error(error.into()),
-                None => refuse(error.to_string()),
+                None => refuse(&error),
             }
         })?;
         if let Some(name) = names.first().filter(|_| !self.parameter_values().tables().is_empty()) {

@@ -117,14 +117,19 @@ impl Model {
     /// # Errors
     /// [`UnknownParameter`] with the parameters there are.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), UnknownParameter> {
-        let is_set = |&place: &usize| !self.parameters.is_table(place);
-        let names: Vec<String> = self.parameters().map(|(name, _)| name.to_owned()).collect();
-        let Some(index) = names.iter().position(|known| known == name).filter(is_set) else {
-            let known = (0..names.len()).filter(is_set).map(|place| names[place].clone()).collect();
-            return Err(UnknownParameter { name: name.to_owned(), known });
+        let known =
+            |&(place, (known, _)): &(usize, (&str, f64))| known == name && !self.parameters.is_table(place);
+        let Some(index) = self.parameters().enumerate().find(known).map(|(place, _)| place) else {
+            return Err(UnknownParameter { name: name.to_owned(), known: self.parameter_names() });
         };
         self.parameters.set(index, value);
         Ok(())
+    }
+
+    /// The names of the parameters, then of the inputs that have no table: those that can be [set](Model::set).
+    pub fn parameter_names(&self) -> Vec<String> {
+        let is_set = |&(place, _): &(usize, (&str, f64))| !self.parameters.is_table(place);
+        self.parameters().enumerate().filter(is_set).map(|(_, (name, _))| name.to_owned()).collect()
     }
 
     /// Gives number `place` of the parameters and inputs another value.

@@ -14,7 +14,47 @@ pub struct UnknownStart {
     pub known: Vec<String>,
 }
 
+/// A name that is neither a parameter nor has a start value.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "`{name}` is neither a parameter nor a start value of this model; its parameters are {}, its start values {}",
+    list(parameters),
+    list(starts)
+)]
+pub struct UnknownValue {
+    /// The name asked for.
+    pub name: String,
+    /// The parameters, and inputs without a table.
+    pub parameters: Vec<String>,
+    /// The names that have a start value.
+    pub starts: Vec<String>,
+}
+
+fn list(names: &[String]) -> String {
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
 impl Model {
+    /// Gives a parameter, an input without a table, or what has a start value another value than that of the file.
+    ///
+    /// # Errors
+    /// [`UnknownValue`] with the names there are.
+    pub fn set_value(&mut self, name: &str, value: f64) -> Result<(), UnknownValue> {
+        if self.set(name, value).is_ok() || self.set_start(name, value).is_ok() {
+            return Ok(());
+        }
+        let (parameters, starts) = (self.parameter_names(), self.start_names());
+        Err(UnknownValue { name: name.to_owned(), parameters, starts })
+    }
+
+    /// The names whose start values are not those of the file, with these values.
+    pub fn replaced_starts(&self) -> Vec<(String, f64)> {
+        let mut replaced = self.overridden_starts().to_vec();
+        replaced.sort_unstable_by_key(|&(place, _)| place);
+        let names = self.start_names();
+        replaced.into_iter().map(|(place, value)| (names[place].clone(), value)).collect()
+    }
+
     /// The names that have a start value: coordinates, quasi-velocities, or velocities x' where none is declared, and
     /// first-order states.
     pub fn start_names(&self) -> Vec<String> {
@@ -72,6 +112,22 @@ impl Model {
     pub fn derives_start(&self) -> bool {
         let document = self.document();
         !document.quasi_velocities.is_empty() && !document.start_velocities.is_empty()
+    }
+
+    /// Whether velocities that have no start value may follow from constraints: [`start`](Model::start) does not have their values
+    /// then.
+    pub fn completes_start(&self) -> bool {
+        let document = self.document();
+        let n = document.coordinates.len();
+        let is_set = |s: usize| self.overridden_starts().iter().any(|&(place, _)| place == n + s);
+        let given: Vec<bool> = match document.quasi_velocities.is_empty() {
+            true => {
+                let names = || document.start_velocities.iter().map(|velocity| &velocity.name.text);
+                document.coordinates.iter().map(|x| names().any(|name| *name == x.name.text)).collect()
+            }
+            false => document.quasi_velocities.iter().map(|eta| eta.start.is_some()).collect(),
+        };
+        !document.constraints.is_empty() && !given.iter().enumerate().all(|(s, &given)| given || is_set(s))
     }
 
     /// The start state (x, η, z) with the declared η, or (x, x', z) where none is: the values of
