@@ -4,6 +4,5 @@
 //! [`SceneShape`](crate::SceneShape); `frame` puts them into one [`Drawing`](crate::picture::Drawing), the farthest first.
 
 mod camera;
-#[expect(clippy::module_inception, reason = "the frame itself")]
 pub(crate) mod frame;
 mod shapes;

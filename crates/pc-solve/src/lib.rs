@@ -47,7 +47,7 @@
 //!
 //! // A stone that is thrown upwards, until it is back.
 //! let fall = from_fn(2, |_t, y, ydot| { ydot[0] = y[1]; ydot[1] = -10.0; Ok(()) });
-//! let ground = FnEvents::new().with(Event::new("ground").falling().terminal(), |_t, y| Ok(y[0]));
+//! let ground = FnEvents::new().with(Event::new("ground").falling().terminal(true), |_t, y| Ok(y[0]));
 //! let solution = Solve::new(fall, 0.0, &[0.0, 5.0]).events(ground).run(&[0.5, 2.0])?;
 //! assert!((solution.occurrences[0].time - 1.0).abs() < 1e-9);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

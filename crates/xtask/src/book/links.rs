@@ -14,7 +14,9 @@ use crate::error::Error;
 pub(crate) fn settle(root: &Path, book: &Path, pages: &str) -> Result<usize, Error> {
     let mut texts = BTreeMap::new();
     for path in files(&book.join(pages))? {
-        if path.extension().is_some_and(|ending| ending == "html") {
+        // What a server shows in place of a page counts from its own root.
+        let is_substitute = path.file_name().is_some_and(|name| name == "404.html");
+        if !is_substitute && path.extension().is_some_and(|ending| ending == "html") {
             let text = fs::read_to_string(&path).map_err(|source| file(&path, source))?;
             let below = path.strip_prefix(book).unwrap_or(&path).to_path_buf();
             texts.insert(below, text);

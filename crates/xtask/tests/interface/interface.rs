@@ -19,6 +19,9 @@ enum Origin {
     Elsewhere(String),
 }
 
+/// Implementations, each with whether it is of a trait, and its text, by which they are ordered.
+type Ordered = Vec<((bool, String), Item)>;
+
 /// The interface of a crate: each public name, in order, with its definition and what is implemented for it.
 pub(crate) fn of(modules: &Modules) -> String {
     let mut names = BTreeMap::new();
@@ -53,7 +56,10 @@ fn offered(modules: &Modules, path: &[String], names: &mut BTreeMap<String, Orig
             }
             Item::Use(import) if is_public(&import.vis) => {
                 for import in imports(&[], &import.tree) {
-                    let Import::Name(from, name) = import else { panic!("{path:?} offers all of a module") };
+                    let (from, name) = match import {
+                        Import::Name(from, name) => (from, name),
+                        Import::Glob(all) => panic!("{}: all of {all:?} is offered", modules[path].file),
+                    };
                     names.insert(public(&name.to_string()), origin(modules, path, &from));
                 }
             }
@@ -94,7 +100,7 @@ fn origin(modules: &Modules, here: &[String], path: &[String]) -> Origin {
 
 /// What is implemented: functions of public types, public or foreign traits for them, and public traits for foreign types.
 fn implementations(modules: &Modules, names: &BTreeMap<String, Origin>) -> BTreeMap<Origin, Vec<Item>> {
-    let mut found: BTreeMap<Origin, Vec<((bool, String), Item)>> = BTreeMap::new();
+    let mut found: BTreeMap<Origin, Ordered> = BTreeMap::new();
     let is_offered = |origin: &Origin| names.values().any(|known| known == origin);
     for (path, module) in modules {
         for item in &module.items {
@@ -120,7 +126,7 @@ fn implementations(modules: &Modules, names: &BTreeMap<String, Origin>) -> BTree
             }
         }
     }
-    let sorted = |(origin, mut items): (Origin, Vec<((bool, String), Item)>)| {
+    let sorted = |(origin, mut items): (Origin, Ordered)| {
         items.sort_by(|a, b| a.0.cmp(&b.0));
         (origin, items.into_iter().map(|(_, item)| item).collect())
     };
