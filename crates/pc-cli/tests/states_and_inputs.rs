@@ -105,7 +105,7 @@ fn states_are_printed_and_swept() {
         serde_json::from_str(&ok(&["derive", &model, "--form", "canonical", "--format", "json"]))
             .expect("JSON");
     assert!(canonical["states"]["i"].as_str().expect("text").contains("p_w"), "{canonical}");
-    assert!(ok(&["derive", &model, "--format", "latex"]).contains("% States\n"));
+    assert!(ok(&["derive", &model, "--format", "latex"]).contains("\\paragraph{States.}\n"));
     let check = ok(&["check", &model]);
     assert!(check.contains("l = 2   i, e"), "{check}");
 

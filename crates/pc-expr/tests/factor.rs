@@ -1,5 +1,4 @@
 //! Factors of parameters moved to where they cost nothing: the same values, with fewer operations.
-#![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::sync::Arc;
 

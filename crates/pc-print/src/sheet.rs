@@ -207,7 +207,8 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         if self.page.size(&products) > longest { right.to_vec() } else { products }
     }
 
-    /// The energy; as ½ M_rs η_r η_s and what is left at rest, if that is shorter beside the printed `mass` matrix.
+    /// The energy; as ½ M_rs η_r η_s and what is left at rest, if it is long otherwise, and that is shorter beside the printed
+    /// `mass` matrix.
     fn energy(&self, equations: &Equations<'g>, mass: &Matrix<Expr<'p>>) -> Expr<'p> {
         let (graph, eta) = (self.system.graph(), self.system.quasi_velocities());
         let energy = equations.energy();
@@ -231,7 +232,8 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         let divided = self.page.sum(moving.chain([self.one(rest)]));
         let printed = mass.nonzero_entries();
         let beside = |energy: Expr<'p>| self.page.size(&[&printed[..], &[energy]].concat());
-        if beside(divided) < beside(whole) { divided } else { whole }
+        let is_long = self.page.size(&[whole]) > SMALL / 2;
+        if is_long && beside(divided) < beside(whole) { divided } else { whole }
     }
 
     /// Each ẋ_i with its value, sines and cosines merged where that is shorter: the rates of links by the law of sines.

@@ -56,6 +56,10 @@ fn derived(inventory: &Inventory, model: &Model, f: &str, g: &str) -> Result<Eva
     }
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
+    if assembly.constraints.nonlinear().is_some() {
+        let why = "a constraint is not affine in the velocities";
+        return Err(CallError::Unsupported { what: "a bracket", why });
+    }
     let value = bracket_of(model, &assembly, f, g)?;
     let equations = assembly.equations_in(Variables::QuasiVelocities)?;
     Ok(assembly.placed(equations.functions(&[value], &[]))?)

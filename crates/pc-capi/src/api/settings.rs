@@ -175,7 +175,8 @@ pub unsafe extern "C" fn pc_model_set_event_search(
     unsafe { draft(model, error, "pc_model_set_event_search", write) }
 }
 
-/// Sets the method by which the program `pc` runs the model: "auto", "adams", "bdf", "dop853", "taylor".
+/// Sets the method by which the program `pc` runs the model: "auto", "adams", "bdf", "dop853" or
+/// "taylor".
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_method(
     model: *mut pc_model,

@@ -1,6 +1,6 @@
 //! That no impulse follows from energies and frames.
 //!
-//! Where L jumps with the position, or ∂L/∂η or the frame with anything, d/dt ∂L/∂η or X_s L in (9) is an impulse. Derivatives of the
+//! Where L jumps with the position, or ∂L/∂η or the frame with anything but velocities, d/dt ∂L/∂η or X_s L in (9) is an impulse. Derivatives of the
 //! pieces do not show it: the motion would pass as if nothing were there.
 
 use pc_algebra::{Frame, Jump, Neighbourhood};
@@ -32,14 +32,14 @@ impl<'g> SystemBuilder<'g> {
         let position = frame.coordinates();
         let placed = [position, &[self.time]].concat();
         let states: Vec<Expr<'g>> = self.states.iter().map(|&(z, _)| z).collect();
-        let all = [&placed, eta, &states, &self.signals].concat();
+        let all = [&placed, &states, &self.signals[..]].concat();
         let entries = frame.b().nonzero_entries();
         let entries = entries.iter().chain(frame.b0());
         if let Some(Jump { at, size }) = entries.filter_map(|&entry| near.jump(graph, entry, &placed)).next()
         {
             return Err(FrameError::Jumps { size, place: at }.into());
         }
-        if !graph.applies(lagrangian, &all, |function| !function.is_smooth()) {
+        if !graph.applies(lagrangian, &[&all, eta].concat(), |function| !function.is_smooth()) {
             return Ok(());
         }
         if let Some(Jump { at, size }) = near.jump(graph, lagrangian, position) {

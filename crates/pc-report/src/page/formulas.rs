@@ -8,7 +8,7 @@ use crate::page::html::{lines, text};
 
 /// The lines of a formula kept together: paper breaks between such parts, and a part longer than a page would
 /// be cut.
-const LINES: usize = 14;
+const LINES: usize = 10;
 
 /// A formula in a box that scrolls separately; browsers let the keyboard reach such boxes.
 pub(super) fn formula(mathml: &str) -> String {
@@ -62,8 +62,8 @@ mod tests {
             let lines: String = lines.map(|i| format!("<mtr><mtd>{i}</mtd></mtr>")).collect();
             format!("<math display=\"block\"><mtable>{lines}</mtable></math>")
         };
-        assert_eq!(in_parts(&table(0..14)), table(0..14));
-        assert_eq!(in_parts(&table(0..30)), table(0..14) + &table(14..28) + &table(28..30));
+        assert_eq!(in_parts(&table(0..10)), table(0..10));
+        assert_eq!(in_parts(&table(0..30)), table(0..10) + &table(10..20) + &table(20..30));
         assert_eq!(in_parts("<math><mi>x</mi></math>"), "<math><mi>x</mi></math>");
     }
 }

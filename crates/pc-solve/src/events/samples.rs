@@ -18,13 +18,23 @@ pub(crate) struct Look<'a, F> {
 }
 
 /// Room for what is seen along a step: steps in which nothing occurs allocate nothing.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(crate) struct Room {
     values: Vec<Vec<f64>>,
     pub(crate) samples: Vec<Sample>,
 }
 
+/// Samples for which there is room from the beginning.
+const ROOM: usize = 64;
+
 impl Room {
+    /// Room for values of that many functions.
+    pub(crate) fn new(functions: usize) -> Room {
+        let samples = if functions == 0 { 0 } else { ROOM };
+        let values = (0..samples).map(|_| Vec::with_capacity(functions)).collect();
+        Room { values, samples: Vec::with_capacity(samples) }
+    }
+
     /// Takes back what is no longer needed.
     pub(crate) fn take_back(&mut self, sample: Sample) {
         self.values.push(sample.values);
