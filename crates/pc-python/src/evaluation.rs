@@ -151,14 +151,17 @@ impl SystemCore {
             }
         };
         let width: usize = quantity.shape.iter().product();
-        let mut values = vec![0.0; width * count];
+        // Memory of numpy, which asks for large pages: to be given small ones takes longer than the rates of a top.
+        let flat = PyArray1::<f64>::zeros(py, width * count, false);
+        let mut target = flat.try_readwrite()?;
+        let values = target.as_slice_mut()?;
         let mut flow = self.take();
         let mut outcome = Ok(());
         let mut failed = 0;
         let (mut from, mut length) = (0, FIRST_PART);
         while from < count {
             let (to, began) = ((from + length).min(count), Instant::now());
-            let (flow, values, evaluate) = (&mut flow.1, &mut values[..], &mut quantity.evaluate);
+            let (flow, values, evaluate) = (&mut flow.1, &mut *values, &mut quantity.evaluate);
             let mut guarded = |t: f64, y: &[f64], target: &mut [f64]| match evaluate(flow, t, y, target) {
                 Ok(()) => Ok(()),
                 Err(failure) if failure.is_recoverable() && failed + 1 < count => {
@@ -187,7 +190,7 @@ impl SystemCore {
         }
         self.put_back(flow);
         outcome.map_err(Error::from)?;
-        let flat = PyArray1::from_vec(py, values);
+        drop(target);
         let mut shape = quantity.shape;
         let dimensions = shape.len();
         Ok(match order {
