@@ -1294,7 +1294,8 @@ pc_status pc_model_set_event_search(pc_model *model,
                                     pc_error **error);
 
 /**
- * Sets the method by which the program `pc` runs the model: "auto", "adams", "bdf", "dop853", "taylor".
+ * Sets the method by which the program `pc` runs the model: "auto", "adams", "bdf", "dop853" or
+ * "taylor".
  */
 pc_status pc_model_set_method(pc_model *model, const char *method, pc_error **error);
 
