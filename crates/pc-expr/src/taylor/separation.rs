@@ -71,15 +71,10 @@ impl RootSeparation {
             }
         }
         let registers = vec![Jet::constant(0.0); program.registers_len()];
-        RootSeparation {
-            program,
-            used,
-            registers,
-            most: MOST,
-            local: Vec::new(),
-            open: Vec::new(),
-            at_middle: Vec::new(),
-        }
+        let at_middle = Vec::with_capacity(program.outputs_len());
+        // An interval is halved some fifty times.
+        let open = Vec::with_capacity(64);
+        RootSeparation { program, used, registers, most: MOST, local: Vec::new(), open, at_middle }
     }
 
     /// The program.

@@ -175,8 +175,9 @@ impl<S: Stepper> Integration<S> {
             due: Vec::new(),
             noise: Vec::new(),
             beyond: Vec::new(),
-            times: Vec::new(),
-            coefficients: Vec::new(),
+            // Polynomials of CVODES have up to 13 coefficients a component; the order rises on the way.
+            times: Vec::with_capacity(64),
+            coefficients: Vec::with_capacity(16 * state.len()),
             separation: None,
             restarted: self.restarted,
             jumped: self.jumped,
