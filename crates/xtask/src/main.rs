@@ -38,7 +38,7 @@ const USAGE: &str = "\
 usage: cargo xtask <command>
 
   demo             build `pc`, derive, integrate and plot a heavy top in target/demo
-  test [--quick]   format, lints, tests, documentation, licences, the Python package, FMUs; --quick stops after the tests
+  test [--quick]   format, lints, tests, documentation, licences, FMUs; --quick stops after the tests
   bench [NAME…]    run the benchmarks, all of them or those named
   fuzz models|trees [--count N] [--seed S] [--model K]
                    run random models and compare them with independent computations; --model shows one of them
@@ -51,7 +51,7 @@ usage: cargo xtask <command>
   fmu              validate and simulate FMUs of models by FMPy, which is installed into target/fmu, and compare their numbers
                    with those of `pc`
   python [--quick] build the wheel of the Python package, install it in a fresh environment and test it there; --quick tests
-                   what is built for debugging, without a wheel, as `test` does
+                   what is built for debugging, without a wheel
   valgrind         run the tests of failures, panics and events of pc-solve under valgrind, where it is installed
   install --prefix DIR [--libdir DIR] [--includedir DIR] [--destdir DIR]
                    build the C library and install it with its headers; `uninstall` with the same removes it

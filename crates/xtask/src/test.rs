@@ -7,7 +7,7 @@ use crate::cargo_tools::CargoTool;
 use crate::command::{announce_and_run, announce_and_tee, cargo};
 use crate::counts::{Counter, Counts};
 use crate::error::Error;
-use crate::{attack, book, c_examples, fmu, python, setup};
+use crate::{attack, book, c_examples, fmu, setup};
 
 const DENY: CargoTool = CargoTool { name: "cargo-deny", version: "~0.20" };
 
@@ -31,7 +31,6 @@ pub(crate) fn run(quick: bool) -> Result<(), Error> {
         cargo_stage("documentation", doc.env("RUSTDOCFLAGS", "-D warnings"))?;
         stage("book", book::run)?;
         stage("licences", licences)?;
-        without.extend(stage_if_possible("the Python package", python::quick)?);
         without.extend(stage_if_possible("FMUs", fmu::quick)?);
     }
     println!("\nall of it: {}", seconds(start.elapsed()));
