@@ -38,6 +38,9 @@ impl<'g> Neighbourhood<'g> {
     /// assert!(near.jump(&graph, (x - a).step((x - a).square(), 0.0), &[x]).is_none());
     /// ```
     pub fn jump(&self, graph: &'g Graph, value: Expr<'g>, moving: &[Expr<'g>]) -> Option<Jump> {
+        if value.constant().is_some() {
+            return None;
+        }
         graph.breaks(value).into_iter().find_map(|found| self.jump_at(graph, found, moving))
     }
 

@@ -1,6 +1,6 @@
 //! Files that are being written, beside those that they will replace.
 //!
-//! That of `a.csv` is `.a.csv.pc-XXXXXX.part`, with six characters by chance, and locked as long as its process lives: one that
+//! That of `a.csv` is `.a.csv.pc-a1B2c3.part`, with six characters by chance, and locked as long as its process lives: one that
 //! is not locked was left by a run that was killed.
 
 use std::ffi::{OsStr, OsString};

@@ -74,7 +74,15 @@ impl RootSeparation {
         let at_middle = Vec::with_capacity(program.outputs_len());
         // An interval is halved some fifty times.
         let open = Vec::with_capacity(64);
-        RootSeparation { program, used, registers, most: MOST, local: Vec::new(), open, at_middle }
+        RootSeparation {
+            program,
+            used,
+            registers,
+            most: MOST,
+            local: Vec::with_capacity(64),
+            open,
+            at_middle,
+        }
     }
 
     /// The program.

@@ -154,10 +154,10 @@ mod tests {
 
         write(
             book.join("docs/c.html"),
-            "<a href=\"a.html#φ\"></a><a href=\"d.html\"></a><a href=\"../../root/secret\"></a><img src=\"x.svg\">",
+            "<a href=\"a.html#φ\"></a><a href=\"d.html\"></a><a href=\"../../elsewhere/secret\"></a><img src=\"x.svg\">",
         );
         let error = settle(&root, &book, "docs").unwrap_err().to_string();
-        let names = ["a.html#φ", "d.html", "../../root/secret", "x.svg"];
+        let names = ["a.html#φ", "d.html", "../../elsewhere/secret", "x.svg"];
         assert!(names.iter().all(|name| error.contains(&format!("c.html: {name}"))), "{error}");
         assert_eq!(error.lines().count(), 1 + names.len());
     }
