@@ -14,8 +14,9 @@ use crate::time_profile::jet::Jet;
 const RESOLVED: f64 = 1e-14;
 /// The most intervals examined: enough for hundreds of roots.
 const MOST: usize = 4096;
-/// A function that is nothing but rounding takes them all; each time half as many are looked at next, down to these.
-const FEW: usize = 64;
+/// The most intervals of the shortest length in which a root is neither excluded nor single: a touch, or a function
+/// that is nothing but rounding.
+const VAGUE: usize = 64;
 /// Roots, by intervals that may have one, after which the search ends: who looks for the first does not need them all.
 const ENOUGH: usize = 32;
 
@@ -42,7 +43,7 @@ pub struct PolynomialMotion<'a> {
 /// let mut separation = RootSeparation::new(Arc::new(program));
 /// let motion = PolynomialMotion { start: 0.0, coefficients: &[0.0, 1.0] };
 /// let mut places = Vec::new();
-/// separation.separate(motion, (0.0, 1.0), &[], &mut places);
+/// assert!(separation.separate(motion, (0.0, 1.0), &[], &mut places));
 /// assert!(places.iter().any(|s| 0.5 < *s && *s < 0.5001));
 /// # Ok::<(), pc_expr::ExprError>(())
 /// ```
@@ -52,8 +53,6 @@ pub struct RootSeparation {
     /// The components that the outputs contain.
     used: Vec<bool>,
     registers: Vec<Jet>,
-    /// How many intervals are looked at next.
-    most: usize,
     local: Vec<f64>,
     open: Vec<(f64, f64)>,
     at_middle: Vec<Jet>,
@@ -74,15 +73,7 @@ impl RootSeparation {
         let at_middle = Vec::with_capacity(program.outputs_len());
         // An interval is halved some fifty times.
         let open = Vec::with_capacity(64);
-        RootSeparation {
-            program,
-            used,
-            registers,
-            most: MOST,
-            local: Vec::with_capacity(64),
-            open,
-            at_middle,
-        }
+        RootSeparation { program, used, registers, local: Vec::with_capacity(64), open, at_middle }
     }
 
     /// The program.
@@ -91,7 +82,8 @@ impl RootSeparation {
     }
 
     /// Appends places s, in order from the first to the last of these, between which each output has at most one root along the motion. The
-    /// last of these is one, unless many roots lie before it: then the places end where the next ones begin.
+    /// last of these is one, unless many roots lie before it: then the places end where the next ones begin. Returns whether the
+    /// roots are separated: not those of a function that touches zero, or is zero but for rounding.
     ///
     /// # Panics
     /// If the motion or the parameters are not those of the program.
@@ -101,7 +93,7 @@ impl RootSeparation {
         (first, last): (f64, f64),
         parameters: &[f64],
         places: &mut Vec<f64>,
-    ) {
+    ) -> bool {
         let program = Arc::clone(&self.program);
         assert_eq!(parameters.len(), program.parameters_len(), "values of the parameters");
         assert!(motion.coefficients.len().is_multiple_of(program.state_len()), "coefficients of states");
@@ -116,11 +108,13 @@ impl RootSeparation {
         self.open.push((first, last));
         // The end of the last interval that may contain a root.
         let (mut looked, mut run, mut roots) = (0, first, 0);
+        let (mut vague, mut given_up) = (0, false);
         while let Some((a, b)) = self.open.pop() {
             looked += 1;
             let (clear, single) = self.look(motion, (a, b));
             let is_short = (b - a).abs() <= RESOLVED * (last - first).abs();
-            if !(clear || single || is_short || looked > self.most) {
+            given_up |= looked > MOST || vague > VAGUE;
+            if !(clear || single || is_short || given_up) {
                 let middle = 0.5 * (a + b);
                 self.open.push((middle, b));
                 self.open.push((a, middle));
@@ -139,6 +133,7 @@ impl RootSeparation {
                 }
                 // What is not told apart may be one touch in many intervals.
                 (run, roots) = (b, roots + usize::from(single));
+                vague += usize::from(!single);
             }
         }
         if self.open.is_empty() {
@@ -147,7 +142,7 @@ impl RootSeparation {
             }
             places.push(last);
         }
-        self.most = if looked > self.most { self.most / 2 } else { 2 * self.most }.clamp(FEW, MOST);
+        !given_up
     }
 
     /// Whether no output has a root in an interval; whether none has more than one.

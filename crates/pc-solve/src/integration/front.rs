@@ -105,7 +105,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             };
             let motion = self.engine.polynomial(&mut self.coefficients)?;
             let start = motion.start;
-            separation.separate(motion, (from - start, to - start), parameters, times);
+            separated = separation.separate(motion, (from - start, to - start), parameters, times);
             let ends_before = times.last() != Some(&(to - start));
             times.iter_mut().for_each(|time| *time += start);
             // What lies at the ends or beyond by rounding is not looked at.
@@ -115,7 +115,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 to = times.pop().unwrap_or(to);
             }
             // The polynomial is not that of states that are projected.
-            separated =
+            separated &=
                 program.outputs_len() == self.events.events().len() && !self.engine.field().has_projection();
         }
         if !separated {
