@@ -25,6 +25,7 @@ impl Trajectory {
     }
 
     /// With room for so many outputs.
+    #[cfg(feature = "cvode")] // for the members of an ensemble
     pub(crate) fn with_capacity(dim: usize, outputs: usize) -> Self {
         let (times, states) = (Vec::with_capacity(outputs), Vec::with_capacity(dim * outputs));
         Trajectory { times, states, ..Trajectory::new(dim) }
