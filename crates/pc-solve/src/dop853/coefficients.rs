@@ -1,11 +1,11 @@
 //! The coefficients of the method, rounded to double precision.
 //!
-//! The nodes cᵢ, the matrix aᵢⱼ without its zeros, the weights bᵢ and those of the two error estimates, and what dense output
-//! adds: three more stages and the weights dⱼᵢ of its last four terms. Stages are numbered from 1, as in the source; number
-//! 13 is the rate at the end of the step. [Hairer, Nørsett, Wanner 1993], II.5 and II.6; the digits are those of their
-//! program `dop853.f`.
+//! The nodes cᵢ, the matrix aᵢⱼ without its zeros, the weights bᵢ and those of the two error
+//! estimates, and, for dense output, three more stages and the weights dⱼᵢ of its last four terms.
+//! Stages are numbered from 1, as in the source; stage 13 is the rate at the end of the step.
+//! [Hairer, Nørsett, Wanner 1993], II.5 and II.6; the digits are those of their program `dop853.f`.
 
-/// c₁ … c₁₂, of which the last is the end.
+/// c₁ … c₁₂; the last is the end of the step.
 pub(super) const C: [f64; 12] = [
     0.0,
     0.05260015195876773,
