@@ -80,7 +80,7 @@ pub enum NonFinite {
         t: f64,
     },
 
-    /// A component of what a [preconditioner](crate::Preconditioner) wrote.
+    /// A component written by a [preconditioner](crate::Preconditioner).
     #[error("the preconditioner makes {component} {value} at t = {t}")]
     Preconditioned {
         /// Name of the component.

@@ -347,7 +347,7 @@ impl Sides {
                 look.room.take_back(std::mem::replace(&mut b, middle));
             } else {
                 (weight_a, weight_b) = (1.0, if repeated < 1.0 { 0.5 * weight_b } else { 1.0 });
-                sides.pass(&middle.values); // what is told from zero need not be so again
+                sides.pass(&middle.values); // a function that has left zero is no longer compared with noise
                 look.room.take_back(std::mem::replace(&mut a, middle));
             }
             b_moved = Some(moves_b);

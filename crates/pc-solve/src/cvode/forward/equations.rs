@@ -1,4 +1,4 @@
-//! The equations of variation as CVODES calls them.
+//! The callback for the equations of variation.
 
 use std::ffi::{c_int, c_void};
 use std::slice;
@@ -12,8 +12,8 @@ use crate::cvode::handles::numbers_of;
 /// `CVSensRhsFn`.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData) whose variation has `count`
-/// columns, and with vectors of its dimension.
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData) whose
+/// variation has `count` columns, and with vectors of its dimension.
 pub(crate) unsafe extern "C" fn rates<F: VectorField>(
     count: c_int,
     t: f64,

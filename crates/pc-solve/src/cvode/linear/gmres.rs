@@ -31,7 +31,8 @@ pub(super) fn solver(krylov: &Krylov, context: &mut Context, y: &Vector) -> Resu
     Ok(solver)
 }
 
-/// Gives CVODES, whose linear solver is set, the tolerance and the callbacks; the preconditioner is for them.
+/// Sets the tolerance and the callbacks of CVODES, whose linear solver is set; returns the
+/// preconditioner for the callbacks.
 pub(super) fn attach<F: VectorField>(
     krylov: &Krylov,
     memory: &Memory,
@@ -72,7 +73,7 @@ impl<F: VectorField> Callbacks<F> {
         })
     }
 
-    /// Calls `evaluate` with the preconditioner too.
+    /// As `guard`, with the preconditioner.
     fn with_preconditioner(
         &mut self,
         evaluate: impl FnOnce(&mut dyn Preconditioner, &mut F, &[f64]) -> Result<(), Failure>,
@@ -91,7 +92,8 @@ impl<F: VectorField> Callbacks<F> {
 /// `CVLsJacTimesVecFn`.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData) and vectors of its dimension.
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData) and
+/// vectors of its dimension.
 unsafe extern "C" fn product<F: VectorField>(
     v: sys::N_Vector,
     product: sys::N_Vector,

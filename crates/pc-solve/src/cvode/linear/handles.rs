@@ -1,6 +1,6 @@
 //! Owning handles of matrices and linear solvers.
 //!
-//! Each frees its object when dropped and must be dropped before the [`Context`] it was made in.
+//! Each frees its object when dropped and must be dropped before its [`Context`].
 
 use std::ptr::NonNull;
 
