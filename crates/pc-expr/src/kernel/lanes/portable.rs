@@ -2,13 +2,13 @@
 
 use super::tape::{Binary, Fused, LANES, LaneTape, Lanes, Node};
 
-/// So many lanes go through the tape at a time.
+/// Number of lanes computed at a time.
 pub(super) const CHUNK: usize = 4;
 
 type Chunk = [f64; CHUNK];
 
 impl LaneTape {
-    /// Number of rows that [`walk`](LaneTape::walk) writes intermediate values to.
+    /// Number of rows for intermediate values of [`walk`](LaneTape::walk).
     pub(super) fn rows(&self) -> usize {
         self.nodes.len()
     }
