@@ -1,4 +1,5 @@
-//! Integration of ẏ = f(t, y), for any [`VectorField`]: by SUNDIALS CVODES, DOP853 or Taylor's method.
+//! Integration of ẏ = f(t, y), for any [`VectorField`]: by SUNDIALS CVODES, DOP853 or Taylor's
+//! method.
 //!
 //! In the order in which a program needs them: a motion in one call, its method, events, the motion
 //! as a function of time, a motion step by step, checkpoints, derivatives, many motions.

@@ -116,7 +116,8 @@ fn the_error_estimates_are_of_their_orders() {
     }
 }
 
-/// Dense output is exact for the quadrature of polynomials of degree 6: u(s) = sᵏ⁺¹/(k+1) for f = tᵏ.
+/// Dense output is exact for the quadrature of polynomials of degree 6: u(s) = sᵏ⁺¹/(k+1) for
+/// f = tᵏ.
 #[test]
 fn the_polynomial_integrates_polynomials_of_degree_six() {
     for k in 0..7 {

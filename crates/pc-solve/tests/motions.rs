@@ -94,7 +94,8 @@ fn right_hand_side_of_time() {
 /// functions of Jacobi degenerate: ω = (√3 sech t, √3 tanh t, sech t). [Landau, Lifshitz,
 /// Mechanics, § 37]
 ///
-/// The motion ends at the unstable rotation about the middle axis, near which an error grows as e^t; t ≤ 3.
+/// The motion ends at the unstable rotation about the middle axis, near which an error grows as
+/// e^t; t ≤ 3.
 #[test]
 fn free_top_on_the_separatrix() {
     let root3 = 3.0_f64.sqrt();

@@ -99,7 +99,8 @@ fn no_root_of_a_sine_in_a_step_is_lost() {
     for method in Method::ALL {
         let mut random = Random(7);
         for case in 0..300 {
-            // sin(ω y + φ) = c, with c near 1 in half of the cases: pairs of roots 2 arccos(c)/ω apart.
+            // sin(ω y + φ) = c, with c near 1 in half of the cases: pairs of roots 2 arccos(c)/ω
+            // apart.
             let frequency = 1.0 + 200.0 * random.next();
             let phase = 6.0 * random.next();
             let level = match case % 2 {

@@ -29,7 +29,8 @@ fn reason(error: SolveError) -> Reason {
     }
 }
 
-/// Kepler's motion of eccentricity e from the pericentre, by Newton's iteration on Kepler's equation.
+/// Kepler's motion of eccentricity e from the pericentre, by Newton's iteration on Kepler's
+/// equation.
 fn kepler(e: f64, t: f64) -> [f64; 2] {
     let mut anomaly = t;
     for _ in 0..50 {

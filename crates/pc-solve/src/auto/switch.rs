@@ -26,7 +26,8 @@ const CLEAR: u32 = 8;
 /// Number of returns after which that number grows no further.
 const DOUBLINGS: u32 = 8;
 
-/// A method that is [`Dop853`] where the motion is not stiff and [`Cvode`] by BDF formulas where it is.
+/// A method that is [`Dop853`] where the motion is not stiff and [`Cvode`] by BDF formulas where it
+/// is.
 ///
 /// It begins explicitly. Where [stiffness](Dop853::stiff_from) is detected, CVODE continues from
 /// the end of that step at order 1; when for many steps the product of their length with an

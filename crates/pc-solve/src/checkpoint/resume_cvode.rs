@@ -44,7 +44,8 @@ impl<F: VectorField> Integration<Cvode<F>> {
     /// made.
     ///
     /// # Errors
-    /// As for [`new`](Integration::new); [`InputError::Sensitivities`] if the checkpoint has sensitivities.
+    /// As for [`new`](Integration::new); [`InputError::Sensitivities`] if the checkpoint has
+    /// sensitivities.
     pub fn resume(field: F, checkpoint: &Checkpoint, options: &Options) -> Result<Self, SolveError> {
         Integration::resume_with_sensitivities(field, checkpoint, options, &Sensitivities::new())
     }

@@ -223,7 +223,8 @@ pub(crate) unsafe extern "C" fn rhs<F: VectorField>(
     ydot: sys::N_Vector,
     user_data: *mut c_void,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: `y` and `ydot` are live serial vectors of length `dim`, distinct from each other.
     let (y, ydot) = unsafe {
@@ -237,7 +238,8 @@ pub(crate) unsafe extern "C" fn rhs<F: VectorField>(
 /// unwritten.
 ///
 /// # Safety
-/// `data` has room for `len` numbers, which nobody else uses during `'a`; they need not be initialised.
+/// `data` has room for `len` numbers, which nobody else uses during `'a`; they need not be
+/// initialised.
 pub(crate) unsafe fn nan_slice<'a>(data: *mut f64, len: usize) -> &'a mut [f64] {
     for i in 0..len {
         // SAFETY: within the room promised.

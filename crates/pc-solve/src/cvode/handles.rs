@@ -39,7 +39,8 @@ impl Vector {
     /// forms it with the prediction instead of the last state, so that it is infinite where the
     /// prediction is exact.
     pub(crate) fn halve_after_violations(&mut self) {
-        // SAFETY: the vector is live and ours alone, and so is its table of operations, which clones copy.
+        // SAFETY: the vector is live and ours alone, and so is its table of operations, which
+        // clones copy.
         unsafe { (*(*self.raw.as_ptr()).ops).nvminquotient = Some(bounded_quotient) };
     }
 
@@ -48,7 +49,8 @@ impl Vector {
     }
 
     pub(crate) fn as_slice(&self) -> &[f64] {
-        // SAFETY: `data` holds `len` initialised numbers, which only a call given this vector changes.
+        // SAFETY: `data` holds `len` initialised numbers, which only a call given this vector
+        // changes.
         unsafe { slice::from_raw_parts(self.data.as_ptr(), self.len) }
     }
 
@@ -150,7 +152,8 @@ impl Memory {
         self.0
     }
 
-    /// Calls a set-up `function` of CVODES that takes one `value`, once CVODES has been initialised.
+    /// Calls a set-up `function` of CVODES that takes one `value`, once CVODES has been
+    /// initialised.
     pub(crate) fn set<T: Number>(
         &self,
         context: &mut Context,

@@ -145,7 +145,8 @@ unsafe extern "C" fn integrands<F: VectorField + Quadratures>(
     rates: sys::N_Vector,
     user_data: *mut c_void,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: the vectors are live, of these lengths and distinct.
     let (y, rates) = unsafe {
@@ -165,7 +166,8 @@ unsafe extern "C" fn integrands_of<F: VectorField>(
     rates: sys::N_Vector,
     user_data: *mut c_void,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     let Some(mut integrands) = callbacks.integrands.take() else { return FATAL };
     // SAFETY: the vectors are live, of these lengths and distinct.

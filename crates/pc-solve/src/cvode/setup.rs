@@ -129,7 +129,8 @@ impl Parts {
         // SAFETY: `mem` is live; CVODES copies the start from the vector.
         let code = unsafe { sys::CVodeInit(mem, Some(callback::rhs::<F>), t0, step_state.raw()) };
         context.check("CVodeInit", code)?;
-        // SAFETY: the address is of a `Callbacks<F>`, as `callback::rhs::<F>` expects, and outlives `mem`.
+        // SAFETY: the address is of a `Callbacks<F>`, as `callback::rhs::<F>` expects, and outlives
+        // `mem`.
         let code = unsafe { sys::CVodeSetUserData(mem, callbacks.address()) };
         context.check("CVodeSetUserData", code)?;
         // SAFETY: `mem` is initialised; the iteration outlives it.

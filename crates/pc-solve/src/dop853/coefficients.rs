@@ -141,7 +141,8 @@ pub(super) const A16: [f64; 8] = [
     2.9475147891527724,
     -9.15095847217987,
 ];
-/// The weights of the terms 5 to 8 of dense output, by stages 1, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16.
+/// The weights of the terms 5 to 8 of dense output, by stages 1, 6, 7, 8, 9, 10, 11, 12, 13, 14,
+/// 15, 16.
 pub(super) const D: [[f64; 12]; 4] = [
     [
         -8.428938276109013,

@@ -3,8 +3,8 @@
 //! The next length is 0.85 h err^(−1/8), between h/3 and 6 h. The source has 0.9, and optionally a
 //! power β of the previous error. Both affect how many steps are rejected, each of which costs
 //! eleven evaluations. For global errors of 1e-8 and 1e-10, 0.85 takes 5 to 15 % fewer evaluations
-//! than 0.9 for tops, pendulums and orbits; β = 0.02 saves nothing and β = 0.04 costs orbits
-//! another 5 %, so β is left out.
+//! than 0.9 for tops, pendulums and orbits; β = 0.02 saves nothing and β = 0.04 costs orbits 5 %
+//! with either factor, so β is left out.
 
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
@@ -54,7 +54,8 @@ impl Control {
     /// ```text
     /// |h| e₅² / √(n (e₅² + 0.01 e₃²))
     /// ```
-    /// which falls with h⁸ although the estimates are of lower order [Hairer, Nørsett, Wanner 1993, II.10].
+    /// which falls with h⁸ although the estimates are of lower order [Hairer, Nørsett, Wanner 1993,
+    /// II.10].
     pub(super) fn error(h: f64, (fifth, third): (f64, f64), n: usize) -> f64 {
         let both = fifth + 0.01 * third;
         let both = if both <= 0.0 { 1.0 } else { both };

@@ -104,7 +104,8 @@ impl<'a> Ensemble<'a> {
         Ensemble { lanes: lanes.get(), ..self }
     }
 
-    /// Stops as soon as `flag` is true: members in progress end at their next internal step and are dropped.
+    /// Stops as soon as `flag` is true: members in progress end at their next internal step and are
+    /// dropped.
     pub fn stopped_by(self, flag: &'a AtomicBool) -> Self {
         Ensemble { flag: Some(flag), ..self }
     }
@@ -181,7 +182,8 @@ impl<'a> Ensemble<'a> {
     /// thread.
     ///
     /// # Errors
-    /// [`EnsembleError`] if threads cannot be started. A panic of the work is the result of its member.
+    /// [`EnsembleError`] if threads cannot be started. A panic of the work is the result of its
+    /// member.
     pub fn map<T: Send>(
         &self,
         members: Range<u64>,

@@ -63,7 +63,8 @@ pub enum Reason {
         t: f64,
     },
 
-    /// The state could not be [projected](pc_expr::VectorField::project) to the surface it belongs to.
+    /// The state could not be [projected](pc_expr::VectorField::project) to the surface it belongs
+    /// to.
     Projection {
         /// Time of that state.
         t: f64,

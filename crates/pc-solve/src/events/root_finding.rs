@@ -374,7 +374,8 @@ impl Sides {
     }
 }
 
-/// The lowest point of the parabola through three points in order, if it lies between the outer ones.
+/// The lowest point of the parabola through three points in order, if it lies between the outer
+/// ones.
 fn vertex([(t0, u0), (t1, u1), (t2, u2)]: [(f64, f64); 3]) -> Option<(f64, f64)> {
     let slope = (u1 - u0) / (t1 - t0);
     let bend = ((u2 - u1) / (t2 - t1) - slope) / (t2 - t0);

@@ -94,7 +94,8 @@ macro_rules! with {
 }
 
 impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
-    /// The same field with a closure that writes ∂fᵢ/∂yⱼ to entry `i + j * dim` of its last argument.
+    /// The same field with a closure that writes ∂fᵢ/∂yⱼ to entry `i + j * dim` of its last
+    /// argument.
     ///
     /// Every entry must be written, zeros too.
     pub fn with_jacobian<K>(self, jacobian: K) -> FnField<R, K, S, V, P, C, W>
@@ -149,7 +150,8 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
         with!(field, parameter_jacobian = parameter_jacobian, jacobian, sparse_jacobian, jvp, projection, vjp)
     }
 
-    /// The same field with a closure that moves its last argument to the surface of the states at time t.
+    /// The same field with a closure that moves its last argument to the surface of the states at
+    /// time t.
     ///
     /// Far from that surface it returns an error, as [`VectorField::project`] does.
     pub fn with_projection<K>(self, projection: K) -> FnField<R, J, S, V, P, K, W>
@@ -159,12 +161,14 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
         with!(self, projection = projection, jacobian, sparse_jacobian, jvp, parameter_jacobian, vjp)
     }
 
-    /// The same field, declared not to depend on t explicitly, so that an integrator need not examine it.
+    /// The same field, declared not to depend on t explicitly, so that an integrator need not
+    /// examine it.
     pub fn autonomous(self) -> Self {
         FnField { shape: Shape { autonomous: true, ..self.shape }, ..self }
     }
 
-    /// The same field with names of its components, for messages; a component without one is called `y[i]`.
+    /// The same field with names of its components, for messages; a component without one is called
+    /// `y[i]`.
     pub fn with_names<N: Into<String>>(self, names: impl IntoIterator<Item = N>) -> Self {
         let names = names.into_iter().map(Into::into).collect();
         FnField { shape: Shape { names, ..self.shape }, ..self }

@@ -180,7 +180,8 @@ impl<S: Stepper> Integration<S> {
             due: Vec::new(),
             noise: Vec::new(),
             beyond: Vec::new(),
-            // Polynomials of CVODES have up to 13 coefficients a component; the order rises on the way.
+            // Polynomials of CVODES have up to 13 coefficients a component; the order rises during
+            // the integration.
             times: Vec::with_capacity(64),
             coefficients: Vec::with_capacity(16 * state.len()),
             separation: None,
@@ -223,7 +224,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self
     }
 
-    /// The current time: the time last advanced to, or that of the event that stopped the integration.
+    /// The current time: the time last advanced to, or that of the event that stopped the
+    /// integration.
     pub fn time(&self) -> f64 {
         self.engine.time()
     }

@@ -11,7 +11,8 @@ pub trait Observer {
     /// An output.
     fn output(&mut self, t: f64, y: &[f64]) -> ControlFlow<()>;
 
-    /// An event that occurred. All simultaneous ones are reported, even where one of them stops the motion.
+    /// An event that occurred. All simultaneous ones are reported, even where one of them stops the
+    /// motion.
     fn occurred(&mut self, _occurrence: &Occurrence) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }

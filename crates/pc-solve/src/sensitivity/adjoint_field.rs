@@ -109,7 +109,8 @@ impl<F: VectorField, G: Functional> AdjointField<F, G> {
         self.term(Term::Density, t)
     }
 
-    /// A term of the functional at (t, `state`) and, in `by_state` and `by_parameters`, its derivatives.
+    /// A term of the functional at (t, `state`) and, in `by_state` and `by_parameters`, its
+    /// derivatives.
     fn term(&mut self, term: Term, t: f64) -> Result<f64, Failure> {
         let AdjointField { path, functional, state, by_state, by_parameters, .. } = self;
         by_state.fill(f64::NAN);

@@ -40,7 +40,8 @@ impl AdjointOptions {
         }
     }
 
-    /// Relative and absolute tolerance of λ, of the integrals over g and of those of ∂G/∂p, positive.
+    /// Relative and absolute tolerance of λ, of the integrals over g and of those of ∂G/∂p,
+    /// positive.
     pub fn tolerances(self, relative: f64, absolute: f64) -> Self {
         AdjointOptions { relative_tolerance: relative, absolute_tolerance: absolute, ..self }
     }

@@ -36,7 +36,8 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
     /// S at [`time`](Integration::time), S⁺ at an event: entry `i + j * dim` is the derivative of
     /// component i for column j.
     ///
-    /// Empty unless the integration was begun [with sensitivities](Integration::with_sensitivities).
+    /// Empty unless the integration was begun [with
+    /// sensitivities](Integration::with_sensitivities).
     ///
     /// # Errors
     /// [`SolveError::Integration`] if a derivative has grown beyond the largest number.

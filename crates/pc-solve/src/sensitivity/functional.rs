@@ -4,7 +4,8 @@ use pc_expr::Failure;
 
 use crate::integration::statistics::Statistics;
 
-/// A functional G = ∫ g(t, y, p) dt + h(t₁, y(t₁), p) of a motion from t₀ to t₁, with its derivatives.
+/// A functional G = ∫ g(t, y, p) dt + h(t₁, y(t₁), p) of a motion from t₀ to t₁, with its
+/// derivatives.
 ///
 /// Both terms write their derivatives by the state and by the parameters of the field, the latter
 /// empty if it has no [derivatives](pc_expr::VectorField::parameter_jacobian) by them. Every entry

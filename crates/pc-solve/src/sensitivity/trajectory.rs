@@ -153,8 +153,8 @@ pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
     }
 }
 
-/// Integrates ẏ = f(t, y) from y(t0) = y0 to `end` and returns the motion and S as functions of time, the
-/// entries of S column-major.
+/// Integrates ẏ = f(t, y) from y(t0) = y0 to `end` and returns the motion and S as functions of
+/// time, the entries of S column-major.
 ///
 /// # Errors
 /// As for [`Integration::run_dense_with_sensitivities`], which also gives what was reached.

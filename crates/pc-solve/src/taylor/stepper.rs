@@ -15,7 +15,8 @@ use crate::taylor::step_length::Tolerances;
 
 /// Taylor's method of adaptive order and step as a [`Stepper`] [Jorba, Zou 2005]:
 ///
-/// y(t + h) = Σ_{k=0}^{p} y⁽ᵏ⁾(t) hᵏ/k!,   h = min_{k = p−1, p} (|y⁽ᵏ⁾/k!|/|y|)^{−1/k} · rtol^{1/(p+1)}.
+/// y(t + h) = Σ_{k=0}^{p} y⁽ᵏ⁾(t) hᵏ/k!, h = min_{k = p−1, p}
+/// (|y⁽ᵏ⁾/k!|/|y|)^{−1/k} · rtol^{1/(p+1)}.
 ///
 /// States inside a step are read from the polynomial. Time and state are compensated sums [Kahan
 /// 1965]. A step at whose end the rates of the polynomial differ from those of the field is

@@ -69,7 +69,8 @@ impl Code {
 
     /// The code as a function, for code of [`entry_signature`](super::host::Host::entry_signature).
     pub(super) fn entry(&self) -> Entry {
-        // SAFETY: the address is that of a finished function; making a pointer of it does not call it.
+        // SAFETY: the address is that of a finished function; making a pointer of it does not call
+        // it.
         unsafe { std::mem::transmute::<*const u8, Entry>(self.address as *const u8) }
     }
 }

@@ -111,7 +111,8 @@ impl<F: VectorField> Cvode<F> {
         }
         let error_control = c_int::from(sensitivities.error_control);
         memory.set(context, "CVodeSetSensErrCon", sys::CVodeSetSensErrCon, error_control)?;
-        // SAFETY: sensitivities are initialised, with the method chosen; the iteration outlives the memory.
+        // SAFETY: sensitivities are initialised, with the method chosen; the iteration outlives the
+        // memory.
         let code = unsafe {
             match sensitivities.correction {
                 Correction::Staggered => sys::CVodeSetNonlinearSolverSensStg(mem, iteration),

@@ -269,7 +269,8 @@ pub struct SensitivityStatistics {
     pub evaluations: u64,
     /// Steps tried again because the estimated error of a column was too large.
     pub error_test_failures: u64,
-    /// Iterations of the nonlinear solver for the columns alone; 0 if the correction is simultaneous.
+    /// Iterations of the nonlinear solver for the columns alone; 0 if the correction is
+    /// simultaneous.
     pub nonlinear_iterations: u64,
     /// Failures of that solver to converge, including those recovered by a new Jacobian.
     pub nonlinear_failures: u64,

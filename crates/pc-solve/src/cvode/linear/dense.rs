@@ -44,7 +44,8 @@ struct Blocked {
 impl Factors for Blocked {
     unsafe fn factorise(&mut self, matrix: sys::SUNMatrix) -> Result<(), Singular> {
         let dim = self.rows.len();
-        // SAFETY: the matrix is dense, dim × dim, column-major and contiguous, and ours during the call.
+        // SAFETY: the matrix is dense, dim × dim, column-major and contiguous, and ours during the
+        // call.
         let entries = unsafe { slice::from_raw_parts_mut(sys::SUNDenseMatrix_Data(matrix), dim * dim) };
         factor::lu_in_place(
             MatMut::from_column_major_slice_mut(entries, dim, dim),
@@ -113,7 +114,8 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     _tmp2: sys::N_Vector,
     _tmp3: sys::N_Vector,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: `y` is a live serial vector of length `dim`; `matrix` is dense, dim × dim,
     // column-major and contiguous.

@@ -100,7 +100,8 @@ unsafe extern "C" fn solve<S: Factors>(
 }
 
 unsafe extern "C" fn free<S: Factors>(solver: sys::SUNLinearSolver) -> sys::SUNErrCode {
-    // SAFETY: the content was made by `Box::into_raw` and is owned by the solver, which is freed with it.
+    // SAFETY: the content was made by `Box::into_raw` and is owned by the solver, which is freed
+    // with it.
     unsafe {
         drop(Box::from_raw((*solver).content.cast::<S>()));
         sys::SUNLinSolFreeEmpty(solver);

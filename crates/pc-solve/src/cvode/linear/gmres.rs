@@ -103,7 +103,8 @@ unsafe extern "C" fn product<F: VectorField>(
     user_data: *mut c_void,
     _tmp: sys::N_Vector,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: all are live serial vectors of length `dim`, `product` distinct from the others.
     let (y, v, product) = unsafe {
@@ -126,7 +127,8 @@ unsafe extern "C" fn set_up<F: VectorField>(
     gamma: f64,
     user_data: *mut c_void,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: `y` is a live serial vector of length `dim`.
     let y = unsafe { slice::from_raw_parts(numbers_of(y), callbacks.dim) };
@@ -157,7 +159,8 @@ unsafe extern "C" fn precondition<F: VectorField>(
     _side: c_int,
     user_data: *mut c_void,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: all are live serial vectors of length `dim`, `z` distinct from the others.
     let (y, r, z) = unsafe {

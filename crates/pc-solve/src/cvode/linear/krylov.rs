@@ -16,7 +16,8 @@ pub enum Side {
     Right,
 }
 
-/// The method of generalised minimal residuals, GMRES [Saad, Schultz, SIAM J. Sci. Stat. Comp. 7 (1986) 856].
+/// The method of generalised minimal residuals, GMRES [Saad, Schultz, SIAM J. Sci. Stat. Comp. 7
+/// (1986) 856].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Krylov {
     pub(super) dimension: u32,

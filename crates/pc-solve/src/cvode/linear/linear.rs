@@ -102,7 +102,8 @@ impl Linear {
         };
         callbacks.set_linear(work);
         if jacobian.is_some() {
-            // SAFETY: the linear solver is set, and its matrix is of the kind that the callback expects.
+            // SAFETY: the linear solver is set, and its matrix is of the kind that the callback
+            // expects.
             let code = unsafe { sys::CVodeSetJacFn(memory.raw(), jacobian) };
             context.check("CVodeSetJacFn", code)?;
         }

@@ -66,7 +66,8 @@ pub trait Preconditioner {
     /// As for [`linearise`](Preconditioner::linearise).
     fn factorise(&mut self, gamma: f64) -> Result<(), Failure>;
 
-    /// Writes z with P z = r; both slices have the dimension of the field, and every number must be written.
+    /// Writes z with P z = r; both slices have the dimension of the field, and every number must be
+    /// written.
     ///
     /// # Errors
     /// As for [`linearise`](Preconditioner::linearise).

@@ -35,7 +35,8 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     _tmp2: sys::N_Vector,
     _tmp3: sys::N_Vector,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     let Some(mut quotients) = callbacks.linear.quotients.take() else { return FATAL };
     let mut gamma = 0.0;
@@ -45,7 +46,8 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
         let code = sys::CVodeGetErrWeights(quotients.memory, weights);
         [code, sys::CVodeGetCurrentGamma(quotients.memory, &raw mut gamma)]
     };
-    // SAFETY: all are live serial vectors of length `dim`, distinct from each other; `matrix` is ours.
+    // SAFETY: all are live serial vectors of length `dim`, distinct from each other; `matrix` is
+    // ours.
     let (z, f, weights, matrix) = unsafe {
         let numbers = |vector| slice::from_raw_parts(numbers_of(vector), callbacks.dim);
         (numbers(z), numbers(f), numbers(weights), sparse::content(matrix))

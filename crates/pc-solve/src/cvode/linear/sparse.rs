@@ -113,7 +113,8 @@ unsafe extern "C" fn clone(matrix: sys::SUNMatrix) -> sys::SUNMatrix {
 }
 
 unsafe extern "C" fn destroy(matrix: sys::SUNMatrix) {
-    // SAFETY: the content was made by `Box::into_raw` and is owned by the matrix, which is freed with it.
+    // SAFETY: the content was made by `Box::into_raw` and is owned by the matrix, which is freed
+    // with it.
     unsafe {
         drop(Box::from_raw((*matrix).content.cast::<Compressed>()));
         sys::SUNMatFreeEmpty(matrix);
@@ -190,9 +191,11 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     _tmp2: sys::N_Vector,
     _tmp3: sys::N_Vector,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
-    // SAFETY: `y` is a live serial vector of length `dim`; `matrix` is ours, and CVODES has set it to 0.
+    // SAFETY: `y` is a live serial vector of length `dim`; `matrix` is ours, and CVODES has set it
+    // to 0.
     let (y, matrix) = unsafe { (slice::from_raw_parts(numbers_of(y), callbacks.dim), content(matrix)) };
     callbacks.entries(t, y, |_, value, k| matrix.set(k, value))
 }

@@ -74,7 +74,8 @@ fn columns(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
 
 impl Factors for SparseLu {
     unsafe fn factorise(&mut self, matrix: sys::SUNMatrix) -> Result<(), Singular> {
-        // SAFETY: the matrix the solver was made for is one of ours, and nobody else uses it during the call.
+        // SAFETY: the matrix the solver was made for is one of ours, and nobody else uses it during
+        // the call.
         let matrix = unsafe { sparse::content(matrix) };
         self.set(matrix.pattern(), matrix.values())
     }
