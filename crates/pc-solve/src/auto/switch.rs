@@ -80,7 +80,7 @@ impl<F: VectorField> Auto<F> {
         let mut options = Options { method: Method::Bdf, ..options.clone() };
         choose(&field, &options)?;
         let explicit = Dop853::of(field, t0, y0, &options);
-        options.initial_step = None; // it is that of the whole motion
+        options.initial_step = None; // only for the start of the motion
         Ok(Auto {
             engine: Some(Engine::Explicit(Box::new(explicit))),
             options,

@@ -269,7 +269,7 @@ pub enum MemberError<E> {
     Solve(Box<SolveFailure>),
     /// Its vector field panicked.
     Panic {
-        /// What the panic said.
+        /// The message of the panic.
         message: String,
         /// The end (t, y) of the last internal step, if there was one.
         reached: Option<(f64, Vec<f64>)>,
@@ -311,7 +311,7 @@ impl<E: Error> Error for MemberError<E> {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("panicked: {message}")]
 pub struct Panicked {
-    /// What the panic said.
+    /// The message of the panic.
     pub message: String,
 }
 

@@ -26,10 +26,10 @@ impl Ensemble<'_> {
     /// `consume` in order.
     ///
     /// `begin` returns any data of a member and, if lanes can integrate it, its
-    /// [field](pc_expr::VectorField::lanes) and its state at t₀. `in_lane` makes its result of its
-    /// complete motion. `alone` integrates members for which there is no lane, or whose motion was
-    /// not completed there; it should check [`Stop`] regularly. All are called on the thread that
-    /// integrates.
+    /// [field](pc_expr::VectorField::lanes) and its state at t₀. `in_lane` turns its complete
+    /// motion into its result. `alone` integrates members for which there is no lane, or whose
+    /// motion was not completed there; it should check [`Stop`] regularly. All are called on the
+    /// thread that integrates.
     ///
     /// Lanes are used with [`Method::Dop853`](crate::Method::Dop853), for fields that do not read
     /// time, without inequalities, a minimum step or a stop time. `begin` has to exclude events,

@@ -14,7 +14,7 @@ pub enum Reason {
     Cvode {
         /// Its return code.
         code: Code,
-        /// What it said.
+        /// Its message.
         message: String,
     },
 

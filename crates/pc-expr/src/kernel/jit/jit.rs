@@ -46,7 +46,7 @@ impl Jit {
     /// Compiles a program with the default [options](JitOptions).
     ///
     /// # Errors
-    /// [`JitError`], of which only [`JitError::Host`] is to be expected.
+    /// [`JitError`], normally only [`JitError::Host`].
     pub fn new(program: &Program) -> Result<Jit, JitError> {
         Jit::with_options(program, &JitOptions::default())
     }
@@ -54,7 +54,7 @@ impl Jit {
     /// Compiles a program.
     ///
     /// # Errors
-    /// [`JitError`], of which only [`JitError::Host`] is to be expected.
+    /// [`JitError`], normally only [`JitError::Host`].
     pub fn with_options(program: &Program, options: &JitOptions) -> Result<Jit, JitError> {
         let host = Host::get()?;
         if program.registers_len().max(program.outputs_len()) > MOST_REGISTERS {

@@ -51,7 +51,7 @@ pub(super) fn multiply_add_address() -> usize {
 /// The address of a function of x and a pointer, to which it writes (sin x, cos x).
 pub(super) fn circle_address() -> usize {
     extern "C" fn circle(x: f64, place: *mut [f64; 2]) {
-        // SAFETY: compiled code passes the address of two numbers of its own.
+        // SAFETY: compiled code passes the address of two numbers on its stack.
         unsafe { *place = [x.sin(), x.cos()] };
     }
     circle as *const () as usize

@@ -110,13 +110,13 @@ mod tests {
             sums_by(rows, k, &mut expected, f64::mul_add);
             if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
                 let mut found = vec![0.0; sums];
-                // SAFETY: the processor has what is asked for.
+                // SAFETY: the processor has these features.
                 unsafe { by_four(rows, k, &mut found) };
                 assert_eq!(found, expected, "order {k}");
             }
             if is_x86_feature_detected!("avx512f") {
                 let mut found = vec![0.0; sums];
-                // SAFETY: the processor has what is asked for.
+                // SAFETY: the processor has these features.
                 unsafe { by_eight(rows, k, &mut found) };
                 assert_eq!(found, expected, "order {k}");
             }

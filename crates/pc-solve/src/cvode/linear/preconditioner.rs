@@ -10,7 +10,7 @@ use pc_expr::{Failure, VectorField};
 /// ```
 /// use pc_solve::{Failure, Krylov, LinearSolver, Method, Options, Preconditioner, Side, VectorField, from_fn, solve};
 ///
-/// /// Of the diagonal, which here makes up all that is stiff.
+/// /// Jacobi's preconditioner, the diagonal, which here contains all the stiffness.
 /// #[derive(Default)]
 /// struct Jacobi {
 ///     diagonal: Vec<f64>,
