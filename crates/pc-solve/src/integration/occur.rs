@@ -92,8 +92,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// The magnitude above which each function differs from zero after a reset. For a function that
-    /// caused it and is small against its change by the tolerances of the state, Σᵢ
-    /// |g(y + δᵢ) − g(y)| with δᵢ = rtol |yᵢ| + atolᵢ, this is twice its value.
+    /// caused it and is near zero, |g| ≤ 10 Σᵢ |g(y + δᵢ) − g(y)| with the tolerances
+    /// δᵢ = rtol |yᵢ| + atolᵢ of the state, this is 2 |g|.
     fn noise_after_reset(&mut self, t: f64, state: &[f64], values: &[f64]) -> Vec<f64> {
         let mut noise = std::mem::take(&mut self.noise);
         if self.due.iter().all(|&event| values[event].abs() <= noise[event]) {
