@@ -1,4 +1,5 @@
-//! How long a chain of 200 links takes with each linear solver: minimum and median of interleaved runs.
+//! Run times of a chain of 200 links with each linear solver: minimum and median of interleaved
+//! runs.
 
 #[path = "../tests/common/chain.rs"]
 mod chain;

@@ -1,4 +1,4 @@
-//! A million events in one run, half of them resets: run it under a tool that shows what memory it holds.
+//! A million events in one run, half of them resets, to be run under a memory profiler.
 
 use std::ops::ControlFlow::Continue;
 

@@ -1,6 +1,8 @@
-//! What a pendulum's motion owes to its length, its drag and its start, forwards; and the same of one number, backwards.
+//! Derivatives of a pendulum's motion by its length, its drag and its start, and the gradient of
+//! one functional by the adjoint equations.
 //!
-//! Writes t, φ and the derivatives of φ as CSV to standard output, and the gradient of the mean of φ² to standard error.
+//! Writes t, φ and the derivatives of φ as CSV to standard output, and the gradient of the mean of
+//! φ² to standard error.
 
 use std::error::Error;
 

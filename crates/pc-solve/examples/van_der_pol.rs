@@ -1,4 +1,5 @@
-//! The relaxation oscillation of van der Pol, ẍ = μ (1 − x²) ẋ − x with μ = 1000, which is stiff between its jumps.
+//! The relaxation oscillation of van der Pol, ẍ = μ (1 − x²) ẋ − x with μ = 1000, which is stiff
+//! between its jumps.
 //!
 //! Writes t, x, ẋ as CSV to standard output, and progress and the work done to standard error.
 
@@ -57,7 +58,7 @@ fn main() -> ExitCode {
             ExitCode::SUCCESS
         }
         Err(failure) => {
-            print(&failure.reached.trajectory); // What was reached is not lost.
+            print(&failure.reached.trajectory); // The outputs before the failure are available.
             eprintln!("{failure}");
             if let Some(cause) = failure.source() {
                 eprintln!("because {cause}");

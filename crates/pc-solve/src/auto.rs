@@ -1,7 +1,8 @@
-//! The method that is chosen while the motion is integrated: explicit where it is not stiff, implicit where it is.
+//! The method that changes during the integration: explicit where the motion is not stiff, implicit
+//! where it is.
 //!
-//! `switch` is the stepper and its rules, `growth` estimates how fast neighbouring motions leave each other, `stepper` makes
-//! it a method.
+//! `switch` holds the rules of the change, `growth` estimates the largest eigenvalue of ∂f/∂y,
+//! `stepper` implements the method.
 
 mod growth;
 mod stepper;

@@ -1,7 +1,8 @@
-//! Checkpoints, from which a motion is resumed with the same numbers to the last bit.
+//! Checkpoints, from which a motion resumes with the same numbers to the last bit.
 //!
-//! `checkpoint` is what is kept, `encoding` its bytes, `resume` makes one and continues from it, `resume_cvode` by
-//! CVODES, `resume_chosen` by the method of options; `legs` goes from checkpoint to checkpoint.
+//! `checkpoint` holds the data, `encoding` their bytes; `resume` makes a checkpoint and continues
+//! from it, `resume_cvode` by CVODES, `resume_chosen` by the method of options; `legs` goes from
+//! checkpoint to checkpoint.
 
 pub(crate) mod checkpoint;
 pub(crate) mod encoding;

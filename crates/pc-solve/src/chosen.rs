@@ -1,4 +1,4 @@
-//! The method that options choose.
+//! The method chosen by options.
 
 use pc_expr::{PolynomialMotion, VectorField};
 
@@ -18,7 +18,7 @@ use crate::settings::method::Method;
 use crate::settings::options::Options;
 use crate::taylor::stepper::Taylor;
 
-/// The method of [`Options`] at work.
+/// The method chosen by [`Options`].
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Chosen<F: VectorField> {
@@ -35,10 +35,11 @@ pub enum Chosen<F: VectorField> {
 }
 
 impl<F: VectorField> Chosen<F> {
-    /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components.
+    /// Starts at y(t0) = y0, as long as `field` has components.
     ///
     /// # Errors
-    /// As for `Cvode::new`, [`Dop853::new`], [`Taylor::new`] and `Auto::new`; [`InputError::NoCvode`](crate::InputError::NoCvode).
+    /// As for `Cvode::new`, [`Dop853::new`], [`Taylor::new`] and `Auto::new`;
+    /// [`InputError::NoCvode`](crate::InputError::NoCvode).
     pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
         match options.method {
             Method::Dop853 => Ok(Chosen::Dop853(Box::new(Dop853::new(field, t0, y0, options)?))),
@@ -70,7 +71,7 @@ impl<F: VectorField> IntegrationMethod<F> for Options {
     }
 }
 
-/// Does the same by any method.
+/// Forwards a call to the method.
 macro_rules! each {
     ($chosen:expr, $method:ident => $call:expr) => {
         match $chosen {

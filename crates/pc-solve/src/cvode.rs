@@ -1,11 +1,12 @@
 //! A safe interface to SUNDIALS CVODES.
 //!
-//! `context`, `handles` and `callback` are the boundary to C: owned objects, vector fields as callbacks. `options` are
-//! its options, `cvode` is the integration step by step, made by `setup`, with `interpolation`, `projection` and
-//! `quadrature_callbacks` inside its steps, and `integrals` computed as a `quadrature`; `breaks` and `foresee`, by
-//! `foresight`, handle fields that are not smooth in time; `restart` continues after jumps; `statistics` counts the
-//! work. `stepper` makes it a method, `integration` begins an integration by it. `linear` are its linear systems,
-//! `forward` its sensitivities. `version` names the library.
+//! `context`, `handles` and `callback` are the boundary to C: owned objects, vector fields as
+//! callbacks. `cvode` makes steps; `setup` constructs it, `interpolation` and `projection` give
+//! states inside steps; `integrals` are computed as a `quadrature`, called back by
+//! `quadrature_callbacks`; `breaks` and `foresee`, with `foresight`, handle fields that are not
+//! smooth in time; `restart` continues after jumps; `statistics` counts the work. `stepper` makes
+//! it a method, `integration` starts an integration by it. `linear` solves its linear systems,
+//! `forward` its equations of variation. `version` names the library.
 
 pub(crate) mod breaks;
 pub(crate) mod callback;

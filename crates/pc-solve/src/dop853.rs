@@ -1,15 +1,18 @@
-//! DOP853: the explicit Runge–Kutta method of order 8 of Dormand and Prince, with step control and dense output.
+//! DOP853: the explicit Runge–Kutta method of order 8 of Dormand and Prince, with step control and
+//! dense output.
 //!
 //! ```text
 //! kᵢ = f(t + cᵢ h, y + h Σ_{j<i} aᵢⱼ kⱼ), i = 1 … 12;  y₁ = y + h Σ bᵢ kᵢ;  k₁₃ = f(t + h, y₁), which is k₁ of the next step
 //! ```
-//! [Prince, Dormand 1981] and [Hairer, Nørsett, Wanner 1993], II.5, with their error estimates of orders 5 and 3, their
-//! step control (II.4) and their dense output of order 7 (II.6); stiffness is detected as in [Hairer, Wanner 1996], IV.2.
+//! [Prince, Dormand 1981] and [Hairer, Nørsett, Wanner 1993], II.5, with their error estimates of
+//! orders 5 and 3, their step control (II.4) and their dense output of order 7 (II.6); stiffness is
+//! detected as in [Hairer, Wanner 1996], IV.2.
 //!
-//! `coefficients` are its numbers, `arithmetic` its sums. Read `stepper` first: `setup` begins, `step` makes a step, by
-//! `stages`, as long as `control` says; `dense` are the states inside it, `hindsight` looks there for what the step has
-//! not seen, `stiffness` whether the stability of the method limits the steps. `lockstep` is the same for many members of an
-//! ensemble at once.
+//! Read `stepper` first: `setup` starts an integration, `step` makes a step by `stages`, of a
+//! length given by `control`; `dense` gives the states inside it, `hindsight` checks them for
+//! features of f that the stages missed, `stiffness` detects that stability limits the steps.
+//! `coefficients` holds the tables, `arithmetic` the sums over stages. `lockstep` integrates many
+//! members of an ensemble at once.
 
 mod arithmetic;
 mod coefficients;

@@ -1,7 +1,8 @@
-//! Many motions at once, over all cores.
+//! Many motions at once, on all cores.
 //!
-//! Read `ensemble`; `ordered` puts results of threads in the order of the members, `random` gives each member its own
-//! stream of random numbers, `stop` ends them early.
+//! Read `ensemble`; `in_lanes` integrates members together in vector lanes, `ordered` puts results
+//! of threads in the order of the members, `random` gives each member its own stream of random
+//! numbers, `stop` ends an ensemble early.
 
 pub(crate) mod ensemble;
 pub(crate) mod in_lanes;

@@ -1,7 +1,7 @@
 //! Errors of integration.
 //!
-//! `input`: with a problem or an option, before the first step. `solve`: in an integration, for a `reason`, which may be a
-//! `return_code` of CVODES or that a number is `non_finite`.
+//! `input`: of a problem or an option, before the first step. `solve`: of an integration, with its
+//! `reason`, possibly a `return_code` of CVODES; `non_finite`: of a number that is NaN or infinite.
 
 pub(crate) mod input;
 pub(crate) mod non_finite;

@@ -1,7 +1,7 @@
 //! Events: their functions, and their location.
 //!
-//! `events` are given by closures, with their occurrences; `samples` are values along a step, which `closer` adds to where
-//! there is doubt; `root_finding` locates the first zeros of functions along a step.
+//! `events` defines events given by closures, and occurrences; `samples` holds values along a step,
+//! which `closer` refines where there is doubt; `root_finding` locates the first zero along a step.
 
 pub(crate) mod closer;
 pub(crate) mod events;

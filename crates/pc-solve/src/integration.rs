@@ -1,12 +1,13 @@
 //! Integration by any method: one engine for outputs, events, dense output and checkpoints.
 //!
 //! A [`VectorField`](pc_expr::VectorField), a start and a method give states, occurrences and
-//! [`Statistics`](statistics::Statistics). Read `stepper` first, the interface of a method, and `method`, how one
-//! begins; then `integration`, which is built on it: `front` goes on by a step and looks for events in it, `run` goes from
-//! event to event, `step` gives single steps and their polynomials, `occur` handles events, `saltation` their effect on
-//! derivatives; an `observer` is informed of everything. `limits` bound an integration, `checks` validate its input;
-//! `trajectory` and `dense_output` hold motions. `fn_field` makes closures vector fields, `breaks` ends steps where a field
-//! is not smooth.
+//! [`Statistics`](statistics::Statistics). Read `stepper` first, the interface of a method, and
+//! `method`, which starts one; then `integration`, which is built on them: `front` makes a step and
+//! searches it for events, `run` goes from event to event, `step` gives single steps and their
+//! polynomials, `occur` applies events, `saltation` their effect on derivatives; an `observer` is
+//! told of outputs, steps and events. `limits` bounds an integration, `checks` validates its input;
+//! `trajectory` and `dense_output` hold motions. `fn_field` turns closures into vector fields,
+//! `breaks` ends steps where a field is not smooth.
 
 pub(crate) mod breaks;
 pub(crate) mod checks;

@@ -1,11 +1,13 @@
-//! Integration of ẏ = f(t, y), for any [`VectorField`]: by SUNDIALS CVODES, DOP853 or Taylor's method.
+//! Integration of ẏ = f(t, y), for any [`VectorField`]: by SUNDIALS CVODES, DOP853 or Taylor's
+//! method.
 //!
-//! This page meets things in the order in which a program does: a motion in one call, its method, events, the motion as a
-//! function of time, a motion step by step, interruptions, derivatives, many motions.
+//! In the order in which a program needs them: a motion in one call, its method, events, the motion
+//! as a function of time, a motion step by step, checkpoints, derivatives, many motions.
 //!
 //! # A motion in one call
 //!
-//! A vector field is compiled equations of motion, a `Motion` of [pc-mech](../pc_mech/index.html), or a closure:
+//! A vector field is either compiled equations of motion, a `Motion` of
+//! [pc-mech](../pc_mech/index.html), or a closure:
 //! ```
 //! use pc_solve::{Options, from_fn, solve};
 //!
@@ -23,29 +25,31 @@
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! [`from_fn`] takes more closures where more is known: [a Jacobian](FnField::with_jacobian), [its
-//! pattern](FnField::with_sparsity), [products with it](FnField::with_jvp), [a projection](FnField::with_projection) to
-//! invariants. Failures are values: a [`SolveFailure`] has the outputs that were reached, and a [`SolveError`] that says why
-//! not more.
+//! [`from_fn`] takes further closures:[a Jacobian](FnField::with_jacobian), [its
+//! pattern](FnField::with_sparsity), [products with it](FnField::with_jvp), [a
+//! projection](FnField::with_projection) to invariants. Failures are values: a [`SolveFailure`]
+//! holds the outputs reached before the failure, and the [`SolveError`] that ended the motion.
 //!
 //! # Method and tolerances
 //!
-//! [`Options`] chooses a [`Method`]: the variable-order multistep formulas of CVODE [Cohen, Hindmarsh 1996], in SUNDIALS 7
-//! [Hindmarsh et al. 2005; Gardner et al. 2022], which are [`Adams`](Method::Adams) and, for stiff systems,
-//! [`Bdf`](Method::Bdf); the explicit Runge–Kutta method [`Dop853`](Method::Dop853); [`Auto`](Method::Auto), which goes from
-//! that to BDF where stiffness is seen; and [`Taylor`](Method::Taylor), which needs a field that is a program. The error of
-//! a step is bounded by [`relative_tolerance`](Options::relative_tolerance) · |y| +
-//! [`absolute_tolerance`](Options::absolute_tolerance).
+//! [`Options`] chooses a [`Method`]: the variable-order multistep formulas of CVODE [Cohen,
+//! Hindmarsh 1996], in SUNDIALS 7 [Hindmarsh et al. 2005; Gardner et al. 2022], which are
+//! [`Adams`](Method::Adams) and, for stiff systems, [`Bdf`](Method::Bdf); the explicit Runge–Kutta
+//! method [`Dop853`](Method::Dop853); [`Auto`](Method::Auto), which changes from DOP853 to BDF
+//! where it detects stiffness; and [`Taylor`](Method::Taylor), which needs a field that is a
+//! program. The error of a step is bounded by [`relative_tolerance`](Options::relative_tolerance) ·
+//! |y| + [`absolute_tolerance`](Options::absolute_tolerance).
 //!
 //! # Events
 //!
-//! [`Solve`] is a motion still to be integrated, with a method and [`Events`]: zeros of functions, which end the motion or
-//! [reset](FnEvents::with_reset) its state. Each is located to rounding; two in one step, and resets that cause others, are
-//! told apart. Impacts that follow each other ever faster end at their [`Accumulation`].
+//! [`Solve`] describes a motion to be integrated, with a method and [`Events`]: zeros of functions,
+//! which end the motion or [reset](FnEvents::with_reset) its state. Each is located to rounding,
+//! even if several lie in one step or one reset causes another. Impacts that follow each other ever
+//! faster end the motion at their [`Accumulation`].
 //! ```
 //! use pc_solve::{Event, FnEvents, Solve, from_fn};
 //!
-//! // A stone that is thrown upwards, until it is back.
+//! // A stone thrown upwards, until it returns.
 //! let fall = from_fn(2, |_t, y, ydot| { ydot[0] = y[1]; ydot[1] = -10.0; Ok(()) });
 //! let ground = FnEvents::new().with(Event::new("ground").falling().terminal(true), |_t, y| Ok(y[0]));
 //! let solution = Solve::new(fall, 0.0, &[0.0, 5.0]).events(ground).run(&[0.5, 2.0])?;
@@ -55,13 +59,15 @@
 //!
 //! # The motion as a function of time
 //!
-//! [`Solve::dense`] keeps the polynomials of all steps: [`DenseOutput`] has y and ẏ at any time, as exact as the steps.
+//! [`Solve::dense`] keeps the polynomials of all steps: [`DenseOutput`] evaluates y and ẏ at any
+//! time, as accurately as the steps.
 //!
 //! # Step by step
 //!
-//! [`Solve::start`] gives the [`Integration`] itself, which stands at a time with a state: it steps, moves to a time, is
-//! [restarted](Integration::restart) elsewhere, or has its field [changed](Integration::change), as a simulation does that
-//! reads a controller. An [`Observer`] sees outputs, steps and occurrences of a [run](Integration::run).
+//! [`Solve::start`] gives the [`Integration`] itself, which is at a time and a state: it steps,
+//! advances to a time, can be [restarted](Integration::restart) from another state, and its field
+//! can be [changed](Integration::change), for example by a controller. An [`Observer`] sees
+//! outputs, steps and occurrences of a [run](Integration::run).
 //! ```
 //! use pc_solve::{Solve, from_fn};
 //!
@@ -75,24 +81,26 @@
 //! # Ok::<(), pc_solve::SolveError>(())
 //! ```
 //!
-//! # Interrupted, and gone on with
+//! # Checkpoints
 //!
-//! [`solve_checkpointed`] gives a [`Checkpoint`] every so many steps. A motion that goes on from one is the motion that was
-//! never interrupted, to the last bit; a checkpoint [is bytes](Checkpoint::to_bytes) that another process can read. A
-//! [`Deadline`] in the options ends a motion that takes too long.
+//! [`solve_checkpointed`] gives a [`Checkpoint`] every so many steps. A motion resumed from one
+//! equals the uninterrupted motion to the last bit; a checkpoint [converts to
+//! bytes](Checkpoint::to_bytes) that another process can read. A [`Deadline`] in the options ends a
+//! motion that takes too long.
 //!
 //! # Derivatives
 //!
-//! S = ∂y/∂(p, y₀) is integrated with the motion by [`solve_with_sensitivities`], and jumps where an event resets the state
-//! by [`solve_with_sensitivities_and_events`]. For many parameters and one number g that depends on the motion,
-//! [`adjoint_gradient`] integrates backwards instead; g is a [`Functional`]. Integrals along a motion come
-//! [with it](solve_with_integrals), and [`lyapunov_exponents`] from the growth of its tangent vectors.
+//! S = ∂y/∂(p, y₀) is integrated with the motion by [`solve_with_sensitivities`], and jumps where
+//! an event resets the state by [`solve_with_sensitivities_and_events`]. For many parameters and a
+//! single quantity g of the motion, [`adjoint_gradient`] integrates backwards instead; g is a
+//! [`Functional`]. [`solve_with_integrals`] integrates quantities along the motion, and
+//! [`lyapunov_exponents`] measures the growth of its tangent vectors.
 //!
 //! # Many motions
 //!
-//! An [`Ensemble`] integrates on all cores, and fields that are programs eight at a time in the lanes of a vector. Its results
-//! come in the order of the members and are the same for any number of threads; [`member_stream`] gives each member random
-//! numbers of its own.
+//! An [`Ensemble`] integrates on all cores, and fields that are programs eight at a time in the
+//! lanes of a vector. Its results come in the order of the members and are the same for any number
+//! of threads; [`member_stream`] gives each member its own random numbers.
 //! ```
 //! use std::ops::ControlFlow;
 //! use pc_solve::{Ensemble, Method, Options, from_fn};
@@ -110,21 +118,22 @@
 //! # Ok::<(), pc_solve::EnsembleError>(())
 //! ```
 //!
-//! # A method of one's own
+//! # Your own method
 //!
-//! [`Stepper`] is what a method has to do: make a step and know the states in it. Outputs, events, dense output and checkpoints
-//! follow. [`RungeKutta4`] is the example to read.
+//! A method implements [`Stepper`]: it makes a step and knows the states along it. Outputs, events,
+//! dense output and checkpoints are built on that. [`RungeKutta4`] is an example.
 //!
 //! # Without C
 //!
-//! Without the default feature `cvode` the crate builds without SUNDIALS and a C compiler. It then has [`Integration`]
-//! by any [`Stepper`], such as [`Dop853`], [`Taylor`] and [`RungeKutta4`], with events, dense output and checkpoints.
+//! Without the default feature `cvode` the crate needs neither SUNDIALS nor a C compiler. It then
+//! has [`Integration`] by any [`Stepper`], such as [`Dop853`], [`Taylor`] and [`RungeKutta4`], with
+//! events, dense output and checkpoints.
 //!
-//! # Around it
+//! # Related crates
 //!
-//! Below: [`pc_expr`], whose [`VectorField`] it integrates. Above: [pc-cli](../pc_cli/index.html), which is the program `pc`,
-//! [pc-capi](../pc/index.html), the C library. Beside it, without knowing it: [pc-mech](../pc_mech/index.html), which makes vector
-//! fields of Lagrangians.
+//! [`pc_expr`] defines the [`VectorField`] integrated here; [pc-mech](../pc_mech/index.html)
+//! derives vector fields from Lagrangians. [pc-cli](../pc_cli/index.html), the program `pc`, and
+//! [pc-capi](../pc/index.html), the C library, use this crate.
 
 #![cfg_attr(feature = "cvode", expect(unsafe_code, reason = "calls of the C library SUNDIALS"))]
 

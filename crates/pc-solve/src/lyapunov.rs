@@ -1,4 +1,4 @@
-//! Lyapunov exponents: `lyapunov` integrates deviations, `orthonormal` keeps them apart.
+//! Lyapunov exponents: `lyapunov` integrates tangent vectors, `orthonormal` orthonormalises them.
 
 pub(crate) mod lyapunov;
 pub(crate) mod orthonormal;

@@ -1,11 +1,11 @@
-//! The classical Runge–Kutta method of order 4, with steps of one length.
+//! The classical Runge–Kutta method of order 4, with fixed steps.
 //!
 //! ```text
 //! k₁ = f(t, y), k₂ = f(t + h/2, y + h/2 k₁), k₃ = f(t + h/2, y + h/2 k₂), k₄ = f(t + h, y + h k₃)
 //! y(t + h) ≈ y + h/6 (k₁ + 2 k₂ + 2 k₃ + k₄)
 //! ```
-//! [Kutta, Z. Math. Phys. 46 (1901) 435]. Inside a step states are those of the cubic that has the states and rates of both
-//! ends (Hermite), which is as accurate as the steps are: its error is of order 4, too.
+//! [Kutta, Z. Math. Phys. 46 (1901) 435]. States inside a step lie on the cubic Hermite
+//! interpolant, whose error is of order 4 like that of the steps.
 
 use pc_expr::{Failure, VectorField};
 
@@ -17,13 +17,13 @@ use crate::integration::method::IntegrationMethod;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 
-/// A step that would end so near to a stop time or a break, in parts of its length, ends there.
+/// A step that would end within this fraction of its length of a stop time or a break ends there.
 const NEAR: f64 = 1e-9;
-/// Tolerances of the state, relative and absolute, where events ask what matters: a method of fixed steps has none.
+/// Relative and absolute tolerance of the state for events, since a fixed-step method has none.
 const TOLERANCES: (f64, f64) = (1e-9, 1e-12);
 
-/// Integration by [`RungeKutta4`], without error control: for real-time loops, for comparison, and where each step has to take
-/// equally long.
+/// Integration by [`RungeKutta4`], without error control: for real-time loops, for comparisons, and
+/// where every step has to take equal time.
 ///
 /// ```
 /// use pc_solve::{FixedStep, Solve, from_fn};
@@ -40,7 +40,8 @@ pub struct FixedStep {
 }
 
 impl FixedStep {
-    /// Steps of this length, positive; those before a stop time, a [break](VectorField::breaks) or a reset may be shorter.
+    /// Steps of this positive length; a step that ends at a stop time or a
+    /// [break](VectorField::breaks) may be shorter.
     pub fn new(length: f64) -> FixedStep {
         FixedStep { length, limits: Limits::default() }
     }
@@ -63,7 +64,8 @@ impl<F: VectorField> IntegrationMethod<F> for FixedStep {
 
 /// The classical Runge–Kutta method of order 4 as a [`Stepper`].
 ///
-/// States are [projected](VectorField::project) at the end of each step, and inside steps where they are read.
+/// States are [projected](VectorField::project) at the end of each step, and inside steps where
+/// they are read.
 #[derive(Debug, Clone)]
 pub struct RungeKutta4<F> {
     field: F,
@@ -73,11 +75,11 @@ pub struct RungeKutta4<F> {
     /// t, y and f at the start and at the end of the last step.
     start: Node,
     end: Node,
-    /// Whether there is no step since the start.
+    /// Whether no step has been made since the start.
     begins: bool,
     time: f64,
     rates: [Vec<f64>; 3],
-    /// Where a stage, or a state inside a step, is computed.
+    /// Room for the argument of a stage, or a state inside a step.
     state: Vec<f64>,
     statistics: Statistics,
 }
@@ -91,7 +93,7 @@ struct Node {
 }
 
 impl<F: VectorField> RungeKutta4<F> {
-    /// At y(t0) = y0, which has as many numbers as `field` has components.
+    /// Starts at y(t0) = y0, as long as `field` has components.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;
@@ -131,7 +133,7 @@ impl<F: VectorField> RungeKutta4<F> {
         evaluated.map_err(|failure| self.failed(Reason::Rates { t: self.end.t }, Some(failure)))
     }
 
-    /// Where the next step towards a time ends.
+    /// The end of the next step towards a time.
     fn target(&mut self, towards: f64) -> Result<f64, SolveError> {
         let from = self.end.t;
         let direction = 1.0_f64.copysign(towards - from);
@@ -149,7 +151,7 @@ impl<F: VectorField> RungeKutta4<F> {
         Ok(next.filter(is_near).unwrap_or(target))
     }
 
-    /// Computes the end of a step of length h; the rates there are those at its beginning until they are computed.
+    /// Computes the state at the end of a step of length h in `state`.
     fn advance(&mut self, t: f64, h: f64) -> Result<(), (f64, Failure)> {
         let RungeKutta4 { field, end: Node { t: from, y, rates: k1 }, rates: [k2, k3, k4], state, .. } = self;
         let middle = *from + h / 2.0;
@@ -171,7 +173,7 @@ impl<F: VectorField> RungeKutta4<F> {
     }
 }
 
-/// Writes f(t, y), which has to be finite.
+/// Writes f(t, y) and checks that it is finite.
 fn evaluate(field: &mut impl VectorField, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
     field.rhs(t, y, rates)?;
     match rates.iter().position(|rate| !rate.is_finite()) {
@@ -183,7 +185,8 @@ fn evaluate(field: &mut impl VectorField, t: f64, y: &[f64], rates: &mut [f64]) 
     }
 }
 
-/// The factors of y₀, h f₀, y₁ and h f₁ in hᵏ times the derivative of order k of the cubic of Hermite at s = (t − t₀)/h.
+/// The factors of y₀, h f₀, y₁ and h f₁ in hᵏ times the derivative of order k of the Hermite cubic
+/// at s = (t − t₀)/h.
 fn hermite(s: f64, order: u32) -> [f64; 4] {
     match order {
         0 => {

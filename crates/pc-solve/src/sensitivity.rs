@@ -1,8 +1,9 @@
 //! Derivatives of a motion by its start and by parameters, and gradients of functionals of it.
 //!
-//! The columns are integrated by CVODES and returned as a `trajectory` or by `forward_output`. `adjoint` integrates
-//! backwards for the gradient of a `functional`, with `adjoint_options`: `adjoint_pass` takes the pieces of the motion
-//! in turn, each a `motion_record`, and `adjoint_field` are the equations, by a `transpose`.
+//! CVODES integrates the derivatives, returned as a `trajectory` or by `forward_output`. `adjoint`
+//! integrates backwards for the gradient of a `functional`, with `adjoint_options`: `adjoint_pass`
+//! goes through the pieces of the motion, each a `motion_record`, and `adjoint_field` holds the
+//! equations, by a `transpose`.
 
 pub(crate) mod adjoint;
 pub(crate) mod adjoint_field;

@@ -1,5 +1,5 @@
-//! Settings that errors mention too: a `method`, a `tolerance`, the signs that an `inequality` keeps; and the `options` that
-//! they are parts of.
+//! Settings, which errors refer to: `method`, `tolerance` and `inequality`, and the `options` that
+//! contain them.
 
 pub(crate) mod inequality;
 pub(crate) mod method;

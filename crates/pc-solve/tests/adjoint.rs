@@ -1,4 +1,5 @@
-//! Gradients by the adjoint equations against closed forms and forward sensitivities; and how they fail.
+//! Gradients by the adjoint equations against closed forms and forward sensitivities, and their
+//! failures.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -80,14 +81,14 @@ fn assert_agree(found: &Gradient, expected: &(f64, Vec<f64>), tolerance: f64, wh
     assert!(error < tolerance * (1.0 + expected.0.abs()), "{what:?}: {} {}", found.value, expected.0);
     let gradient = [&found.by_start[..], &found.by_parameters].concat();
     assert_eq!(gradient.len(), expected.1.len());
-    // The tolerances are relative, and errors go from one component to the other.
+    // Errors relative to the largest component, since they spread between components.
     let size = expected.1.iter().fold(1.0, |size: f64, b| size.max(b.abs()));
     for (a, b) in gradient.iter().zip(&expected.1) {
         assert!((a - b).abs() < tolerance * size, "{what:?}: {gradient:?}, not {:?}", expected.1);
     }
 }
 
-/// The same gradient there and back, of a system that is not linear, without drag (which has a corner) or with.
+/// For a nonlinear system, with drag, which has a corner, and without.
 #[test]
 fn adjoint_and_forward_agree() {
     for p in [[1.3, 0.0, 0.4], [1.3, 0.2, 0.4]] {
@@ -106,7 +107,7 @@ fn adjoint_and_forward_agree() {
     }
 }
 
-/// Checkpoints change nothing but what a start at each leaves of the tolerances.
+/// Checkpoints change gradients within the tolerances of their restarts only.
 #[test]
 fn checkpoints() {
     let p = [1.3, 0.1, 0.4];
@@ -121,7 +122,8 @@ fn checkpoints() {
     }
 }
 
-/// A stop time beyond the end lets the last step pass it, which is no place to begin a piece of the way at.
+/// With a stop time beyond the end the last step may pass the end; no piece of the motion may begin
+/// there.
 #[test]
 fn a_stop_time_beyond_the_end_changes_nothing() {
     let p = [1.3, 0.1, 0.4];
@@ -156,7 +158,7 @@ fn closed_form() {
         let field = Offering(Oscillator { damping: 0.0, frequency: w }, Offer::Products);
         let found = adjoint_gradient(field, Mean, 0.0, &[0.4, 0.0], t, &AdjointOptions::new(motion)).unwrap();
         let (sin, cos) = (w * t).sin_cos();
-        // ∂/∂ω of 0.4 sin(ωT)/ω; by the damping it is compared above.
+        // ∂/∂ω of 0.4 sin(ωT)/ω; the derivative by the damping is compared above.
         let by_frequency = 0.4 * (t * cos / w - sin / (w * w));
         assert!((found.value - 0.4 * sin / w).abs() < 1e-8);
         assert!((found.by_start[0] - sin / w).abs() < 1e-8);
@@ -165,7 +167,7 @@ fn closed_form() {
     }
 }
 
-/// Nothing but y(T), of a field without parameters, with Newton's iteration and Adams' formulas too.
+/// G = y(T), of a field without parameters, also with Newton's iteration and Adams' formulas.
 #[test]
 fn fields_without_parameters() {
     struct End;
@@ -191,8 +193,8 @@ fn fields_without_parameters() {
     }
 }
 
-/// Along the projected states of a field with a projection: G = ∫ x ż dt + z(T) of the pendulum on a circle, by the start
-/// along the circle.
+/// Along projected states: G = ∫ x ż dt + z(T) of a pendulum on a circle, by the start along the
+/// circle.
 #[test]
 fn fields_with_a_projection() {
     struct Area;
@@ -207,7 +209,7 @@ fn fields_with_a_projection() {
             Ok(y[1])
         }
     }
-    // The same by the angle φ from the horizontal: x ż = φ̇ cos² φ.
+    // The same in terms of the angle φ from the horizontal: x ż = φ̇ cos² φ.
     let by_angle = from_fn(3, |_t, y: &[f64], rate: &mut [f64]| {
         rate.copy_from_slice(&[y[1], -y[0].cos(), y[1] * y[0].cos().powi(2)]);
         Ok(())
@@ -231,8 +233,8 @@ fn fields_with_a_projection() {
         for (j, along) in along.into_iter().enumerate() {
             let s = forward.column(0, j);
             let expected = s[2] + y[0].cos() * s[0];
-            // Across the circle λ is some thousand times larger, and its errors are relative to that: 1e-12 times some
-            // thousand steps times some thousand.
+            // Across the circle λ is some thousand times larger, and its errors are relative to
+            // that: 1e-12 times some thousand steps times this factor.
             assert!(
                 (along - expected).abs() < 5e-6 * (1.0 + expected.abs()),
                 "{method:?}: {along} {expected}"
@@ -241,7 +243,7 @@ fn fields_with_a_projection() {
     }
 }
 
-/// ẏ = 1 with faults, from a time on.
+/// ẏ = 1 with faults after some time.
 #[derive(Clone, Copy)]
 struct Faulty {
     jacobian: fn(f64) -> Result<f64, Failure>,

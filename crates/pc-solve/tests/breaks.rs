@@ -1,11 +1,11 @@
-//! Fields that are not smooth at known times: no step crosses one of them.
+//! Fields that are not smooth at known times, which no step crosses.
 
 use std::ops::ControlFlow;
 
 use pc_expr::{Failure, VectorField};
 use pc_solve::{Integration, Method, Observed, Options, solve};
 
-/// ẏ = a y with the factor of the leg between two breaks, which it is told.
+/// ẏ = a y with a factor for each leg between two breaks, set by `enter`.
 #[derive(Clone)]
 struct Legs {
     breaks: Vec<f64>,
@@ -18,7 +18,7 @@ impl Legs {
         Legs { breaks: vec![1.0, 1.25, 3.0], factors: vec![-1.0, 4.0, -4.0, 0.5], leg: 0 }
     }
 
-    /// y(t) of y(0) = 1.
+    /// y(t) from y(0) = 1.
     fn exact(&self, t: f64) -> f64 {
         let ends = self.breaks.iter().copied().chain([f64::INFINITY]);
         let starts = [0.0].into_iter().chain(self.breaks.iter().copied());
@@ -56,7 +56,7 @@ impl VectorField for Legs {
 /// At, before and after breaks.
 const TIMES: [f64; 6] = [0.5, 1.0, 1.1, 2.0, 3.0, 4.0];
 
-/// The errors of some hundred steps of 1e-10 each, of one sign at worst.
+/// Tolerances: the errors of some hundred steps of 1e-10 each, at worst of one sign.
 #[test]
 fn each_leg_is_integrated_by_itself() {
     for method in [Method::Bdf, Method::Adams, Method::Dop853, Method::Auto] {
@@ -86,9 +86,9 @@ fn steps_end_at_breaks() {
     }
 }
 
-/// Back to where it began.
+/// Back to the start.
 #[test]
-fn backward_likewise() {
+fn each_leg_is_integrated_by_itself_backwards() {
     let options = Options::default().relative_tolerance(1e-10).absolute_tolerance(1e-14).stop_time(0.0);
     let mut field = Legs::new();
     field.leg = 3;
@@ -98,9 +98,9 @@ fn backward_likewise() {
     assert!((end - 1.0).abs() < 1e-7, "{end}");
 }
 
-/// ẏ = u, of an input that a program sets between steps: 2 up to t = 1, then −3, also where a step went beyond.
+/// ẏ = u, with an input changed between steps: 2 up to t = 1, then −3, also if a step went beyond.
 #[test]
-fn a_field_is_changed_where_the_integration_stands() {
+fn a_field_is_changed_at_the_current_time() {
     struct Input(f64);
     impl VectorField for Input {
         fn dim(&self) -> usize {
@@ -118,7 +118,7 @@ fn a_field_is_changed_where_the_integration_stands() {
     assert!((cvode.state_at(3.0).unwrap()[0] + 4.0).abs() < 1e-12);
 }
 
-/// A step that may go beyond where it leads does not cross the break there, nor one behind.
+/// A step that may pass its target does not cross a break at the target, nor one beyond it.
 #[test]
 fn targets_at_and_before_breaks_are_reached_within_the_leg() {
     let options = Options::default().relative_tolerance(1e-10).absolute_tolerance(1e-14);

@@ -21,7 +21,7 @@ fn distance(a: &Trajectory, b: &Trajectory) -> f64 {
     a.state(0).iter().zip(b.state(0)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// The derivatives written down are those of f: in random directions, against central differences, whose error is about
+/// The derivatives agree with central differences of f in random directions, whose error is about
 /// ε^(2/3) of the largest term.
 #[test]
 fn derivatives_are_those_of_the_forces() {
@@ -49,8 +49,8 @@ fn derivatives_are_those_of_the_forces() {
     }
 }
 
-/// The error of each is some hundred local errors of 1e-10 in the norm of the error test, which damping brings down
-/// again; Newton's iteration is solved to within a tenth of them.
+/// The error of each is some hundred local errors of 1e-10 in the norm of the error test, reduced
+/// by damping; Newton's iteration adds a tenth of them.
 #[test]
 fn all_solvers_find_the_same_motion() {
     let dense = motion(Chain::new(200), 0.1, LinearSolver::Dense);
@@ -72,7 +72,8 @@ fn all_solvers_find_the_same_motion() {
     assert!(free.jacobian_products >= free.linear_iterations && free.linear_iterations > 0);
 }
 
-/// By the colours of the pattern, 6 evaluations of f or little more make a Jacobian of 800 columns.
+/// By the colours of the pattern, a Jacobian of 800 columns takes little more than 6 evaluations of
+/// f.
 #[test]
 fn quotients_find_the_same_motion_by_few_evaluations() {
     let analytic = motion(Chain::new(200), 0.1, LinearSolver::Sparse);

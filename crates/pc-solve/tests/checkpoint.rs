@@ -1,4 +1,4 @@
-//! Checkpoints: the same numbers to the last bit, and no bytes taken for what they are not.
+//! Checkpoints: the same numbers to the last bit, and invalid bytes are refused.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::num::NonZeroU64;
@@ -22,7 +22,7 @@ fn oscillator() -> impl VectorField {
     })
 }
 
-/// A point that is kept on the unit circle while it turns: the states of the integrator have an offset.
+/// A point that turns, projected to the unit circle: the states of the integrator have an offset.
 struct Turning;
 
 impl VectorField for Turning {
@@ -91,7 +91,7 @@ fn goes_on<F: VectorField>(field: impl Fn() -> F, options: &Options) {
                     GO_ON,
                 )
                 .unwrap();
-                // Outputs, times and work: equal numbers that are not zero are the same bits.
+                // Outputs, times and work: nonzero numbers that are equal have the same bits.
                 assert_eq!(resumed.trajectory, motion);
             }
         }
@@ -99,7 +99,7 @@ fn goes_on<F: VectorField>(field: impl Fn() -> F, options: &Options) {
 }
 
 #[test]
-fn a_motion_goes_on_from_any_of_its_checkpoints_with_the_same_bits() {
+fn a_motion_resumes_from_any_of_its_checkpoints_with_the_same_bits() {
     let loose = |method| Options::new(method).relative_tolerance(1e-5).absolute_tolerance(1e-7);
     goes_on(oscillator, &loose(Method::Bdf));
     goes_on(oscillator, &loose(Method::Adams));
@@ -114,7 +114,7 @@ fn checkpoints_change_the_motion_within_its_tolerance() {
     let (motion, checkpoints) = undisturbed(|| Turning, &times, &Options::default(), 20);
     assert!(checkpoints.len() > 5);
     for (t, y) in motion.iter() {
-        // Local errors of 1e-9 in a few hundred steps, that do not grow.
+        // Local errors of 1e-9 in a few hundred steps, which do not grow.
         assert!((y[0] - angle(t).cos()).abs() < 1e-6 && (y[1] - angle(t).sin()).abs() < 1e-6);
         assert!((y[0].hypot(y[1]) - 1.0).abs() < 4.0 * f64::EPSILON, "projected at an output in a step");
     }
@@ -234,7 +234,7 @@ fn damaged_bytes_are_refused() {
     }
 }
 
-/// The limit is on the steps from one output to the next, wherever checkpoints lie between.
+/// The limit applies to the steps from one output to the next, across checkpoints.
 #[test]
 fn the_step_limit_is_that_of_a_run_without_checkpoints() {
     let times: Vec<f64> = (1..=40).map(|i| 0.5 * f64::from(i)).collect();
@@ -244,7 +244,7 @@ fn the_step_limit_is_that_of_a_run_without_checkpoints() {
             Ok(())
         })
     };
-    // Steps of at most 0.01: about 50 to an output, some more after a new start.
+    // Steps of at most 0.01: about 50 between outputs, a few more after a restart.
     let options = |most| Options::default().max_step(0.01).max_steps(most);
     for steps in [50, 60, 70, 79] {
         let run = |most| {

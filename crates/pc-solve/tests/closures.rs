@@ -31,7 +31,7 @@ fn only_given_closures_are_available() {
     bare.project(0.0, room).unwrap();
     assert_eq!(*room, [0.0; 4]);
 
-    // In any order.
+    // Closures may be added in any order.
     let pattern = Pattern::from_columns(2, [vec![1], vec![0, 1]]);
     let mut full = from_fn(2, still)
         .with_projection(|t, y| {
@@ -66,7 +66,8 @@ fn only_given_closures_are_available() {
     full.project(9.0, &mut two).unwrap();
     assert_eq!(two, [9.0, 9.0]);
 
-    // A dense closure is the dense Jacobian, and gathered if there is no sparse one.
+    // A dense closure is the dense Jacobian; sparse entries are gathered from it without a sparse
+    // closure.
     let dense = |_t: f64, _y: &[f64], jacobian: &mut [f64]| {
         jacobian.copy_from_slice(&[1.0, 2.0, 3.0, 4.0]);
         Ok(())
@@ -84,7 +85,7 @@ fn only_given_closures_are_available() {
     );
 }
 
-/// An integration of closures that may go to another thread may go there too.
+/// An integration of closures that are `Send` is `Send`.
 #[test]
 fn integrations_of_closures_can_be_sent() {
     let rate = vec![1.0];

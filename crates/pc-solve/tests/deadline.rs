@@ -1,4 +1,4 @@
-//! Integrations that are ended from elsewhere, or after some time.
+//! Integrations that are cancelled, or ended by a deadline.
 
 use std::time::{Duration, Instant};
 
@@ -8,7 +8,7 @@ use pc_solve::{
     VectorField, from_fn, solve,
 };
 
-/// ẏ₁ = y₂, ẏ₂ = −y₁, which cancels from some time on.
+/// ẏ₁ = y₂, ẏ₂ = −y₁, which cancels the integration after some time.
 fn cancelling(cancel: Cancel, from: f64) -> impl VectorField {
     from_fn(2, move |t, y, ydot| {
         if t >= from {
@@ -32,18 +32,18 @@ fn a_cancelled_integration_keeps_what_it_reached() {
     let SolveFailure { reached, error, .. } = *failure;
     assert_eq!(error.ended(), Some(Spent::Cancelled));
     assert!(error.to_string().starts_with("cancelled, after reaching t = "), "{error}");
-    // One step goes on: it is short beside the distance of a few outputs.
+    // The current step is completed, which is short against the distance of a few outputs.
     let outputs = reached.len();
     assert!((45..55).contains(&outputs) && !reached.is_complete(), "{outputs}");
     assert!((reached.state(outputs - 1)[0] - reached.times()[outputs - 1].cos()).abs() < 1e-6);
-    // It does not begin again.
+    // A cancelled integration does not begin again.
     let (field, options) = (cancelling(Cancel::default(), 1.0), within(None, cancel));
     let mut again = Integration::new(field, 0.0, &[1.0, 0.0], &options).unwrap();
     assert_eq!(again.state_at(1.0).unwrap_err().ended(), Some(Spent::Cancelled));
     assert_eq!((again.time(), again.state()), (0.0, &[1.0, 0.0][..]));
 }
 
-/// Without an end the integration would go on for hours.
+/// Without a deadline the integration would take hours.
 #[test]
 fn a_deadline_ends_an_integration_and_a_new_one_continues_it() {
     let limit = Duration::from_millis(50);
@@ -56,7 +56,7 @@ fn a_deadline_ends_an_integration_and_a_new_one_continues_it() {
     assert!(
         matches!(&error, SolveError::Integration(error) if error.reason == Reason::Ended(Spent::Time { limit }))
     );
-    // A step takes some microseconds; on a busy machine some tenths of a second may go by.
+    // A step takes some microseconds, but on a busy machine up to some tenths of a second.
     assert!(begun.elapsed() < Duration::from_secs(1), "{:?}", begun.elapsed());
     let reached = motion.time();
     assert!(reached > 0.0 && motion.state_at(reached + 1e6).is_err());

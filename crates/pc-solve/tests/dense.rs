@@ -21,8 +21,8 @@ fn circle(end: f64, options: &Options) -> DenseOutput {
     Solve::new(oscillator(), 0.0, &[1.0, 0.0]).method(options).dense(end).unwrap()
 }
 
-/// Each segment begins exactly where the one before ends, and reaches its state there but for the rounding of a sum of
-/// some ten terms.
+/// Each segment begins at exactly the time at which the previous one ends, with its state up to the
+/// rounding of a sum of some ten terms.
 #[test]
 fn segments_fit_together() {
     for method in [Method::Adams, Method::Bdf] {
@@ -44,7 +44,7 @@ fn segments_fit_together() {
     }
 }
 
-/// Between the steps the motion is as good as at their ends.
+/// Between the ends of steps the motion is as accurate as there.
 #[test]
 fn dense_output_is_as_good_as_the_steps() {
     for method in [Method::Adams, Method::Bdf] {
@@ -58,7 +58,8 @@ fn dense_output_is_as_good_as_the_steps() {
             let at_steps = motion.segments().iter().map(|s| error(s.span().1)).fold(0.0, f64::max);
             let between = (0..=5000).map(|i| error(f64::from(i) / 500.0)).fold(0.0, f64::max);
             assert!(between < 2.0 * at_steps + 2.0 * rtol, "{method} {rtol}: {between:e} {at_steps:e}");
-            // The derivative has the error of a step divided by its length, here by the least of them but the first few.
+            // The derivative has the error of a step divided by its length, here the shortest
+            // length apart from the first few.
             let shortest = motion.segments()[10..].iter().map(|s| s.span().1 - s.span().0);
             let shortest = shortest.fold(f64::INFINITY, f64::min);
             let rate_error = (100..=1000).map(|i| {
@@ -75,9 +76,9 @@ fn dense_output_is_as_good_as_the_steps() {
     }
 }
 
-/// Along each segment the motion leaves the exact one through its start by no more than the error test allows a step:
-/// what is kept of a step is of the order of the step. At 1e-12 these are orders up to 12 in Adams' formulas, and steps
-/// on which a cubic would err by 1e-6.
+/// Along each segment the motion deviates from the exact one through its start by no more than the
+/// error test allows: the segment has the order of the step. At 1e-12 these are orders up to 12 of
+/// Adams' formulas, and steps on which a cubic would err by 1e-6.
 #[test]
 fn segments_have_the_order_of_their_step() {
     for method in [Method::Adams, Method::Bdf] {
@@ -97,7 +98,7 @@ fn segments_have_the_order_of_their_step() {
                     worst = worst.max((y[0] - exact[0]).hypot(y[1] - exact[1]));
                 }
             }
-            // The error test bounds an estimate, and in the mean of the components.
+            // The error test bounds only an estimate, and a mean over the components.
             assert!(worst < 10.0 * rtol, "{method} {rtol}: {worst:e}");
         }
     }
@@ -117,8 +118,8 @@ fn a_time_outside_is_refused() {
     assert_eq!(DenseOutput::default().span(), None);
 }
 
-/// Segments are given one after the other and kept by nobody else; one may begin and end inside a step, and outputs in
-/// between change nothing.
+/// Segments are passed on one by one and not kept; one may begin and end inside a step, and outputs
+/// in between change nothing.
 #[test]
 fn segments_are_given_in_order() {
     let mut cvode = Integration::new(oscillator(), 0.0, &[1.0, 0.0], &Options::default()).unwrap();
@@ -141,7 +142,7 @@ fn segments_are_given_in_order() {
     assert!(cvode.time() > 3.0 && cvode.time() <= 4.0);
 }
 
-/// A ball that bounces: the speed jumps, the height does not; parabolas between.
+/// A bouncing ball: the speed jumps, the height does not, with parabolas in between.
 #[test]
 fn dense_output_with_resets() {
     for method in [Method::Adams, Method::Bdf] {
@@ -195,7 +196,7 @@ fn dense_output_with_resets() {
     }
 }
 
-/// So they do where states are projected after each step, here to the circle.
+/// The same with states projected after each step, here to the circle.
 #[test]
 fn segments_of_projected_states_fit_together() {
     struct Circle;
@@ -251,5 +252,5 @@ fn an_interpolation_that_fails_moves_nothing() {
     assert!(motion.interpolate(0.1, 0).is_err());
     assert_eq!((motion.time(), motion.state()), (0.3, &here[..]));
     broken.set(false);
-    assert!((motion.state_at(0.35).unwrap()[0] - 0.35).abs() < 1e-15); // not behind the end of the step
+    assert!((motion.state_at(0.35).unwrap()[0] - 0.35).abs() < 1e-15); // not beyond the end of the step
 }

@@ -1,4 +1,5 @@
-//! DOP853: order, inside of steps, events, checkpoints, breaks, pulses, failures, limits, stiffness.
+//! DOP853: order, states inside steps, events, checkpoints, breaks, pulses, failures, limits,
+//! stiffness.
 
 use std::cell::Cell;
 use std::num::NonZeroU64;
@@ -23,12 +24,13 @@ fn oscillator() -> impl VectorField {
     .autonomous()
 }
 
-/// Steps of one length: the tolerance never refuses one.
+/// Fixed steps: the tolerance never rejects one.
 fn stepping(length: f64) -> Options {
     options(1.0).absolute_tolerance(1e3).initial_step(length).max_step(length)
 }
 
-/// A nonlinear field with the motion y = 1/√(1 + t): the tall trees of the order conditions take part.
+/// A nonlinear field with the motion y = 1/√(1 + t), to which the tall trees of the order
+/// conditions contribute.
 fn decay() -> impl VectorField {
     from_fn(1, |_t, y: &[f64], rates: &mut [f64]| {
         rates[0] = -0.5 * y[0].powi(3);
@@ -61,7 +63,7 @@ fn states_inside_steps_are_of_order_seven_and_rates_of_one_less_each() {
         let dop = Dop853::new(oscillator(), 0.0, &[1.0, 0.0], &stepping(length)).unwrap();
         let mut motion = Integration::of(dop);
         let mut worst = 0.0_f64;
-        // One step: what it begins with is exact, so the order is that of the local error.
+        // One step from an exact state, so the order is that of the local error.
         let to = motion.step_towards(5.0).unwrap();
         for part in 0..=20 {
             let t = f64::from(part) / 20.0 * to;
@@ -81,7 +83,7 @@ fn states_inside_steps_are_of_order_seven_and_rates_of_one_less_each() {
     assert!(matches!(error, SolveError::Input(InputError::DerivativeOrder { order: 8, highest: 7 })));
 }
 
-/// The steps have h ∝ tol^(1/8), and what is wrong at the end is of the size of the tolerance.
+/// Steps have h ∝ tol^(1/8), and the error at the end is of the size of the tolerance.
 #[test]
 fn errors_and_steps_follow_the_tolerance() {
     let mut before: Option<(f64, u64)> = None;
@@ -99,7 +101,7 @@ fn errors_and_steps_follow_the_tolerance() {
     }
 }
 
-/// Of the first, the states are in the plane of the orbit; e = 1/2 about the origin. After one period it is back.
+/// Kepler's orbit with e = 1/2 about the origin, in its plane. Both return after one period.
 #[test]
 fn kepler_and_arenstorf_orbits_close() {
     let kepler = from_fn(4, |_t, y: &[f64], rates: &mut [f64]| {
@@ -149,7 +151,7 @@ fn evaluations_are_counted_and_dense_output_costs_three() {
     }
     let work = motion.statistics();
     assert_eq!((work.rhs_evaluations, work.steps), (calls.get(), 20));
-    // The first rates, one for the first length, and 12 a step, of which one is not made where it is refused.
+    // The first rates, one for the first length, and 12 for each step, 11 for a rejected one.
     assert_eq!(calls.get(), 2 + 12 * 20 + 11 * work.error_test_failures);
     let (from, to) = (motion.time() - 1e-3, motion.time());
     motion.interpolate(from, 0).unwrap();
@@ -168,7 +170,8 @@ fn dense_output_is_what_interpolation_gives() {
         let t = f64::from(i) / 10.0;
         let y = solve(oscillator(), 0.0, &[1.0, 0.0], &[t, 6.0], &method).unwrap().state(0).to_vec();
         let of_polynomial = dense.evaluate(t).unwrap();
-        // The same polynomials, about another point; and of order 7 with the tolerance of a step of order 8.
+        // The same polynomials, about another point; of order 7, with the tolerance of a step of
+        // order 8.
         assert!((of_polynomial[0] - y[0]).abs() < 1e-13, "{t}: {of_polynomial:?} {y:?}");
         assert!((y[0] - t.cos()).abs() < 1e-7, "{t}: {y:?}");
     }
@@ -198,7 +201,7 @@ fn a_ball_bounces_when_it_should() {
     let times = [1.0, 2.0, 2.5].map(|k| k * fall_time);
     assert_eq!(motion.occurrences.len(), 3);
     for (occurrence, t) in motion.occurrences.iter().zip(times) {
-        // The method is exact for parabolas; what is left is rounding.
+        // The method is exact for parabolas up to rounding.
         assert!((occurrence.time - t).abs() < 1e-13, "{} {t}", occurrence.time);
     }
 }
@@ -280,7 +283,7 @@ fn steps_end_where_the_field_jumps() {
     for method in [Method::Dop853, Method::Auto] {
         for (t0, end, expected) in [(0.0, 2.5, 1.5), (2.5, 0.0, -1.5)] {
             let field = Switch { breaks: [1.0], on: false };
-            // With states inside steps, which must stay on their side.
+            // With outputs inside steps, whose states must stay on their side.
             let times: Vec<f64> = (1..=50).map(|i| t0 + (end - t0) * f64::from(i) / 50.0).collect();
             let motion = solve(field, t0, &[0.0], &times, &Options::new(method)).unwrap();
             assert!((motion.state(49)[0] - expected).abs() < 1e-13, "{method} {t0} → {end}");
@@ -292,7 +295,7 @@ fn steps_end_where_the_field_jumps() {
     }
 }
 
-/// ẏ = 1 from a start at t = 1 − 1e-9 s, until t = 1, where f has no value.
+/// ẏ = −1 − √y reaches y = 0, beyond which f is NaN.
 #[test]
 fn where_the_field_fails_steps_become_shorter() {
     let root = || {
@@ -310,7 +313,7 @@ fn where_the_field_fails_steps_become_shorter() {
     assert!(matches!(error.reason, Reason::Rates { .. }), "{error}");
     assert!((error.time - end).abs() < 1e-6, "{error}");
     assert!(error.failure.is_some());
-    // One that is not recoverable ends it at once.
+    // A fatal failure ends the integration at once.
     let calls = Cell::new(0);
     let fatal = from_fn(1, |_t, _y: &[f64], _rates: &mut [f64]| {
         calls.set(calls.get() + 1);
@@ -325,7 +328,7 @@ fn where_the_field_fails_steps_become_shorter() {
 
 /// ẏ = y² from 1 is infinite at t = 1.
 #[test]
-fn a_motion_that_ends_in_the_infinite_is_an_error() {
+fn a_motion_that_becomes_infinite_is_an_error() {
     let field = from_fn(1, |_t, y: &[f64], rates: &mut [f64]| {
         rates[0] = y[0] * y[0];
         Ok(())
@@ -396,7 +399,7 @@ fn limits_end_an_integration() {
     assert!(longest <= 0.25 * (1.0 + 1e-12), "{longest}");
 }
 
-/// A pulse of a thousandth of the way, on a body at rest, that a closure does not tell of.
+/// A short pulse on a body at rest, with a closure that does not reveal its dependence on time.
 #[test]
 fn pulses_are_not_stepped_over() {
     for (at, width) in [(5.0, 0.2), (1.234, 0.2), (8.9, 0.1)] {
@@ -429,7 +432,7 @@ fn van_der_pol(mu: f64) -> impl VectorField {
 }
 
 #[test]
-fn stiffness_is_seen_where_it_is_and_only_there() {
+fn stiffness_is_detected_where_it_is_and_only_there() {
     for (field, end) in [(relaxation(1e4), 3.0), (relaxation(1e6), 0.1)] {
         let motion = solve(field, 0.0, &[0.0], &[end], &options(1e-6)).unwrap();
         let seen = motion.statistics().stiff_from.expect("stiff");
@@ -446,29 +449,29 @@ fn stiffness_is_seen_where_it_is_and_only_there() {
 }
 
 #[test]
-fn the_choice_goes_over_to_bdf_and_back() {
+fn the_method_changes_to_bdf_and_back() {
     let run = |method: Method, field: &mut dyn VectorField, y: &[f64], end: f64| {
         let options = Options::new(method).relative_tolerance(1e-8).absolute_tolerance(1e-11);
         let motion = solve(field, 0.0, y, &[end], &options).unwrap();
         (motion.state(0).to_vec(), *motion.statistics())
     };
-    // Stiff throughout.
+    // A motion that is stiff throughout.
     let (y, work) = run(Method::Auto, &mut relaxation(1e6), &[0.0], 10.0);
     // y = (λ² cos t + λ sin t)/(1 + λ²) after the transient.
     assert!((y[0] - (10.0_f64.cos() + 1e-6 * 10.0_f64.sin())).abs() < 1e-6, "{y:?}");
     assert_eq!((work.changes, work.stiff_from.is_some()), (1, true));
     assert!(work.implicit_steps > 50 && work.steps < 2000, "{work:?}");
-    // Never.
+    // A motion that is never stiff.
     let (y, work) = run(Method::Auto, &mut oscillator(), &[1.0, 0.0], 100.0);
     let (same, alone) = run(Method::Dop853, &mut oscillator(), &[1.0, 0.0], 100.0);
     assert_eq!((y, work), (same, alone));
     assert_eq!((work.changes, work.implicit_steps), (0, 0));
-    // Stiff along the branches, and not in between: the same motion as by BDF alone.
+    // A motion that is stiff along its slow branches and not in between: the same as by BDF alone.
     let (y, work) = run(Method::Auto, &mut van_der_pol(100.0), &[2.0, 0.0], 200.0);
     let (exact, alone) = run(Method::Bdf, &mut van_der_pol(100.0), &[2.0, 0.0], 200.0);
     assert!((y[0] - exact[0]).abs() < 1e-4, "{y:?} {exact:?}");
     assert!(work.changes >= 1 && work.steps < 3 * alone.steps, "{work:?} {alone:?}");
-    // Stiff until t = 5.
+    // A motion that is stiff until t = 5.
     let mut calms = from_fn(2, |t: f64, y: &[f64], rates: &mut [f64]| {
         let rate = if t < 5.0 { 1e5 } else { 0.1 };
         rates.copy_from_slice(&[y[1], -y[0] - rate * y[1]]);
@@ -489,7 +492,7 @@ fn the_same_input_gives_the_same_bits() {
 }
 
 #[test]
-fn what_a_method_does_not_have_is_refused_by_name() {
+fn options_that_a_method_lacks_are_refused_by_name() {
     let of = |options: Options| {
         let error = solve(oscillator(), 0.0, &[1.0, 0.0], &[1.0], &options).unwrap_err();
         error.to_string()

@@ -1,11 +1,11 @@
-//! The coefficients of DOP853 against the conditions that they satisfy.
+//! The coefficients of DOP853 against the order conditions.
 
 #[path = "../src/dop853/coefficients.rs"]
 mod coefficients;
 
 use coefficients::*;
 
-/// The matrix by rows, with what dense output adds: each with the stages its entries belong to.
+/// The rows of the matrix, including those of dense output, each with the stages of its entries.
 fn rows() -> Vec<(f64, Vec<(usize, f64)>)> {
     fn row(c: f64, stages: &[usize], a: &[f64]) -> (f64, Vec<(usize, f64)>) {
         assert_eq!(stages.len(), a.len());
@@ -71,8 +71,8 @@ fn the_weights_integrate_polynomials_of_degree_seven() {
     }
 }
 
-/// Trees that are not bushy: each entry of the matrix that a step uses takes part in one of them. The conditions
-/// Σ bᵢ cᵢᵖ (A cᵖ…)ᵢ = 1/((…)(…)) of [Hairer, Nørsett, Wanner 1993], II.2, theorem 2.13, to order 8.
+/// Trees that are not bushy, to which each entry of the matrix contributes. The conditions Σ bᵢ cᵢᵖ
+/// (A cᵖ…)ᵢ = 1/((…)(…)) of [Hairer, Nørsett, Wanner 1993], II.2, theorem 2.13, to order 8.
 #[test]
 fn taller_trees_satisfy_their_conditions() {
     for p in 0..7 {
@@ -94,7 +94,7 @@ fn taller_trees_satisfy_their_conditions() {
             }
         }
     }
-    // The tallest tree, of order 8: every stage behind the other.
+    // The tallest tree, of order 8: a chain of stages.
     let mut phi = nodes(1);
     for _ in 0..6 {
         phi = times(&phi);
@@ -102,7 +102,7 @@ fn taller_trees_satisfy_their_conditions() {
     assert!((weighed(&phi) - 1.0 / 40320.0).abs() < 1e-15, "{}", weighed(&phi));
 }
 
-/// Both error estimates vanish for polynomials below their order, and not at it.
+/// Both error estimates vanish for polynomials below their order, but not at it.
 #[test]
 fn the_error_estimates_are_of_their_orders() {
     let fifth = |k: i32| BY.iter().zip(E5).map(|(&i, e)| e * nodes(k)[i - 1]).sum::<f64>();
@@ -116,7 +116,8 @@ fn the_error_estimates_are_of_their_orders() {
     }
 }
 
-/// Dense output is exact for the quadrature of polynomials of degree 6: u(s) = sᵏ⁺¹/(k+1) for f = tᵏ.
+/// Dense output is exact for the quadrature of polynomials of degree 6: u(s) = sᵏ⁺¹/(k+1) for
+/// f = tᵏ.
 #[test]
 fn the_polynomial_integrates_polynomials_of_degree_six() {
     for k in 0..7 {

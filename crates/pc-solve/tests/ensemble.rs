@@ -1,4 +1,4 @@
-//! Ensembles: order, bounded memory, members that fail, and an end before the end.
+//! Ensembles: order, bounded memory, members that fail, and early stops.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::num::NonZeroUsize;
@@ -30,7 +30,7 @@ fn pendulum() -> impl VectorField {
     })
 }
 
-/// A start drawn from the stream of the member.
+/// A start drawn from the stream of a member.
 fn start(member: u64) -> Vec<f64> {
     let mut stream = member_stream(2, member);
     let mut number = || f64::from(stream.next_u32()) / f64::from(u32::MAX);
@@ -53,7 +53,7 @@ fn pendulums(ensemble: &Ensemble<'_>, members: u64) -> Vec<(u64, Vec<f64>)> {
 }
 
 #[test]
-fn any_number_of_threads_gives_what_each_member_gives_alone() {
+fn results_do_not_depend_on_the_number_of_threads() {
     let alone: Vec<(u64, Vec<f64>)> = (0..50)
         .map(|member| {
             let motion = solve(pendulum(), 0.0, &start(member), &TIMES, &Options::default()).unwrap();
@@ -94,7 +94,7 @@ fn a_member_that_fails_is_reported_with_what_it_had_reached_and_the_others_finis
             (7, Err(MemberError::Solve(failure))) => {
                 assert_eq!(failure.reached.len(), 1);
                 let (t, y) = failure.error.reached().unwrap();
-                // 1/(1 − t), its pole misplaced by as much as a hundred tolerances.
+                // 1/(1 − t), with its pole displaced by up to a hundred tolerances.
                 assert!((t - 1.0).abs() < 1e-7 && y[0] > 1e6, "{t} {y:?}");
             }
             (11, Err(error @ MemberError::Panic { .. })) => {
@@ -117,7 +117,7 @@ fn no_more_members_wait_than_the_window_holds() {
     let (begun, consumed, widest) = (AtomicU64::new(0), AtomicU64::new(0), AtomicU64::new(0));
     let work = |member: u64, _: &Stop<'_>| {
         begun.fetch_max(member + 1, Ordering::SeqCst);
-        // The first takes long: the others must wait for it.
+        // The first member takes long: the others must wait for it.
         std::thread::sleep(Duration::from_millis(if member == 0 { 100 } else { 0 }));
         widest.fetch_max(begun.load(Ordering::SeqCst) - consumed.load(Ordering::SeqCst), Ordering::SeqCst);
         member
@@ -129,7 +129,7 @@ fn no_more_members_wait_than_the_window_holds() {
         ControlFlow::Continue(())
     });
     assert_eq!(ending.unwrap(), Ending::Completed);
-    // A member is taken before it is counted as consumed: one more may be begun meanwhile.
+    // A result is taken before it is counted as consumed: one more member may begin meanwhile.
     let widest = widest.into_inner();
     assert!(widest > 1 && widest <= window as u64 + 1, "{widest}");
 }
@@ -140,7 +140,7 @@ fn endless(_: u64) -> Result<(impl VectorField, Vec<f64>), NoMass> {
 }
 
 #[test]
-fn the_consumer_and_a_flag_stop_members_on_their_way() {
+fn the_consumer_and_a_flag_stop_members_in_progress() {
     let mut consumed = 0;
     let options = Options::default().max_steps(u64::MAX);
     let first_is_short = |member: u64| match member {

@@ -26,7 +26,7 @@ fn every(steps: u64) -> NonZeroU64 {
 
 const GO_ON: fn(f64, &[f64]) -> ControlFlow<()> = |_, _| Continue(());
 
-/// A ball under gravity 1 that keeps the part 0.9 of its speed.
+/// A ball under gravity 1 that keeps 0.9 of its speed in a bounce.
 const BALL: Parts = (
     |_, y, ydot| ydot.copy_from_slice(&[y[1], -1.0]),
     || {
@@ -65,7 +65,8 @@ const BLOCK: Parts = (
     },
 );
 
-/// An oscillator whose zeros change nothing; two come at once, one of them to a coordinate that is at zero all the time.
+/// An oscillator with zeros that change nothing; two occur at once, one of a coordinate that is
+/// always zero.
 const WATCHED: Parts = (
     |_, y, ydot| ydot.copy_from_slice(&[y[1], -y[0], 0.0]),
     || {
@@ -77,7 +78,7 @@ const WATCHED: Parts = (
     },
 );
 
-/// The end of [`WATCHED`].
+/// [`WATCHED`] with a terminal event.
 const ENDED: Parts =
     (WATCHED.0, || (WATCHED.1)().with(Event::new("end").terminal(true), |t, y| Ok(y[0] + 0.05 * t - 0.9)));
 
@@ -94,7 +95,8 @@ fn solve(
     solve_checkpointed(options, parts, from, times, every(steps), save, GO_ON)
 }
 
-/// Up to 16 checkpoints of a motion, as bytes and back, lead to the same motion; how many there are.
+/// Checks that up to 16 checkpoints of a motion, encoded and decoded, lead to the same motion;
+/// returns it with their number.
 #[track_caller]
 fn goes_on(parts: Parts, y0: &[f64], times: &[f64], options: &Options, steps: u64) -> (Solution, usize) {
     let mut kept = Vec::new();
@@ -108,20 +110,21 @@ fn goes_on(parts: Parts, y0: &[f64], times: &[f64], options: &Options, steps: u6
         let (from, _) = Checkpoint::from_bytes(bytes).unwrap();
         assert_eq!(from.to_bytes("a label"), *bytes);
         let resumed = solve(parts, from, times, options, steps, |_, _| ()).unwrap();
-        // Outputs, times, occurrences, ending, work: equal numbers that are not zero are the same bits.
+        // Outputs, times, occurrences, ending, work: nonzero numbers that are equal have the same
+        // bits.
         assert_eq!(resumed, motion, "from checkpoint {n}");
     }
     (motion, kept.len())
 }
 
 #[test]
-fn a_motion_with_events_goes_on_from_any_checkpoint_with_the_same_bits() {
+fn a_motion_with_events_resumes_from_any_checkpoint_with_the_same_bits() {
     let block = [-1.0, 0.0, 1.0];
     let times: Vec<f64> = (0..=60).map(|i| 0.2 * f64::from(i)).collect();
     for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
         for (steps, rtol) in [(1, 1e-3), (2, 1e-3), (7, 1e-6), (30, 1e-7), (1_000_000, 1e-7)] {
             let options = Options::new(method).relative_tolerance(rtol).absolute_tolerance(1e-2 * rtol);
-            // The first step of a leg, which is estimated to be far shorter.
+            // A longer first step of each leg than the one estimated.
             let options = if steps < 7 { options.initial_step(0.02) } else { options };
             let (motion, checkpoints) = goes_on(BALL, &[1.0, 0.0], &times, &options, steps);
             assert!(motion.occurrences.len() > 4 && motion.ending == Some(Ending::Completed));
@@ -139,7 +142,7 @@ fn a_motion_with_events_goes_on_from_any_checkpoint_with_the_same_bits() {
     }
 }
 
-/// What checkpoints change is within the tolerance.
+/// Checkpoints change times within the tolerance only.
 #[test]
 fn checkpoints_leave_occurrences_where_they_are() {
     let options = Options::default().relative_tolerance(1e-12).absolute_tolerance(1e-14);
@@ -160,7 +163,7 @@ fn checkpoints_leave_occurrences_where_they_are() {
     }
 }
 
-/// The last flights are told from those before the checkpoint, and the time since the start is that of the motion.
+/// The history of occurrences continues across checkpoints.
 #[test]
 fn occurrences_accumulate_over_checkpoints() {
     let failure = |steps| {
@@ -180,14 +183,15 @@ fn occurrences_accumulate_over_checkpoints() {
         };
         assert_eq!((event.as_str(), occurrences, reached.ending), ("bounce", expected, None));
         assert_eq!(reached.occurrences.len() as u64, expected);
-        // √2 (1 + e)/(1 − e); local errors of 1e-9 in some ten thousand steps, of low order after each checkpoint.
+        // √2 (1 + e)/(1 − e); local errors of 1e-9 in some ten thousand steps, of low order after
+        // each checkpoint.
         assert!((t - 19.0 * 2.0_f64.sqrt()).abs() < 1e-3, "{t}");
     }
 }
 
-/// Where an observer stops it, between events, just after one, at one that has yet to be dealt with.
+/// Where an observer stops it: between events, just after one, and at one still to be applied.
 #[test]
-fn an_integration_goes_on_from_wherever_it_stands() {
+fn an_integration_resumes_from_any_time() {
     let options = Options::default();
     let start = |parts: Parts, y0: &[f64]| {
         Integration::new(field(parts.0, y0.len()), 0.0, y0, &options)
@@ -214,7 +218,7 @@ fn an_integration_goes_on_from_wherever_it_stands() {
         assert_eq!(ending.unwrap(), Ending::Completed);
         let expected = &plain.occurrences[met..];
         assert_eq!(seen.len(), expected.len(), "{seen:?} {expected:?}");
-        // rtol 1e-9, over some hundreds of steps.
+        // rtol 1e-9, over some hundred steps.
         seen.iter().zip(expected).for_each(|(t, expected)| assert!((t - expected.time).abs() < 1e-6));
         (seen, hybrid.state().to_vec())
     };
@@ -248,8 +252,8 @@ fn an_integration_goes_on_from_wherever_it_stands() {
     assert!(due > 0, "the bounce is due where the step before it ends");
 }
 
-/// A function of time with these values from 0, 0.45, 0.54, 0.6 and 0.7 on, and its zeros found from event to event, each time
-/// from a checkpoint; then from one at 0.55.
+/// The zeros of a piecewise constant function of time with these values from 0, 0.45, 0.54, 0.6 and
+/// 0.7 on: found by resuming from a checkpoint at each event, and from a single checkpoint at 0.55.
 fn zeros_of(values: [f64; 5]) -> [Vec<f64>; 2] {
     let events = || {
         FnEvents::new().with(Event::new("zero"), move |t, _| {
@@ -281,8 +285,8 @@ fn zeros_of(values: [f64; 5]) -> [Vec<f64>; 2] {
     found
 }
 
-/// After a passage a function has to exceed the rounding there, of its values on both sides, before it can pass again; but
-/// it is known on which side it is.
+/// After a passage a function has to exceed the rounding of its values on both sides before it can
+/// pass again, but its side is known.
 #[test]
 fn functions_near_zero_stay_on_their_sides() {
     let (near, nearer) = (1e-30, 1e-31);
@@ -340,12 +344,12 @@ fn a_stopped_or_failed_motion_leaves_its_last_checkpoint() {
     }
 }
 
-/// The limit is on the steps from one output to the next, whatever occurs between.
+/// The limit applies to the steps from one output to the next, across events.
 #[test]
 fn the_step_limit_is_that_of_a_motion_without_checkpoints() {
     let options = |most| Options::default().max_step(0.01).max_steps(most);
     let (y0, times) = ([1.0, 0.0, 0.0], [20.0]);
-    // 2000 steps, and some hundred more after each of the new starts at zeros.
+    // 2000 steps, and some hundred more after the restarts.
     for steps in [20, 100] {
         let run =
             |most| solve(WATCHED, Checkpoint::start(0.0, &y0), &times, &options(most), steps, |_, _| ());
@@ -357,7 +361,8 @@ fn the_step_limit_is_that_of_a_motion_without_checkpoints() {
     assert!(matches!(refused.unwrap_err().error, SolveError::Input(InputError::MaxSteps)));
 }
 
-/// At t = 1e6, where times lie 1.2e-10 apart, the first step of each leg ends where it began; the next is longer.
+/// At t = 1e6, where times are 1.2e-10 apart, the first step of each leg does not advance the time;
+/// the next is longer.
 #[test]
 fn a_step_of_length_zero_is_not_a_leg() {
     let (from, options) = (Checkpoint::start(1e6, &[1.0]), Options::default().initial_step(1e-11));
@@ -375,7 +380,7 @@ fn a_step_of_length_zero_is_not_a_leg() {
         .trajectory;
     assert!(idle > 100 && motion.is_complete(), "{idle}");
     assert!(kept.windows(2).all(|pair| pair[0] < pair[1]), "each checkpoint is ahead of the last");
-    // Steps of about 5e-9, as the tolerance has them, are rounded by up to 1.2e-10: by 1/40.
+    // The tolerance gives steps of about 5e-9, which are rounded by up to 1.2e-10, that is 1/40.
     let expected = (-1e4 * (times[0] - 1e6)).exp();
     assert!((motion.state(0)[0] - expected).abs() < expected / 40.0, "{:?}", motion.state(0));
 }
@@ -401,7 +406,7 @@ fn checkpoints_of_other_motions_are_refused() {
         flipped[bit / 8] ^= 1 << (bit % 8);
         assert!(Checkpoint::from_bytes(&flipped).is_err(), "bit {bit}");
     }
-    // The version is seen before the rest is read.
+    // The version is checked before the rest is read.
     for (version, found) in [("1", 1), ("2", 2), ("17", 17)] {
         let other = [format!("pc checkpoint {version}\n").as_bytes(), &bytes[16..]].concat();
         let error = Checkpoint::from_bytes(&other).unwrap_err();
@@ -415,7 +420,8 @@ fn checkpoints_of_other_motions_are_refused() {
 
 #[test]
 fn nothing_happens_beyond_the_last_output() {
-    // At rest, so that the third step goes from 0.8 to 1.2, past the output and the end behind it.
+    // At rest, so that the third step goes from 0.8 to 1.2, past the output and the terminal event
+    // beyond it.
     let parts: Parts = (
         |_, _, ydot| ydot.fill(0.0),
         || FnEvents::new().with(Event::new("end").terminal(true), |t, _| Ok(t - 1.1)),

@@ -1,4 +1,4 @@
-//! Failures, panics and numbers that are not finite in functions of events and in resets.
+//! Failures, panics and non-finite numbers in event functions and resets.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -30,7 +30,7 @@ fn hybrid(events: FnEvents<'_>) -> Result<Integration<Cvode<impl VectorField>, F
         .with_events(events)
 }
 
-/// The error of an integration towards 3, which leaves it where the error says.
+/// The error of an integration towards 3, after which it is at the time and state of the error.
 fn error_of(events: FnEvents<'_>) -> IntegrationError {
     let mut hybrid = hybrid(events).unwrap();
     let error = hybrid.advance_to(3.0, |_| Continue(())).unwrap_err();
@@ -57,7 +57,7 @@ fn a_function_that_fails() {
     let text = error.to_string();
     assert!(text.starts_with("the event edge cannot be evaluated at t = 1.0"), "{text}");
 
-    // NaN and infinities are failures of the event that has them.
+    // NaN and infinities are failures of their event.
     let other = |_: f64, _: &[f64]| Ok(1.0);
     let nan = |t: f64, _: &[f64]| Ok((1.0 - t).sqrt() + 1.0);
     let error = error_of(FnEvents::new().with(Event::new("fine"), other).with(Event::new("root"), nan));
@@ -91,7 +91,7 @@ fn a_reset_that_fails() {
     assert!(source(&error).starts_with("the event jump sets spare to NaN at t = "), "{}", source(&error));
     assert!(error.state[1] == 0.0);
 
-    // A reset to where a function fails.
+    // A reset to a state where a function fails.
     let far = |_: f64, y: &mut [f64]| {
         y[1] = -1.0;
         Ok(())
@@ -106,8 +106,8 @@ fn a_reset_that_fails() {
     assert!((error.time - 1.0).abs() < 1e-15);
 }
 
-/// A panic goes on to the caller, leaves the last state, comes again when the integration is asked to go on, and leaves
-/// it usable where it does not.
+/// A panic reaches the caller and leaves the last state; it recurs when the integration continues,
+/// and if it does not the integration is usable.
 #[test]
 fn panics() {
     let armed = Cell::new(true);
@@ -148,7 +148,7 @@ fn panics() {
     }
 }
 
-/// Failures of the field are told as without events.
+/// Failures of the field are reported as without events.
 #[test]
 fn a_field_that_fails() {
     let fails = from_fn(1, |t: f64, _: &[f64], ydot: &mut [f64]| {

@@ -1,4 +1,4 @@
-//! Which zeros of a function are passages, however they are met, and when too many accumulate.
+//! Which zeros of a function are passages, and when they accumulate.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -15,7 +15,7 @@ fn clock() -> ProgramField {
     field(|_, [_y]| [1.0.into()])
 }
 
-/// The zeros that are found of a function of the clock, which shows `start` at time `start`.
+/// The zeros found of a function of the clock y = t, from `start` to `end`.
 fn passages(function: impl Fn(f64) -> f64, start: f64, end: f64, options: &Options) -> Vec<f64> {
     let events = FnEvents::new().with(Event::new("zero"), move |_, y| Ok(function(y[0])));
     let motion = Solve::new(clock(), start, &[start]).method(options).events(events).run(&[end]).unwrap();
@@ -26,7 +26,7 @@ fn is_near(found: &[f64], expected: &[f64], tolerance: f64) -> bool {
     found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= tolerance)
 }
 
-/// However it is written, and whether or not the first zero is hit exactly.
+/// For several forms of the function, and whether or not a step hits the first zero exactly.
 #[test]
 fn a_zero_after_one_that_is_hit_exactly_is_found() {
     for method in Method::ALL {
@@ -34,12 +34,13 @@ fn a_zero_after_one_that_is_hit_exactly_is_found() {
         let found = passages(|y| (y - 5.0) * (5.01 - y), 0.0, 10.0, &options);
         assert!(is_near(&found, &[5.0, 5.01], 1e-13), "{method}: {found:?}");
         let found = passages(|y| 0.005f64.powi(2) - (y - 5.005).powi(2), 0.0, 10.0, &options);
-        // The square is that of 5e-3, and a rounding of it moves the zero by 1e-14 of 5e-3 and the rounding of y.
+        // The square is that of 5e-3: its rounding moves the zero by 1e-14 · 5e-3, and y has
+        // rounding.
         assert!(is_near(&found, &[5.0, 5.01], 1e-13), "{method}: {found:?}");
     }
 }
 
-/// Second passages from 1e-3 to 1e-5 after first ones all over the time.
+/// Second passages from 1e-3 to 1e-5 after first ones throughout the interval.
 #[test]
 fn passages_close_to_each_other_are_both_found() {
     for method in Method::ALL {
@@ -47,7 +48,7 @@ fn passages_close_to_each_other_are_both_found() {
         for k in 0..600 {
             let first = 10.0 * (0.618_033_988_749_894_8 * f64::from(k + 1)).fract();
             let apart = 10.0f64.powf(-3.0 - 2.0 * (0.414_213_562_373_095 * f64::from(k)).fract());
-            // Every third one at a number that steps hit.
+            // Every third one at a time that steps hit.
             let first = if k % 3 == 0 { (8.0 * first).round() / 8.0 + 0.125 } else { first };
             let found = passages(|y| (y - first) * (first + apart - y), 0.0, 12.0, &Options::new(method));
             lost += usize::from(!is_near(&found, &[first, first + apart], 1e-12));
@@ -56,11 +57,12 @@ fn passages_close_to_each_other_are_both_found() {
     }
 }
 
-/// A function that comes to zero and turns back does not pass; one that stays there passes when it comes.
+/// A function that reaches zero and returns does not pass; one that stays there passes on arrival.
 #[test]
 fn touches_are_not_passages() {
     for (method, at) in Method::ALL.into_iter().flat_map(|m| [0.3, 1.0, 2.5, 5.0].map(|at| (m, at))) {
-        // Exact at the zero, and nowhere below it. Taylor's step is as long as such a motion, and a closure is seen at its samples alone.
+        // Exact at the zero, and nowhere below it. Taylor's step covers the whole motion, and a
+        // closure is only sampled.
         let free = (method != Method::Taylor).then(|| Options::new(method));
         for options in free.into_iter().chain([Options::new(method).max_step(at / 8.0)]) {
             let none = [0.0; 0];
@@ -69,7 +71,8 @@ fn touches_are_not_passages() {
             assert_eq!(passages(|y| -(y - at).powi(4), 0.0, 10.0, &options), none, "{method}, {at}");
             let stays = passages(|y| (at - y).max(0.0), 0.0, 10.0, &options);
             assert!(is_near(&stays, &[at], 1e-14), "{method}, {at}: {stays:?}");
-            // It leaves zero to the other side, where it came from, and to the other side again.
+            // It stays at zero for a while, then continues to the other side, or returns and passes
+            // later.
             let through = |y: f64| (at - y).max(0.0) + (at + 1.0 - y).min(0.0);
             let found = passages(through, 0.0, 10.0, &options);
             assert!(is_near(&found, &[at], 1e-14), "{method}, {at}: {found:?}");
@@ -80,7 +83,7 @@ fn touches_are_not_passages() {
     }
 }
 
-/// A function that touches zero where another passes loses nothing.
+/// A function that touches zero where another one passes does not hide the passage.
 #[test]
 fn a_touch_hides_no_passage() {
     for method in Method::ALL {
@@ -95,7 +98,7 @@ fn a_touch_hides_no_passage() {
     }
 }
 
-/// A step that is looked at in so many parts shows pairs of zeros farther apart than two of them.
+/// Sampling finds pairs of zeros farther apart than two parts of a step.
 #[test]
 fn a_step_is_sampled_as_densely_as_requested() {
     let wave = |y: f64| (40.0 * y + 0.1).sin();
@@ -116,8 +119,8 @@ fn a_step_is_sampled_as_densely_as_requested() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 256, rng_seed: proptest::test_runner::RngSeed::Fixed(16), ..ProptestConfig::default() })]
 
-    /// A piecewise polynomial with these zeros: a product of their distances between breaks, scaled by another positive
-    /// number in each piece. In steps shorter than two zeros are apart all are found, and nothing else.
+    /// A piecewise polynomial with these zeros, scaled by a positive number in each piece between
+    /// breaks. In steps shorter than the distance of two zeros all are found, and nothing else.
     #[test]
     fn zeros_of_piecewise_polynomials_are_found(
         gaps in prop::collection::vec(0.05..1.0_f64, 1..12),
@@ -129,7 +132,7 @@ proptest! {
         let mut t = 0.0;
         for (gap, exact) in gaps.iter().zip(&exact) {
             t += gap;
-            // Some lie where steps end.
+            // Some lie at the ends of steps.
             t = if *exact { (t * 64.0).ceil() / 64.0 } else { t };
             zeros.push(t);
         }
@@ -145,7 +148,7 @@ proptest! {
     }
 }
 
-/// Located to 1e-15 of the time, where the function is exact.
+/// Located to 1e-15 of the time if the function is exact.
 #[test]
 fn passages_are_located_to_rounding() {
     for scale in [1e-6, 1.0, 1e6] {
@@ -164,7 +167,8 @@ fn passages_are_located_to_rounding() {
     }
 }
 
-/// A ball that bounces with e = ½ and is kicked up again once it is slow: no bounce is the last.
+/// A ball that bounces with e = ½ and is kicked up again when it is slow, so that no bounce is the
+/// last.
 fn kicked(below: f64) -> FnEvents<'static> {
     FnEvents::new().with_reset(
         Event::new("bounce").falling(),
@@ -180,7 +184,7 @@ fn ball() -> ProgramField {
     field(|_, [_y, v]| [v, (-1.0).into()])
 }
 
-/// Whether bounces accumulate does not depend on how long the motion has been going on.
+/// Whether bounces accumulate does not depend on the duration of the motion.
 #[test]
 fn bounces_with_a_kick_do_not_accumulate() {
     let start = 2e4;
@@ -198,7 +202,7 @@ fn bounces_with_a_kick_do_not_accumulate() {
             .unwrap();
         assert!(bounces > 10_000, "{method}");
     }
-    // A ball that comes to rest does so after any time.
+    // A ball that comes to rest is recognised after any time.
     for (method, flights) in Method::ALL.into_iter().flat_map(|method| [(method, 0), (method, 2000)]) {
         let mut left = flights;
         let events = FnEvents::new().with_reset(
@@ -216,12 +220,12 @@ fn bounces_with_a_kick_do_not_accumulate() {
         let SolveError::Integration(error) = failure.error else { panic!("{}", failure.error) };
         let Reason::Accumulation { t, .. } = error.reason else { panic!("{method}: {error}") };
         let limit = 2.0_f64.sqrt() * (3.0 + 2.0 * f64::from(flights));
-        // The rest of 1e-5 flights, extrapolated, and the errors of so many bounces.
+        // The extrapolated remainder of 1e-5 flights, and the errors of so many bounces.
         assert!((t - limit).abs() < 1e-8 * limit, "{method}: {t} is not {limit}");
     }
 }
 
-/// The rule is set in the options, of all ways of running.
+/// The rule is set in the options, for all ways of running.
 #[test]
 fn the_accumulation_fraction_can_be_chosen() {
     for method in Method::ALL {
@@ -235,13 +239,14 @@ fn the_accumulation_fraction_can_be_chosen() {
     }
 }
 
-/// A reset that leaves the function within the tolerances of zero, on the wrong side too, does not make it occur again.
+/// A reset that leaves the function within the tolerances of zero, even on the wrong side, does not
+/// repeat the event.
 #[test]
 fn an_event_does_not_occur_again_before_it_has_left() {
     for off in [0.0, 1e-15, -1e-15, 1e-12, -1e-12, 3e-12, -3e-12] {
         let cases = Method::ALL.into_iter().flat_map(|method| [(method, -0.5), (method, 0.5)]);
         for (method, restitution) in cases {
-            // Falling through a curtain, or bouncing off it, each a little beside where it was.
+            // Falling through a curtain, or bouncing off it, each with a small displacement.
             let events = FnEvents::new().with_reset(
                 Event::new("curtain").falling(),
                 |_, y| Ok(y[0]),

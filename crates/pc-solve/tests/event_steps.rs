@@ -1,4 +1,4 @@
-//! Steps from event to event, states inside them, and ends that lie before an event.
+//! Steps from event to event, states inside them, and ends before an event.
 
 use std::ops::ControlFlow::{Break, Continue};
 
@@ -25,7 +25,7 @@ fn ball() -> Integration<Cvode<impl VectorField>, FnEvents<'static>> {
     cvode.with_events(events).expect("events")
 }
 
-/// What lies in the last step beyond the end is left to the next call.
+/// The part of the last step beyond the end is left to the next call.
 #[test]
 fn dense_output_may_end_in_the_step_before_an_event() {
     let landing = 2.0_f64.sqrt();
@@ -67,7 +67,7 @@ fn steps_end_at_events_and_can_be_interpolated() {
         assert!(told[before..].iter().all(|&(_, time)| time == end));
         let middle = 0.5 * (t + end);
         if told[before..].iter().any(|&(event, _)| event == 0) {
-            // The reset is a new start.
+            // After the reset there is no step to interpolate in.
             assert!(matches!(hybrid.interpolate(middle, 0), Err(SolveError::Input(InputError::NoStep))));
         } else {
             let since = middle - 2.0_f64.sqrt();
@@ -117,7 +117,7 @@ fn an_observer_stops_a_step_and_the_next_continues() {
     }
     assert_eq!(ending, Ending::Stopped);
     assert!((hybrid.time() - 2.0_f64.sqrt()).abs() < 1e-12 && hybrid.state()[1] > 1.0);
-    // As if nobody had observed it.
+    // As without an observer.
     assert_eq!(hybrid.step(10.0, |_| Continue(())).expect("a step"), Ending::Completed);
     let end = hybrid.time();
     let mut other = ball();
@@ -127,7 +127,7 @@ fn an_observer_stops_a_step_and_the_next_continues() {
     assert_eq!((other.time(), other.state()), (end, hybrid.state()));
 }
 
-/// Of events that occur together one stops the observer and another is terminal.
+/// Of simultaneous events the observer stops at one, and another is terminal.
 #[test]
 fn a_terminal_event_ends_an_integration_also_where_an_observer_stops_it() {
     let clock = || {
@@ -179,7 +179,7 @@ fn a_terminal_event_ends_an_integration_also_where_an_observer_stops_it() {
     }
 }
 
-/// Of several functions the one that failed is named.
+/// The function that failed is named among several.
 #[test]
 fn the_event_that_fails_is_named() {
     let still = from_fn(1, |_, _: &[f64], ydot: &mut [f64]| {

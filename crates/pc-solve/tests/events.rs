@@ -13,7 +13,7 @@ use pc_solve::{
     Occurrence, Options, Reason, Solve, SolveError, VectorField, from_fn,
 };
 
-/// Tolerances at which the error of the integration is below what is asked of the times.
+/// Tolerances at which the error of the integration is below that required of the times.
 fn sharp(method: Method) -> Options {
     Options::new(method).relative_tolerance(1e-13).absolute_tolerance(1e-15)
 }
@@ -58,8 +58,9 @@ fn integration(error: SolveError) -> pc_solve::IntegrationError {
     }
 }
 
-/// From height 1 under gravity 1 a ball first lands at √2, and flight n takes 2√2 eⁿ. The motion is a polynomial of degree
-/// 2, exact in both methods: what is left is the rounding of the location, 1e-15 of the time, and of the speeds.
+/// From height 1 under gravity 1 a ball first lands at √2, and flight n takes 2√2 eⁿ. The motion is
+/// a polynomial of degree 2, for which the methods are exact up to rounding of the location, 1e-15
+/// of the time, and of the speeds.
 #[test]
 fn a_ball_bounces_when_it_should() {
     for method in Method::ALL {
@@ -85,7 +86,7 @@ fn a_ball_bounces_when_it_should() {
                 assert!(occurrence.state_before[1] < 0.0);
                 assert_eq!(occurrence.state_after[1], -restitution * occurrence.state_before[1]);
             }
-            // Outputs lie on the parabolas between.
+            // Outputs lie on the parabolas in between.
             for (t, y) in motion.trajectory.iter() {
                 let n = expected.iter().take_while(|&&landing| landing <= t).count();
                 let height = match n {
@@ -105,7 +106,7 @@ fn a_ball_bounces_when_it_should() {
 /// The bounces accumulate at √2 (1 + 2e/(1 − e)).
 #[test]
 fn bounces_that_accumulate_are_an_error_with_their_limit() {
-    // Of BDF the speeds have errors of 1e-8 after so many starts at order 1.
+    // Without BDF, whose speeds have errors of 1e-8 after so many starts at order 1.
     let methods = [Method::Adams, Method::Dop853, Method::Taylor, Method::Auto];
     for (method, restitution) in methods.into_iter().flat_map(|m| [0.1, 0.5, 0.9].map(|e| (m, e))) {
         let failure = Solve::new(falling(), 0.0, &[1.0, 0.0])
@@ -121,12 +122,13 @@ fn bounces_that_accumulate_are_an_error_with_their_limit() {
         let text = error.to_string();
         let Reason::Accumulation { event, occurrences, t } = error.reason else { panic!("{method}: {text}") };
         assert_eq!((event.as_str(), occurrences), ("bounce", failure.reached.occurrences.len() as u64));
-        // The rest, 1e-5 of the first flight at most, is extrapolated from flights whose heights the tolerances hardly resolve.
+        // The remainder, at most 1e-5 of the first flight, is extrapolated from flights whose
+        // heights the tolerances hardly resolve.
         assert!((t - limit).abs() < 1e-8 * limit, "{method}, {restitution}: {t} is not {limit}");
         assert!(error.time <= t && t - error.time <= 1e-5 * 2.0 * 2.0_f64.sqrt() * restitution);
         assert!(text.starts_with("the event bounce occurs without end near t = "), "{text}");
     }
-    // A limit of the user's own.
+    // A user-defined limit.
     let hybrid = Integration::new(falling(), 0.0, &[1.0, 0.0], &Options::default()).unwrap();
     let mut hybrid =
         hybrid.with_events(bounce(0.5)).unwrap().accumulation(Accumulation { occurrences: 4, within: 0.25 });
@@ -134,7 +136,8 @@ fn bounces_that_accumulate_are_an_error_with_their_limit() {
     assert!(matches!(integration(error).reason, Reason::Accumulation { occurrences: 4, .. }));
 }
 
-/// cos t vanishes at (n + 1/2)π: all, the falling and the rising ones, forwards and backwards, nothing changed.
+/// cos t vanishes at (n + 1/2)π: all zeros, falling ones and rising ones, forwards and backwards,
+/// without a change of state.
 #[test]
 fn zeros_are_found_once_in_their_direction() {
     let half = std::f64::consts::FRAC_PI_2;
@@ -166,7 +169,7 @@ fn zeros_are_found_once_in_their_direction() {
     }
 }
 
-/// Functions of time alone: what is left is the location, to 1e-12 of the time as promised.
+/// Functions of time alone, so that only the location has an error, at most 1e-12 of the time.
 #[test]
 fn a_time_is_located_to_rounding() {
     for (method, end) in FOR_CLOSURES.into_iter().flat_map(|m| [1.0, 1e6, 1e-6].map(|end| (m, end))) {
@@ -196,7 +199,7 @@ fn a_time_is_located_to_rounding() {
 #[test]
 fn a_function_that_is_zero_at_the_start_has_to_leave_first() {
     for method in Method::ALL {
-        // sin t leaves zero at once and is back at π.
+        // sin t leaves zero at once and returns at π.
         let events = FnEvents::new().with(Event::new("zero"), |_, y| Ok(y[0]));
         let motion = Solve::new(oscillator(), 0.0, &[0.0, 1.0])
             .method(&sharp(method))
@@ -206,7 +209,7 @@ fn a_function_that_is_zero_at_the_start_has_to_leave_first() {
         let found = times(&motion.occurrences);
         let is_found = found.len() == 1 && (found[0] - std::f64::consts::PI).abs() < 1e-11;
         assert!(is_found, "{method}: {found:?}");
-        // What is zero all the time never occurs.
+        // A function that is always zero has no event.
         let events = FnEvents::new().with(Event::new("nothing"), |_, _| Ok(0.0));
         let motion = Solve::new(oscillator(), 0.0, &[0.0, 1.0])
             .method(Options::new(method))
@@ -217,7 +220,8 @@ fn a_function_that_is_zero_at_the_start_has_to_leave_first() {
     }
 }
 
-/// y = (t − 1)² − depth: no event above zero, two close ones below, found within steps that begin and end above.
+/// y = (t − 1)² − depth: no event above zero, two close ones below, found within steps that begin
+/// and end above.
 #[test]
 fn grazing_functions_cause_no_event() {
     for method in FOR_CLOSURES {
@@ -230,14 +234,14 @@ fn grazing_functions_cause_no_event() {
             let found = times(&motion.occurrences);
             assert_eq!(found.len(), expected, "{method}: {depth} {found:?}");
             for (found, expected) in found.iter().zip([1.0 - depth.abs().sqrt(), 1.0 + depth.abs().sqrt()]) {
-                // y is known to a few rtol = 1e-13, and so t to that over ẏ = 2√depth.
+                // The error of y is a few rtol = 1e-13, that of t the same over ẏ = 2√depth.
                 assert!((found - expected).abs() < 4e-13 / depth.abs().sqrt(), "{found} {expected}");
             }
         }
     }
 }
 
-/// Three functions that vanish together, with roundings of their own, and one a little later.
+/// Three functions that vanish together, with different rounding, and one a little later.
 #[test]
 fn simultaneous_events_are_handled_in_order() {
     let seen = RefCell::new(Vec::new());
@@ -300,7 +304,7 @@ fn outputs_at_events() {
             assert!((shift - expected).abs() < 1e-13, "{shift} {expected}");
         }
     }
-    // A jump at the very end is part of it.
+    // A jump at the end is part of the motion.
     let clock = field(|_, _| vec![1.0], 1);
     let motion =
         Solve::new(clock, 0.0, &[0.0]).method(&Options::default()).events(jump()).run(&[0.25, 0.5]).unwrap();
@@ -325,7 +329,7 @@ fn a_terminal_event_is_the_last_output() {
         assert_eq!(found[..2], [0.0, 1.0]);
         assert!(found.len() == 3 && (found[2] - landing).abs() < 1e-13, "{method}: {found:?}");
 
-        // It can go on from there, and does not meet the event again.
+        // It can continue from there, and does not meet the event again.
         let events = FnEvents::new().with(Event::new("floor").terminal(true), |_, y| Ok(y[0]));
         let start = Solve::new(falling(), 0.0, &[1.0, 0.0]).method(sharp(method)).events(events);
         let mut hybrid = start.start().unwrap();
@@ -359,7 +363,7 @@ fn observers_may_stop() {
     assert!((hybrid.state()[0] - height).abs() < 1e-7);
 }
 
-/// The work before restarts is counted, and each evaluation of the field is.
+/// The work before restarts is counted, and each evaluation of the field.
 #[test]
 fn statistics_continue_over_restarts() {
     for method in FOR_CLOSURES {
@@ -378,7 +382,7 @@ fn statistics_continue_over_restarts() {
     }
 }
 
-/// Options stay over a restart: the first step is the one given, the largest is kept, nothing is evaluated beyond the end.
+/// Options persist over a restart: initial step, maximum step, and no evaluation beyond the end.
 #[test]
 fn options_stay_over_restarts() {
     for method in FOR_CLOSURES {
@@ -411,8 +415,8 @@ fn options_stay_over_restarts() {
     }
 }
 
-/// A pendulum in the plane, kept on its circle by projection, bounces off the vertical: functions and resets see states on
-/// the circle, and go on from states on it.
+/// A plane pendulum, projected to its circle, bounces off the vertical: functions and resets
+/// receive states on the circle, and the motion continues on it.
 #[test]
 fn projected_states() {
     #[derive(Clone)]
@@ -461,7 +465,8 @@ fn projected_states() {
         assert!(worst.get() < 1e-15);
         assert!(motion.occurrences.len() > 5);
         assert!(motion.occurrences.iter().all(|o| off(&o.state_after) < 1e-15 && o.state_after[2] > 0.0));
-        // A half swing from rest at the horizontal to the wall and back takes twice K(1/2) = 1.854…, every time.
+        // A half swing from rest at the horizontal to the wall and back always takes twice
+        // K(1/2) = 1.854….
         let quarter = 1.854_074_677_301_371_9;
         for (n, time) in times(&motion.occurrences).into_iter().enumerate() {
             let expected = quarter * (2 * n + 1) as f64;
@@ -471,9 +476,9 @@ fn projected_states() {
     }
 }
 
-/// `Events` by hand, borrowed.
+/// A borrowed implementation of `Events`.
 #[test]
-fn events_are_given_back() {
+fn events_are_returned() {
     struct Count(Vec<Event>, u32);
     impl Events for Count {
         fn events(&self) -> &[Event] {
@@ -500,7 +505,7 @@ fn events_are_given_back() {
     assert_eq!(events.events()[0].name(), "bounce");
 }
 
-/// A saw tooth: none of many events is lost or found twice, and each resets exactly at its time.
+/// A saw tooth: none of many events is missed or found twice, and each resets exactly at its time.
 #[test]
 fn many_events() {
     for method in FOR_CLOSURES {
@@ -528,7 +533,7 @@ fn many_events() {
     }
 }
 
-/// A call that would go through events without end comes to one.
+/// A call that would pass events without end is limited.
 #[test]
 fn events_do_not_lift_the_limit_of_steps() {
     for method in Method::ALL {
@@ -540,12 +545,12 @@ fn events_do_not_lift_the_limit_of_steps() {
         assert_eq!(error.code(), Some(Code::TooMuchWork), "{method}");
         let reached = motion.time();
         assert!((2.0..1e3).contains(&reached), "{method}: {reached}");
-        // The next call has as many.
+        // The next call has the same limit.
         assert_eq!(motion.advance_to(reached + 1.0, |_| Continue(())).unwrap(), Ending::Completed);
     }
 }
 
-/// Steps that end at t = 0, where a time has no size of its own.
+/// Steps that end at t = 0, where the magnitude of the time gives no scale.
 #[test]
 fn passages_before_time_zero_are_located() {
     let cases = [(-1.0, -0.1, 1), (1.0, 0.1, 1), (10.0, 0.03, 4)];
@@ -568,7 +573,7 @@ fn passages_before_time_zero_are_located() {
     }
 }
 
-/// An event is found where it was without the others.
+/// An event is found at the same time as without the others.
 #[test]
 fn another_event_hides_no_passages() {
     let times = |method: Method, second: bool| {

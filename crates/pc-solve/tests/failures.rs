@@ -1,4 +1,4 @@
-//! Failures of the vector field, and of CVODES, with what they leave behind.
+//! Failures of the vector field and of CVODES, and the state after them.
 
 use std::cell::Cell;
 use std::error::Error;
@@ -36,8 +36,8 @@ fn methods() -> [Options; 3] {
     ]
 }
 
-/// ẏ = −2√y from y(0) = 1 is (1 − t)² until it reaches the wall y = 0 at t = 1; trial states beyond the wall are
-/// answered with shorter steps.
+/// ẏ = −2√y from y(0) = 1 is (1 − t)² until it reaches the wall y = 0 at t = 1; trial states beyond
+/// the wall lead to shorter steps.
 #[test]
 fn recoverable_failures_are_answered_by_shorter_steps() {
     for options in methods() {
@@ -128,7 +128,8 @@ fn codes_of_a_failing_right_hand_side() {
     }
 }
 
-/// After repeated failures of the error test CVODES starts anew with f at the last state, which must not fail.
+/// After repeated failures of the error test CVODES restarts with f at the last state, which must
+/// not fail.
 #[test]
 fn failure_where_no_smaller_step_helps() {
     let started = Cell::new(false);
@@ -200,7 +201,7 @@ fn a_rate_that_is_not_finite_is_named() {
     }
 }
 
-/// A NaN that only a long step meets does no harm.
+/// A NaN met by a long step only does no harm.
 #[test]
 fn a_rate_that_is_not_finite_is_recoverable() {
     let met = Cell::new(false);
@@ -302,7 +303,7 @@ fn an_end_too_close_to_the_start() {
     );
 }
 
-/// The error test cannot pass a jump of f in steps of the least length.
+/// Steps of the minimum length cannot pass the error test at a jump of f.
 #[test]
 fn error_test_failures() {
     let jump = from_fn(1, |t: f64, _y: &[f64], ydot: &mut [f64]| {
@@ -323,7 +324,7 @@ fn error_test_failures() {
     );
 }
 
-/// ẏ = y² leaves every bound at t = 1.
+/// ẏ = y² becomes infinite at t = 1.
 #[test]
 fn blow_up_ends() {
     for options in methods() {

@@ -1,4 +1,4 @@
-//! Forces that act for a short while on a body at rest: none is stepped over.
+//! Short forces on a body at rest: none is stepped over.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -12,7 +12,7 @@ use pc_solve::{Failure, Method, Options, Reason, SolveError, Trajectory, VectorF
 struct Spring {
     program: Arc<Program>,
     kernel: Interpreter,
-    /// Whether it shows how it depends on time.
+    /// Whether its dependence on time is known to integrators.
     shows: bool,
 }
 
@@ -53,7 +53,8 @@ fn after_gauss(t: f64, at: f64, width: f64) -> f64 {
     width * PI.sqrt() * (-width * width / 4.0).exp() * (t - at).sin()
 }
 
-/// The tolerance of a motion of size w at rtol 1e-9, over some hundred steps, and the sum of absolute ones.
+/// Within the tolerance of a motion of size w at rtol 1e-9, over some hundred steps, and the sum of
+/// absolute tolerances.
 fn near(found: f64, expected: f64, width: f64) -> bool {
     (found - expected).abs() < 1e-6 * width + 1e-9
 }
@@ -65,14 +66,14 @@ fn a_pulse_on_a_body_at_rest_is_not_stepped_over() {
             for at in [0.05, 1.234_567, 5.0, 8.9] {
                 let motion = motion(gauss(at, width), 10.0, method);
                 let expected = after_gauss(10.0, at, width);
-                // A pulse that begins before 0 lacks what was before.
+                // A pulse that begins before 0 is incomplete.
                 let found = motion.state(0)[0];
                 let whole = at > 5.0 * width;
                 assert!(
                     !whole || near(found, expected, width),
                     "{method} {width} {at}: {found}, not {expected}"
                 );
-                // The explicit method comes upon some by its stages, or by short first steps.
+                // The explicit method meets some pulses by its stages, or by short first steps.
                 let limits =
                     !matches!(method, Method::Adams | Method::Bdf) || motion.statistics().limited_steps > 0;
                 assert!(!whole || limits, "{method} {width} {at}");
@@ -85,7 +86,7 @@ fn a_pulse_on_a_body_at_rest_is_not_stepped_over() {
 fn pulses_of_many_forms_are_not_stepped_over() {
     let (at, w) = (6.543_21, 1e-3);
     type Force = Box<dyn for<'g> Fn(Expr<'g>, Expr<'g>) -> Expr<'g>>;
-    // Each with its integral: a pulse so short against the period gives that speed.
+    // Each with its integral, which is the speed that so short a pulse gives.
     let forces: [(&str, f64, Force); 7] = [
         ("switch on and off", w, Box::new(move |t, _| (t - at).step(1.0, 0.0) - (t - at - w).step(1.0, 0.0))),
         ("triangle", w, Box::new(move |t, _| (1.0 - ((t - at) / w).abs()).max(0.0))),
@@ -105,7 +106,7 @@ fn pulses_of_many_forms_are_not_stepped_over() {
     for (name, speed, force) in forces {
         for method in [Method::Adams, Method::Dop853] {
             let motion = motion(Spring::new(&force), 10.0, method);
-            // To the first order in w/period: the place of the pulse is known to w.
+            // To first order in w/period: the time of the pulse is uncertain by w.
             let expected = speed * (10.0 - at).sin();
             let found = motion.state(0)[0];
             assert!((found - expected).abs() < 3.0 * w * speed, "{name} {method}: {found}, not {expected}");
@@ -113,7 +114,7 @@ fn pulses_of_many_forms_are_not_stepped_over() {
     }
 }
 
-/// A train of pulses, far apart and all seen; forwards and backwards.
+/// A train of pulses, far apart, all found, forwards and backwards.
 #[test]
 fn each_of_many_pulses_is_found() {
     /// exp(−(sin(πt/10)/0.001)²): at 0, 10, 20, …, each of width 0.01/π.
@@ -148,7 +149,7 @@ fn each_of_many_pulses_is_found() {
     }
 }
 
-/// What contains no t is evaluated as often as if nobody looked.
+/// A field without explicit time takes no additional evaluations.
 #[test]
 fn a_field_without_time_costs_nothing() {
     let pendulum = || {
@@ -163,7 +164,7 @@ fn a_field_without_time_costs_nothing() {
     };
     let (plain, looked) = (run(&mut pendulum().autonomous()), run(&mut pendulum()));
     assert_eq!(plain.limited_steps, 0);
-    // One that is known by its values alone is looked at 64 times, and begins with another step.
+    // One of unknown time dependence is examined 64 times, and has a different first step.
     assert!(looked.rhs_evaluations <= plain.rhs_evaluations * 11 / 10 + 80, "{plain:?} {looked:?}");
     let spring = Spring::new(|_, x| x * 0.5);
     let same = from_fn(2, |_t, y: &[f64], ydot: &mut [f64]| {
@@ -177,14 +178,15 @@ fn a_field_without_time_costs_nothing() {
     assert_eq!(of(&mut { spring }).rhs_evaluations, of(&mut same.autonomous()).rhs_evaluations);
 }
 
-/// A smooth force is followed at hardly more evaluations than without the look-out.
+/// A smooth force takes hardly more evaluations than without foresight.
 #[test]
 fn a_smooth_force_costs_little() {
     fn force(t: Expr<'_>) -> Expr<'_> {
         0.3 * (2.0 * t).cos() + (0.1 * t).tanh()
     }
     let end = 100.0;
-    // The long steps of the explicit method contain turns of the force: these take the stages of dense output too.
+    // The long steps of the explicit method contain turns of the force, which take the stages of
+    // dense output too.
     for (method, tenths) in [(Method::Adams, 11), (Method::Dop853, 14)] {
         let shown = motion(Spring::new(|t, _| force(t)), end, method);
         let mut plain = Spring::new(|t, _| force(t));
@@ -197,7 +199,7 @@ fn a_smooth_force_costs_little() {
     }
 }
 
-/// Where only values are known, a pulse of a fiftieth of the time is found.
+/// With unknown time dependence, a pulse of a fiftieth of the interval is found.
 #[test]
 fn a_function_of_a_program_is_sampled() {
     for k in 0..40 {
@@ -214,13 +216,14 @@ fn a_function_of_a_program_is_sampled() {
     }
 }
 
-/// Pulses of a tenth to a hundred-thousandth of the span, at 200 places each that the golden section spreads.
+/// Pulses of a tenth to a hundred-thousandth of the interval, each at 200 places spread by the
+/// golden section.
 #[test]
 fn pulses_are_found_wherever_they_are() {
     let parts = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
     for (part, method) in parts.into_iter().flat_map(|part| [(part, Method::Adams), (part, Method::Dop853)]) {
         let width = 10.0 * part;
-        // Four widths from the ends a pulse is whole but for 2e-8 of it.
+        // Four widths from the ends a pulse is complete up to 2e-8.
         let span = 10.0 - 8.0 * width;
         let found = (1..=200).filter(|&k| {
             let at = 4.0 * width + span * (0.618_033_988_749_894_8 * f64::from(k)).fract();
@@ -231,7 +234,8 @@ fn pulses_are_found_wherever_they_are() {
     }
 }
 
-/// A force that turns faster than numbers tell times apart is refused soon, unless the tolerances do not feel it.
+/// A force that turns faster than floating-point times resolve is refused early, unless it is below
+/// the tolerances.
 #[test]
 fn a_force_that_no_step_can_follow_is_refused() {
     for (at, from) in [(1e21, 0.0), (1e17, 3.0)] {

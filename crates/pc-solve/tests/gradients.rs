@@ -1,4 +1,5 @@
-//! Gradients of several functionals, over events, and of large systems, against closed forms and forward sensitivities.
+//! Gradients of several functionals, with events, and of large systems, against closed forms and
+//! forward sensitivities.
 
 use std::ops::ControlFlow::Continue;
 
@@ -51,7 +52,7 @@ fn pendulum(p: [f64; 2]) -> impl VectorField {
     })
 }
 
-/// What functionals share changes nothing of each.
+/// Sharing the motion changes no gradient.
 #[test]
 fn several_functionals_have_the_gradients_of_each_alone() {
     let p = [1.3, 0.2];
@@ -131,8 +132,8 @@ impl Functional for Flight {
     }
 }
 
-/// From rest at h the ball lands at τ = w/g with w = √(2gh), so ∫ y dt = 2hτ/3 + e w s²/2 − g s³/6 and y = e w s − g s²/2
-/// with s = T − τ after the first bounce.
+/// From rest at h the ball lands at τ = w/g with w = √(2gh), so ∫ y dt = 2hτ/3 + e w s²/2 − g s³/6
+/// and y = e w s − g s²/2 with s = T − τ after the first bounce.
 #[test]
 fn a_bouncing_ball_in_closed_form() {
     let (h, g, e, t, c) = (1.3_f64, 9.81_f64, 0.8, 1.1, 0.7);
@@ -140,7 +141,8 @@ fn a_bouncing_ball_in_closed_form() {
     let (tau, s) = (w / g, t - w / g);
     let value =
         2.0 * h * tau / 3.0 + e * w * s * s / 2.0 - g * s.powi(3) / 6.0 + c * (e * w * s - g * s * s / 2.0);
-    // By w, τ and s of both terms, with ∂w/∂h = w/2h, ∂τ/∂h = τ/2h, ∂w/∂g = w/2g, ∂τ/∂g = −τ/2g, ∂s = −∂τ.
+    // Derivatives of both terms by w, τ and s, with ∂w/∂h = w/2h, ∂τ/∂h = τ/2h, ∂w/∂g = w/2g,
+    // ∂τ/∂g = −τ/2g, ∂s = −∂τ.
     let by_s = e * w * s - g * s * s / 2.0 + c * (e * w - g * s);
     let by_w = e * s * s / 2.0 + c * e * s;
     let by_h =
@@ -163,14 +165,15 @@ fn a_bouncing_ball_in_closed_form() {
                 (found.by_parameters[1], by_e),
             ];
             for (i, (found, expected)) in pairs.into_iter().enumerate() {
-                // Resets are differentiated by quotients, good for ten digits.
+                // Resets are differentiated by quotients, accurate to ten digits.
                 assert!((found - expected).abs() < 1e-8, "{method:?} {i}: {found} is not {expected}");
             }
         }
     }
 }
 
-/// A pendulum between a wall at x = p₀ − 0.9 that turns it round, and a switch that gives it a push and moves with time.
+/// A pendulum between a wall at x = p − 0.9 that reflects it, and a switch that pushes it and moves
+/// with time.
 fn wall_and_switch(p: f64) -> FnEvents<'static> {
     let turn = |_: f64, y: &mut [f64]| {
         y[1] *= -0.7;
@@ -197,8 +200,8 @@ fn wall_and_switch(p: f64) -> FnEvents<'static> {
         })
 }
 
-/// There and back over many events: the gradient of the value at the end is S(T) read from the left; with a density it is
-/// that of a third component of the state.
+/// Over many events: the gradient of the end term is ∂h/∂y S(T); that of an integral is the same
+/// for a third component of the state.
 #[test]
 fn over_events_the_adjoint_agrees_with_forward_sensitivities() {
     let p = [0.6, 0.05];
@@ -282,7 +285,8 @@ fn over_events_the_adjoint_agrees_with_forward_sensitivities() {
         let gradient = [&found[0].by_start[..], &found[0].by_parameters].concat();
         let size = expected.iter().fold(1.0, |size: f64, s| size.max(s.abs()));
         for (found, expected) in gradient.iter().zip(&expected) {
-            // Ten digits of the quotients at each event, and 1e-11 of each of some thousand steps.
+            // Quotients have ten digits at each event, and each of some thousand steps an error of
+            // 1e-11.
             assert!((found - expected).abs() < 1e-7 * size, "{method:?}: {gradient:?}, not the above");
         }
     }
@@ -321,7 +325,7 @@ fn gradients_that_do_not_exist_are_refused() {
     assert!(matches!(&reason, Reason::Together { events, .. } if events == &["one", "two"]), "{reason:?}");
 }
 
-/// What a field of the diffusion below offers.
+/// The derivatives offered by the field of diffusion below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Offer {
     Sparse,
@@ -330,7 +334,8 @@ enum Offer {
     Both,
 }
 
-/// u̇ᵢ = p₀ (uᵢ₋₁ − 2uᵢ + uᵢ₊₁) − p₁ (uᵢ − uᵢ₋₁) − uᵢ³, with u = 0 beyond the ends: carried along, so that ∂f/∂u is not symmetric.
+/// u̇ᵢ = p₀ (uᵢ₋₁ − 2uᵢ + uᵢ₊₁) − p₁ (uᵢ − uᵢ₋₁) − uᵢ³, with u = 0 beyond the ends: with
+/// convection, so that ∂f/∂u is not symmetric.
 fn diffusion(n: usize, p: [f64; 2], offer: Offer) -> impl VectorField {
     struct Diffusion {
         p: [f64; 2],
@@ -418,8 +423,9 @@ fn bump(n: usize) -> Vec<f64> {
     (1..=n).map(|i| (std::f64::consts::PI * i as f64 / (n + 1) as f64).sin()).collect()
 }
 
-/// Without a dense matrix, whatever the field offers: against forward sensitivities by the parameters and along a
-/// direction. The wave number of the start is low, so that the motion is slow against the stiffest rate, 4 p₀.
+/// Against forward sensitivities by the parameters and along a direction, without a dense matrix,
+/// whatever the field offers. The wave number of the start is low, so that the motion is slow
+/// compared with the stiffest rate, 4 p₀.
 #[test]
 fn large_systems_take_no_dense_matrix() {
     let (n, p, t) = (150, [40.0, 3.0], 1.0);
@@ -445,7 +451,7 @@ fn large_systems_take_no_dense_matrix() {
         let found = adjoint_gradient(diffusion(n, p, offer), Energy, 0.0, &start, t, &options).unwrap();
         let gradient = [dot(&found.by_start, &direction), found.by_parameters[0], found.by_parameters[1]];
         for (found, expected) in gradient.iter().zip(&expected) {
-            // 1e-10 of each of some hundred steps.
+            // An error of 1e-10 in each of some hundred steps.
             assert!(
                 (found - expected).abs() < 1e-7 * expected.abs().max(1.0),
                 "{offer:?}: {gradient:?} {expected:?}"

@@ -14,7 +14,7 @@ use pc_solve::{Checkpoint, Method, Options, Solution, Solve, solve_checkpointed}
 /// Field and events.
 type Parts = fn() -> (ProgramField, ProgramEvents);
 
-/// A ball under gravity 1 that keeps the part 0.8 of its speed.
+/// A ball under gravity 1 that keeps 0.8 of its speed in a bounce.
 fn ball() -> (ProgramField, ProgramEvents) {
     let bounce = program(|_, [y, _v]| [y]);
     (
@@ -23,8 +23,9 @@ fn ball() -> (ProgramField, ProgramEvents) {
     )
 }
 
-/// A block on a floor, drawn by a spring whose end moves at 1/2: y = (x, v, σ), σ = 1 where it slips, as x″ = 0.5 t − x − 0.5 does. It
-/// sticks where v comes to 0, until the spring pulls with 1.
+/// A block on a floor, pulled by a spring whose end moves at speed 1/2: y = (x, v, σ) with σ = 1
+/// where it slips, by x″ = 0.5 t − x − 0.5. It sticks when v reaches 0, until the force of the
+/// spring is 1.
 fn block() -> (ProgramField, ProgramEvents) {
     let functions = program(|t, [x, v, _s]| [t * 0.5 - x - 1.0, v]);
     let slip = |y: &mut [f64]| y[2] = 1.0;
@@ -47,7 +48,7 @@ fn run(parts: Parts, y0: &[f64], times: &[f64], options: &Options) -> Solution {
     Solve::new(field, 0.0, y0).method(options).events(events).run(times).unwrap()
 }
 
-/// The first landing at √2, the flights after it 2√2 · 0.8ⁿ.
+/// The first landing is at √2, the following flights take 2√2 · 0.8ⁿ.
 #[test]
 fn a_ball_bounces_alike_by_all_methods() {
     for method in Method::ALL {
@@ -63,8 +64,8 @@ fn a_ball_bounces_alike_by_all_methods() {
     }
 }
 
-/// From x = −1 at rest it slips by x = 0.5 t − 0.5 − ½ (cos t + sin t), and so v = ½ (1 + sin t − cos t), to t = 3π/2; it then
-/// stays there until 0.5 t − x = 1, and so on from where it came to rest.
+/// From x = −1 at rest it slips by x = 0.5 t − 0.5 − ½ (cos t + sin t), hence v = ½ (1 + sin
+/// t − cos t), until t = 3π/2; it then stays until 0.5 t − x = 1, and so on.
 #[test]
 fn a_block_sticks_and_slips_alike_by_all_methods() {
     let slip = 1.5 * std::f64::consts::PI;

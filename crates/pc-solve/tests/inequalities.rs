@@ -23,7 +23,7 @@ fn least(options: &Options) -> f64 {
     least
 }
 
-/// To loose tolerances the decay overshoots.
+/// With loose tolerances the decay overshoots.
 #[test]
 fn signs_are_kept() {
     let loose = Options::new(Method::Bdf).relative_tolerance(1e-3).absolute_tolerance(1e-2);
@@ -37,7 +37,8 @@ fn signs_are_kept() {
     }
 }
 
-/// ẏ = −1 from 1 leaves y ≥ 0 at t = 1, whatever the step. What is predicted exactly is met by shorter steps too.
+/// ẏ = −1 from 1 violates y ≥ 0 at t = 1, for any step. An exact prediction must lead to shorter
+/// steps too.
 #[test]
 fn an_inequality_that_cannot_be_kept_ends_the_integration() {
     for nonlinear_solver in [NonlinearSolver::Newton, NonlinearSolver::FixedPoint] {
@@ -53,11 +54,11 @@ fn an_inequality_that_cannot_be_kept_ends_the_integration() {
         let error = cvode.state_at(2.0).unwrap_err();
         let (t, y) = error.reached().unwrap();
         assert!(t > 0.99 && t <= 1.0 && y[0] >= 0.0, "{t} {y:?}: {error}");
-        assert_eq!(error.code(), Some(Code::Nonlinear), "{error}"); // as CVODES calls it
+        assert_eq!(error.code(), Some(Code::Nonlinear), "{error}"); // the name used by CVODES
     }
 }
 
-/// Difference quotients do not step over: f is not defined for y ≤ 0.
+/// Difference quotients respect the inequality: f is not defined for y ≤ 0.
 #[test]
 fn quotients_keep_to_their_side() {
     let options = Options::new(Method::Bdf)
@@ -116,7 +117,7 @@ fn starts_that_do_not_satisfy_them_are_refused() {
     assert_eq!(error.to_string(), "inequalities cannot be kept for a vector field that projects its states");
 }
 
-/// A new start, and the reset of an event, must satisfy them too.
+/// A restart, and the reset of an event, must satisfy them too.
 #[test]
 fn a_new_start_is_checked() {
     let falling = || {

@@ -1,4 +1,4 @@
-//! Input that is not valid.
+//! Invalid input.
 
 use pc_solve::{Failure, FnField, Integration, Method, Options, VectorField, from_fn, solve};
 
@@ -107,7 +107,7 @@ fn directions() {
         cvode.set_stop_time(Some(0.5)).unwrap_err().to_string(),
         format!("t = 0.5 lies behind t = {reached}")
     );
-    // None of this changed anything.
+    // The errors have changed nothing.
     assert_eq!(cvode.time(), 1.0);
     assert!((cvode.state_at(2.0).unwrap()[0] - 2.0).abs() < 1e-9);
 

@@ -22,7 +22,8 @@ fn moments() -> Integrals {
     })
 }
 
-/// Forwards and backwards, at the ends of steps and between them, to some dozens of steps of the tolerance.
+/// Forwards and backwards, at the ends of steps and between them, with the errors of some dozens of
+/// steps.
 #[test]
 fn closed_forms() {
     for method in [Method::Adams, Method::Bdf] {
@@ -46,7 +47,8 @@ fn closed_forms() {
     }
 }
 
-/// Steps are taken for the integrals where these are what is hard; without error control the motion is as without them.
+/// Steps are adapted to integrals that vary fast; without error control the motion is as without
+/// them.
 #[test]
 fn error_control() {
     let still = || {
@@ -77,7 +79,8 @@ fn error_control() {
     assert!(fewer < steps && (loose - 10.0_f64.sin() / 5.0).abs() < 1e-2, "{fewer} {loose}");
 }
 
-/// The path of a ball over its bounces: from h it is h, then 2e²h, 2e⁴h, …; with sensitivities besides.
+/// The path length of a ball over its bounces: from h it is h, then 2e²h, 2e⁴h, …; also with
+/// sensitivities.
 #[test]
 fn over_events() {
     let (h, g, e) = (1.3_f64, 9.81, 0.8_f64);
@@ -102,7 +105,7 @@ fn over_events() {
     let (first, second) = (w / g, 2.0 * e * w / g);
     let mut before = [0.0; 2];
     for n in 0..4 {
-        // The middle of flight n: half of one that rises to e²ⁿ h, behind whole ones.
+        // The middle of flight n: half a flight that rises to e²ⁿ h, after complete ones.
         let (rise, whole) = (e.powi(n), if n == 0 { 0.0 } else { 1.0 });
         let start = if n == 0 { 0.0 } else { first + second * (1..n).map(|k| e.powi(k - 1)).sum::<f64>() };
         let time = if n == 0 { first / 2.0 } else { rise * w / g };
@@ -123,7 +126,7 @@ fn over_events() {
     }
 }
 
-/// A start in between keeps what was integrated to where the integration stands.
+/// A restart keeps the integrals up to the current time.
 #[test]
 fn integrals_continue_over_a_restart() {
     let options = Options::new(Method::Bdf).relative_tolerance(1e-10).absolute_tolerance(1e-12);
@@ -138,7 +141,8 @@ fn integrals_continue_over_a_restart() {
     assert!((cvode.integrals().unwrap()[0] - expected).abs() < 1e-8);
 }
 
-/// On the unit circle by projection: ∫ (y₀² + y₁²) dt = t, of the states as they are given.
+/// On the unit circle by projection: ∫ (y₀² + y₁²) dt = t, since integrands receive projected
+/// states.
 #[test]
 fn of_projected_states() {
     let circle = from_fn(2, |_t, y: &[f64], ydot: &mut [f64]| {

@@ -1,4 +1,4 @@
-//! Checkpoints of motions that keep an integral, with jumps after which it has another value.
+//! Checkpoints of motions that conserve an integral, with jumps that change its value.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::num::NonZeroU64;
@@ -9,7 +9,7 @@ use pc_solve::{
     solve_checkpointed,
 };
 
-/// A ball under gravity 1, y = (h, v), whose energy v²/2 + h is kept at a level.
+/// A ball under gravity 1, y = (h, v), whose energy v²/2 + h is projected to a level.
 #[derive(Clone)]
 struct Ball {
     level: f64,
@@ -33,7 +33,7 @@ impl VectorField for Ball {
         true
     }
 
-    /// Along the gradient (1, v).
+    /// Projects along the gradient (1, v).
     fn project(&mut self, _t: f64, y: &mut [f64]) -> Result<(), Failure> {
         for _ in 0..5 {
             let part = (energy(y) - self.level) / (1.0 + y[1] * y[1]);
@@ -48,7 +48,7 @@ impl VectorField for Ball {
     }
 }
 
-/// It keeps the part 0.9 of its speed.
+/// A bounce keeps 0.9 of the speed.
 fn bounce() -> FnEvents<'static> {
     FnEvents::new().with_reset(
         Event::new("bounce").falling(),
@@ -75,8 +75,8 @@ fn solve(
     solve_checkpointed(options, parts, from, times, every, save, |_, _| Continue(())).unwrap()
 }
 
-/// The energy is 0.81 of what it was after each bounce, and what the field was made with before the first, which need not
-/// be that of the start.
+/// Each bounce multiplies the energy by 0.81; before the first it is that of the field, which may
+/// differ from that of the start.
 #[test]
 fn kept_values_are_those_after_the_last_reset() {
     let times: Vec<f64> = (0..=80).map(|i| 0.15 * f64::from(i)).collect();
@@ -103,7 +103,7 @@ fn kept_values_are_those_after_the_last_reset() {
     }
 }
 
-/// With events and without, from one integration to the next.
+/// With events and without, across integrations.
 #[test]
 fn kept_values_continue_from_a_jump() {
     let options = Options::default();
@@ -120,7 +120,7 @@ fn kept_values_continue_from_a_jump() {
     for (from, level) in [(&before, 1.0), (&at, 1.5), (&after, 1.5)] {
         let mut later = Integration::resume(Ball { level: 1.0 }, from, &options).unwrap();
         near(later.state_at(0.75).unwrap(), level);
-        // And from there.
+        // And once more.
         let mut later =
             Integration::resume(Ball { level: 1.0 }, &again(later.checkpoint()), &options).unwrap();
         near(later.state_at(1.0).unwrap(), level);

@@ -1,4 +1,5 @@
-//! Members of ensembles beside each other: the same bytes for any number of lanes and threads, and the motions that they are alone.
+//! Members of ensembles in lanes: the same bytes for any number of lanes and threads, and the same
+//! motions as alone.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::num::NonZeroUsize;
@@ -23,12 +24,12 @@ fn program(dim: usize, rates: impl for<'g> Fn(&[Expr<'g>], Expr<'g>, Expr<'g>) -
     Program::new(&graph, &inputs, &rates).unwrap()
 }
 
-/// The pendulum φ̈ = −p sin φ with a damping of its own, q φ̇ |φ̇|.
+/// The pendulum φ̈ = −p sin φ − q φ̇ |φ̇|.
 fn pendulum() -> Program {
     program(2, |y, p, q| vec![y[1], -p * y[0].sin() - q * y[1] * y[1].abs()])
 }
 
-/// A number between 0 and 1 drawn from the stream of the member, one after the other.
+/// Numbers between 0 and 1 drawn from the stream of a member.
 fn numbers<const N: usize>(member: u64) -> [f64; N] {
     let mut stream = member_stream(5, member);
     std::array::from_fn(|_| f64::from(stream.next_u32()) / f64::from(u32::MAX))
@@ -93,7 +94,7 @@ fn neither_lanes_nor_threads_nor_windows_change_a_bit() {
     }
     let narrow = ensemble(2, 8).window(NonZeroUsize::MIN);
     assert_eq!(bits(&motions(&narrow, 61, make, (0.0, &times), &options(1e-9))), bits(&first));
-    // A member is the same whoever else there is.
+    // A member does not depend on the others.
     let alone = motions(&ensemble(1, 8), 1, |_| make(17), (0.0, &times), &options(1e-9));
     assert_eq!(alone[0], first[17]);
     // More outputs change no step.
@@ -103,9 +104,9 @@ fn neither_lanes_nor_threads_nor_windows_change_a_bit() {
     }
 }
 
-/// The error of a motion within a few hundred tolerances, as that of single motions.
+/// Errors are within a few hundred tolerances, as those of single motions.
 #[test]
-fn lanes_are_single_motions_within_the_tolerance() {
+fn lanes_agree_with_single_motions_within_the_tolerance() {
     let program = pendulum();
     let make = |member| swinging(&program, member);
     for (t0, times) in [(0.0, [0.1, 1.0, 3.5, 10.0]), (1.0, [0.8, 0.1, -0.9, -3.0])] {
@@ -122,14 +123,15 @@ fn lanes_are_single_motions_within_the_tolerance() {
                 steps[0] += motion.statistics().steps;
                 steps[1] += single.statistics().steps;
             }
-            // Lengths are known to two digits. Where the friction turns, that decides on many a step of one member.
+            // Lengths have two digits; for some members this decides on many steps, where the
+            // friction changes sign.
             let [found, expected] = steps.map(|steps| steps as f64);
             assert!((found - expected).abs() <= 0.05 * expected, "{found} steps, not {expected}");
         }
     }
 }
 
-/// ÿ = −y: the error of the method falls as a power of the tolerance, inside steps too.
+/// ÿ = −y: the error falls with the tolerance as a power, inside steps too.
 #[test]
 fn states_inside_steps_lie_on_the_motion() {
     let oscillator = program(2, |y, p, _| vec![y[1], -p * y[0]]);
@@ -148,7 +150,7 @@ fn states_inside_steps_lie_on_the_motion() {
 
 /// ẏ = p y² from 1 is infinite at t = 1/p.
 #[test]
-fn a_member_that_fails_says_what_it_says_alone_and_the_others_do_not_notice() {
+fn a_member_that_fails_reports_as_alone_and_leaves_the_others_unchanged() {
     let program = program(1, |y, p, q| vec![p * y[0].square() - q * y[0].sqrt()]);
     let make = |fails: bool| {
         let program = &program;
@@ -188,7 +190,7 @@ fn a_member_that_fails_says_what_it_says_alone_and_the_others_do_not_notice() {
     }
 }
 
-/// A field whose pivot, 1 − y₀ or 0, must not vanish.
+/// A field with a pivot, 1 − y₀ or 0, that must not vanish.
 struct Watching {
     field: ProgramField,
     program: Arc<Program>,
@@ -254,7 +256,7 @@ fn programs_may_differ_from_member_to_member() {
         let field = match member / 3 % 3 {
             0 => of(&pendulum, [1.0, 0.0]),
             1 => of(&oscillator, [1.0, 0.0]),
-            // The interpreter is in no lane.
+            // Fields for the interpreter are not integrated in lanes.
             _ => ProgramField::new(pendulum.clone(), vec![1.0, 0.0], Backend::Interpreter),
         };
         Ok((field, vec![0.1, 0.01 * member as f64]))
@@ -281,7 +283,7 @@ fn limits_of_steps_are_those_of_single_motions() {
         })
         .unwrap();
     assert_eq!(errors, vec![alone.to_string(); 3]);
-    // Of what the options do not allow, each member is told alone.
+    // Each member reports invalid options by itself.
     let consume = |_, motion: Result<Trajectory, MemberError<Failure>>| {
         assert!(motion.unwrap_err().to_string().contains("tolerance"));
         ControlFlow::Continue(())
@@ -291,7 +293,7 @@ fn limits_of_steps_are_those_of_single_motions() {
 }
 
 #[test]
-fn a_flag_and_the_consumer_end_lanes_on_their_way() {
+fn a_flag_and_the_consumer_stop_lanes_in_progress() {
     let program = pendulum();
     let make = |_| Ok::<_, Failure>((of(&program, [1.0, 0.0]), vec![1.0, 0.0]));
     let endless = options(1e-9).max_steps(u64::MAX);

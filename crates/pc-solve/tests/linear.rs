@@ -56,7 +56,7 @@ impl Rod {
 
 type Closure = Box<dyn FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>>;
 
-/// The rod with its pattern, and calls counted.
+/// The rod with its pattern, counting calls.
 fn quotients(rod: Rod, calls: &Arc<AtomicU64>) -> FnField<Closure> {
     let calls = Arc::clone(calls);
     let rhs: Closure = Box::new(move |_t, y, ydot| {
@@ -67,7 +67,7 @@ fn quotients(rod: Rod, calls: &Arc<AtomicU64>) -> FnField<Closure> {
     from_fn(rod.n, rhs).with_sparsity(rod.pattern())
 }
 
-/// … with its Jacobian.
+/// The same with its Jacobian.
 fn analytic(rod: Rod, calls: &Arc<AtomicU64>) -> impl VectorField {
     quotients(rod, calls).with_sparse_jacobian(move |_t, _y, values| {
         rod.entries(values);
@@ -89,7 +89,7 @@ fn run(rod: Rod, field: impl VectorField, solver: &LinearSolver) -> Statistics {
     *motion.statistics()
 }
 
-/// Dense matrices below and above the size from which the factors are those of blocks.
+/// Dense matrices below and above the size from which factors are blocked.
 #[test]
 fn direct_solvers_take_the_same_steps() {
     for n in [20, 100] {
@@ -101,7 +101,7 @@ fn direct_solvers_take_the_same_steps() {
         assert!(by_dense.steps < 1000 && by_dense.jacobian_evaluations > 5, "{by_dense:?}");
         for solver in [band, wide, LinearSolver::Sparse] {
             let by_this = run(rod, analytic(rod, &calls), &solver);
-            // Rounding alone differs, but may decide about a step.
+            // They differ by rounding only, which may decide about a step.
             assert!(by_this.steps.abs_diff(by_dense.steps) <= by_dense.steps / 20, "{solver:?}");
             assert_eq!(by_this.linear_failures, 0);
             assert!(by_this.linear_setups >= by_this.jacobian_evaluations);
@@ -109,9 +109,10 @@ fn direct_solvers_take_the_same_steps() {
     }
 }
 
-/// One evaluation for each component, each diagonal, each colour; three colours suffice for three diagonals.
+/// One evaluation for each component, diagonal or colour; three colours suffice for three
+/// diagonals.
 #[test]
-fn difference_quotients_and_what_they_cost() {
+fn the_cost_of_difference_quotients() {
     let rod = Rod::new(100);
     let solvers = [
         (LinearSolver::Dense, 100),
@@ -124,7 +125,7 @@ fn difference_quotients_and_what_they_cost() {
         let with = run(rod, quotients(rod, &calls), &solver);
         assert_eq!(with.rhs_evaluations, calls.load(Ordering::Relaxed), "{solver:?}");
         let rest = with.rhs_evaluations - evaluations * with.jacobian_evaluations;
-        // Newton's iterations need one each, failed ones and starts some more.
+        // Newton's iterations need one evaluation each, failed ones and starts some more.
         let least = with.nonlinear_iterations;
         assert!((least..least + least / 5).contains(&rest), "{solver:?}: {rest} for {with:?}");
         calls.store(0, Ordering::Relaxed);
@@ -134,7 +135,7 @@ fn difference_quotients_and_what_they_cost() {
     }
 }
 
-/// Of the diagonal of I − γ ∂f/∂y, counting its calls.
+/// Jacobi's preconditioner, the diagonal of I − γ ∂f/∂y, counting its calls.
 #[derive(Clone, Default)]
 struct Jacobi {
     diagonal: Vec<f64>,
@@ -162,7 +163,7 @@ impl Preconditioner for Jacobi {
     }
 }
 
-/// As many dimensions as eigenvalues that count.
+/// The space has as many dimensions as there are relevant eigenvalues.
 #[test]
 fn krylov_by_products_and_by_quotients() {
     let rod = Rod::new(20);
@@ -184,12 +185,12 @@ fn krylov_by_products_and_by_quotients() {
     let by_quotients = run(rod, quotients(rod, &calls), &solver);
     assert_eq!(by_quotients.rhs_evaluations, calls.load(Ordering::Relaxed));
     assert!(by_quotients.rhs_evaluations > by_products.rhs_evaluations + by_quotients.jacobian_products / 2);
-    // Small spaces do with restarts.
+    // Small spaces suffice with restarts.
     run(rod, quotients(rod, &calls), &LinearSolver::Krylov(Krylov::new(5).restarts(10)));
 }
 
-/// A rod of cells of very different conductivity has very different diagonal entries, which Jacobi's preconditioner
-/// makes equal; what is left is easily solved.
+/// A rod of cells with very different conductivities has very different diagonal entries, which
+/// Jacobi's preconditioner scales to 1; the resulting system is easily solved.
 #[test]
 fn preconditioners_save_iterations() {
     let n = 30;
@@ -240,7 +241,7 @@ fn preconditioners_save_iterations() {
     }
 }
 
-/// I − γ ∂f/∂y is exactly 0 in the first step, and another step is tried.
+/// I − γ ∂f/∂y is exactly 0 in the first step, which is then repeated with another length.
 #[test]
 fn singular_matrices_are_overcome() {
     let lambda = 1024.0;
@@ -264,9 +265,9 @@ fn singular_matrices_are_overcome() {
         let motion = solve(growth, 0.0, &vec![1.0; n], &[3.0 / lambda], &options).unwrap();
         let work = motion.statistics();
         assert!(work.step_failures > 0, "{solver:?}: {work:?}");
-        // The zero pivots of sparse factors are found when they are used.
+        // Zero pivots of sparse factors are found only when solving.
         assert_eq!(work.linear_failures > 0, solver == LinearSolver::Sparse);
-        // The relative error of some hundred steps of relative size 1e-9.
+        // Some hundred steps with relative errors of 1e-9.
         assert!(motion.state(0).iter().all(|y| (y / 3.0_f64.exp() - 1.0).abs() < 1e-6), "{solver:?}");
     }
 }
@@ -329,8 +330,8 @@ fn the_linear_solver_is_chosen_by_size_and_pattern() {
     assert!(matches!(unused, SolveError::Input(InputError::LinearSolverUnused)));
 }
 
-/// In a step that was accepted the weighted local errors have a root mean square of at most 1; the weights are those of
-/// the tolerances.
+/// In an accepted step the weighted local errors have a root mean square of at most 1; the weights
+/// are those of the tolerances.
 #[test]
 fn weights_and_errors_are_those_of_the_test() {
     let rod = Rod::new(5);
@@ -346,7 +347,7 @@ fn weights_and_errors_are_those_of_the_test() {
         let t = cvode.step_towards(1.0).unwrap();
         let weights = cvode.error_weights().unwrap().to_vec();
         let errors = cvode.local_errors().unwrap().to_vec();
-        // Those of the step just made, from the state before it.
+        // The weights of the last step, from the state before it.
         for (w, y) in weights.iter().zip(&before) {
             assert!((w * (1e-9 * y.abs() + 1e-11) - 1.0).abs() < 1e-12);
         }

@@ -1,4 +1,4 @@
-//! Failures, panics and numbers that are not finite in what the linear solvers call.
+//! Failures, panics and non-finite numbers in callbacks of the linear solvers.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -10,7 +10,7 @@ use pc_solve::{
     Preconditioner, Side, SolveError, VectorField,
 };
 
-/// Which call goes wrong.
+/// The call that goes wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Place {
     SparseJacobian,
@@ -20,7 +20,7 @@ enum Place {
     Solve,
 }
 
-/// How.
+/// How it goes wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mishap {
     Panic,
@@ -87,7 +87,7 @@ impl VectorField for Fragile {
     }
 }
 
-/// −1000 I in place of I + 1000 γ, but for its sign and size.
+/// The exact preconditioner P = (1 + 1000 γ) I.
 struct Scale {
     place: Place,
     mishap: Mishap,
@@ -114,7 +114,8 @@ impl Preconditioner for Scale {
 
 fn start(place: Place, mishap: Mishap, solver: &LinearSolver) -> Integration<Cvode<Fragile>> {
     let pattern = Pattern::from_columns(2, [[0], [1]]);
-    // Steps so small that the prediction satisfies Newton's iteration at once would need no products.
+    // Shorter steps would need no products, since their prediction satisfies Newton's iteration at
+    // once.
     let options = Options::new(Method::Bdf)
         .relative_tolerance(1e-5)
         .absolute_tolerance(1e-8)
@@ -144,7 +145,8 @@ fn cases() -> Vec<(Place, Mishap, LinearSolver)> {
     cases
 }
 
-/// The last state is the one reached before the wall or, as CVODES keeps what it has, some steps after.
+/// The last state is the one before the wall or, since CVODES reuses its matrices, some steps
+/// beyond.
 fn assert_reached(t: f64, y: &[f64]) {
     assert!(t > 0.9 * WALL && t < 3.0, "{t}");
     // y = (sin t − ε cos t)/(1 + ε²) with ε = 1/1000, to the tolerance times some hundred steps.
@@ -212,7 +214,7 @@ fn failures_are_named_and_leave_the_last_state() {
 fn failures_inside_quotients() {
     for recoverable in [true, false] {
         let field = pc_solve::from_fn(2, move |t: f64, y: &[f64], ydot: &mut [f64]| {
-            // The increments of quotients leave the line y₀ = y₁, on which the motion stays.
+            // The increments of quotients leave the line y₀ = y₁ of the motion.
             if t > WALL && y[0] != y[1] {
                 return Err(if recoverable { Failure::recoverable(NoMore) } else { Failure::fatal(NoMore) });
             }
@@ -235,10 +237,10 @@ fn failures_inside_quotients() {
     }
 }
 
-/// y of a preconditioner, a product or a Jacobian is a state, on the surface of the projection to within a step, and not
-/// what CVODES integrates, which goes ever further away.
+/// Preconditioners, products and Jacobians receive states on the surface of the projection, to
+/// within a step, not the variables of CVODES, which drift away from it.
 #[test]
-fn callbacks_are_given_states() {
+fn callbacks_receive_states() {
     struct Line {
         pattern: Pattern,
         worst: f64,
@@ -320,7 +322,7 @@ fn callbacks_are_given_states() {
         let mut cvode = Integration::new(line, 0.0, &[1.0, 0.0], &options).unwrap();
         cvode.state_at(10.0).unwrap();
         let worst = cvode.field().worst;
-        // The length of a step; without projection it would be that of the time.
+        // At most the length of a step; without projection it would be the whole time.
         assert!(worst > 0.0 && worst < 0.1 + 1e-6, "{solver:?}: {worst:e}");
     }
 }

@@ -1,4 +1,4 @@
-//! Lyapunov exponents that are known.
+//! Known Lyapunov exponents.
 
 use std::cell::Cell;
 
@@ -10,7 +10,8 @@ fn tolerance(tolerance: f64) -> Options {
     Options::default().relative_tolerance(tolerance).absolute_tolerance(tolerance)
 }
 
-/// Of ẏ = Ay they are the real parts of the eigenvalues; A here is triangular in blocks, with 0.5, −0.2 ± 3i, −1.
+/// The exponents of ẏ = Ay are the real parts of the eigenvalues; this A is block triangular, with
+/// 0.5, −0.2 ± 3i, −1.
 #[test]
 fn linear_system() {
     let rhs = |_t: f64, y: &[f64], rate: &mut [f64]| {
@@ -24,11 +25,13 @@ fn linear_system() {
     };
     for method in [Method::Adams, Method::Bdf] {
         let options = Options::new(method).relative_tolerance(1e-10).absolute_tolerance(1e-12);
-        // The rotation takes 2π/3, of which the intervals are a whole part: then its pair is even after each turn.
+        // The rotation takes 2π/3, a multiple of the interval: then its pair of exponents is equal
+        // after each turn.
         let turn = 2.0 * std::f64::consts::PI / 3.0;
         let lyapunov = LyapunovOptions::new(4, turn / 4.0, 40).transient(60);
         let found = lyapunov_exponents(from_fn(4, rhs), 0.0, &[0.0; 4], &options, &lyapunov).unwrap();
-        // Directions have converged as e^(−0.7 · 31); what is left are the tolerances, a few hundred steps an interval.
+        // Directions have converged as e^(−0.7 · 31); the remaining errors are the tolerances, with
+        // a few hundred steps an interval.
         for (found, expected) in found.exponents.iter().zip([0.5, -0.2, -0.2, -1.0]) {
             assert!((found - expected).abs() < 1e-7, "{method:?}: {found} is not {expected}");
         }
@@ -53,23 +56,25 @@ fn lorenz() -> impl VectorField {
     })
 }
 
-/// λ = 0.9056, 0, −14.5723 [Viswanath, Lyapunov exponents from random Fibonacci sequences to the Lorenz equations,
-/// Cornell 1998; Sprott, Chaos and Time-Series Analysis, Oxford 2003, p. 431].
+/// λ = 0.9056, 0, −14.5723 [Viswanath, Lyapunov exponents from random Fibonacci sequences to the
+/// Lorenz equations, Cornell 1998; Sprott, Chaos and Time-Series Analysis, Oxford 2003, p. 431].
 #[test]
 fn lorenz_system() {
     let lyapunov = LyapunovOptions::new(3, 0.25, 4000).transient(80);
     let found = lyapunov_exponents(lorenz(), 0.0, &[1.0, 1.0, 20.0], &tolerance(1e-7), &lyapunov).unwrap();
-    // The mean over a time of 1000 of a rate that wanders by about 0.6 over a time of about 0.1 is known to 0.006.
+    // The rate fluctuates by about 0.6 with a correlation time of about 0.1: its mean over a time
+    // of 1000 has an error of 0.006.
     for (found, expected) in found.exponents.iter().zip([0.9056, 0.0, -14.5723]) {
         assert!((found - expected).abs() < 0.02, "{found} is not {expected}");
     }
-    // The divergence is −41/3 everywhere: their sum is as good as the integration, 1e-7 in vectors as short as e^(−3.6).
+    // The divergence is −41/3 everywhere: the sum is as accurate as the integration, 1e-7 in
+    // vectors as short as e^(−3.6).
     let sum: f64 = found.exponents.iter().sum();
     assert!((sum + 41.0 / 3.0).abs() < 1e-3, "{sum}");
 }
 
-/// The sum is the mean divergence: here that of a pendulum with drag that depends on where it is, ∇·f = −1 − cos φ,
-/// whose integral is a third component.
+/// The sum is the mean divergence, here that of a pendulum with drag that depends on its position,
+/// ∇·f = −1 − cos φ, whose integral is a third component.
 #[test]
 fn sum_is_the_mean_divergence() {
     let pendulum = from_fn(3, |t: f64, y: &[f64], rate: &mut [f64]| {
@@ -83,8 +88,8 @@ fn sum_is_the_mean_divergence() {
     assert!((sum - found.state[2] / 20.0).abs() < 1e-7, "{sum} {}", found.state[2] / 20.0);
 }
 
-/// Those of a Hamiltonian flow come in pairs ±λ: of the system of Hénon and Heiles [Astron. J. 69 (1964) 73] at H = 1/6,
-/// where most of its motions are chaotic.
+/// The exponents of a Hamiltonian flow are pairs ±λ: for the system of Hénon and Heiles [Astron. J.
+/// 69 (1964) 73] at H = 1/6, where most of its motions are chaotic.
 #[test]
 fn hamiltonian_pairs() {
     let field = from_fn(4, |_t, y, rate| {
@@ -99,11 +104,12 @@ fn hamiltonian_pairs() {
     let found = lyapunov_exponents(field, 0.0, &[0.0, y0, u, 0.0], &tolerance(1e-9), &lyapunov).unwrap();
     let e = &found.exponents;
     assert!(e[0] > 0.05, "{e:?} is not chaotic");
-    // A pair in the mean differs by the angles of its vectors at the ends, a few units of ln over a time of 1000.
+    // The means of a pair differ by the angles of its vectors at the ends, a few units of ln over a
+    // time of 1000.
     assert!((e[0] + e[3]).abs() < 0.01 && (e[1] + e[2]).abs() < 0.01, "{e:?}");
-    // The volume is kept, up to the tolerance.
+    // The volume is conserved, up to the tolerance.
     assert!(e.iter().sum::<f64>().abs() < 1e-6, "{e:?}");
-    assert!(e[1].abs() < 0.01, "{e:?}"); // along the motion, as ln t/t
+    assert!(e[1].abs() < 0.01, "{e:?}"); // along the motion, converging as ln t/t
 }
 
 #[test]
@@ -128,7 +134,7 @@ fn input_is_checked() {
     assert_eq!(late.to_string(), "the end time is the start time, t = 1000000000");
 }
 
-/// Vectors that one interval makes parallel to rounding are not taken for what they are not.
+/// Vectors that become parallel to rounding within one interval are refused.
 #[test]
 fn long_intervals_are_refused() {
     let saddle = from_fn(2, |_t, y, rate| {

@@ -7,15 +7,15 @@ use std::ops::ControlFlow::Continue;
 
 use pc_solve::{Ending, Event, FnEvents, Integration, Options, from_fn};
 
-/// Memory of this process that is in use, in kB.
+/// The resident memory of this process in kB.
 fn resident() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find(|line| line.starts_with("VmRSS:")).unwrap();
     line.split_whitespace().nth(1).unwrap().parse().unwrap()
 }
 
-/// A saw tooth, each tooth with a passage that changes nothing and one that resets: an integration keeps nothing of what has
-/// occurred but the last times. If it kept one number of each event, it would have 7 MB more at the end.
+/// A saw tooth, each tooth with a passage that changes nothing and a reset: an integration keeps
+/// only the last times of events. One number for each event would take 7 MB more at the end.
 #[test]
 fn a_million_events_leave_no_trace() {
     let clock = from_fn(1, |_t, _y: &[f64], ydot: &mut [f64]| {
@@ -30,7 +30,7 @@ fn a_million_events_leave_no_trace() {
             Ok(())
         },
     );
-    // One step to a tooth.
+    // One step for each tooth.
     let options = Options::default().initial_step(1.25).max_steps(1_000_000);
     let mut saw = Integration::new(clock, 0.0, &[0.0], &options).unwrap().with_events(tooth).unwrap();
     let mut events = 0_u64;

@@ -1,7 +1,7 @@
 //! Motions known in closed form.
 //!
-//! All methods control the local error, which adds up over an interval; 1000 times the relative tolerance is the
-//! margin allowed for that here, over intervals in which neighbouring motions do not spread.
+//! All methods control the local error, which adds up over an interval; these tests allow 1000
+//! times the relative tolerance, over intervals in which neighbouring motions do not diverge.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -90,10 +90,12 @@ fn right_hand_side_of_time() {
     }
 }
 
-/// The free top with I = (1, 2, 3) started at (√3, 0, 1) goes along the separatrix, where the elliptic functions of
-/// Jacobi degenerate: ω = (√3 sech t, √3 tanh t, sech t). [Landau, Lifshitz, Mechanics, § 37]
+/// The free top with I = (1, 2, 3) from (√3, 0, 1) moves along the separatrix, where the elliptic
+/// functions of Jacobi degenerate: ω = (√3 sech t, √3 tanh t, sech t). [Landau, Lifshitz,
+/// Mechanics, § 37]
 ///
-/// The motion ends at the unstable rotation about the middle axis, near which an error grows as e^t; t ≤ 3.
+/// The motion ends at the unstable rotation about the middle axis, near which an error grows as
+/// e^t; t ≤ 3.
 #[test]
 fn free_top_on_the_separatrix() {
     let root3 = 3.0_f64.sqrt();
@@ -110,8 +112,8 @@ fn free_top_on_the_separatrix() {
     }
 }
 
-/// The same top off the separatrix: start (1, 0, 1), ω = (cn t, sn t, dn t) with parameter m = 1/3; the values at
-/// t = 20 were computed in extended precision; at −20 sn has the other sign.
+/// The same top off the separatrix: start (1, 0, 1), ω = (cn t, sn t, dn t) with parameter m = 1/3;
+/// the values at t = 20 were computed in extended precision; at −20 sn has the other sign.
 #[test]
 fn free_top() {
     for options in all_options() {

@@ -18,8 +18,8 @@ fn pendulum_at(t0: f64, options: &Options) -> Integration<Cvode<impl VectorField
     Integration::new(from_fn(2, pendulum), t0, &[1.0, 0.0], options).expect("valid input")
 }
 
-/// Outputs are read off the polynomials of the internal steps, which depend on the last output time only: exactly
-/// the same numbers, however many outputs there are.
+/// Outputs are read from the polynomials of the internal steps, which depend on the last output
+/// time only: they are exactly the same for any number of outputs.
 #[test]
 fn outputs_do_not_depend_on_the_grid() {
     for method in [Method::Adams, Method::Bdf] {
@@ -37,7 +37,8 @@ fn outputs_do_not_depend_on_the_grid() {
     }
 }
 
-/// With another end the first trial step is another, and so are all later ones: equal to the accuracy of the steps.
+/// Another end changes the first trial step and so all later ones: the motion is equal to the
+/// accuracy of the steps.
 #[test]
 fn advancing_piecewise_gives_the_same_motion() {
     let options = Options::default();
@@ -51,7 +52,7 @@ fn advancing_piecewise_gives_the_same_motion() {
     for (a, b) in piecewise.state().iter().zip(&end) {
         assert!((a - b).abs() < 1e-6); // 1000 rtol
     }
-    // Standing still and going on are both possible.
+    // The current time may be requested again, and outputs may begin there.
     let here = piecewise.state().to_vec();
     assert_eq!(piecewise.state_at(10.0).unwrap(), here);
     assert_eq!(piecewise.run(&[10.0, 11.0], |_, _| Continue(())).unwrap(), Ending::Completed);
@@ -69,7 +70,8 @@ fn steps_and_interpolation() {
         assert!(t > before);
         assert_eq!((t, cvode.statistics().current_time), (cvode.time(), t));
         let state = cvode.state().to_vec();
-        // The polynomial passes through the end of the step, and through its beginning to about the local error.
+        // The polynomial passes through the end of the step, and through its start to about the
+        // local error.
         assert_eq!(cvode.interpolate(t, 0).unwrap(), state);
         for (a, b) in cvode.interpolate(before, 0).unwrap().iter().zip(&state_before) {
             assert!((a - b).abs() < 1e-7, "{a} is not {b}");
@@ -83,7 +85,7 @@ fn steps_and_interpolation() {
     let last_step = cvode.statistics().last_step;
     let (from, to) = (cvode.time() - last_step, cvode.time());
 
-    // Going on inside the last step takes no new one, and a step then goes to its end.
+    // Advancing inside the last step makes no new one, and a step then goes to its end.
     let mut cvode = pendulum_at(0.0, &Options::default());
     cvode.state_at(5.0).unwrap();
     let steps = cvode.statistics().steps;
@@ -94,7 +96,8 @@ fn steps_and_interpolation() {
     assert_eq!((end, end - cvode.statistics().last_step), (to, from));
 }
 
-/// What lies outside the last step, or beyond the degree of its polynomial, is refused before CVODES is asked.
+/// Times outside the last step, and orders beyond the degree of its polynomial, are refused before
+/// CVODES is called.
 #[test]
 fn invalid_interpolations_are_refused() {
     for end in [5.0, -5.0] {
@@ -103,7 +106,7 @@ fn invalid_interpolations_are_refused() {
         let statistics = cvode.statistics();
         let (to, length, order) = (statistics.current_time, statistics.last_step, statistics.last_order);
         assert!((to - end) * end > 0.0 && length * end > 0.0 && order > 1, "the step goes on beyond {end}");
-        // The ends belong to it, and their roundings.
+        // The ends belong to it, up to rounding.
         for t in [to, to - length, to + 1e-15 * end, to - length - 1e-15 * end] {
             assert!(cvode.interpolate(t, 0).is_ok() && cvode.interpolate(t, order).is_ok(), "{t}");
         }
@@ -188,7 +191,8 @@ fn a_step_observer_sees_every_step() {
     assert_eq!((ending, outputs, steps), (Ending::Completed, 4, cvode.statistics().steps));
 }
 
-/// `solve` never evaluates beyond the last time, in neither direction; `Cvode` only with a stop time.
+/// `solve` never evaluates beyond the last time, in either direction; `Cvode` does unless it has a
+/// stop time.
 #[test]
 fn nothing_is_evaluated_beyond_the_stop_time() {
     for end in [1.0, -1.0] {
@@ -291,7 +295,7 @@ fn debug_shows_where_it_stands() {
     );
 }
 
-/// Solvers are independent of each other and of the thread they were made in.
+/// Solvers are independent of each other and of the thread in which they were made.
 #[test]
 fn a_solver_moves_between_threads() {
     let run =

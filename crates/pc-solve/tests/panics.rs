@@ -1,4 +1,4 @@
-//! Panics of the vector field, and what is dropped when.
+//! Panics of the vector field, and drops.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use pc_solve::{Failure, Integration, Method, Observed, Options, VectorField, from_fn, solve};
 
-/// ẏ = 1 that panics, or fails, from a time on, and counts its drops.
+/// ẏ = 1, which panics or fails after some time, and counts its drops.
 struct Fragile {
     panics_from: f64,
     fails_from: f64,
@@ -98,7 +98,7 @@ fn a_panic_unwinds_through_solve() {
     assert_eq!(message(&*panic), "no Jacobian");
     assert_eq!(drops.get(), 1);
 
-    // Other integrations are as before.
+    // Other integrations are not affected.
     let motion = solve(Fragile::new(&drops), 0.0, &[0.0], &[1.0], &Options::new(Method::Bdf)).unwrap();
     assert!((motion.state(0)[0] - 1.0).abs() < 1e-9);
     assert_eq!(drops.get(), 1);
@@ -147,7 +147,7 @@ fn the_field_is_dropped_once() {
     let drops = Rc::new(Cell::new(0));
     let options = Options::default();
 
-    // Never used.
+    // Before the first step.
     drop(Integration::new(Fragile::new(&drops), 0.0, &[0.0], &options).unwrap());
     assert_eq!(drops.get(), 1);
 
@@ -169,7 +169,7 @@ fn the_field_is_dropped_once() {
     assert!(Integration::new(Fragile::new(&drops), f64::NAN, &[0.0], &options).is_err());
     assert_eq!(drops.get(), 1);
 
-    // Given back.
+    // The field is returned.
     let mut cvode = Integration::new(Fragile::new(&drops), 0.0, &[0.0], &options).unwrap();
     cvode.state_at(1.0).unwrap();
     assert_eq!(cvode.field().drops.0.get(), 0);

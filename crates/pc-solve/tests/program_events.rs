@@ -1,4 +1,5 @@
-//! Events whose functions are programs: none is lost along the polynomial of a step, however close, by any method.
+//! Events whose functions are programs: none is missed along the polynomial of a step, however
+//! close, by any method.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -40,7 +41,8 @@ fn of_clock(function: impl for<'g> Fn(Expr<'g>) -> Expr<'g>) -> Program {
     Program::new(&graph, &inputs, &[function(y)]).unwrap()
 }
 
-/// The times at which a function of y = t passes through zero up to t = 1, for Taylor one step of the method.
+/// The times up to t = 1 at which a function of y = t passes through zero; for Taylor's method this
+/// is one step.
 fn passages(method: Method, function: impl for<'g> Fn(Expr<'g>) -> Expr<'g>) -> Vec<f64> {
     let events = ProgramEvents::new(of_clock(function));
     let motion = Solve::new(clock(), 0.0, &[0.0]).method(options(method)).events(events).run(&[1.0]).unwrap();
@@ -51,7 +53,8 @@ fn passages(method: Method, function: impl for<'g> Fn(Expr<'g>) -> Expr<'g>) -> 
     motion.occurrences.iter().map(|occurrence| occurrence.time).collect()
 }
 
-/// Roots in (0, 1): all, and those of odd order. Single ones, pairs as close as 10⁻⁷ and double ones, all well apart from each other.
+/// Roots in (0, 1): all, and those of odd order. Single roots, pairs as close as 10⁻⁷ and double
+/// roots, well separated from each other.
 fn roots(random: &mut Random) -> (Vec<f64>, Vec<f64>) {
     let count = 1 + (random.next() * 5.0) as usize;
     let (mut all, mut odd) = (Vec::new(), Vec::new());
@@ -79,7 +82,7 @@ fn no_root_of_a_polynomial_in_a_step_is_lost() {
         let mut random = Random(5);
         for case in 0..700 {
             let (all, odd) = roots(&mut random);
-            // As products, so that rounding does not move the roots.
+            // In factors, so that rounding does not move the roots.
             let found = passages(method, |y| {
                 all.iter().fold(1.0.into(), |product: Expr<'_>, &root| product * (y - root))
             });
@@ -96,7 +99,8 @@ fn no_root_of_a_sine_in_a_step_is_lost() {
     for method in Method::ALL {
         let mut random = Random(7);
         for case in 0..300 {
-            // sin(ω y + φ) = c, with c near 1 in half of the cases: pairs of roots 2 arccos(c)/ω apart.
+            // sin(ω y + φ) = c, with c near 1 in half of the cases: pairs of roots 2 arccos(c)/ω
+            // apart.
             let frequency = 1.0 + 200.0 * random.next();
             let phase = 6.0 * random.next();
             let level = match case % 2 {
@@ -116,14 +120,15 @@ fn no_root_of_a_sine_in_a_step_is_lost() {
                 found.into_iter().filter(|root| *root > 1e-9 && *root < 1.0 - 1e-9).collect();
             assert_eq!(found.len(), expected.len(), "{method}, case {case}: {found:?} for {expected:?}");
             for (found, root) in found.iter().zip(&expected) {
-                // Where the sine is flat, ε of it is the root of ε of its argument.
+                // Where the sine is flat, an error ε of its value is √ε in its argument.
                 assert!((found - root).abs() < 1e-6, "{method}, case {case}: {found} for {root}");
             }
         }
     }
 }
 
-/// Along x = cos t, the roots of a polynomial of x at their arc cosines, in steps as long as the method takes.
+/// Along x = cos t, the roots of a polynomial of x at their arc cosines, with the steps of the
+/// method.
 #[test]
 fn no_root_along_a_curved_motion_is_lost() {
     for method in Method::ALL {
@@ -139,7 +144,7 @@ fn no_root_along_a_curved_motion_is_lost() {
                 .events(ProgramEvents::new(product))
                 .run(&[1.6])
                 .unwrap();
-            // Double roots of x are touched, or passed twice within what the tolerance leaves of x.
+            // Double roots of x are touched, or passed twice within the error of x.
             let found: Vec<f64> = motion.occurrences.iter().map(|occurrence| occurrence.time).collect();
             for root in &odd {
                 let near = found.iter().filter(|time| (time.cos() - root).abs() < 1e-8).count();
@@ -153,7 +158,7 @@ fn no_root_along_a_curved_motion_is_lost() {
     }
 }
 
-/// 3183 roots in ten units of time, hundreds in a step.
+/// 3183 roots in ten units of time, hundreds in one step.
 #[test]
 fn a_function_may_be_much_faster_than_the_motion() {
     for method in Method::ALL {
@@ -197,8 +202,8 @@ fn several_functions_along_a_curved_motion_are_followed_together() {
 }
 
 #[test]
-fn a_bouncing_ball_is_that_of_the_closed_form() {
-    // From the height 1 without speed; each bounce takes a part of it.
+fn a_bouncing_ball_agrees_with_the_closed_form() {
+    // From rest at height 1; each bounce keeps the fraction `part` of the speed.
     let (g, part) = (9.81, 0.8);
     let ball = || ProgramField::new(program(|_, [_z, v]| [v, (-g).into()]), Vec::new(), Backend::Fastest);
     let bounce = FnEvents::new().with_reset(

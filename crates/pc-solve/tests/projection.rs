@@ -4,12 +4,12 @@
 
 use pc_solve::{Failure, Method, Options, Reason, SolveError, VectorField, from_fn, solve};
 
-/// A pendulum of unit length under unit gravity: ṙ = v, v̇ = g − (g·r + |v|²) r/|r|², which does not bring back what
-/// has left the circle.
+/// A pendulum of unit length under unit gravity: ṙ = v, v̇ = g − (g·r + |v|²) r/|r|², which does
+/// not return to the circle by itself.
 #[derive(Clone, Copy)]
 struct Circle {
     projected: bool,
-    /// No state is found on the circle after this time.
+    /// The projection fails after this time.
     lost_after: f64,
 }
 
@@ -45,10 +45,11 @@ impl VectorField for Circle {
 }
 
 const CIRCLE: Circle = Circle { projected: true, lost_after: f64::INFINITY };
-/// From the horizontal, upwards, over the top.
+/// From the horizontal upwards, over the top.
 const START: [f64; 4] = [1.0, 0.0, 0.0, 2.0];
 
-/// The largest residual of circle and tangent, the largest error of the place, and the number of steps.
+/// The largest residual of circle and tangent, the largest error of the position, and the number of
+/// steps.
 fn turn(method: Method, rtol: f64, circle: Circle, end: f64) -> (f64, f64, u64) {
     let options =
         |rtol| Options::new(method).relative_tolerance(rtol).absolute_tolerance(rtol).max_steps(10_000_000);
@@ -67,8 +68,8 @@ fn turn(method: Method, rtol: f64, circle: Circle, end: f64) -> (f64, f64, u64) 
     (worst.0, worst.1, motion.statistics().steps)
 }
 
-/// States at outputs, inside steps too, are on the surface to rounding, and the motion along it is better, with
-/// no more steps.
+/// States at outputs, inside steps too, are on the surface to rounding, and the motion along it is
+/// more accurate, with no more steps.
 #[test]
 fn projection_keeps_the_surface_and_the_accuracy() {
     for method in [Method::Adams, Method::Bdf] {
@@ -77,15 +78,16 @@ fn projection_keeps_the_surface_and_the_accuracy() {
             turn(method, 1e-8, Circle { projected: false, ..CIRCLE }, 200.0);
         assert!(residual < 4e-16, "{method:?}: {residual:e}");
         assert!(drift > 1e-4, "{method:?}: without projection the circle is left by {drift:e} only");
-        // The length of the pendulum, which drifts otherwise, makes its period.
+        // The period depends on the length of the pendulum, which drifts without projection.
         assert!(error * 10.0 < free_error, "{method:?}: {error:e} against {free_error:e}");
-        // The error tests are passed as often: a tenth more steps would be a sign of a history that is not smooth.
+        // The error tests fail no more often: a tenth more steps would indicate a history that is
+        // not smooth.
         assert!(steps * 10 < free_steps * 11, "{method:?}: {steps} steps against {free_steps}");
     }
 }
 
-/// The error goes down with the tolerance as it should, by at least a power of 0.7 (codes that choose the order
-/// themselves keep errors proportional to the tolerance only roughly).
+/// The error falls with the tolerance at least as its power 0.7 (with variable order, errors are
+/// only roughly proportional to the tolerance).
 #[test]
 fn projection_preserves_the_order() {
     for method in [Method::Adams, Method::Bdf] {

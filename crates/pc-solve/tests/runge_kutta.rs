@@ -1,4 +1,5 @@
-//! A second method under the same integration: order, inside of steps, events, checkpoints, breaks, failures.
+//! Another method for `Integration`: order, states inside steps, events, checkpoints, breaks,
+//! failures.
 
 use std::num::NonZeroU64;
 use std::ops::ControlFlow::Continue;
@@ -54,7 +55,8 @@ fn states_inside_steps_are_as_accurate_and_rates_nearly() {
         }
         worst
     };
-    // Hermite's cubic is off by h⁴/384 y⁗, its derivatives by one power of h less each.
+    // The error of the cubic Hermite interpolant is h⁴/384 y⁗, that of each derivative one power of
+    // h larger.
     for (order, exact) in [f64::cos, |t: f64| -t.sin(), |t: f64| -t.cos(), f64::sin].into_iter().enumerate() {
         let found = slope(|length| worst(length, order as u32, exact));
         let expected = 4.0 - order as f64;
@@ -98,12 +100,12 @@ fn a_ball_bounces_when_it_should() {
     let (fall, bounce) = ball();
     let motion =
         Solve::new(fall, 0.0, &[1.0, 0.0]).method(FixedStep::new(0.07)).events(bounce).run(&[1.2]).unwrap();
-    // Fall takes τ = √(2/g), each flight half as long as the one before: 2τ/2, 2τ/4, …
+    // The fall takes τ = √(2/g), each flight half as long as the previous one: 2τ/2, 2τ/4, …
     let fall_time = (2.0 / G).sqrt();
     let times = [1.0, 2.0, 2.5].map(|k| k * fall_time);
     assert_eq!(motion.occurrences.len(), 3);
     for (occurrence, t) in motion.occurrences.iter().zip(times) {
-        // The method is exact for parabolas; what is left is rounding.
+        // The method is exact for parabolas up to rounding.
         assert!((occurrence.time - t).abs() < 1e-14, "{} {t}", occurrence.time);
     }
     let (since, speed) = (1.2 - times[2], G * fall_time / 8.0);
@@ -134,7 +136,7 @@ fn a_resumed_integration_is_the_same_to_the_last_bit() {
             solve_checkpointed(&method, ball, from, &times, every, |_, _| (), |_, _| Continue(())).unwrap();
         assert_eq!(later, whole);
     }
-    // A one-step method forgets nothing at a checkpoint: steps are those without.
+    // A one-step method loses no history at a checkpoint: its steps are those without.
     let (fall, bounce) = ball();
     let plain = Solve::new(fall, 0.0, &[1.0, 0.0]).method(&method).events(bounce).run(&times).unwrap();
     assert_eq!(plain.occurrences, whole.occurrences);

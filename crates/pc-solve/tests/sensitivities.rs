@@ -1,4 +1,4 @@
-//! Forward sensitivities against closed forms, and what they do to the motion.
+//! Forward sensitivities against closed forms, and their effect on the motion.
 
 mod offers;
 
@@ -18,7 +18,8 @@ fn assert_near(found: f64, expected: f64, tolerance: f64, what: impl std::fmt::D
     assert!((found - expected).abs() < tolerance, "{what:?}: {found} is not {expected}");
 }
 
-/// ∂(x, ẋ)/∂(ω, c, x₀, ẋ₀) of the damped oscillator, in this order, by both methods, all corrections and all means.
+/// ∂(x, ẋ)/∂(ω, c, x₀, ẋ₀) of the damped oscillator, in this order, by both methods, with all
+/// corrections and all offers.
 #[test]
 fn damped_oscillator() {
     let (a, b) = (0.7, -0.4);
@@ -51,7 +52,7 @@ fn damped_oscillator() {
     }
 }
 
-/// ∂x/∂ω = −a t sin ωt by hand: no difference quotient of ours.
+/// ∂x/∂ω = −a t sin ωt in closed form, without a difference quotient.
 #[test]
 fn harmonic_oscillator_by_its_frequency() {
     let (a, w) = (0.9, 2.0);
@@ -62,7 +63,7 @@ fn harmonic_oscillator_by_its_frequency() {
             let found = solve_with_sensitivities(field, 0.0, &[a, 0.0], &TIMES, &options, &wanted).unwrap();
             for (t, _, s) in found.iter() {
                 let (sin, cos) = (w * t).sin_cos();
-                // The derivative grows as t, and with it what is left of the tolerances.
+                // The derivative grows as t, and the error with it.
                 assert_near(s[0] / (1.0 + t), -a * t * sin / (1.0 + t), 1e-8, (offer, t));
                 assert_near(s[1] / (1.0 + t), -a * (sin + w * t * cos) / (1.0 + t), 1e-8, (offer, t));
             }
@@ -109,7 +110,8 @@ fn a_start_that_depends_on_a_parameter() {
     }
 }
 
-/// S = e^(At), for a full matrix A with rotation, growth and decay, forwards and backwards: S(−t) S(t) = 1.
+/// S = e^(At) for a full matrix A with rotation, growth and decay, forwards and backwards: S(−t)
+/// S(t) = 1.
 #[test]
 fn linear_systems() {
     const N: usize = 4;
@@ -122,7 +124,7 @@ fn linear_systems() {
             Ok(())
         })
     };
-    // The series, scaled and squared.
+    // The exponential series, by scaling and squaring.
     let product = |a: &[f64], b: &[f64]| -> Vec<f64> {
         (0..N * N).map(|k| (0..N).map(|l| a[k % N + l * N] * b[l + (k / N) * N]).sum()).collect()
     };
@@ -150,8 +152,8 @@ fn linear_systems() {
     }
 }
 
-/// Without error control, and as long as the iteration for the columns converges, a staggered correction leaves the
-/// motion as it is, to the last bit.
+/// Without error control, and as long as the iteration for the columns converges, a staggered
+/// correction does not change the motion, to the last bit.
 #[test]
 fn the_motion_is_unchanged_without_error_control() {
     let pendulum = Pendulum([1.0, 0.0, 0.3]);
@@ -174,13 +176,13 @@ fn the_motion_is_unchanged_without_error_control() {
                 cvode.run_with_sensitivities(&times, output, |_| ControlFlow::Continue(())).unwrap();
                 (states, matrix, cvode.statistics().steps, cvode.sensitivity_statistics())
             };
-            // Tolerances that the iteration for the columns reaches as soon as that for the state.
+            // Tolerances that the iteration for the columns reaches as fast as that for the state.
             let wanted = Sensitivities::new().by_parameters([0, 2]).by_starts(0..2).tolerances(1e-5, 1e-5);
             let (states, matrix, steps, work) = with(&wanted.clone().error_control(false));
             assert_eq!((work.error_test_failures, work.nonlinear_failures), (0, 0));
             assert_eq!(states, alone.states(), "{method:?} {offer:?}");
             assert_eq!(steps, alone.statistics().steps);
-            // With it there are more steps, and the derivatives are better.
+            // With error control there are more steps, and the derivatives are more accurate.
             let (_, exact, more_steps, _) = with(&wanted.tolerances(1e-12, 1e-12));
             assert!(more_steps > steps);
             let error = matrix.iter().zip(&exact).fold(0.0, |e: f64, (a, b)| e.max((a - b).abs()));
@@ -189,7 +191,7 @@ fn the_motion_is_unchanged_without_error_control() {
     }
 }
 
-/// A tolerance of the columns alone governs their error: on the linear growth ẏ = y, s = e^t.
+/// The tolerance of the columns determines their error: for the linear growth ẏ = y, s = e^t.
 #[test]
 fn tolerances_of_the_columns() {
     struct Growing;
@@ -253,7 +255,7 @@ fn stepping() {
     let work = cvode.sensitivity_statistics();
     assert!(work.evaluations > cvode.statistics().steps && work.nonlinear_iterations > 0);
 
-    // Without columns it is an integration as any other.
+    // Without columns it is an ordinary integration.
     let field = Offering(OSCILLATOR, Offer::Products);
     let none = Sensitivities::new();
     assert!(none.is_empty());
@@ -262,8 +264,8 @@ fn stepping() {
     assert_eq!(plain.sensitivities().unwrap(), [0.0; 0]);
 }
 
-/// Difference quotients see no scale but that of the state: with y, t in units a million times smaller or larger they
-/// are as good.
+/// Difference quotients depend on no scale but that of the state: they are as accurate with y, t in
+/// units a million times smaller or larger.
 #[test]
 fn difference_quotients_in_other_units() {
     let options = &precise()[1];
@@ -279,7 +281,7 @@ fn difference_quotients_in_other_units() {
     }
 }
 
-/// A stiff system: Newton's iteration takes the columns through the same matrix, in steps as long.
+/// A stiff system: Newton's iteration uses the same matrix for the columns, with steps as long.
 #[test]
 fn stiff() {
     let field = || {
@@ -298,7 +300,8 @@ fn stiff() {
     }
 }
 
-/// Along projected states, columns that begin tangent to the circle stay tangent, and are those of the angle.
+/// Along projected states, columns that begin tangent to the circle stay tangent, and agree with
+/// those of the angle.
 #[test]
 fn fields_with_a_projection() {
     // φ from the horizontal, φ̈ = −cos φ; from φ = 0 with φ̇ = 2.
@@ -316,7 +319,7 @@ fn fields_with_a_projection() {
     for method in [Method::Adams, Method::Bdf] {
         let options =
             |tolerance| Options::new(method).relative_tolerance(tolerance).absolute_tolerance(tolerance);
-        let wanted = Sensitivities::new().by_start(1); // of φ̇₀
+        let wanted = Sensitivities::new().by_start(1); // by φ̇₀
         let exact =
             solve_with_sensitivities(by_angle(), 0.0, &[0.0, 2.0], &times, &options(1e-12), &wanted).unwrap();
         let mut circle = Circle { farthest: 0.0 };
@@ -326,14 +329,15 @@ fn fields_with_a_projection() {
             solve_with_sensitivities(&mut circle, 0.0, &start, &times, &options(1e-9), &wanted).unwrap();
         for ((t, y, s), (_, angle, by)) in found.iter().zip(exact.iter()) {
             assert_near(y[0].hypot(y[1]), 1.0, 1e-15, t);
-            // Derivatives grow as t²: by 3600 here, and with them what the tolerance 1e-9 leaves over.
+            // Derivatives grow as t², to 3600, and with them the error from the tolerance 1e-9.
             assert_near(y[0] * s[0] + y[1] * s[1], 0.0, 1e-4, (method, t));
             let (sin, cos) = angle[0].sin_cos();
             let size = 1.0 + by[0].abs();
             assert_near(s[0] / size, -sin * by[0] / size, 1e-4, (method, t));
             assert_near(s[1] / size, cos * by[0] / size, 1e-4, (method, t));
         }
-        // Linearised where the states are, not where they would be without projection, a hundred times farther off.
+        // Linearised at projected states; without projection they would be a hundred times farther
+        // off the circle.
         assert!(circle.farthest < 1e-7, "{method:?}: {}", circle.farthest);
     }
 }

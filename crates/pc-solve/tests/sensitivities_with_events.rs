@@ -1,4 +1,5 @@
-//! Derivatives of motions with events, over checkpoints and by parameters of any size, against closed forms.
+//! Derivatives of motions with events, across checkpoints and by parameters of any size, against
+//! closed forms.
 
 use std::ops::ControlFlow::Continue;
 
@@ -12,7 +13,7 @@ fn sharp(method: Method) -> Options {
     Options::new(method).relative_tolerance(1e-11).absolute_tolerance(1e-13)
 }
 
-/// ẏ = v, v̇ = −g; parameters g and e, of which only the reset knows e.
+/// ẏ = v, v̇ = −g; parameters g and e, where e occurs in the reset only.
 fn ball(g: f64) -> impl VectorField {
     from_fn(2, move |_t, y: &[f64], ydot: &mut [f64]| {
         ydot.copy_from_slice(&[y[1], -g]);
@@ -42,7 +43,7 @@ fn bounce(e: f64) -> FnEvents<'static> {
         })
 }
 
-/// By h, v₀, g and e.
+/// Columns by h, v₀, g and e.
 fn columns() -> Sensitivities {
     Sensitivities::new().by_starts([0, 1]).by_parameters([0, 1])
 }
@@ -73,7 +74,7 @@ fn assert_near(found: &[f64], expected: &[f64], tolerance: f64) {
     }
 }
 
-/// The resets are differentiated by quotients, good for ten digits.
+/// The resets are differentiated by quotients, accurate to ten digits.
 #[test]
 fn a_bouncing_ball() {
     let (h, g, e) = (1.3, 9.81, 0.8);
@@ -102,7 +103,7 @@ fn a_bouncing_ball() {
     }
 }
 
-/// The derivatives after many bounces, by differences of motions.
+/// The derivatives after many bounces against difference quotients of motions.
 #[test]
 fn many_bounces() {
     let end = 4.0;
@@ -132,12 +133,13 @@ fn many_bounces() {
         (3, (motion(1.0, 9.81, 0.9 + d), motion(1.0, 9.81, 0.9 - d))),
     ] {
         let quotient: Vec<f64> = ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * d)).collect();
-        // The quotients are good for d², times the third derivatives of hundreds.
+        // The error of the quotients is d² times third derivatives of some hundred.
         assert_near(&matrix[2 * column..2 * column + 2], &quotient, 1e-6);
     }
 }
 
-/// ẍ = −x from rest at 1 meets a wall at c, the parameter, and comes back from it with e of its speed.
+/// ẍ = −x from rest at 1 hits a wall at c, the parameter, and returns with the fraction e of its
+/// speed.
 #[test]
 fn an_impact_oscillator_whose_wall_moves_with_a_parameter() {
     let (c, e, t) = (0.5_f64, 0.7, 1.9);
@@ -175,7 +177,7 @@ fn an_impact_oscillator_whose_wall_moves_with_a_parameter() {
     assert_near(&hybrid.sensitivities().unwrap(), &expected, 1e-8);
 }
 
-/// Events that reset nothing leave the derivatives as they are.
+/// Events without resets do not change the derivatives.
 #[test]
 fn events_that_reset_nothing() {
     let passes = FnEvents::new().with(Event::new("half"), |_, y| Ok(y[0] - 0.5));
@@ -187,7 +189,7 @@ fn events_that_reset_nothing() {
     assert_near(&hybrid.sensitivities().unwrap(), &[1.0, 0.0, 3.0, 1.0, -4.5, -3.0, 0.0, 0.0], 1e-9);
 }
 
-/// What has no derivatives, or is not told, is refused.
+/// Cases without derivatives, or with unknown ones, are refused.
 #[test]
 fn sensitivities_over_events_without_derivatives_are_refused() {
     let start = |h: f64, v: f64| {
@@ -216,8 +218,8 @@ fn sensitivities_over_events_without_derivatives_are_refused() {
     assert!(matches!(&error.reason, Reason::Together { events, .. } if events == &["one", "two"]), "{error}");
 }
 
-/// A motion taken up at a checkpoint has the derivatives of one that was not interrupted; without a word about them it is
-/// refused.
+/// A motion resumed from a checkpoint has the derivatives of the uninterrupted one; resuming
+/// without mention of them is refused.
 #[test]
 fn derivatives_continue_from_a_checkpoint() {
     let options = sharp(Method::Adams);
@@ -300,7 +302,8 @@ fn parameters_of_any_size() {
     assert!(solve_with_sensitivities(one, 0.0, &[1.0], &[1.0], &Options::default(), &wrong).is_err());
 }
 
-/// S as a function of time, over a bounce: from S⁺, with the derivatives of its polynomials, as good as at the steps.
+/// S as a function of time over a bounce, with the derivatives of its polynomials: as accurate as
+/// at the ends of steps.
 #[test]
 fn derivatives_between_the_steps() {
     let (h, g, e) = (1.3, 9.81, 0.8);
@@ -335,7 +338,7 @@ fn derivatives_between_the_steps() {
     }
 }
 
-/// ẏ = −y²: ∂y/∂y₀ = 1/(1 + y₀ t)² at any time, as good as at the ends of the steps.
+/// ẏ = −y²: ∂y/∂y₀ = 1/(1 + y₀ t)² at any time, as accurate as at the ends of steps.
 #[test]
 fn derivatives_of_a_smooth_motion_as_a_function_of_time() {
     let decay = || {

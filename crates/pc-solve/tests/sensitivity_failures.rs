@@ -1,4 +1,4 @@
-//! Failures, panics and NaN of the derivatives of a vector field, and input that is not valid.
+//! Failures, panics and NaN of the derivatives of a vector field, and invalid input.
 
 use std::cell::Cell;
 use std::error::Error;
@@ -12,7 +12,7 @@ use pc_solve::{
 
 type Value = fn(f64) -> Result<f64, Failure>;
 
-/// ẏ = p with a derivative of its own making by y, as a product or as a Jacobian, and by p.
+/// ẏ = p with arbitrary derivatives by y, as a product or as a Jacobian, and by p.
 #[derive(Clone)]
 struct Faulty {
     by_state: Value,
@@ -86,7 +86,8 @@ fn run(
     field: Faulty,
     method: Method,
 ) -> Result<SensitivityTrajectory, Box<SolveFailure<SensitivityTrajectory>>> {
-    // Adams needs no Jacobian for the state, so all failures are of the sensitivities; for BDF they may be of both.
+    // Adams needs no Jacobian for the state, so all failures are of the sensitivities; for BDF they
+    // may be of both.
     let options = Options::new(method).initial_step(0.1).max_step(0.1);
     solve_with_sensitivities(field, 0.0, &[0.0], &[0.5, 2.0], &options, &wanted())
 }
@@ -137,7 +138,7 @@ fn derivatives_that_are_not_finite_are_named() {
     }
 }
 
-/// Entries that the field does not write are not what was there before.
+/// Entries that the field does not write do not keep old values.
 #[test]
 fn derivatives_that_are_not_written_are_named() {
     struct Silent(bool);
@@ -197,7 +198,8 @@ fn panics_reach_the_caller_and_leave_the_last_state() {
     }
 }
 
-/// A trial step that only the derivatives do not survive is tried again shorter: √y at y < 0, of ẏ = −2√y.
+/// A trial step in which only the derivatives fail is repeated with a shorter length: √y at y < 0,
+/// of ẏ = −2√y.
 #[test]
 fn recoverable_failures_are_answered_by_shorter_steps() {
     struct Fall(u32);
@@ -219,7 +221,8 @@ fn recoverable_failures_are_answered_by_shorter_steps() {
         }
     }
     let options = Options::default().relative_tolerance(1e-4).absolute_tolerance(1e-6).initial_step(0.999);
-    // A simultaneous correction meets the trial states before the error test of the state turns them down.
+    // A simultaneous correction meets the trial states before the error test of the state rejects
+    // them.
     let wanted = Sensitivities::new().by_start(0).correction(pc_solve::Correction::Simultaneous);
     let mut fall = Fall(0);
     let found = solve_with_sensitivities(&mut fall, 0.0, &[1.0], &[0.9], &options, &wanted).unwrap();

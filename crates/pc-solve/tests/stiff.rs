@@ -26,8 +26,8 @@ fn robertson_jacobian(_t: f64, y: &[f64], j: &mut [f64]) -> Result<(), Failure> 
     Ok(())
 }
 
-/// Reference values at t = 1e11 from [Mazzia, Magherini 2008], Test Set for Initial Value Problem Solvers 2.4,
-/// problem ROBER, first in [Robertson 1966].
+/// Reference values at t = 1e11 from [Mazzia, Magherini 2008], Test Set for Initial Value Problem
+/// Solvers 2.4, problem ROBER, first in [Robertson 1966].
 #[test]
 fn robertson() {
     let reference = [0.2083340149701255e-7, 0.8333360770334713e-13, 0.999999979166505];
@@ -47,7 +47,7 @@ fn robertson() {
     for motion in [&with_jacobian, &quotients] {
         for i in 0..3 {
             let error = (motion.state(0)[i] / reference[i] - 1.0).abs();
-            // The local errors of some thousand steps of relative size 1e-8.
+            // Some thousand steps with relative local errors of 1e-8.
             assert!(error < 1e-5, "component {i}: relative error {error}");
         }
         assert!(motion.statistics().steps < 5000, "{:?}", motion.statistics());
@@ -56,8 +56,8 @@ fn robertson() {
     assert!(quotients.statistics().rhs_evaluations >= 3 * quotients.statistics().jacobian_evaluations);
 }
 
-/// The first phase, as printed by the SUNDIALS example cvRoberts_dns with relative tolerance 1e-4, so right to about
-/// that.
+/// The first phase, as printed by the SUNDIALS example cvRoberts_dns with relative tolerance 1e-4,
+/// which is about its accuracy.
 #[test]
 fn robertson_as_in_the_sundials_examples() {
     let options = Options::new(Method::Bdf).absolute_tolerance(1e-15);
@@ -71,7 +71,7 @@ fn robertson_as_in_the_sundials_examples() {
     }
 }
 
-/// Without a Jacobian to go by, the fixed-point iteration of a stiff system is held to steps of about 1/λ.
+/// The fixed-point iteration, which uses no Jacobian, limits a stiff system to steps of about 1/λ.
 #[test]
 fn newton_takes_the_long_steps() {
     let work = |solver| {
@@ -87,7 +87,7 @@ fn newton_takes_the_long_steps() {
     assert!(work(NonlinearSolver::FixedPoint) > 20 * work(NonlinearSolver::Newton));
 }
 
-/// A Jacobian is only asked for by Newton's iteration, and at the points and layout promised.
+/// Only Newton's iteration evaluates the Jacobian, with the documented arguments and layout.
 #[test]
 fn jacobian_is_column_major() {
     struct Linear {

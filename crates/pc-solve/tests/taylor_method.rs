@@ -1,4 +1,4 @@
-//! Taylor's method: motions known in closed form, its order and its steps, what it refuses.
+//! Taylor's method: motions known in closed form, order, steps and errors.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -29,7 +29,8 @@ fn reason(error: SolveError) -> Reason {
     }
 }
 
-/// Kepler's motion of eccentricity e from the pericentre, by Newton's iteration on Kepler's equation.
+/// Kepler's motion of eccentricity e from the pericentre, by Newton's iteration on Kepler's
+/// equation.
 fn kepler(e: f64, t: f64) -> [f64; 2] {
     let mut anomaly = t;
     for _ in 0..50 {
@@ -72,14 +73,14 @@ fn an_oscillator_is_followed_to_rounding_there_and_back() {
             motion.restart(here, &y).unwrap();
         }
         let y = motion.state_at(t).unwrap();
-        // The phase is known to some roundings of the longest time.
+        // The error of the phase is a few roundings of the longest time.
         let bound = 8.0 * f64::EPSILON * 3.0e3;
         assert!((y[0] - t.cos()).abs() < bound && (y[1] + t.sin()).abs() < bound, "{t}: {y:?}");
     }
 }
 
 #[test]
-fn the_error_goes_with_the_tolerance_and_the_work_with_the_square_of_the_digits() {
+fn the_error_follows_the_tolerance_and_the_work_the_square_of_the_digits() {
     let runs: Vec<(f64, f64, Statistics)> = (3..=6)
         .map(|i| 10.0_f64.powi(-2 * i))
         .map(|tolerance| {
@@ -88,14 +89,16 @@ fn the_error_goes_with_the_tolerance_and_the_work_with_the_square_of_the_digits(
         })
         .collect();
     for (tolerance, error, statistics) in &runs {
-        // Three revolutions magnify the errors of some tens of steps by the time and by the speed at the pericentre.
+        // Over three revolutions the errors of some tens of steps grow with the time and with the
+        // speed at the pericentre.
         assert!(*error < 3e4 * tolerance, "{tolerance:e}: {error:e}, {statistics:?}");
         assert_eq!(statistics.error_test_failures, 0, "{tolerance:e}");
     }
     let (first, last) = (&runs[0], &runs[runs.len() - 1]);
     let slope = (last.1 / first.1).log10() / (last.0 / first.0).log10();
     assert!((0.75..1.25).contains(&slope), "{slope}");
-    // p² products in each step, and a number of steps that hardly depends on the tolerance where p is chosen by it.
+    // p² products in each step, and a number of steps that hardly depends on the tolerance if p is
+    // adapted to it.
     let work = |statistics: &Statistics| statistics.steps as f64 * f64::from(statistics.last_order).powi(2);
     let (ratio, digits) = (work(&last.2) / work(&first.2), 12.0 / 6.0_f64);
     assert!(ratio < 1.5 * digits.powi(2), "{ratio}");
@@ -103,7 +106,7 @@ fn the_error_goes_with_the_tolerance_and_the_work_with_the_square_of_the_digits(
 
 #[test]
 fn a_step_of_fixed_order_errs_by_the_power_of_its_length() {
-    // h ∝ tol^{1/(p+1)}: the number of steps says so.
+    // h ∝ tol^{1/(p+1)}, as the number of steps shows.
     for order in [8, 14] {
         let steps = |tolerance: f64| {
             let mut motion = Integration::of(
@@ -131,8 +134,9 @@ fn integrals_stay_at_rounding_over_a_hundred_thousand_steps() {
             worst[i] = worst[i].max((now[i] - start[i]).abs() / start[i]);
         }
     }
-    // What each step adds to the state, some tenths of it, is rounded as f is: over 10⁵ steps a random walk of 300 such roundings, of
-    // which the energy feels less, since this top spins fast about an axis that hardly moves.
+    // The increment of each step, some tenths of the state, has the rounding of f: over 10⁵ steps a
+    // random walk of 300 such roundings, which affects the energy less, since this top spins fast
+    // about an axis that hardly moves.
     assert!(worst[0] < 5e-15 && worst[1] < 3e-14, "{worst:?}");
 }
 
@@ -156,7 +160,7 @@ fn what_is_not_defined_at_the_start_is_named() {
 
 #[test]
 fn a_pulse_ahead_is_not_leapt_over() {
-    // At rest until t = 5; the pulse has coefficients of 10⁻²⁷² before.
+    // At rest until t = 5; before that the coefficients of the pulse are about 10⁻²⁷².
     for width in [0.2, 0.01, 1e-4] {
         let pulse = field(|t, [_y]| [(-((t - 5.0) / width).square()).exp()]);
         let mut motion = begin(pulse, &[0.0], 1e-12);
@@ -168,7 +172,7 @@ fn a_pulse_ahead_is_not_leapt_over() {
 
 #[test]
 fn a_series_with_gaps_is_not_trusted_beyond_its_reach() {
-    // y = sin t⁸: of the coefficients at 0 most are 0, among them the last two of many orders.
+    // y = sin t⁸: most coefficients at 0 vanish, including the last two for many orders.
     for order in [11, 14, 20, 22] {
         let gaps = field(|t, [_y]| [t.powi(7) * 8.0 * t.powi(8).cos()]);
         let mut motion =
@@ -187,7 +191,8 @@ fn steps_end_at_corners_and_jumps() {
         let x = motion.state_at(t).unwrap()[0];
         assert!((x - expected).abs() < 1e-12, "{t}: {x}, not {expected}");
     }
-    // v̇ = −|v| v: v = 1/(1 + t); against time through v = 0 is v̇ = g − |v| v, v = −tan for t < 0, tanh for t > 0.
+    // v̇ = 1 − |v| v from −1 passes through v = 0 at t = π/4: v = tan (t − π/4) before, tanh
+    // (t − π/4) after.
     let mut motion = begin(field(|_, [v]| [1.0 - v * v.abs()]), &[-1.0], 1e-13);
     let quarter = std::f64::consts::FRAC_PI_4;
     for (t, expected) in [(0.5, (0.5 - quarter).tan()), (2.0, (2.0 - quarter).tanh())] {
@@ -196,7 +201,7 @@ fn steps_end_at_corners_and_jumps() {
     }
     motion.restart(2.0, &[(2.0 - quarter).tanh()]).unwrap();
     assert!((motion.state_at(0.0).unwrap()[0] + 1.0).abs() < 1e-11);
-    // max(t − 1, 0), and a jump in time, either way.
+    // max(t − 1, 0) and a jump in time, forwards and backwards.
     let ramp = || field(|t, [_x, _y]| [(t - 1.0).max(0.0), (t - 2.0).step(3.0, 1.0)]);
     let mut motion = begin(ramp(), &[0.0, 0.0], 1e-12);
     let y = motion.state_at(3.0).unwrap();
@@ -300,6 +305,6 @@ fn a_resumed_motion_has_the_same_bits() {
     let mut plain = begin(heavy_top(), &top_start(), 1e-12);
     let end = plain.state_at(33.3).unwrap();
     let (_, last) = whole.trajectory.last().unwrap();
-    // The top magnifies the tolerance by some thousand.
+    // The top magnifies errors some thousand times.
     assert!(end.iter().zip(last).all(|(a, b)| (a - b).abs() < 1e-8), "{end:?} {last:?}");
 }

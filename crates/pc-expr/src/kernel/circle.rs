@@ -1,4 +1,4 @@
-//! Numbers by which sines and cosines are computed: the parts of π/2, and polynomials, those of the Cephes library.
+//! Constants for sines and cosines: the parts of π/2, and the polynomials of the Cephes library.
 
 /// 1.5·2⁵²: added to a small number, it leaves the nearest integer in the low bits.
 pub(crate) const ROUNDING: f64 = 6_755_399_441_055_744.0;

@@ -7,7 +7,8 @@ use crate::error::ExprError;
 use crate::kernel::kernel::{Entry, Interpreter, Kernel};
 use crate::program::program::Program;
 
-/// Which kernel runs a program. All give the same values, up to the rounding of fused operations.
+/// The kernel that runs a program. All give the same values, up to the rounding of fused
+/// operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
     /// Machine code where the host allows it and the program is not too long, else the interpreter.
@@ -17,12 +18,13 @@ pub enum Backend {
     Interpreter,
 }
 
-/// Machine code of more operations would take longer to make, and more memory, than it saves.
+/// Maximum number of operations of machine code: longer code takes more time and memory to compile
+/// than it saves.
 #[cfg(feature = "jit")]
 const LONGEST_MACHINE_CODE: usize = 250_000;
 
-/// The fastest kernel for `program` on this host: machine code, or the interpreter where none can be made or the program has
-/// more than 250 000 operations.
+/// The fastest kernel for `program` on this host: machine code, or the interpreter if none can be
+/// made or the program has more than 250 000 operations.
 pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
     #[cfg(feature = "jit")]
     if program.code().len() <= LONGEST_MACHINE_CODE
@@ -33,7 +35,7 @@ pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
     Box::new(Interpreter::new(program))
 }
 
-/// A program and its kernel, made when it is first needed.
+/// A program and its kernel, made on first use.
 pub struct Evaluator {
     program: Arc<Program>,
     backend: Backend,
@@ -86,13 +88,15 @@ impl Evaluator {
         self.kernel().machine_code()
     }
 
-    /// What is not finite at (t, state, parameters), if anything is; see [`Interpreter::diagnose`].
+    /// The value that is not finite at (t, state, parameters), if any; see
+    /// [`Interpreter::diagnose`].
     pub fn diagnose(&self, t: f64, state: &[f64], parameters: &[f64]) -> Option<ExprError> {
         Interpreter::new(Arc::clone(&self.program)).diagnose(t, state, parameters)
     }
 
-    /// The error for results that are not finite: that of [`diagnose`](Evaluator::diagnose) or, where the unfused
-    /// operations of the interpreter are all finite, one that names the fused ones of machine code.
+    /// The error for results that are not finite: that of [`diagnose`](Evaluator::diagnose) or, if
+    /// the interpreter's unfused operations are all finite, one that names the fused operations of
+    /// machine code.
     pub fn blame(&self, t: f64, state: &[f64], parameters: &[f64]) -> ExprError {
         let expression = "a result of fused operations".to_owned();
         let fused = || ExprError::NotFinite { expression, value: f64::NAN, t, state: Vec::new() };

@@ -1,8 +1,9 @@
-//! The compiling kernel: a program as machine code of the host, made by Cranelift at run time.
+//! The compiling kernel: a program as machine code of the host, compiled by Cranelift at run time.
 //!
-//! A program becomes machine code in three steps, one file each: `plan` decides what is computed when and what waits
-//! in memory, `emit` writes that down as Cranelift's intermediate code with `sincos` writing sines and cosines in
-//! line, and `assembly` owns the code that results. `host` knows the processor; `jit` is the kernel.
+//! A program becomes machine code in three steps, one file each: `plan` decides the order of
+//! computation and which values wait in memory, `emit` writes Cranelift's intermediate code, with
+//! sines and cosines in line by `sincos`, and `assembly` owns the resulting code. `host` describes
+//! the processor; `jit` is the kernel.
 
 #![expect(
     unsafe_code,

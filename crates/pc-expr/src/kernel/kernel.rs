@@ -9,10 +9,11 @@ use crate::program::program::{Instruction, Program, Register};
 
 /// The signature of compiled code: t, the state, the parameters, the outputs, scratch memory.
 ///
-/// The pointers lead to as many numbers as the [`Program`] says, scratch to its required length; a pointer to no
-/// numbers may be anything. Outputs and scratch are written and overlap nothing else: an output may be written before
-/// the last input is read. The code keeps no state, so any number of threads may run it at once, each with its own
-/// outputs and scratch. On x86-64, foreign vector code that returned without `vzeroupper` slows it down many times.
+/// The pointers lead to arrays of the lengths in the [`Program`], scratch of its required length; a
+/// pointer to an empty array is not read. Outputs and scratch must not overlap anything else: an
+/// output may be written before the last input is read. The code keeps no state, so any number of
+/// threads may run it at once, each with its own outputs and scratch. On x86-64, other vector code
+/// that returns without `vzeroupper` makes it many times slower.
 pub type Entry = unsafe extern "C" fn(
     t: f64,
     state: *const f64,
@@ -21,28 +22,28 @@ pub type Entry = unsafe extern "C" fn(
     scratch: *mut f64,
 );
 
-/// Something that computes the outputs of a [`Program`]; all kernels of a program give the same values.
+/// Computes the outputs of a [`Program`]; all kernels of a program give the same values.
 pub trait Kernel: Send {
     /// Computes the outputs at (t, state, parameters).
     ///
-    /// The slices have the lengths that the program says: `state_len`, `parameters_len`, `outputs_len`.
+    /// The slices have the lengths `state_len`, `parameters_len` and `outputs_len` of the program.
     fn eval(&mut self, t: f64, state: &[f64], parameters: &[f64], outputs: &mut [f64]);
 
     /// An independent kernel of the same program, for another thread.
     fn fork(&self) -> Box<dyn Kernel>;
 
-    /// The machine code, if there is any, for callers that manage memory themselves, and how many numbers of scratch it
-    /// needs. Valid as long as this kernel or a fork of it.
+    /// The machine code, if there is any, for callers that manage memory themselves, and the length
+    /// of its scratch memory. Valid as long as this kernel or a fork of it.
     fn machine_code(&self) -> Option<(Entry, usize)> {
         None
     }
 }
 
-/// The reference kernel: executes one operation after the other.
+/// The reference kernel: executes one operation after another.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     program: Arc<Program>,
-    /// None for a program that is too long for it or rounds several operations at once.
+    /// None for a program that is too long for a tape or has fused operations.
     pub(super) tape: Option<Arc<Tape>>,
     registers: Vec<f64>,
 }
@@ -61,9 +62,10 @@ impl Interpreter {
         &self.program
     }
 
-    /// Runs the program and returns what is not finite: inputs, or else the innermost expression, if there is one.
+    /// Runs the program and returns the values that are not finite: inputs, or else the innermost
+    /// expression, if any.
     ///
-    /// The slices have the lengths that the program says.
+    /// The slices have the lengths of [`eval`](Kernel::eval).
     pub fn diagnose(&mut self, t: f64, state: &[f64], parameters: &[f64]) -> Option<ExprError> {
         let program = &self.program;
         let names = || program.input_names().iter().cloned();
@@ -101,8 +103,8 @@ impl Kernel for Interpreter {
     }
 }
 
-/// Which registers count at these values: those of the outputs and what they are computed from, but for branches of `step`
-/// that are not taken.
+/// The registers on which the outputs depend at these values, without the branches of `step` that
+/// are not taken.
 fn taken(program: &Program, registers: &[f64]) -> Vec<bool> {
     let mut taken = vec![false; registers.len()];
     program.outputs().iter().for_each(|output| taken[output.index()] = true);
@@ -123,7 +125,7 @@ fn taken(program: &Program, registers: &[f64]) -> Vec<bool> {
     taken
 }
 
-/// Computes all registers of a program, which may hold anything before.
+/// Computes all registers of a program, whatever their previous values.
 pub(super) fn walk(program: &Program, registers: &mut [f64], t: f64, state: &[f64], parameters: &[f64]) {
     let inputs = program.first_input();
     let first = program.first_result();

@@ -1,9 +1,9 @@
-//! Programs for many states at once: a number in each of eight lanes.
+//! Programs for many states at once, one in each of eight lanes.
 //!
-//! A [`LaneTape`](tape::LaneTape) holds operations on eight numbers at once, a [`LaneKernel`](kernel::LaneKernel) runs it:
-//! by an `instruction_set`, on the vectors of the processor, eight or four numbers long, or one operation after the other. `inline` appends
-//! programs to a tape, with the `functions` made of operations. Read `tape` first, then `kernel`, `portable` and
-//! `machine`.
+//! A [`LaneTape`](tape::LaneTape) holds operations on eight numbers at once, a
+//! [`LaneKernel`](kernel::LaneKernel) runs it, by an `instruction_set` with vectors of eight or
+//! four numbers, or without machine code. `inline` appends programs to a tape, with `functions`
+//! built of its operations. Read `tape` first, then `kernel`, `portable` and `machine`.
 
 #![cfg_attr(
     all(feature = "jit", target_arch = "x86_64", unix),

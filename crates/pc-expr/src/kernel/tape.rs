@@ -1,18 +1,19 @@
-//! A program in the form that is walked fastest: few steps, short indices, no bounds to check.
+//! A program in the form that is interpreted fastest: few steps, short indices, no bounds checks.
 //!
-//! Going to the next step costs more than an operation. So products are computed by the step that adds or subtracts them,
-//! and sums of products are one step, term after term in the order of the program; every operation is rounded as if
-//! it stood alone. Registers are an array of constant size, in which a 16-bit index masked to that size always falls.
+//! Dispatching a step costs more than an operation. So products are computed by the step that adds
+//! or subtracts them, and a sum of products is one step, term after term in the order of the
+//! program; every operation is still rounded separately. Registers are an array of constant size,
+//! so that a 16-bit index masked to that size is always in bounds.
 
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
-/// The sizes of register files.
+/// Sizes of the register array.
 const SMALL: usize = 1 << 8;
 const MEDIUM: usize = 1 << 12;
 const LARGE: usize = 1 << 16;
 
-/// What a step computes from its operands a, b, c; with a byte of its own, so that it need not be decoded.
+/// What a step computes from its operands a, b, c, encoded in one byte.
 #[derive(Clone, Copy, Debug)]
 #[repr(u8)]
 enum Kind {
@@ -26,7 +27,8 @@ enum Kind {
     Divide,
     /// −a
     Negate,
-    /// c + Σ xy − Σ xy, with a and b the numbers of terms, whose factors x and y are the next of the list of pairs
+    /// c + Σ xy − Σ xy, with a and b the numbers of terms, whose factors x and y are next in the
+    /// list of pairs
     Products,
     /// c + a·b
     AddProduct,
@@ -36,7 +38,7 @@ enum Kind {
     ProductMinus,
     /// −c − a·b
     NegateBoth,
-    /// f(a, …), as many of them as f has arguments
+    /// f(a, …), with the number of arguments of f
     Call(Function),
 }
 
@@ -47,7 +49,7 @@ struct Step {
     operands: [u16; 3],
 }
 
-/// Steps, and the pairs of factors of those that have many.
+/// Steps, and the pairs of factors of sums of products.
 #[derive(Debug)]
 pub(crate) struct Tape {
     constants: Vec<f64>,
@@ -58,13 +60,13 @@ pub(crate) struct Tape {
 }
 
 impl Tape {
-    /// The tape of a program that rounds every operation and has few enough registers.
+    /// The tape of a program without fused operations and with few enough registers.
     pub(crate) fn new(program: &Program) -> Option<Tape> {
         if program.code().iter().any(rounds_once) {
             return None;
         }
-        let paired = program.fused(); // pairs each product with its sum; here it is rounded nevertheless
-        // One more register for −0, to which a product is added unchanged.
+        let paired = program.fused(); // only to pair each product with its sum: both are rounded here
+        // One more register for −0, to which adding a product changes nothing.
         let needed = paired.registers_len() + 1;
         let registers = [SMALL, MEDIUM, LARGE].into_iter().find(|&size| needed <= size)?;
         let mut tape = Tape {
@@ -78,7 +80,7 @@ impl Tape {
         Some(tape)
     }
 
-    /// Registers as this tape wants them.
+    /// Registers for this tape.
     pub(crate) fn registers(&self) -> Vec<f64> {
         let mut registers = vec![0.0; self.registers];
         registers[..self.constants.len()].copy_from_slice(&self.constants);
@@ -174,11 +176,12 @@ impl Tape {
         }
     }
 
-    /// Lists the products of the sum that ends with instruction `i`; answers the operands of its step.
+    /// Lists the products of the sum that ends with instruction `i`; returns the operands of its
+    /// step.
     fn gather(&mut self, program: &Program, sums: &Sums, i: usize) -> [u16; 3] {
         let (mut added, mut subtracted) = (Vec::new(), Vec::new());
         let mut next = Some(i);
-        let mut start = (self.registers - 1) as u16; // −0, unless the sum begins with something
+        let mut start = (self.registers - 1) as u16; // −0, unless the sum begins with another term
         while let Some(at) = next {
             match program.code()[at] {
                 Instruction::MultiplyAdd(x, y, c) => {
@@ -203,11 +206,12 @@ impl Tape {
     }
 }
 
-/// Which instructions add a product to, or subtract it from, the result of another that nothing else uses.
+/// Chains of instructions that add a product to, or subtract it from, the result of another one
+/// used nowhere else.
 struct Sums {
-    /// The other.
+    /// By instruction: that other one.
     previous: Vec<Option<usize>>,
-    /// Whether an instruction is the other of one.
+    /// Whether an instruction is such another one.
     absorbed: Vec<bool>,
 }
 
@@ -224,7 +228,7 @@ impl Sums {
             let Some(j) = start.index().checked_sub(first).filter(|_| uses[start.index()] == 1) else {
                 continue;
             };
-            // What is added comes before what is subtracted.
+            // Products that are added come before those that are subtracted.
             let continues = match code[j] {
                 Instruction::Multiply(..) | Instruction::MultiplyAdd(..) => true,
                 Instruction::NegateMultiplyAdd(..) => !adds,
@@ -239,7 +243,7 @@ impl Sums {
     }
 }
 
-/// Whether an instruction rounds a product and a sum at once.
+/// Whether an instruction is a fused multiply-add.
 fn rounds_once(instruction: &Instruction) -> bool {
     matches!(
         instruction,
@@ -262,7 +266,7 @@ mod tests {
     use crate::random::SplitMix64;
     use crate::{Expr, Folding, Graph, Inputs, Program};
 
-    /// Sums, products and calls of what was made before, `count` of them.
+    /// `count` sums, products and calls of earlier expressions.
     fn random_expressions<'g>(symbols: &[Expr<'g>], count: usize, seed: u64) -> Vec<Expr<'g>> {
         let mut random = SplitMix64::new(seed);
         let mut below = |n: usize| random.below(n);

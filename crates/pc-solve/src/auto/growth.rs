@@ -1,25 +1,26 @@
-//! How large the eigenvalues of ∂f/∂y are, along a motion.
+//! The size of the largest eigenvalue of ∂f/∂y along a motion.
 //!
 //! ```text
 //! ρ = ‖f(t, y + ε v) − f(t, y)‖ / ε, then v ← that direction; norms weighed by the tolerances, ‖v‖ = 1
 //! ```
-//! is a step of the power iteration, which goes on from state to state: ∂f/∂y changes little from one step to the next.
+//! is a step of the power iteration, which continues from state to state: ∂f/∂y changes little from
+//! one step to the next.
 
 /// The power iteration.
 #[derive(Debug, Clone)]
 pub(super) struct Growth {
-    /// Where it stands, and the tolerances there.
+    /// The current state, and the tolerances there.
     y: Vec<f64>,
     tolerances: Vec<f64>,
     direction: Vec<f64>,
     state: Vec<f64>,
     rates: [Vec<f64>; 2],
-    /// The largest of the last estimates.
+    /// The last estimates, of which the largest is used.
     recent: [f64; RECENT],
     count: usize,
 }
 
-/// So many estimates count, of which the largest is taken: those of a rotation rise and fall.
+/// Number of estimates of which the largest is used: for a rotation they rise and fall.
 const RECENT: usize = 6;
 /// The size of ε relative to that of the state: the square root of the rounding of f.
 const RELATIVE: f64 = 1.5e-8;
@@ -37,13 +38,13 @@ impl Growth {
         }
     }
 
-    /// For another motion.
+    /// Restarts the iteration for another motion.
     pub(super) fn forget(&mut self) {
         self.count = 0;
         self.direction.fill(0.0);
     }
 
-    /// Goes to y with these tolerances.
+    /// Moves to y with these tolerances.
     pub(super) fn stand(&mut self, y: &[f64], tolerance: impl Fn(usize, f64) -> f64) {
         self.y.copy_from_slice(y);
         for (i, of) in self.tolerances.iter_mut().enumerate() {
@@ -51,7 +52,8 @@ impl Growth {
         }
     }
 
-    /// Takes one step there, where `look` evaluates f, and gives ρ; none as long as little is known, or where f has no value.
+    /// Makes one step of the iteration, with f evaluated by `look`, and returns ρ; none until there
+    /// are enough estimates, or where f fails.
     pub(super) fn estimate(&mut self, mut look: impl FnMut(&[f64], &mut [f64]) -> bool) -> Option<f64> {
         let Growth { y, tolerances, direction, state, rates: [here, there], recent, count } = self;
         let norm = |v: &[f64]| {
@@ -63,7 +65,8 @@ impl Growth {
         }
         let mut length = norm(direction);
         if length == 0.0 {
-            // Any direction will do that is not an eigenvector by accident: each component by its tolerance, ever less.
+            // Any direction that is not an eigenvector by accident: decreasing multiples of the
+            // tolerances.
             for (i, v) in direction.iter_mut().enumerate() {
                 *v = tolerances[i] / (1.0 + i as f64);
             }

@@ -1,4 +1,4 @@
-//! The choice as a [`Stepper`].
+//! [`Auto`] as a [`Stepper`].
 
 use pc_expr::VectorField;
 
@@ -8,7 +8,7 @@ use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 
-/// Does the same by the method at work.
+/// Forwards a call to the current method.
 macro_rules! each {
     ($engine:expr, $method:ident => $call:expr) => {
         match $engine {

@@ -1,4 +1,4 @@
-//! The stepper that goes over from one method to another.
+//! The stepper that changes between two methods.
 
 use std::fmt;
 
@@ -15,40 +15,42 @@ use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::method::Method;
 use crate::settings::options::Options;
 
-/// BDF formulas take about two evaluations of f a step and solve linear systems; the explicit method takes twelve, and stability
-/// allows it steps of 6.1/ρ. As long as h ρ of a BDF step is below this, the explicit method is no dearer, even if
-/// stability is what limits it.
+/// A BDF step of length h with h ρ below this is not stiff. It takes about two evaluations of f and
+/// linear solves; an explicit step takes twelve evaluations and is stable up to 6.1/ρ, so that the
+/// explicit method costs no more, even where stability limits it.
 const STIFF: f64 = 1.0;
-/// BDF steps are examined so often …
+/// One in this many BDF steps is examined …
 const EVERY: u64 = 4;
-/// … and so many in sequence have to show that the motion is not stiff; twice as many after each return.
+/// … and this many examined in succession must be non-stiff; twice as many after each return.
 const CLEAR: u32 = 8;
-/// Returns after which their number grows no further.
+/// Number of returns after which that number grows no further.
 const DOUBLINGS: u32 = 8;
 
-/// A method that is [`Dop853`] where the motion is not stiff and [`Cvode`] by BDF formulas where it is.
+/// A method that is [`Dop853`] where the motion is not stiff and [`Cvode`] by BDF formulas where it
+/// is.
 ///
-/// It begins explicitly. Where [stiffness](Dop853::stiff_from) is seen, CVODE goes on from the end of that step at order 1;
-/// where for many steps the product of their length with an estimate of the largest eigenvalue of ∂f/∂y is below 1, it
-/// goes back: an explicit step is stable up to 6.1. After each return it takes twice as many such steps, so that it does not
-/// go to and fro. What decides is the motion alone: the same input gives the same steps. At a checkpoint it begins
-/// explicitly, whatever was before.
+/// It begins explicitly. Where [stiffness](Dop853::stiff_from) is detected, CVODE continues from
+/// the end of that step at order 1; when for many steps the product of their length with an
+/// estimate of the largest eigenvalue of ∂f/∂y is below 1, it returns to the explicit method, which
+/// is stable up to 6.1. Each return doubles the number of steps needed for the next one, to prevent
+/// oscillation between the methods. The motion alone decides: the same input gives the same steps.
+/// From a checkpoint it always begins explicitly.
 pub struct Auto<F: VectorField> {
-    /// None only while one is replaced by the other.
+    /// None only while one method replaces the other.
     engine: Option<Engine<F>>,
-    /// For the BDF formulas.
+    /// Options of both methods, with [`Method::Bdf`].
     options: Options,
     growth: Growth,
-    /// BDF steps since the last change, and those examined in sequence that showed that the motion is not stiff.
+    /// BDF steps since the last change, and successive examined steps that were non-stiff.
     steps: u64,
     clear: u32,
     returns: u32,
-    /// The work of the methods before, and what the examination has taken since.
+    /// The work before the last change, and the evaluations of `growth` since.
     earlier: Statistics,
     evaluations: u64,
 }
 
-/// The method at work.
+/// The current method, with its state.
 pub(super) enum Engine<F: VectorField> {
     Explicit(Box<Dop853<F>>),
     Implicit(Box<Cvode<F>>),
@@ -66,8 +68,8 @@ impl<F: VectorField> fmt::Debug for Auto<F> {
 }
 
 impl<F: VectorField> Auto<F> {
-    /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components; the method of the options does not
-    /// matter, and how implicit equations are solved is that of the BDF formulas.
+    /// Starts at y(t0) = y0, as long as `field` has components; the method of the options is
+    /// ignored, and their choices for implicit equations apply to the BDF formulas.
     ///
     /// # Errors
     /// As for [`Cvode::new`] and [`Dop853::new`].
@@ -78,7 +80,7 @@ impl<F: VectorField> Auto<F> {
         let mut options = Options { method: Method::Bdf, ..options.clone() };
         choose(&field, &options)?;
         let explicit = Dop853::of(field, t0, y0, &options);
-        options.initial_step = None; // of the whole motion
+        options.initial_step = None; // only for the start of the motion
         Ok(Auto {
             engine: Some(Engine::Explicit(Box::new(explicit))),
             options,
@@ -91,7 +93,7 @@ impl<F: VectorField> Auto<F> {
         })
     }
 
-    /// The method at work: [`Method::Dop853`] or [`Method::Bdf`].
+    /// The current method: [`Method::Dop853`] or [`Method::Bdf`].
     pub fn method(&self) -> Method {
         match self.engine() {
             Engine::Explicit(_) => Method::Dop853,
@@ -111,7 +113,7 @@ impl<F: VectorField> Auto<F> {
         self.engine.expect("taken only by `change`")
     }
 
-    /// The work of all methods.
+    /// The work of both methods.
     pub(super) fn work(&self) -> Statistics {
         let since = match self.engine() {
             Engine::Explicit(explicit) => explicit.statistics(),
@@ -123,14 +125,14 @@ impl<F: VectorField> Auto<F> {
         };
         let mut all = self.earlier.followed_by(&since);
         if since.steps == 0 && self.earlier.steps > 0 {
-            // Nothing has been done since the change.
+            // No step since the change: orders and lengths are those before.
             let Statistics { last_order, current_order, last_step, current_step, .. } = self.earlier;
             all = Statistics { last_order, current_order, last_step, current_step, ..all };
         }
         all
     }
 
-    /// Goes over to the other method if the last steps say so.
+    /// Changes to the other method if the last steps call for it.
     pub(super) fn consider(&mut self) -> Result<(), SolveError> {
         let changes = match self.engine() {
             Engine::Explicit(explicit) => explicit.stiff_from().is_some(),
@@ -139,7 +141,7 @@ impl<F: VectorField> Auto<F> {
         if changes { self.change() } else { Ok(()) }
     }
 
-    /// Whether BDF steps have not been stiff for long.
+    /// Whether BDF steps have been non-stiff for long enough.
     fn is_clear(&mut self) -> bool {
         let Some(Engine::Implicit(implicit)) = &mut self.engine else { return false };
         let LastStep { start, end, degree: Some(_) } = implicit.last_step() else { return false };
@@ -158,7 +160,7 @@ impl<F: VectorField> Auto<F> {
         self.clear >= CLEAR << self.returns.min(DOUBLINGS)
     }
 
-    /// Goes on by the other method from the end of the last step.
+    /// Continues with the other method from the end of the last step.
     fn change(&mut self) -> Result<(), SolveError> {
         let work = self.work();
         let engine = self.engine_mut();

@@ -1,8 +1,8 @@
-//! Checkpoints, from which a motion is resumed with the same numbers to the last bit.
+//! Checkpoints, from which a motion resumes with the same numbers to the last bit.
 //!
-//! A multistep method depends on its history. So a motion with checkpoints restarts at each of them, whether it was
-//! interrupted there or not: everything after a checkpoint depends only on its contents. That changes the motion
-//! within its tolerance, and costs the steps in which the order grows again.
+//! A multistep method depends on its history. So a motion with checkpoints restarts at each of
+//! them, interrupted or not: everything after a checkpoint depends only on its contents. This
+//! changes the motion within its tolerance, and costs the steps in which the order grows again.
 //! ```
 //! use pc_solve::{Checkpoint, Integration, Options, from_fn};
 //!
@@ -17,9 +17,10 @@
 //! assert_eq!(motion.state_at(4.0)?, later.state_at(4.0)?);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! With events it also keeps their status: on which side of zero each function is, when they last occurred, and which
-//! are due. A quantity that a field keeps by projection, such as the energy, has the value with which the field was
-//! made; after a [restart](crate::Integration::restart), for example by a reset, the value at the state of the
+//! With events it also keeps their status: the side of zero of each function, their last
+//! occurrences, and the events that are due. A quantity that a field conserves by projection, such
+//! as the energy, has the value with which the field was made, or after a
+//! [restart](crate::Integration::restart), for example by a reset, the value at the state of the
 //! checkpoint.
 
 use crate::events::events::{History, Occurrence};
@@ -28,8 +29,8 @@ use crate::integration::trajectory::Trajectory;
 
 /// Time and state of a motion, the outputs and occurrences before it, and the work so far.
 ///
-/// The state is y, projected where the field has a projection: the offset d of y = z + d is taken into it, and is zero
-/// again after the restart.
+/// The state is y, projected if the field has a projection: it includes the offset d of y = z + d,
+/// which is zero again after the restart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Checkpoint {
     pub(crate) time: f64,
@@ -37,35 +38,35 @@ pub struct Checkpoint {
     pub(crate) outputs: Trajectory,
     pub(crate) occurrences: Vec<Occurrence>,
     pub(crate) statistics: Statistics,
-    /// Steps since the last output or occurrence, which are limited.
+    /// Steps since the last output, which are limited.
     pub(crate) steps_since_output: u64,
-    /// Whether the motion has been started anew from a state that it did not come to by itself, as after a reset: what the
-    /// field keeps by projection has the values then that it has here.
+    /// Whether the motion has been restarted, by a reset for example: quantities that the field
+    /// conserves by projection then have their values at this state.
     pub(crate) jumped: bool,
     /// S, column-major; empty without sensitivities.
     pub(crate) sensitivities: Vec<f64>,
-    /// Of a motion with events that has begun.
+    /// The status of the events, once a motion has begun.
     pub(crate) past: Option<Past>,
 }
 
-/// What an integration with events knows of them.
+/// The status of events.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Past {
     /// For each event.
     pub(crate) events: Vec<EventPast>,
-    /// The events that occur at the time of the checkpoint and have yet to be dealt with, each with what its function has
-    /// to exceed then to be told from zero, and the side it goes on to.
+    /// The events at the time of the checkpoint that are still to be applied, each with the
+    /// magnitude above which its function then differs from zero, and the side it takes next.
     pub(crate) due: Vec<(usize, f64, f64)>,
 }
 
-/// What is known of one event.
+/// The status of one event.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct EventPast {
-    /// On which side of zero its function is: 1, −1, or 0 while it is at zero.
+    /// The side of zero of its function: 1, −1, or 0 while it is at zero.
     pub(crate) side: f64,
-    /// What the function has to exceed to have left zero.
+    /// The magnitude that the function must exceed to have left zero.
     pub(crate) noise: f64,
-    /// When it occurred.
+    /// Its last occurrences.
     pub(crate) history: History,
 }
 

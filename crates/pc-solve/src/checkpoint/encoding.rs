@@ -6,13 +6,13 @@
 //! t, dim, y; number of outputs, times, states
 //! number of occurrences, of each: event, t, y⁻, y⁺
 //! the work
-//! 1 if the motion was started anew after a jump, else 0
+//! 1 if the motion was restarted, as after a jump, else 0
 //! number of entries of S, these
-//! 0, or 1 and what is known of events: number of events, of each: side, noise, how often, longest distance, number of
-//!     the last times, these; number of those due, of each: event, noise, side
-//! CRC-32 of all that is before
+//! 0, or 1 and the status of events: number of events, of each: side, noise, count, longest
+//!     interval, number of latest times, these; number of events due, of each: event, noise, side
+//! CRC-32 of all the above
 //! ```
-//! All numbers are little-endian, integers and floats of 64 bits.
+//! All numbers are little-endian 64-bit integers or floats.
 
 use crate::checkpoint::checkpoint::{Checkpoint, EventPast, Past};
 use crate::events::events::{History, Occurrence};
@@ -26,7 +26,7 @@ const VERSION: u64 = 5;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
-    /// They are something else.
+    /// The bytes are something else.
     #[error("it is not a checkpoint")]
     Foreign,
     /// A checkpoint of another version of the format.
@@ -35,13 +35,13 @@ pub enum CheckpointError {
         /// Its version.
         found: u64,
     },
-    /// A checkpoint of which a part is missing or changed.
+    /// A checkpoint with a part missing or changed.
     #[error("the checkpoint is damaged: a part of it is missing or changed")]
     Damaged,
 }
 
 impl Checkpoint {
-    /// The checkpoint as bytes. The `label` says what it is a checkpoint of.
+    /// The checkpoint as bytes. The `label` tells what it belongs to.
     pub fn to_bytes(&self, label: &str) -> Vec<u8> {
         let mut bytes = [MAGIC, format!("{VERSION}\n").as_bytes()].concat();
         put_integer(&mut bytes, label.len() as u64);
@@ -97,7 +97,7 @@ impl Checkpoint {
         bytes
     }
 
-    /// Whether these bytes begin like a checkpoint of any version.
+    /// Whether these bytes begin like a checkpoint, of any version.
     pub fn is_one(bytes: &[u8]) -> bool {
         bytes.starts_with(MAGIC)
     }
@@ -108,7 +108,7 @@ impl Checkpoint {
     /// [`CheckpointError`] unless they are exactly what [`to_bytes`](Checkpoint::to_bytes) wrote.
     pub fn from_bytes(bytes: &[u8]) -> Result<(Checkpoint, String), CheckpointError> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
-        // Another version may be written in another way from here on.
+        // Other versions may have another format from here on.
         let line = rest.iter().position(|&byte| byte == b'\n').ok_or(CheckpointError::Damaged)?;
         let found = std::str::from_utf8(&rest[..line]).ok().and_then(|version| version.parse().ok());
         match found.ok_or(CheckpointError::Damaged)? {
@@ -247,7 +247,7 @@ fn numbers(bytes: &mut &[u8], count: usize) -> Option<Vec<f64>> {
     numbers.map(|number| Some(f64::from_le_bytes(number.try_into().ok()?))).collect()
 }
 
-/// As many things as a number before them says.
+/// A list, after its length.
 fn list<T>(bytes: &mut &[u8], mut one: impl FnMut(&mut &[u8]) -> Option<T>) -> Option<Vec<T>> {
     (0..integer(bytes)?).map(|_| one(bytes)).collect()
 }

@@ -20,21 +20,22 @@ use crate::solve::solution::Solution;
 
 /// As [`Solve::run_observed`](crate::Solve::run_observed), with a checkpoint every `every` steps.
 ///
-/// The motion continues from the checkpoint `from`, whose outputs are the first of `times`, and restarts at each
-/// checkpoint with the vector field and the events that `parts` makes; in the legs after a reset, a field that keeps
-/// an integral [keeps](VectorField::restart) the value that the motion has then. A part of a step that an event has
-/// ended counts as a step; a checkpoint at its end comes after all that occurs there. So a motion resumed from any of
-/// its checkpoints gives the same outputs, the same occurrences and the same ending, bit for bit, as one that was
-/// never interrupted.
+/// The motion continues from the checkpoint `from`, whose outputs are the first of `times`, and
+/// restarts at each checkpoint with the vector field and the events that `parts` makes; in the legs
+/// after a reset, a field that conserves an integral [keeps](VectorField::restart) its value at the
+/// checkpoint. The part of a step before an event counts as a step; a checkpoint at its end follows
+/// all events there. So a motion resumed from any of its checkpoints gives the same outputs, the
+/// same occurrences and the same ending, bit for bit, as one that was never interrupted.
 ///
-/// Each checkpoint is given to `save`, `from` too, and the last one again with `true` where `step` stops the motion or
-/// it fails; a motion cannot be resumed from the outputs beyond it, which are returned.
+/// Each checkpoint, including `from`, is passed to `save`, and the last one again with `true` if
+/// the motion fails or `step` stops it. The outputs beyond it are returned, but the motion resumes
+/// from the checkpoint.
 ///
 /// ```
 /// use std::{num::NonZeroU64, ops::ControlFlow};
 /// use pc_solve::{Checkpoint, Event, FnEvents, Options, from_fn, solve_checkpointed};
 ///
-/// // A ball that bounces.
+/// // A bouncing ball.
 /// let parts = || {
 ///     let fall = from_fn(2, |_t, y, ydot| { ydot[0] = y[1]; ydot[1] = -9.81; Ok(()) });
 ///     let bounce = FnEvents::new().with_reset(
@@ -54,8 +55,8 @@ use crate::solve::solution::Solution;
 /// ```
 ///
 /// # Errors
-/// As for [`Solve::run`](crate::Solve::run), and [`InputError::EventCount`]; [`InputError::Sensitivities`] if the checkpoint has
-/// sensitivities.
+/// As for [`Solve::run`](crate::Solve::run), and [`InputError::EventCount`];
+/// [`InputError::Sensitivities`] if the checkpoint has sensitivities.
 pub fn solve_checkpointed<F: VectorField, E: Events>(
     method: &impl IntegrationMethod<F>,
     mut parts: impl FnMut() -> (F, E),
@@ -72,7 +73,7 @@ pub fn solve_checkpointed<F: VectorField, E: Events>(
             return Err(InputError::Sensitivities { expected: 0, found }.into());
         }
         let mut stepper = method.begin(field, stand.time, &stand.state, times.last().copied())?;
-        // The steps to the next output are counted here, over all legs.
+        // Steps to the next output are counted here, across legs.
         let limit = std::mem::replace(&mut stepper.limits_mut().max_steps, u64::MAX);
         let integration = Integration::resumed(stepper, stand).with_events_of(events, stand)?;
         Ok::<_, SolveError>((integration, Plan { times, every: every.get(), limit }))
@@ -112,7 +113,7 @@ pub fn solve_checkpointed<F: VectorField, E: Events>(
     }
 }
 
-/// The motion that ends so.
+/// The motion with this ending.
 fn motion(
     mut trajectory: Trajectory,
     occurrences: Vec<Occurrence>,
@@ -123,12 +124,12 @@ fn motion(
     Solution { trajectory, occurrences, ending }
 }
 
-/// What all legs have in common.
+/// What all legs share.
 struct Plan<'a> {
     times: &'a [f64],
     /// Steps of a leg.
     every: u64,
-    /// Most steps from one output to the next.
+    /// Maximum number of steps from one output to the next.
     limit: u64,
 }
 
@@ -141,10 +142,10 @@ enum End {
 }
 
 impl Plan<'_> {
-    /// Goes on by one leg, and adds outputs and occurrences to the checkpoint `stand` where it began; how the motion ends,
-    /// if it does.
+    /// Integrates one leg, and adds its outputs and occurrences to the checkpoint `stand` where it
+    /// began; returns how the motion ends, if it does.
     ///
-    /// A leg has as many steps as it should, or more if the last of them did not get away from its start.
+    /// A leg has `every` steps, or more as long as these do not advance the time.
     fn leg<S: Stepper, E: Events>(
         &self,
         integration: &mut Integration<S, E>,
@@ -194,7 +195,7 @@ impl Plan<'_> {
             let _ = output(t, integration.state());
         }
         if next().is_none() {
-            return Ok(Some(Ending::Completed)); // what lies beyond the last output is not asked for
+            return Ok(Some(Ending::Completed)); // nothing is needed beyond the last output
         }
         let ending = integration.settle(&mut occurred)?;
         if ending.is_some() || next() == Some(here) {
@@ -205,7 +206,7 @@ impl Plan<'_> {
     }
 }
 
-/// Legs that lead too slowly to the output at `t`.
+/// The error of too many steps before the output at `t`.
 fn too_much_work<S: Stepper, E: Events>(integration: &Integration<S, E>, steps: u64, t: f64) -> SolveError {
     let reason = Reason::Steps { steps, t, last: integration.statistics().last_step.abs() };
     let (time, state) = (integration.time(), integration.state().to_vec());

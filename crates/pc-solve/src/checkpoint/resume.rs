@@ -9,13 +9,13 @@ use crate::integration::integration::{Integration, directions};
 use crate::integration::stepper::Stepper;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// The current time, state, sensitivities and statistics of the integration, and the status of its events, for
-    /// [`resume`](Integration::resume).
+    /// The current time, state, sensitivities and statistics of the integration, and the status of
+    /// its events, for [`resume`](Integration::resume).
     ///
-    /// Events that are due where an observer has stopped it are handled after the checkpoint.
+    /// Events that are due where an observer has stopped it are applied after the checkpoint.
     pub fn checkpoint(&self) -> Checkpoint {
         let at_front = self.time() == self.front.t;
-        // What the functions do between here and the front is not known here.
+        // Inside a step, `sides` belongs to the front, ahead of the checkpoint.
         let sides = if at_front { &self.sides } else { &self.sides_before };
         let known = sides.known().zip(&self.histories);
         let due = if at_front { self.due.as_slice() } else { &[] };
@@ -29,7 +29,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 .map(|(&event, &side)| (event, self.noise[event], side))
                 .collect(),
         };
-        // Derivatives that cannot be had are not finite, and refused by whoever goes on from them.
+        // Derivatives that are not available become NaN, which resuming refuses.
         let entries = self.field().dim() * self.engine.column_parameters().len();
         Checkpoint {
             statistics: self.statistics(),
@@ -42,10 +42,10 @@ impl<S: Stepper, E: Events> Integration<S, E> {
 }
 
 impl<S: Stepper> Integration<S> {
-    /// Goes on at a checkpoint by a method that has been begun there.
+    /// Continues from a checkpoint with a method that has been begun there.
     ///
-    /// If the motion was [restarted](Integration::restart) before the checkpoint, the field is told to go on from
-    /// [there](VectorField::restart), so that it keeps what it kept after the jump.
+    /// If the motion was [restarted](Integration::restart) before the checkpoint, so is [the
+    /// field](VectorField::restart), which then conserves the values at the checkpoint.
     pub(crate) fn resumed(mut stepper: S, checkpoint: &Checkpoint) -> Self {
         if checkpoint.jumped {
             stepper.field_mut().restart(checkpoint.time, &checkpoint.state);
@@ -56,15 +56,15 @@ impl<S: Stepper> Integration<S> {
     /// This integration, resumed at a checkpoint, with the events of the checkpoint.
     ///
     /// # Errors
-    /// As for [`with_events`](Integration::with_events); [`InputError::EventCount`] if the checkpoint is of a motion with
-    /// another number of events.
+    /// As for [`with_events`](Integration::with_events); [`InputError::EventCount`] if the
+    /// checkpoint is of a motion with another number of events.
     pub fn with_events_of<E: Events>(
         self,
         events: E,
         checkpoint: &Checkpoint,
     ) -> Result<Integration<S, E>, SolveError> {
         let mut integration = self.with_events(events)?;
-        // As after a restart, the end may be too near for a step.
+        // As after a restart, the end may be too close for a step.
         integration.restarted = checkpoint.past.is_some();
         let Some(past) = &checkpoint.past else { return Ok(integration) };
         let (found, expected) = (past.events.len(), integration.histories.len());

@@ -1,4 +1,4 @@
-//! Resumption of an integration by the method that options choose.
+//! Resumption of an integration by the method of options.
 
 use pc_expr::VectorField;
 
@@ -11,14 +11,16 @@ use crate::integration::integration::Integration;
 use crate::settings::options::Options;
 
 impl<F: VectorField> Integration<Chosen<F>> {
-    /// Begins at a checkpoint, which may be a start, by the method of the options, without its events:
-    /// [`with_events_of`](Integration::with_events_of) adds them.
+    /// Begins at a checkpoint, which may be a start, by the method of the options, without its
+    /// events: [`with_events_of`](Integration::with_events_of) adds them.
     ///
-    /// With sensitivities it is a method of CVODES, Adams' where the choice is [open](crate::Method::Auto); their columns
-    /// are those of the checkpoint, at a start those of `sensitivities`.
+    /// With sensitivities the method is one of CVODES, Adams for
+    /// [`Method::Auto`](crate::Method::Auto); their columns are those of the checkpoint, at a start
+    /// those of `sensitivities`.
     ///
     /// # Errors
-    /// As for [`Chosen::new`], and [`resume_with_sensitivities`](Integration::resume_with_sensitivities).
+    /// As for [`Chosen::new`], and
+    /// [`resume_with_sensitivities`](Integration::resume_with_sensitivities).
     pub fn begin(
         field: F,
         checkpoint: &Checkpoint,

@@ -11,11 +11,11 @@ use crate::integration::integration::Integration;
 use crate::settings::options::Options;
 
 impl<F: VectorField> Cvode<F> {
-    /// Begins at a checkpoint with the columns that it has.
+    /// Begins at a checkpoint with its columns.
     ///
     /// # Errors
-    /// As for [`with_sensitivities`](Cvode::with_sensitivities); [`InputError::Sensitivities`] if the checkpoint has another
-    /// number of columns.
+    /// As for [`with_sensitivities`](Cvode::with_sensitivities); [`InputError::Sensitivities`] if
+    /// the checkpoint has another number of columns.
     pub(crate) fn begin_at(
         field: F,
         checkpoint: &Checkpoint,
@@ -39,18 +39,19 @@ impl<F: VectorField> Integration<Cvode<F>> {
     /// Restarts at a checkpoint, which may be the start of a motion, without its events:
     /// [`with_events_of`](Integration::with_events_of) adds them.
     ///
-    /// The motion that was interrupted there and the one that was not continue from here with the same numbers, if
-    /// `field`, events and `options` are the same; fields and events that remember earlier evaluations must be as they were
-    /// when made.
+    /// The resumed motion equals the uninterrupted one to the last bit if `field`, events and
+    /// `options` are the same; fields and events that remember earlier evaluations must be as newly
+    /// made.
     ///
     /// # Errors
-    /// As for [`new`](Integration::new); [`InputError::Sensitivities`] if the checkpoint has sensitivities.
+    /// As for [`new`](Integration::new); [`InputError::Sensitivities`] if the checkpoint has
+    /// sensitivities.
     pub fn resume(field: F, checkpoint: &Checkpoint, options: &Options) -> Result<Self, SolveError> {
         Integration::resume_with_sensitivities(field, checkpoint, options, &Sensitivities::new())
     }
 
-    /// Restarts at a checkpoint as [`resume`](Integration::resume) does, with the sensitivities that it has. Their columns
-    /// are those of `sensitivities`, whose starts do not matter.
+    /// Restarts at a checkpoint as [`resume`](Integration::resume) does, with its sensitivities.
+    /// Their columns are specified by `sensitivities`, whose starts are ignored.
     ///
     /// # Errors
     /// As there; [`InputError::Sensitivities`] if the checkpoint has another number of columns.

@@ -8,17 +8,17 @@ use crate::error::SolveError;
 use crate::integration::breaks::next_break;
 
 impl<F: VectorField> Cvode<F> {
-    /// The break of the field, or the stop time, at which the next step towards a time ends at the latest; none where the field
-    /// has no breaks. CVODES begins anew where the field has jumped.
+    /// The break of the field, or the stop time, that the next step towards a time must not pass;
+    /// none if the field has no breaks. Reinitialises CVODES where the field has jumped.
     pub(super) fn stop_before_break(&mut self, towards: f64) -> Result<Option<f64>, SolveError> {
         if self.field().breaks().is_empty() {
             return Ok(None);
         }
-        // Without a stop time a step may end beyond where it leads.
+        // Without a stop time a step may end beyond `towards`.
         let end = self.stop_time.unwrap_or(f64::INFINITY.copysign(towards - self.step_time));
         let (t, next) = next_break(self.field().breaks(), self.step_time, end);
         let jumped = self.callbacks.field_mut().enter(t, end);
-        // Sensitivities are no part of what could be begun anew: error control sees the jump.
+        // Sensitivities cannot be reinitialised here: with them, error control handles the jump.
         if jumped && self.direction.is_some() && self.sensitivity.is_none() {
             self.begin_anew()?;
         }
@@ -32,12 +32,13 @@ impl<F: VectorField> Cvode<F> {
         }
     }
 
-    /// Starts CVODES anew where it stands, of which the field is not told.
+    /// Reinitialises CVODES at its current state, without telling the field.
     fn begin_anew(&mut self) -> Result<(), SolveError> {
         let before = self.work_so_far();
         let integrals = self.quadrature.as_ref().map(|_| self.quadratures()).transpose()?;
         self.work.as_mut_slice().copy_from_slice(self.step_state.as_slice());
-        // SAFETY: the memory is initialised; CVODES copies the start from the vector, which has its dimension.
+        // SAFETY: the memory is initialised; CVODES copies the start from the vector, which has its
+        // dimension.
         let code = unsafe { sys::CVodeReInit(self.memory.raw(), self.step_time, self.work.raw()) };
         self.context.check("CVodeReInit", code)?;
         self.begin_integrals_anew(integrals)?;

@@ -1,4 +1,4 @@
-//! From CVODES' callbacks to a [`VectorField`], with failures, panics and numbers that are not finite.
+//! Callbacks of CVODES to a [`VectorField`], with failures, panics and non-finite values.
 
 use std::any::Any;
 use std::ffi::{c_int, c_void};
@@ -25,14 +25,14 @@ pub(crate) struct Callbacks<F> {
     pub(crate) field: F,
     pub(crate) dim: usize,
     pub(crate) linear: Work,
-    /// From the vectors of CVODES to states.
+    /// Converts vectors of CVODES to states.
     offset: Option<Offset>,
-    /// The last failure since it was taken.
+    /// The last failure, until it is taken.
     failure: Option<Failure>,
     panic: Option<Box<dyn Any + Send>>,
-    /// The equations of variation, if sensitivities are asked for.
+    /// The equations of variation, if sensitivities are requested.
     pub(crate) variation: Variation,
-    /// The integrands, if integrals are asked for.
+    /// The integrands, if integrals are requested.
     pub(crate) integrands: Option<Integrands>,
 }
 
@@ -55,7 +55,8 @@ impl<F: VectorField> Callbacks<F> {
         })
     }
 
-    /// Evaluates, keeps a failure or panic for the caller of CVODES, and answers as CVODES expects.
+    /// Evaluates, keeps a failure or panic for the caller of CVODES, and returns the code that
+    /// CVODES expects.
     pub(crate) fn guard(
         &mut self,
         evaluate: impl FnOnce(&mut F, Option<&mut Offset>) -> Result<(), Failure>,
@@ -64,7 +65,7 @@ impl<F: VectorField> Callbacks<F> {
             return FATAL;
         }
         let (field, offset) = (&mut self.field, self.offset.as_mut());
-        // Unwind safe: the panic goes on in the caller as soon as CVODES has returned.
+        // Unwind safe: the panic resumes in the caller as soon as CVODES has returned.
         match catch_unwind(AssertUnwindSafe(|| evaluate(field, offset))) {
             Ok(Ok(())) => SUCCESS,
             Ok(Err(failure)) => {
@@ -112,7 +113,7 @@ impl<F> UserData<F> {
         &unsafe { self.0.as_ref() }.field
     }
 
-    /// What the callbacks of the linear solver work with.
+    /// The data of the callbacks of the linear solver.
     pub(crate) fn linear(&self) -> &Work {
         // SAFETY: owned and live; callbacks run only in calls that borrow the owner exclusively.
         &unsafe { self.0.as_ref() }.linear
@@ -123,7 +124,7 @@ impl<F> UserData<F> {
         unsafe { self.0.as_mut() }.linear = work;
     }
 
-    /// Says that CVODES has been started anew at y(t) = y.
+    /// Notes that CVODES has been reinitialised at y(t) = y.
     pub(crate) fn restart(&mut self, t: f64, y: &[f64])
     where
         F: VectorField,
@@ -133,7 +134,7 @@ impl<F> UserData<F> {
         self.begin_anew();
     }
 
-    /// Says that CVODES has been started anew where it was.
+    /// Notes that CVODES has been reinitialised at its current state.
     pub(crate) fn begin_anew(&mut self) {
         // SAFETY: owned and live, borrowed exclusively.
         let callbacks = unsafe { self.0.as_mut() };
@@ -156,7 +157,8 @@ impl<F> UserData<F> {
         callbacks.offset.as_mut().map(|offset| (&mut callbacks.field, offset))
     }
 
-    /// Whether f could be evaluated at what stands for a state in vectors of CVODES, when CVODES does not. A panic goes on.
+    /// Evaluates f at a vector of CVODES, outside calls of CVODES; returns whether it succeeded. A
+    /// panic resumes.
     pub(crate) fn look(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> bool
     where
         F: VectorField,
@@ -168,11 +170,11 @@ impl<F> UserData<F> {
         if let Some(panic) = callbacks.panic.take() {
             resume_unwind(panic);
         }
-        callbacks.failure = None; // CVODES will meet it if it goes there
+        callbacks.failure = None; // CVODES meets it if it gets there
         answer == SUCCESS
     }
 
-    /// The field, to be called when CVODES is not.
+    /// The field, for use outside calls of CVODES.
     pub(crate) fn field_mut(&mut self) -> &mut F {
         // SAFETY: owned and live, borrowed exclusively.
         &mut unsafe { self.0.as_mut() }.field
@@ -221,7 +223,8 @@ pub(crate) unsafe extern "C" fn rhs<F: VectorField>(
     ydot: sys::N_Vector,
     user_data: *mut c_void,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: `y` and `ydot` are live serial vectors of length `dim`, distinct from each other.
     let (y, ydot) = unsafe {
@@ -231,10 +234,12 @@ pub(crate) unsafe extern "C" fn rhs<F: VectorField>(
     callbacks.rhs(t, y, ydot)
 }
 
-/// `len` numbers at `data` as a slice, all set to NaN, so that an entry the field leaves unwritten is found.
+/// `len` numbers at `data` as a slice, all set to NaN to detect entries that the field leaves
+/// unwritten.
 ///
 /// # Safety
-/// `data` has room for `len` numbers, which nobody else uses during `'a`; they need not be initialised.
+/// `data` has room for `len` numbers, which nobody else uses during `'a`; they need not be
+/// initialised.
 pub(crate) unsafe fn nan_slice<'a>(data: *mut f64, len: usize) -> &'a mut [f64] {
     for i in 0..len {
         // SAFETY: within the room promised.

@@ -26,13 +26,15 @@ impl Context {
         }
         let messages = NonNull::from(Box::leak(Box::default()));
         let mut context = Context { raw, messages };
-        // SAFETY: the context is live. A null logger is SUNDIALS' way to log nothing; the context frees its own first.
+        // SAFETY: the context is live. A null logger is SUNDIALS' way to log nothing; the context
+        // frees its own first.
         let code = unsafe { sys::SUNContext_SetLogger(raw, ptr::null_mut()) };
         context.check("SUNContext_SetLogger", code)?;
         // SAFETY: the context is live.
         let code = unsafe { sys::SUNContext_ClearErrHandlers(raw) };
         context.check("SUNContext_ClearErrHandlers", code)?;
-        // SAFETY: the context is live, and `messages` is freed only after the context that calls the handler.
+        // SAFETY: the context is live, and `messages` is freed only after the context that calls
+        // the handler.
         let code =
             unsafe { sys::SUNContext_PushErrHandler(raw, Some(keep_message), messages.as_ptr().cast()) };
         context.check("SUNContext_PushErrHandler", code)?;
@@ -95,7 +97,8 @@ unsafe extern "C" fn keep_message(
     if !message.is_null() {
         // SAFETY: SUNDIALS passes a C string.
         let message = unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned();
-        // SAFETY: the pointer given to SUNContext_PushErrHandler; our side does not hold the Vec during calls.
+        // SAFETY: the pointer given to SUNContext_PushErrHandler; our side does not hold the Vec
+        // during calls.
         unsafe { (*messages.cast::<Vec<String>>()).push(message) };
     }
 }

@@ -16,9 +16,11 @@ use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
 
-/// The variable-order, variable-step multistep methods of CVODES as a [`Stepper`](crate::Stepper), owning the vector field.
+/// The variable-order, variable-step multistep methods of CVODES as a [`Stepper`](crate::Stepper),
+/// owning the vector field.
 ///
-/// [`Integration`](crate::Integration) makes an integration of it; [`solve`](crate::solve()) does so in one call.
+/// [`Integration`](crate::Integration) integrates with it; [`solve`](crate::solve()) does so in one
+/// call.
 pub struct Cvode<F> {
     // Dropped in this order: what CVODES refers to after CVODES, the context last.
     pub(crate) memory: Memory,
@@ -28,34 +30,34 @@ pub struct Cvode<F> {
     pub(crate) quadrature: Option<crate::cvode::quadrature::Quadrature>,
     /// y(`step_time`).
     pub(crate) step_state: Vector,
-    /// Where CVODES writes.
+    /// Room for results of CVODES.
     pub(crate) work: Vector,
     pub(crate) callbacks: UserData<F>,
     pub(crate) context: Context,
 
-    /// Where it stands in the last step.
+    /// The current time, in the last step.
     pub(crate) time: f64,
-    /// How far CVODES is.
+    /// The end of the last step of CVODES.
     pub(crate) step_time: f64,
     /// 1 or −1 since the first step.
     pub(crate) direction: Option<f64>,
     pub(super) initial_step: Option<f64>,
     pub(super) stop_time: Option<f64>,
     pub(super) limits: Limits,
-    /// Steps in sequence that have ended at the same time, and the last failure got over in them.
+    /// Successive steps that did not advance the time, and the last failure overcome in them.
     pub(super) idle_steps: u32,
     pub(super) idle_failure: Option<Failure>,
-    /// The work before the last restart, and whether there has been no step since.
+    /// The work before the last restart, and whether no step has been made since.
     pub(super) earlier: Statistics,
     pub(crate) restarted: bool,
     pub(super) foresight: crate::cvode::foresight::Foresight,
 }
 
-/// CVODE goes on if t + h = t, since h may grow again; after so many such steps it will not.
+/// CVODE continues if t + h = t, since h may grow again; the limit on such steps.
 const MAX_IDLE_STEPS: u32 = 1000;
 
-// SAFETY: the SUNDIALS objects are reached through this struct alone, share nothing with other contexts and are not
-// tied to a thread; F is the only part that could be.
+// SAFETY: the SUNDIALS objects are reached through this struct alone, share nothing with other
+// contexts and are not tied to a thread; F is the only part that could be.
 unsafe impl<F: Send> Send for Cvode<F> {}
 
 impl<F: VectorField> fmt::Debug for Cvode<F> {
@@ -85,12 +87,14 @@ impl<F: VectorField> Cvode<F> {
         self.earlier.followed_by(&since)
     }
 
-    /// The linear solver of Newton's iteration, as chosen or by default for the field; none for the fixed-point iteration.
+    /// The linear solver of Newton's iteration, as chosen or by default for the field; none for the
+    /// fixed-point iteration.
     pub fn linear_solver(&self) -> Option<&LinearSolver> {
         self.linear.as_ref().map(Linear::choice)
     }
 
-    /// The weights 1/(rtol |yᵢ| + atolᵢ) of the error test, one for each component, at the end of the last internal step.
+    /// The weights 1/(rtol |yᵢ| + atolᵢ) of the error test, one for each component, at the end of
+    /// the last internal step.
     ///
     /// # Errors
     /// [`InputError::NoStep`] before the first step.
@@ -98,8 +102,9 @@ impl<F: VectorField> Cvode<F> {
         self.vector("CVodeGetErrWeights", sys::CVodeGetErrWeights)
     }
 
-    /// The estimated local errors of the components in the last internal step; a step is accepted if the root mean
-    /// square of their products with the [weights](Cvode::error_weights) is at most 1.
+    /// The estimated local errors of the components in the last internal step; a step is accepted
+    /// if the root mean square of their products with the [weights](Cvode::error_weights) is at
+    /// most 1.
     ///
     /// # Errors
     /// [`InputError::NoStep`] before the first step.
@@ -107,7 +112,7 @@ impl<F: VectorField> Cvode<F> {
         self.vector("CVodeGetEstLocalErrors", sys::CVodeGetEstLocalErrors)
     }
 
-    /// A vector that CVODES has once a step has been taken.
+    /// A vector that CVODES provides after the first step.
     fn vector(
         &mut self,
         name: &'static str,
@@ -148,11 +153,12 @@ impl<F: VectorField> Cvode<F> {
         if let Some(t) = landing {
             self.memory.set(&mut self.context, "CVodeSetStopTime", sys::CVodeSetStopTime, t)?;
         }
-        // CVODES minds its stop time only if the target is not nearer.
+        // CVODES respects its stop time only if the target is not nearer.
         let target = landing.or(end).unwrap_or(towards);
         let mut t = self.step_time;
         self.restarted = false;
-        // SAFETY: all is live and of one context; callbacks use only the user data, which nobody holds meanwhile.
+        // SAFETY: all is live and of one context; callbacks use only the user data, which nobody
+        // holds meanwhile.
         let code =
             unsafe { sys::CVode(self.memory.raw(), target, self.work.raw(), &raw mut t, sys::CV_ONE_STEP) };
         if let Some(panic) = self.callbacks.take_panic() {
@@ -167,7 +173,7 @@ impl<F: VectorField> Cvode<F> {
         if code != sys::CV_SUCCESS && code != sys::CV_TSTOP_RETURN {
             return Err(self.failed(Reason::Cvode { code: code.into(), message }, failure));
         }
-        // Looked at several at a time; which it is matters only if there is one.
+        // A vectorisable check; the index is needed only if it fails.
         if !self.work.as_slice().iter().fold(true, |finite, value| finite & value.is_finite())
             && let Some(i) = self.work.as_slice().iter().position(|value| !value.is_finite())
         {
@@ -183,9 +189,9 @@ impl<F: VectorField> Cvode<F> {
         self.check_progress(before, failure)
     }
 
-    /// Fails if many steps in sequence have ended where they began, the last at `before`.
+    /// Fails if many successive steps have not advanced the time, the last from `before`.
     ///
-    /// `failure` was met in the last step and got over by a shorter one.
+    /// `failure` occurred in the last step and was overcome by a shorter one.
     fn check_progress(&mut self, before: f64, failure: Option<Failure>) -> Result<(), SolveError> {
         if self.step_time != before {
             self.idle_steps = 0;
@@ -202,7 +208,8 @@ impl<F: VectorField> Cvode<F> {
         Err(self.failed(Reason::Stalled, failure))
     }
 
-    /// Makes a state of what CVODES has written for time `t`, at the end of a step or within it.
+    /// Projects the work vector, which CVODES has written for time `t`, at the end of a step or
+    /// within it.
     pub(super) fn project(&mut self, t: f64, step: bool) -> Result<(), SolveError> {
         let Some((field, offset)) = self.callbacks.projection() else { return Ok(()) };
         match offset.project(field, t, self.work.as_mut_slice(), step) {

@@ -1,13 +1,14 @@
 //! The explicit dependence on time, examined up to the end of the next step.
 //!
-//! A multistep method sees f at the ends of its steps only. Before a step is tried, f is therefore evaluated at the
-//! [places](crate::foresight) where its explicit dependence on time may hide something, at the state that the step would
-//! predict there: with p the polynomial through the last steps, the defect
+//! A multistep method evaluates f only at the ends of its steps. Before a step is tried, f is
+//! therefore evaluated at the [places](crate::foresight) where its explicit dependence on time may
+//! have a hidden feature, at the predicted state: with p the polynomial through the last steps, the
+//! defect
 //! ```text
 //! δ = p′(t) − f(t, p(t))
 //! ```
-//! would change the state by about h δ over a step of length h. If that is large compared with the tolerance, the step
-//! ends no later than there, and the method meets it.
+//! would change the state by about h δ over a step of length h. If that is large compared with the
+//! tolerance, the step ends there at the latest, so that the method meets the feature.
 
 use pc_expr::VectorField;
 use sundials_sys as sys;
@@ -19,12 +20,12 @@ use crate::foresight::SURPRISE;
 use crate::foresight::places::{Ahead, Here, Places};
 use crate::foresight::scatter::scatters;
 
-/// The first step is at most this part of the way, as CVODE estimates it.
+/// Maximum first step in fractions of the whole interval, as estimated by CVODE.
 const FIRST_STEP: f64 = 0.1;
 
 impl<F: VectorField> Cvode<F> {
-    /// A time in the next step, tried in the direction of `towards`, at which the step is to end; none if nothing is
-    /// foreseen that it would not see.
+    /// A time in the next step towards `towards` at which the step has to end; none if it would
+    /// miss nothing.
     pub(super) fn foresee(&mut self, towards: f64) -> Result<Option<f64>, SolveError> {
         let Some(mut places) = self.foresight.places.take_if(|places| !places.are_absent()) else {
             return Ok(None);
@@ -46,7 +47,7 @@ impl<F: VectorField> Cvode<F> {
         }
         let Ahead { t, reach, .. } = ahead;
         if self.direction.is_none() {
-            // Nothing is known yet, and the first step is short.
+            // Before the first step nothing is known, so it is kept short.
             return Ok(places.found.first().copied().or(places.crowded));
         }
         self.read_polynomial()?;
@@ -63,7 +64,7 @@ impl<F: VectorField> Cvode<F> {
         Ok(places.crowded)
     }
 
-    /// Where the next step would end.
+    /// The planned end of the next step.
     fn planned_end(&self, towards: f64) -> f64 {
         let t = self.step_time;
         let end = self.stop_time.unwrap_or(towards);
@@ -83,7 +84,7 @@ impl<F: VectorField> Cvode<F> {
         }
     }
 
-    /// Takes the polynomial of the last step; before the first, the tangent.
+    /// Reads the polynomial of the last step; before the first, the tangent.
     fn read_polynomial(&mut self) -> Result<(), SolveError> {
         let t = self.step_time;
         if self.direction.is_none() {
@@ -92,7 +93,7 @@ impl<F: VectorField> Cvode<F> {
                 y.copy_from_slice(self.step_state.as_slice());
                 foresight.evaluations += 1;
                 if !self.callbacks.look(t, y, rates) {
-                    rates.fill(0.0); // CVODE will say so
+                    rates.fill(0.0); // CVODE reports the failure
                 }
                 foresight.terms = 2;
             }
@@ -123,7 +124,8 @@ impl<F: VectorField> Cvode<F> {
         Ok(())
     }
 
-    /// Whether f does there what the polynomial does not let expect, for a step of this length.
+    /// Whether f at this place differs from the prediction enough to matter for a step of this
+    /// length.
     fn surprises_at(&mut self, place: f64, length: f64) -> bool {
         let since = place - self.step_time;
         self.foresight.predict(since);

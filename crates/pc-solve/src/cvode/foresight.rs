@@ -1,4 +1,4 @@
-//! The polynomial that predicts the motion up to the end of the next step, and what it does not let expect.
+//! The polynomial that predicts the motion up to the end of the next step, and its defect.
 
 use pc_expr::VectorField;
 
@@ -6,10 +6,11 @@ use crate::foresight::places::Places;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
-/// The correction of a step is its local error times at most about this, at the orders at which steps grow.
+/// Approximate maximum ratio of a step's correction to its local error, at the orders at which
+/// steps grow.
 const NEXT_TERM: f64 = 20.0;
 
-/// What is to be looked out for, and what is to be expected.
+/// The places to examine, and the prediction there.
 pub(super) struct Foresight {
     /// None while it is in use.
     pub(super) places: Option<Places>,
@@ -17,7 +18,7 @@ pub(super) struct Foresight {
     pub(super) absolute_tolerance: Tolerance,
     /// Evaluations since the last restart.
     pub(super) evaluations: u64,
-    /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, the first `terms` of them, and work.
+    /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, of which the first `terms` are valid, and work space.
     pub(super) polynomial: Vec<Vec<f64>>,
     pub(super) terms: usize,
     pub(super) state: Vec<f64>,
@@ -49,7 +50,7 @@ impl Foresight {
         }
     }
 
-    /// For a new start.
+    /// Resets the counts, for a restart.
     pub(super) fn restart(&mut self) {
         self.evaluations = 0;
         if let Some(places) = &mut self.places {
@@ -66,7 +67,7 @@ impl Foresight {
         self.relative_tolerance * y.abs() + atol
     }
 
-    /// What the tolerances take for nothing is no measure of a state.
+    /// The smallest significant size of a component, by the tolerances.
     pub(super) fn least_size(&self) -> f64 {
         let atol = match &self.absolute_tolerance {
             Tolerance::Scalar(atol) => *atol,
@@ -75,10 +76,11 @@ impl Foresight {
         atol / self.relative_tolerance
     }
 
-    /// max |δᵢ|/(rtol |yᵢ| + atolᵢ), of the defect at the last place looked at, `since` the last step.
+    /// max |δᵢ|/(rtol |yᵢ| + atolᵢ) for the defect at the last place examined, `since` after the
+    /// last step.
     ///
-    /// Of it what the next term of the polynomial would explain is no surprise: a method that has just raised its order has
-    /// that term, and goes far with it.
+    /// The part that the next term of the polynomial would explain is subtracted: a method that has
+    /// just raised its order includes that term, and makes long steps with it.
     pub(super) fn defect(&self, since: f64) -> f64 {
         let ratio = (since / self.last_step).abs();
         let growth = NEXT_TERM * f64::from(self.order + 1) * ratio.powi(self.order) / self.last_step.abs();
@@ -89,7 +91,7 @@ impl Foresight {
         (0..self.rates.len()).map(weighed).fold(0.0, f64::max)
     }
 
-    /// Writes p(t) and p′(t), the time counted from where the polynomial was made.
+    /// Writes p and p′ at the time `since` after the last step.
     pub(super) fn predict(&mut self, since: f64) {
         self.state.fill(0.0);
         self.slope.fill(0.0);

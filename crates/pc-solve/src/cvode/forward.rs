@@ -1,8 +1,8 @@
 //! Sensitivities, integrated along with the motion.
 //!
-//! `sensitivities` says which derivatives; `variation` are their equations, with ∂f/∂y by whatever the field offers
-//! (`linearisation`), called by CVODES as `equations`. `columns` are those of an integration, `forward` integrates
-//! them, `interpolation` gives them inside a step.
+//! `sensitivities` specifies the derivatives; `variation` holds their equations, with ∂f/∂y from
+//! whatever the field offers (`linearisation`), called by CVODES through `equations`. `columns`
+//! belong to an integration, `forward` integrates them, `interpolation` gives them inside a step.
 
 pub(crate) mod columns;
 pub(crate) mod equations;

@@ -1,6 +1,6 @@
 //! Owning handles of the SUNDIALS objects of one solver.
 //!
-//! Each frees its object when dropped and must be dropped before the [`Context`] it was made in.
+//! Each frees its object when dropped and must be dropped before its [`Context`].
 
 use std::ffi::{c_int, c_void};
 use std::ptr::NonNull;
@@ -32,13 +32,15 @@ impl Vector {
         Ok(vector)
     }
 
-    /// Has a step that violates an inequality tried again with at most half its length by the CVODES that starts from
-    /// this vector.
+    /// Makes the CVODES that starts from this vector repeat a step that violates an inequality with
+    /// at most half its length.
     ///
-    /// The new length is to be 0.9 times a quotient of vectors, used for this alone. CVODES takes it of the prediction
-    /// in place of the last state, so that it is infinite where the prediction is exact.
+    /// The new length is 0.9 times a quotient of vectors that is used for nothing else. CVODES
+    /// forms it with the prediction instead of the last state, so that it is infinite where the
+    /// prediction is exact.
     pub(crate) fn halve_after_violations(&mut self) {
-        // SAFETY: the vector is live and ours alone, and so is its table of operations, which clones copy.
+        // SAFETY: the vector is live and ours alone, and so is its table of operations, which
+        // clones copy.
         unsafe { (*(*self.raw.as_ptr()).ops).nvminquotient = Some(bounded_quotient) };
     }
 
@@ -47,7 +49,8 @@ impl Vector {
     }
 
     pub(crate) fn as_slice(&self) -> &[f64] {
-        // SAFETY: `data` holds `len` initialised numbers, which only a call given this vector changes.
+        // SAFETY: `data` holds `len` initialised numbers, which only a call given this vector
+        // changes.
         unsafe { slice::from_raw_parts(self.data.as_ptr(), self.len) }
     }
 
@@ -57,14 +60,14 @@ impl Vector {
     }
 }
 
-/// Where the numbers of a vector are; `N_VGetArrayPointer` finds them by a call through a table, which would be felt in each
-/// evaluation of a small system.
+/// The address of the numbers of a vector. `N_VGetArrayPointer` calls through a table, whose cost
+/// is noticeable for small systems.
 ///
 /// # Safety
 /// The vector is live and serial.
 #[inline]
 pub(crate) unsafe fn numbers_of(vector: sys::N_Vector) -> *mut f64 {
-    // SAFETY: that is what a serial vector consists of.
+    // SAFETY: a serial vector has this layout.
     unsafe { (*(*vector).content.cast::<sys::_N_VectorContent_Serial>()).data }
 }
 
@@ -149,7 +152,8 @@ impl Memory {
         self.0
     }
 
-    /// Calls a set-up `function` of CVODES that takes one `value`, once CVODES has been initialised.
+    /// Calls a set-up `function` of CVODES that takes one `value`, once CVODES has been
+    /// initialised.
     pub(crate) fn set<T: Number>(
         &self,
         context: &mut Context,

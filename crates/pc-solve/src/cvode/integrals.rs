@@ -12,12 +12,12 @@ use crate::settings::tolerance::Tolerance;
 /// Writes g(t, y) to its last argument.
 pub(crate) type Integrands = Box<dyn FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure> + Send>;
 
-/// Integrals ∫ g(t, y) dt along a motion, for any number of functions g that do not act back on it: the work of a force,
-/// the length of a path, a mean value.
+/// Integrals ∫ g(t, y) dt along a motion, for any number of functions g that do not affect it: the
+/// work of a force, the length of a path, a mean value.
 ///
-/// They are computed by the formulas of the method like further components of the state, but take no part in its
-/// implicit equations. Steps have to pass the error test of the integrals too, unless that is [left
-/// out](Integrals::error_control).
+/// The method integrates them like further components of the state, outside its implicit equations.
+/// Steps also have to pass the error test of the integrals, unless that is [switched
+/// off](Integrals::error_control).
 ///
 /// ```
 /// use pc_solve::{Integration, Integrals, Options, from_fn};
@@ -56,7 +56,8 @@ impl fmt::Debug for Integrals {
 }
 
 impl Integrals {
-    /// `count` integrals, at least 1, of the functions g(t, y) that the closure writes to its last argument, every entry.
+    /// `count` integrals, at least 1, of the functions g(t, y), all of which the closure writes to
+    /// its last argument.
     pub fn new(
         count: usize,
         integrands: impl FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure> + Send + 'static,
@@ -64,18 +65,19 @@ impl Integrals {
         Integrals { count, integrands: Box::new(integrands), error_control: true, tolerances: None }
     }
 
-    /// Whether steps have to pass the error test of the integrals; if not, the motion is the same as without them.
+    /// Whether steps have to pass the error test of the integrals; if not, the motion is the same
+    /// as without them.
     pub fn error_control(self, error_control: bool) -> Integrals {
         Integrals { error_control, ..self }
     }
 
-    /// Relative and absolute tolerance of the integrals, positive; unless given, those of the state, and the least of
-    /// its absolute ones.
+    /// Relative and absolute tolerance of the integrals, positive; by default those of the state,
+    /// with its smallest absolute tolerance.
     pub fn tolerances(self, relative: f64, absolute: f64) -> Integrals {
         Integrals { tolerances: Some((relative, absolute)), ..self }
     }
 
-    /// Relative and absolute tolerance, if all is valid.
+    /// The relative and absolute tolerance, if the input is valid.
     pub(crate) fn validate(&self, options: &Options) -> Result<(f64, f64), InputError> {
         positive("the number of integrals", self.count as f64)?;
         let (relative, absolute) = self.tolerances.unwrap_or_else(|| {
@@ -83,7 +85,7 @@ impl Integrals {
                 Tolerance::Scalar(atol) => *atol,
                 Tolerance::Vector(atol) => atol.iter().copied().fold(f64::INFINITY, f64::min),
             };
-            // An absolute tolerance of 0 would ask for integrals exact at 0, where they begin.
+            // An absolute tolerance of 0 would require exact integrals at 0, where they begin.
             let smallest = if least > 0.0 { least } else { options.relative_tolerance };
             (options.relative_tolerance, smallest)
         });

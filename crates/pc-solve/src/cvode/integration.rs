@@ -1,4 +1,4 @@
-//! Integration by CVODES: how it begins, and the functions that only this method has.
+//! Integration by CVODES: constructors, and the functions that only this method has.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -14,7 +14,7 @@ use crate::integration::observer::Observed;
 use crate::settings::options::Options;
 
 impl<F: VectorField> Integration<Cvode<F>> {
-    /// Starts at y(t0) = y0 by CVODES, where `y0` has as many numbers as `field` has components.
+    /// Starts at y(t0) = y0 by CVODES; `y0` is as long as `field` has components.
     ///
     /// # Errors
     /// As for [`Cvode::new`].
@@ -23,7 +23,7 @@ impl<F: VectorField> Integration<Cvode<F>> {
     }
 }
 
-/// What only a method with error control and a linear solver has to tell.
+/// Data of the error control and the linear solver.
 impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
     /// As [`Cvode::linear_solver`].
     pub fn linear_solver(&self) -> Option<&LinearSolver> {
@@ -48,10 +48,11 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
 }
 
 impl<F: VectorField> Integration<Cvode<F>> {
-    /// Starts at y(t0) = y0 as [`new`](Integration::new) does, with integrals along the motion, which are 0 there.
+    /// Starts at y(t0) = y0 as [`new`](Integration::new) does, with integrals along the motion,
+    /// which begin at 0.
     ///
-    /// A [checkpoint](Integration::checkpoint) has none of them: after resuming from one, integrals have to be
-    /// requested again, and begin at 0.
+    /// A [checkpoint](Integration::checkpoint) does not contain them: after resuming, integrals
+    /// have to be requested again, and begin at 0.
     ///
     /// # Errors
     /// As for [`Cvode::with_integrals`].
@@ -75,7 +76,8 @@ impl<F: VectorField> Integration<Cvode<F>> {
 }
 
 impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
-    /// The integrals from the start to [`time`](Integration::time), across events, in the order of their integrands.
+    /// The integrals from the start to [`time`](Integration::time), across events, in the order of
+    /// their integrands.
     ///
     /// # Errors
     /// [`InputError::NoIntegrals`](crate::InputError::NoIntegrals) unless they were requested;
@@ -84,7 +86,7 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         self.engine.integrals_here()
     }
 
-    /// As [`run`](Integration::run), and gives each (t, y) with the integrals to there to `output`.
+    /// As [`run`](Integration::run), but passes each (t, y) with the integrals up to t to `output`.
     ///
     /// # Errors
     /// As for [`run`](Integration::run) and [`integrals`](Integration::integrals).

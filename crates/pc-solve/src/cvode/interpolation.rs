@@ -10,7 +10,7 @@ use crate::error::{Reason, SolveError};
 use crate::integration::stepper::LastStep;
 
 impl<F: VectorField> Cvode<F> {
-    /// Where the last step began, where it ended, and the order of the method in it.
+    /// The start and end of the last step, and its order.
     pub(crate) fn step_made(&self) -> LastStep {
         let end = self.step_time;
         if self.direction.is_none() || self.restarted {

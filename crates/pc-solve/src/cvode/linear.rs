@@ -1,9 +1,10 @@
 //! The linear systems (I − γ ∂f/∂y) x = b of Newton's iteration, and their solvers.
 //!
-//! `solver` lists them, with `krylov` and its `preconditioner`; `choice` selects one, and `linear` gives it to CVODES.
-//! Direct ones are `dense`, `band` and `sparse` with `sparse_lu` (registered with SUNDIALS by `direct`), and
-//! `quotient_jacobian`, of `quotients`, where the Jacobian is not given; `gmres` iterates. `work` is the data of the
-//! callbacks, `handles` own SUNDIALS' objects.
+//! `solver` lists them, with `krylov` and its `preconditioner`; `choice` selects one, and `linear`
+//! attaches it to CVODES. Direct solvers are `dense`, `band` and `sparse` with `sparse_lu`
+//! (registered with SUNDIALS by `direct`); without a given Jacobian, `quotient_jacobian` computes
+//! it from `quotients`; `gmres` iterates. `work` is the data of the callbacks, `handles` owns the
+//! objects of SUNDIALS.
 
 pub(crate) mod band;
 pub(crate) mod choice;

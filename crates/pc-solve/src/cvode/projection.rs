@@ -2,14 +2,14 @@
 
 use pc_expr::{Failure, VectorField};
 
-/// The states are y = z + d with z integrated by CVODES. A projection changes d alone: the history of z, on which a
-/// multistep method of any order rests, stays as smooth as it was, and f(t, z + d) changes by no more than the error
-/// of a step [Shampine, Comp. Maths. Appls. 12B (1986) 1287].
+/// The states are y = z + d with z integrated by CVODES. A projection changes d alone: the history
+/// of z, on which a multistep method relies, stays smooth, and f(t, z + d) changes by no more than
+/// the error of a step [Shampine, Comp. Maths. Appls. 12B (1986) 1287].
 ///
-/// CVODES has a hook of its own, `CVodeSetProjFn`, for BDF alone. On a top with a unit quaternion and on pendulums in
-/// Cartesian coordinates, at four tolerances, it took as many steps within 3 % (once 10 % more), came to errors that
-/// scatter about the same ones, and drifted as little; its projection of the error estimate cost a second projection a
-/// step and saved no steps. So there is one method for both families.
+/// The hook of CVODES, `CVodeSetProjFn`, works for BDF only. On a top with a unit quaternion and on
+/// pendulums in Cartesian coordinates, at four tolerances, it took the same number of steps within
+/// 3 % (once 10 % more), with similar errors and drift; its projection of the error estimate cost a
+/// second projection per step and saved no steps. So one method serves both families.
 pub(crate) struct Offset {
     d: Vec<f64>,
     /// z + d
@@ -22,7 +22,7 @@ impl Offset {
         Offset { d: vec![0.0; dim], state: vec![0.0; dim] }
     }
 
-    /// d = 0, for a new start.
+    /// d = 0, for a restart.
     pub(crate) fn clear(&mut self) {
         self.d.fill(0.0);
     }
@@ -35,10 +35,11 @@ impl Offset {
         &self.state
     }
 
-    /// Replaces z at time t by the projection of y; a `step` goes on from there.
+    /// Replaces z at time t by the projection of y = z + d; at the end of a `step`, d keeps the
+    /// change.
     ///
     /// # Errors
-    /// Those of the projection; z is y then.
+    /// Those of the projection; z is then y.
     pub(crate) fn project(
         &mut self,
         field: &mut impl VectorField,

@@ -1,4 +1,4 @@
-//! Integrals along an integration, as CVODES calls their integrands.
+//! Integrals along an integration, with the callbacks for their integrands.
 
 use std::ffi::{c_int, c_void};
 use std::slice;
@@ -15,12 +15,14 @@ use crate::error::{InputError, NonFinite, Reason, SolveError};
 use crate::settings::options::Options;
 
 impl<F: VectorField> Cvode<F> {
-    /// Starts at y(t0) = y0 as [`Cvode::new`] does, with integrals along the motion, which are 0 there.
+    /// Starts at y(t0) = y0 as [`Cvode::new`] does, with integrals along the motion, which begin
+    /// at 0.
     ///
-    /// For an integration [with sensitivities](Cvode::with_sensitivities), [`and_integrals`](Cvode::and_integrals) adds them.
+    /// For an integration [with sensitivities](Cvode::with_sensitivities),
+    /// [`and_integrals`](Cvode::and_integrals) adds them.
     ///
     /// # Errors
-    /// As for [`new`](Cvode::new); [`SolveError::Input`] if what is asked for is not valid.
+    /// As for [`new`](Cvode::new); [`SolveError::Input`] if the request is invalid.
     pub fn with_integrals(
         field: F,
         t0: f64,
@@ -34,7 +36,8 @@ impl<F: VectorField> Cvode<F> {
     /// This integration, which has not begun, with integrals along the motion.
     ///
     /// # Errors
-    /// [`SolveError::Input`] if what is asked for is not valid; [`InputError::NoIntegrals`] if it has begun, or has integrals.
+    /// [`SolveError::Input`] if the request is invalid; [`InputError::NoIntegrals`] if it has
+    /// begun, or has integrals.
     pub fn and_integrals(mut self, integrals: Integrals, options: &Options) -> Result<Self, SolveError> {
         if self.direction.is_some() || self.quadrature.is_some() {
             return Err(InputError::NoIntegrals.into());
@@ -46,7 +49,7 @@ impl<F: VectorField> Cvode<F> {
         Ok(self)
     }
 
-    /// Begins the integrals of the field at zero, with these tolerances, before the first step.
+    /// Starts the integrals of the field at zero, with these tolerances, before the first step.
     pub(crate) fn begin_quadratures(&mut self, relative: f64, absolute: f64) -> Result<(), SolveError>
     where
         F: Quadratures,
@@ -65,7 +68,8 @@ impl<F: VectorField> Cvode<F> {
         let start = vec![0.0; count];
         let Cvode { memory, context, .. } = self;
         let values = Vector::new(context, &start)?;
-        // SAFETY: the memory is initialised, its user data are as the callback expects; CVODES copies the vector.
+        // SAFETY: the memory is initialised, its user data are as the callback expects; CVODES
+        // copies the vector.
         let code = unsafe { sys::CVodeQuadInit(memory.raw(), Some(rates), values.raw()) };
         context.check("CVodeQuadInit", code)?;
         // SAFETY: quadratures are initialised.
@@ -81,7 +85,8 @@ impl<F: VectorField> Cvode<F> {
         self.integrals_at(self.step_time)
     }
 
-    /// The integrals from the start to where it stands, in the order of their integrands, all finite.
+    /// The integrals from the start to the current time, in the order of their integrands, all
+    /// finite.
     pub(crate) fn integrals_here(&self) -> Result<Vec<f64>, SolveError> {
         let values = self.integrals_at(self.time)?;
         match values.iter().position(|value| !value.is_finite()) {
@@ -102,7 +107,8 @@ impl<F: VectorField> Cvode<F> {
         if self.direction.is_none() || self.restarted {
             return Ok(start.clone());
         }
-        // SAFETY: a step has been taken with quadratures; the vector has as many components, which nobody looks at.
+        // SAFETY: a step has been taken with quadratures; the vector has their number of
+        // components, and nobody borrows it.
         let code = unsafe { sys::CVodeGetQuadDky(self.memory.raw(), t, 0, values.raw()) };
         if code != sys::CV_SUCCESS {
             let message = format!("the integrals at t = {t} cannot be interpolated");
@@ -111,13 +117,13 @@ impl<F: VectorField> Cvode<F> {
         Ok(values.as_slice().to_vec())
     }
 
-    /// The integrals where the integration stands, if there are any, to go on from by
-    /// [`begin_integrals_anew`](Cvode::begin_integrals_anew).
+    /// The integrals at the current time, if any, from which
+    /// [`begin_integrals_anew`](Cvode::begin_integrals_anew) continues.
     pub(super) fn integrals_to_keep(&self) -> Result<Option<Vec<f64>>, SolveError> {
         self.quadrature.as_ref().map(|_| self.integrals_at(self.time)).transpose()
     }
 
-    /// Goes on from these integrals, when CVODES has been started anew.
+    /// Continues from these integrals after CVODES has been reinitialised.
     pub(super) fn begin_integrals_anew(&mut self, kept: Option<Vec<f64>>) -> Result<(), SolveError> {
         let (Some(quadrature), Some(kept)) = (&mut self.quadrature, kept) else { return Ok(()) };
         quadrature.values.as_mut_slice().copy_from_slice(&kept);
@@ -131,15 +137,16 @@ impl<F: VectorField> Cvode<F> {
 /// `CVQuadRhsFn`.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a vector of its dimension and one
-/// as long as there are integrals.
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a
+/// vector of its dimension and one as long as the number of integrals.
 unsafe extern "C" fn integrands<F: VectorField + Quadratures>(
     t: f64,
     y: sys::N_Vector,
     rates: sys::N_Vector,
     user_data: *mut c_void,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: the vectors are live, of these lengths and distinct.
     let (y, rates) = unsafe {
@@ -149,7 +156,7 @@ unsafe extern "C" fn integrands<F: VectorField + Quadratures>(
     callbacks.guard(|field, _| field.integrands(t, y, rates))
 }
 
-/// The same, with the integrands that the integration was given.
+/// The same, with the integrands given to the integration.
 ///
 /// # Safety
 /// As there.
@@ -159,7 +166,8 @@ unsafe extern "C" fn integrands_of<F: VectorField>(
     rates: sys::N_Vector,
     user_data: *mut c_void,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     let Some(mut integrands) = callbacks.integrands.take() else { return FATAL };
     // SAFETY: the vectors are live, of these lengths and distinct.

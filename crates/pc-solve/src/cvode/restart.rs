@@ -1,4 +1,4 @@
-//! A new start with the same options.
+//! Restarts with the same options.
 
 use pc_expr::VectorField;
 use sundials_sys as sys;
@@ -7,7 +7,7 @@ use crate::cvode::cvode::Cvode;
 use crate::error::SolveError;
 
 impl<F: VectorField> Cvode<F> {
-    /// Starts anew at y(t) = y, without its sensitivities; the method begins at order 1.
+    /// Restarts from y(t) = y, without sensitivities; the method begins at order 1.
     pub(crate) fn restart_alone(
         &mut self,
         t: f64,
@@ -17,7 +17,8 @@ impl<F: VectorField> Cvode<F> {
         let before = self.work_so_far();
         let integrals = self.integrals_to_keep()?;
         self.work.as_mut_slice().copy_from_slice(y);
-        // SAFETY: the memory is initialised; CVODES copies the start from the vector, which has its dimension.
+        // SAFETY: the memory is initialised; CVODES copies the start from the vector, which has its
+        // dimension.
         let code = unsafe { sys::CVodeReInit(self.memory.raw(), t, self.work.raw()) };
         self.context.check("CVodeReInit", code)?;
         self.begin_integrals_anew(integrals)?;

@@ -1,4 +1,4 @@
-//! From a problem and options to a solver that is ready.
+//! Construction of the solver from a problem and options.
 
 use std::ffi::c_int;
 
@@ -24,7 +24,7 @@ use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
 impl<F: VectorField> Cvode<F> {
-    /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components.
+    /// Starts at y(t0) = y0, as long as `field` has components.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;
@@ -33,7 +33,7 @@ impl<F: VectorField> Cvode<F> {
         Cvode::start(field, t0, y0, options).map_err(|(error, _)| error)
     }
 
-    /// The same, which gives the field back where it fails.
+    /// The same, returning the field on failure.
     pub(crate) fn start(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, (SolveError, F)> {
         let (options, linear_solver) = match checked(&field, t0, y0, options) {
             Ok(checked) => checked,
@@ -75,7 +75,7 @@ impl<F: VectorField> Cvode<F> {
     }
 }
 
-/// What is to be done, if it can be: the options for a method of CVODES, and the linear solver.
+/// Validates the input; returns the options for a method of CVODES, and the linear solver.
 fn checked(
     field: &impl VectorField,
     t0: f64,
@@ -101,7 +101,7 @@ struct Parts {
 }
 
 impl Parts {
-    /// Those that call back to `callbacks`, which must outlive them.
+    /// The objects that call back to `callbacks`, which must outlive them.
     fn new<F: VectorField>(
         callbacks: &mut UserData<F>,
         t0: f64,
@@ -129,7 +129,8 @@ impl Parts {
         // SAFETY: `mem` is live; CVODES copies the start from the vector.
         let code = unsafe { sys::CVodeInit(mem, Some(callback::rhs::<F>), t0, step_state.raw()) };
         context.check("CVodeInit", code)?;
-        // SAFETY: the address is of a `Callbacks<F>`, as `callback::rhs::<F>` expects, and outlives `mem`.
+        // SAFETY: the address is of a `Callbacks<F>`, as `callback::rhs::<F>` expects, and outlives
+        // `mem`.
         let code = unsafe { sys::CVodeSetUserData(mem, callbacks.address()) };
         context.check("CVodeSetUserData", code)?;
         // SAFETY: `mem` is initialised; the iteration outlives it.
@@ -143,7 +144,7 @@ impl Parts {
     }
 }
 
-/// Hands the tolerances and limits to CVODES, which has been initialised.
+/// Sets the tolerances and limits of CVODES, which has been initialised.
 fn apply(options: &Options, memory: &Memory, context: &mut Context) -> Result<(), SolveError> {
     let rtol = options.relative_tolerance;
     match &options.absolute_tolerance {
@@ -178,7 +179,7 @@ fn apply(options: &Options, memory: &Memory, context: &mut Context) -> Result<()
     Ok(())
 }
 
-/// The number that stands for an inequality in `CVodeSetConstraints`.
+/// The code of an inequality in `CVodeSetConstraints`.
 fn number(inequality: Inequality) -> f64 {
     match inequality {
         Inequality::Free => 0.0,

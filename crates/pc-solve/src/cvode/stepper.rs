@@ -60,7 +60,7 @@ impl<F: VectorField> Stepper for Cvode<F> {
     fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
         let stands_at = self.time;
         let outcome = self.interpolate_to_work(t, order);
-        self.time = stands_at; // which a failed projection moves
+        self.time = stands_at; // a failed projection moves it
         outcome?;
         Ok(self.work.as_slice())
     }

@@ -4,7 +4,7 @@ use std::ffi::CStr;
 
 use sundials_sys as sys;
 
-/// The version of SUNDIALS that was built in.
+/// The version of SUNDIALS that is linked.
 pub fn sundials_version() -> String {
     CStr::from_bytes_until_nul(sys::SUNDIALS_VERSION)
         .map_or_else(|_| String::new(), |version| version.to_string_lossy().into_owned())
@@ -14,7 +14,7 @@ pub fn sundials_version() -> String {
 mod tests {
     use super::*;
 
-    /// The major version for which the bindings are written.
+    /// The bindings are written for major version 7.
     #[test]
     fn the_version_is_that_of_the_bindings() {
         let version = sundials_version();

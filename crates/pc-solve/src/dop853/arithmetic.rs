@@ -1,8 +1,8 @@
 //! Sums of stages over the components of a state.
 //!
-//! Rows are as long as a state, or by one longer so that their length is even; what is beyond the state stays 0. For
-//! few components the number is a constant of the code: the loops unroll, and no index is checked. The order of the
-//! operations, and so each bit of the results, is the same for all of them.
+//! Rows are as long as a state, padded with 0 to an even length. For short rows the length is a
+//! compile-time constant: the loops unroll without bounds checks. The order of operations, and so
+//! each bit of the results, does not depend on this.
 
 use super::coefficients::{B, B3, E5};
 
@@ -22,7 +22,7 @@ pub(super) fn add<const TERMS: usize>(
     add_of::<0, TERMS>(sum, y, h, a, k);
 }
 
-/// The same for rows of LENGTH, or of any length where that is 0.
+/// The same for rows of length LENGTH, or any length if that is 0.
 #[inline(always)]
 pub(super) fn add_of<const LENGTH: usize, const TERMS: usize>(
     sum: &mut [f64],
@@ -43,17 +43,17 @@ pub(super) fn add_of<const LENGTH: usize, const TERMS: usize>(
     }
 }
 
-/// What the error of a step is weighed by.
+/// Tolerances that weight the error of a step.
 #[derive(Clone, Copy)]
 pub(super) struct Weights<'a> {
     pub(super) relative: f64,
-    /// A row of them.
+    /// For each component, padded to a row.
     pub(super) absolute: &'a [f64],
 }
 
-/// Writes y₁ = y + h Σ bᵢ kᵢ from stages 1 and 6 to 12, and returns the sums over the components of the squares of the
-/// two error estimates over h, weighed by the tolerances: of order 5 and of order 3. Where y₁ is not finite, they are not. Rows are of LENGTH, or of any
-/// length where that is 0.
+/// Writes y₁ = y + h Σ bᵢ kᵢ from stages 1 and 6 to 12, and returns the sums over the components of
+/// the squares of the two error estimates over h, of orders 5 and 3, weighted by the tolerances.
+/// They are not finite where y₁ is not. Rows have length LENGTH, or any length if that is 0.
 #[inline(always)]
 pub(super) fn finish_of<const LENGTH: usize>(
     y1: &mut [f64],
@@ -64,7 +64,7 @@ pub(super) fn finish_of<const LENGTH: usize>(
 ) -> (f64, f64) {
     let n = if LENGTH == 0 { y1.len() } else { LENGTH };
     let (y1, y, absolute, k) = (&mut y1[..n], &y[..n], &absolute[..n], k.map(|k| &k[..n]));
-    // Two at a time, as rows have an even length.
+    // Two sums, since rows have even length.
     let (mut fifth, mut third) = ([0.0; 2], [0.0; 2]);
     for i in 0..n {
         let (mut slope, mut error) = (B[0] * k[0][i], E5[0] * k[0][i]);
@@ -76,7 +76,7 @@ pub(super) fn finish_of<const LENGTH: usize>(
         y1[i] = end;
         let weight = 1.0 / (absolute[i] + relative * y[i].abs().max(end.abs()));
         let other = slope - B3[0] * k[0][i] - B3[1] * k[4][i] - B3[2] * k[7][i];
-        // The weight of what is infinite is 0.
+        // An infinite component has weight 0, so its error alone would not show.
         fifth[i % 2] += (error * weight) * (error * weight) + 0.0 * end;
         third[i % 2] += (other * weight) * (other * weight);
     }

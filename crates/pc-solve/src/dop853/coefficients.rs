@@ -1,11 +1,11 @@
 //! The coefficients of the method, rounded to double precision.
 //!
-//! The nodes cᵢ, the matrix aᵢⱼ without its zeros, the weights bᵢ and those of the two error estimates, and what dense output
-//! adds: three more stages and the weights dⱼᵢ of its last four terms. Stages are numbered from 1, as in the source; number
-//! 13 is the rate at the end of the step. [Hairer, Nørsett, Wanner 1993], II.5 and II.6; the digits are those of their
-//! program `dop853.f`.
+//! The nodes cᵢ, the matrix aᵢⱼ without its zeros, the weights bᵢ and those of the two error
+//! estimates, and, for dense output, three more stages and the weights dⱼᵢ of its last four terms.
+//! Stages are numbered from 1, as in the source; stage 13 is the rate at the end of the step.
+//! [Hairer, Nørsett, Wanner 1993], II.5 and II.6; the digits are those of their program `dop853.f`.
 
-/// c₁ … c₁₂, of which the last is the end.
+/// c₁ … c₁₂; the last is the end of the step.
 pub(super) const C: [f64; 12] = [
     0.0,
     0.05260015195876773,
@@ -141,7 +141,8 @@ pub(super) const A16: [f64; 8] = [
     2.9475147891527724,
     -9.15095847217987,
 ];
-/// The weights of the terms 5 to 8 of dense output, by stages 1, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16.
+/// The weights of the terms 5 to 8 of dense output, by stages 1, 6, 7, 8, 9, 10, 11, 12, 13, 14,
+/// 15, 16.
 pub(super) const D: [[f64; 12]; 4] = [
     [
         -8.428938276109013,

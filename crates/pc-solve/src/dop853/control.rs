@@ -1,36 +1,37 @@
-//! How long the steps are.
+//! Step length control.
 //!
-//! The next step is h 0.85 err^(−1/8), between h/3 and 6 h. The source has 0.9, and room for a power β of the error of the
-//! step before. Both decide how many steps are refused, of which each costs eleven evaluations. To global errors of 1e-8
-//! and 1e-10, 0.85 takes 5 to 15 % fewer evaluations than 0.9 for tops, pendulums and orbits; β = 0.02 saves no more and β =
-//! 0.04 costs orbits 5 % beside either, so that there is no β.
+//! The next length is 0.85 h err^(−1/8), between h/3 and 6 h. The source has 0.9, and optionally a
+//! power β of the previous error. Both affect how many steps are rejected, each of which costs
+//! eleven evaluations. For global errors of 1e-8 and 1e-10, 0.85 takes 5 to 15 % fewer evaluations
+//! than 0.9 for tops, pendulums and orbits; β = 0.02 saves nothing and β = 0.04 costs orbits 5 %
+//! with either factor, so β is left out.
 
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
-/// The part of the length that the error lets expect.
+/// Safety factor of the length predicted from the error.
 pub(super) const SAFETY: f64 = 0.85;
-/// A step is at most so many times as long as the one before …
+/// Maximum ratio of successive step lengths.
 pub(super) const GROWTH: f64 = 6.0;
-/// … and at least this part of it.
+/// Minimum ratio of successive step lengths.
 pub(super) const SHRINKING: f64 = 1.0 / 3.0;
 
-/// Tolerances and lengths of steps, in both directions of time positive.
+/// Tolerances and step lengths; lengths are positive in both directions of time.
 #[derive(Debug, Clone)]
 pub(super) struct Control {
     pub(super) relative: f64,
-    /// A row of them.
+    /// For each component, padded to a row.
     pub(super) absolute: Vec<f64>,
     pub(super) longest: f64,
     pub(super) shortest: f64,
-    /// How long the first step after a start is tried, if that is given.
+    /// The length of the first step after a start, if given.
     pub(super) initial: Option<f64>,
-    /// How long the next step is tried, if that is known.
+    /// The trial length of the next step, if known.
     pub(super) next: Option<f64>,
 }
 
 impl Control {
-    /// For states of `dim` components, in rows.
+    /// For states of `dim` components in rows of length `row`.
     pub(super) fn new(options: &Options, dim: usize, row: usize) -> Control {
         let mut absolute = match &options.absolute_tolerance {
             Tolerance::Scalar(tolerance) => vec![*tolerance; dim],
@@ -47,26 +48,28 @@ impl Control {
         }
     }
 
-    /// The error of a step of length h from the sums of its two estimates over n components: at most 1 where it may stand.
+    /// The error of a step of length h from the sums of its two estimates over n components; a step
+    /// is accepted if it is at most 1.
     ///
     /// ```text
     /// |h| e₅² / √(n (e₅² + 0.01 e₃²))
     /// ```
-    /// which falls with h⁸ although the estimates are of lower order [Hairer, Nørsett, Wanner 1993, II.10].
+    /// which falls with h⁸ although the estimates are of lower order [Hairer, Nørsett, Wanner 1993,
+    /// II.10].
     pub(super) fn error(h: f64, (fifth, third): (f64, f64), n: usize) -> f64 {
         let both = fifth + 0.01 * third;
         let both = if both <= 0.0 { 1.0 } else { both };
         h.abs() * fifth / (n as f64 * both).sqrt()
     }
 
-    /// The factor of the length after a step with this error that stands.
+    /// The factor of the length after an accepted step with this error.
     pub(super) fn accepted(error: f64) -> f64 {
         (SAFETY / eighth_root(error)).clamp(SHRINKING, GROWTH)
     }
 
-    /// The factor of the length after a step with this error that does not stand.
+    /// The factor of the length after a rejected step with this error.
     pub(super) fn rejected(error: f64) -> f64 {
-        // What is not a number says nothing of how much too long the step was.
+        // A NaN does not tell by how much the step was too long.
         if error.is_finite() { (SAFETY / eighth_root(error)).max(SHRINKING) } else { SHRINKING }
     }
 
@@ -82,7 +85,7 @@ impl Control {
     }
 }
 
-/// x^(1/8), by roots that are correctly rounded: the same bits on every machine.
+/// x^(1/8), by correctly rounded square roots: the same bits on every machine.
 fn eighth_root(x: f64) -> f64 {
     x.sqrt().sqrt().sqrt()
 }

@@ -3,8 +3,9 @@
 //! ```text
 //! u(s) = r₁ + s (r₂ + (1−s) (r₃ + s (r₄ + (1−s) (r₅ + s (r₆ + (1−s) (r₇ + s r₈))))))
 //! ```
-//! The first four terms are Hermite's cubic of both ends, the others are made of the stages and of three more that are
-//! evaluated when a state inside the step is asked for [Hairer, Nørsett, Wanner 1993, II.6].
+//! The first four terms are the cubic Hermite interpolant, the others combine the stages and three
+//! more, evaluated when a state inside the step is first needed [Hairer, Nørsett, Wanner 1993,
+//! II.6].
 
 use pc_expr::{Failure, VectorField};
 
@@ -15,7 +16,7 @@ use super::stages::{Early, Node, Stages, evaluate};
 /// The degree of the polynomial.
 pub(super) const DEGREE: u32 = 7;
 
-/// The products of powers of s and 1−s that the terms have, by the powers of s from 0 on.
+/// The products of powers of s and 1−s in front of the terms, expanded in ascending powers of s.
 const BASIS: [[f64; 8]; 8] = [
     [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -40,10 +41,10 @@ impl Polynomial {
         Polynomial { start: f64::NAN, length: f64::NAN, terms: std::array::from_fn(|_| vec![0.0; row]) }
     }
 
-    /// Makes it that of the step between two nodes with these stages.
+    /// Sets the polynomial to that of the step between two nodes with these stages.
     ///
     /// # Errors
-    /// A failure of the field, and when; the polynomial is none then.
+    /// A failure of the field, with its time; the polynomial is then invalid.
     pub(super) fn make<F: VectorField>(
         &mut self,
         (field, count): (&mut F, &mut u64),
@@ -77,13 +78,13 @@ impl Polynomial {
         Ok(())
     }
 
-    /// Writes its derivative of this order at t.
+    /// Writes the derivative of this order at t.
     pub(super) fn evaluate(&self, t: f64, order: u32, value: &mut [f64]) {
         let s = (t - self.start) / self.length;
         let factors = if order == 0 { basis(s) } else { derivatives(s, order, self.length) };
         let terms = self.terms.each_ref().map(|term| &term[..value.len()]);
         for (i, value) in value.iter_mut().enumerate() {
-            // The last terms are the smallest.
+            // The smallest terms, the last ones, are added first.
             *value = (0..8).rev().map(|j| factors[j] * terms[j][i]).sum();
         }
     }
@@ -98,7 +99,7 @@ fn basis(s: f64) -> [f64; 8] {
     factors
 }
 
-/// The derivatives of the basis by t of an order that is not 0, at s, for a step of this length.
+/// The derivatives of the basis by t at s, of positive order, for a step of this length.
 fn derivatives(s: f64, order: u32, length: f64) -> [f64; 8] {
     let falling = |power: u32| (0..order).map(|j| f64::from(power) - f64::from(j)).product::<f64>();
     let scale = length.powi(-i32::try_from(order).unwrap_or(i32::MAX));

@@ -1,8 +1,9 @@
-//! What a step has not seen of the explicit dependence on time.
+//! Features of the explicit dependence on time that the stages of a step miss.
 //!
-//! A step evaluates f at twelve times, and a pulse may lie between two of them. When a step would stand, its polynomial p is
-//! therefore put into the equations at the [places](crate::foresight) in it: where the defect p′ − f(t, p) is larger than
-//! that of the polynomial elsewhere can be, the step is tried again and ends there.
+//! A step evaluates f at twelve times, and a pulse may lie between two of them. Before a step is
+//! accepted, its polynomial p is therefore inserted into the equations at the
+//! [places](crate::foresight) in it: where the defect p′ − f(t, p) exceeds what the error of the
+//! polynomial explains, the step is repeated so that it ends there.
 
 use pc_expr::{Failure, VectorField};
 
@@ -14,11 +15,13 @@ use crate::foresight::places::{Ahead, Here};
 use crate::foresight::scatter::scatters;
 use crate::integration::stepper::Stepper;
 
-/// The polynomial is of lower order than the step: its defect may come to so many times what the step errs by.
+/// Allowed ratio of the polynomial's defect to the error of the step, since the polynomial is of
+/// lower order.
 const DEFECT: f64 = 100.0;
 
 impl<F: VectorField> Dop853<F> {
-    /// Finds the places in the step ahead; the one that it may not go beyond, if there are too many.
+    /// Finds the places in the step ahead; returns the one that the step must not pass, if there
+    /// are too many.
     pub(super) fn look_ahead(
         &mut self,
         reach: f64,
@@ -58,7 +61,8 @@ impl<F: VectorField> Dop853<F> {
         Ok(self.places.crowded)
     }
 
-    /// A place in the step that is tried at which the field does what its polynomial does not show.
+    /// A place in the trial step at which the field does something that the polynomial does not
+    /// show.
     ///
     /// # Errors
     /// A failure of the field at the stages of dense output.

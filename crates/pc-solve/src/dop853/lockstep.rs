@@ -1,20 +1,23 @@
 //! DOP853 for many members of an ensemble at once, one in each lane of a vector.
 //!
 //! A whole step, with its twelve evaluations of f, its error and the length of the next one, is one
-//! [tape](pc_expr::LaneTape) and so one piece of machine code. Each lane has a time, a length and a member of its own; where a
-//! member has come to its end, the next one begins in its lane.
+//! [tape](pc_expr::LaneTape) and so one piece of machine code. Each lane has its own time, step
+//! length and member; when a member is finished, the next one begins in its lane.
 //!
-//! **Same bytes.** A lane does just the operations that it would do alone, each rounded as it is everywhere, and
-//! decides by its own numbers alone. So a member's motion does not depend on how many lanes or threads there
-//! are, nor on its neighbours. By rounding, and within the tolerances, it differs from that of [`Dop853`](crate::Dop853), which
-//! sums without fused multiply-adds and takes errors to the last digit.
+//! **Reproducible.** A lane does the same operations with the same rounding as it would alone, and
+//! its decisions depend on its own values only. So a member's motion depends neither on the number
+//! of lanes or threads nor on its neighbours. It differs from that of [`Dop853`](crate::Dop853)
+//! within the tolerances: that sums without fused multiply-adds and computes errors to full
+//! precision.
 //!
-//! **Right, or alone.** Lanes give complete motions only. A member that something happens to — f fails, steps are too short or
-//! too many — is integrated once more from its start by `Dop853`, alone, whose result or error stands.
+//! **Fallback.** Lanes give complete motions only. A member for which f fails, or whose steps are
+//! too short or too many, is integrated again from its start by `Dop853`, whose result or error
+//! counts.
 //!
-//! `plan` says what can be integrated so; `field` evaluates f on a tape, `step`, `start` and `dense` are the tapes of a `problem`, `kernels`
-//! what they become for a program, which a `shelf` keeps. An `octet` is eight lanes at work; a `block` lets two of them take turns, and
-//! fills their lanes with members that have been `waiting`.
+//! `plan` holds what all members share, if lanes can integrate it; `field` evaluates f on a tape;
+//! `step`, `start` and `dense` are the tapes of a `problem`, which `kernels` compiles and a `shelf`
+//! caches. An `octet` steps eight lanes; a `block` alternates between two of them, and fills their
+//! lanes with members from `waiting`.
 
 pub(crate) mod block;
 mod dense;

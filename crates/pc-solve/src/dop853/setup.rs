@@ -1,4 +1,4 @@
-//! From a problem and options to a method that is ready.
+//! Construction of the method from a problem and options.
 
 use pc_expr::VectorField;
 
@@ -15,17 +15,19 @@ use crate::integration::statistics::Statistics;
 use crate::settings::method::Method;
 use crate::settings::options::Options;
 
-/// The explicit Runge–Kutta method of order 8 of Dormand and Prince as a [`Stepper`](crate::Stepper), owning the vector field.
+/// The explicit Runge–Kutta method of order 8 of Dormand and Prince as a
+/// [`Stepper`](crate::Stepper), owning the vector field.
 ///
 /// ```text
 /// kᵢ = f(t + cᵢ h, y + h Σ_{j<i} aᵢⱼ kⱼ), i = 1 … 12;  y(t + h) ≈ y + h Σ bᵢ kᵢ
 /// ```
-/// with error estimates of orders 5 and 3 and dense output of order 7 [Prince, Dormand 1981; Hairer, Nørsett, Wanner 1993,
-/// II.5 and II.6]. It is for systems that are not stiff, at tolerances of 1e-6 and below; stiffness is
-/// [detected](Dop853::stiff_from), not dealt with: the steps are then as short as stability demands. States are
-/// [projected](VectorField::project) at the end of each step, and inside steps where they are read. A step at which the field
-/// fails recoverably, or that leaves the inequalities, is tried again, half as long. No step
-/// allocates, unless f depends on t explicitly and turns within it.
+/// with error estimates of orders 5 and 3 and dense output of order 7 [Prince, Dormand 1981;
+/// Hairer, Nørsett, Wanner 1993, II.5 and II.6]. It suits non-stiff systems at tolerances of 1e-6
+/// and below; stiffness is [detected](Dop853::stiff_from), but the steps then become as short as
+/// stability demands. States are [projected](VectorField::project) at the end of each step, and
+/// inside steps where they are read. A step in which the field fails recoverably, or that violates
+/// an inequality, is repeated with half its length. No step allocates, except where f depends on t
+/// explicitly and turns within the step.
 ///
 /// ```
 /// use pc_solve::{Dop853, Integration, Method, Options, from_fn};
@@ -44,22 +46,22 @@ pub struct Dop853<F> {
     pub(super) control: Control,
     pub(super) places: Places,
     pub(super) stiffness: Stiffness,
-    /// Where the last step began and ended, and the end of the one that is tried.
+    /// Start and end of the last step, and end of the trial step.
     pub(super) start: Node,
     pub(super) end: Node,
     pub(super) trial: Node,
-    /// The stages of the last step, and of the one that is tried.
+    /// The stages of the last step and of the trial step.
     pub(super) made: Stages,
     pub(super) tried: Stages,
     pub(super) early: Early,
-    /// Where a stage, or a state inside a step, is computed.
+    /// Room for the argument of a stage, or a state inside a step.
     pub(super) argument: Vec<f64>,
     pub(super) polynomial: Polynomial,
     /// Whether the polynomial is that of the last step.
     pub(super) has_polynomial: bool,
     /// Whether the rates at the end of the last step are known.
     pub(super) has_rates: bool,
-    /// Whether there is no step since the start.
+    /// Whether no step has been made since the start.
     pub(super) begins: bool,
     /// Whether the length of the first step was given.
     pub(super) given: bool,
@@ -68,12 +70,13 @@ pub struct Dop853<F> {
 }
 
 impl<F: VectorField> Dop853<F> {
-    /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components, with tolerances, lengths of steps and limits
-    /// of the options, whose method does not matter.
+    /// Starts at y(t0) = y0, as long as `field` has components, with the tolerances, step lengths
+    /// and limits of the options; their method is ignored.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;
-    /// [`InputError::Explicit`](crate::InputError::Explicit) if they choose how implicit equations are solved, or an order.
+    /// [`InputError::Explicit`](crate::InputError::Explicit) if they choose how implicit equations
+    /// are solved, or an order.
     pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
         check_start(&field, t0, y0)?;
         Options { method: Method::Dop853, ..options.clone() }.validate(y0.len())?;
@@ -84,7 +87,7 @@ impl<F: VectorField> Dop853<F> {
         Ok(Dop853::of(field, t0, y0, options))
     }
 
-    /// The same with what has been checked.
+    /// The same with validated input.
     pub(crate) fn of(field: F, t0: f64, y0: &[f64], options: &Options) -> Self {
         let row = padded(y0.len());
         let mut y = y0.to_vec();
@@ -115,8 +118,8 @@ impl<F: VectorField> Dop853<F> {
         }
     }
 
-    /// When stiffness was seen first, if it was: from about there stability and not accuracy limits the steps, and
-    /// [`Method::Bdf`] takes longer ones.
+    /// When stiffness was first detected, if it was: from about then on stability rather than
+    /// accuracy limits the steps, and [`Method::Bdf`] takes longer ones.
     pub fn stiff_from(&self) -> Option<f64> {
         self.stiffness.seen
     }

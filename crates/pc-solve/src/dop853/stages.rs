@@ -14,12 +14,13 @@ pub(super) struct Node {
     pub(super) rates: Vec<f64>,
 }
 
-/// The stages 6 to 12 of a step: those that the end and the inside of it are made of.
+/// Stages 6 to 12 of a step, from which its end and its dense output are computed.
 pub(super) type Stages = [Vec<f64>; 7];
-/// The stages 2 to 5, which nothing but the later ones depends on; room for those of dense output.
+/// Stages 2 to 5, needed for the later stages only, then reused for the stages of dense output.
 pub(super) type Early = [Vec<f64>; 4];
 
-/// Writes f(t, y), which has to be finite, for rows that may be longer, and counts.
+/// Writes f(t, y), checks that it is finite, and counts the evaluation; rows may be longer than the
+/// state.
 pub(super) fn evaluate<F: VectorField>(
     (field, count): (&mut F, &mut u64),
     t: f64,
@@ -32,7 +33,7 @@ pub(super) fn evaluate<F: VectorField>(
     if field.checks_rates() {
         return field.rhs(t, y, rates).map_err(|failure| (t, failure));
     }
-    rates.fill(f64::NAN); // so that one that is not written is found
+    rates.fill(f64::NAN); // to detect entries that are not written
     field.rhs(t, y, rates).map_err(|failure| (t, failure))?;
     match rates.iter().position(|rate| !rate.is_finite()) {
         None => Ok(()),
@@ -43,12 +44,13 @@ pub(super) fn evaluate<F: VectorField>(
     }
 }
 
-/// Computes the stages of a step from a node to t₁, and the state there. `argument` is then that of the last stage.
+/// Computes the stages of a step from a node to t₁, and the state there. `argument` ends as the
+/// argument of the last stage.
 ///
 /// Returns the sums of the error estimates.
 ///
 /// # Errors
-/// A failure of the field, and when.
+/// A failure of the field, with its time.
 pub(super) fn advance<F: VectorField>(
     counted: (&mut F, &mut u64),
     from: &Node,
@@ -67,7 +69,7 @@ pub(super) fn advance<F: VectorField>(
     }
 }
 
-/// The same for rows of LENGTH, or of any length where that is 0.
+/// The same for rows of length LENGTH, or any length if that is 0.
 fn advance_of<F: VectorField, const LENGTH: usize>(
     (field, count): (&mut F, &mut u64),
     from: &Node,

@@ -10,20 +10,21 @@ use crate::error::{Reason, SolveError};
 use crate::integration::breaks::next_break;
 use crate::integration::stepper::Stepper;
 
-/// A step that would leave less than this part of itself to a stop time or a break ends there.
+/// A step that would end within this fraction of its length before a stop time or a break ends
+/// there.
 const LEFT: f64 = 0.01;
-/// A step from a start whose state or rates vanish, at the first try.
+/// First guess of the length of the first step if the state or its rates vanish.
 pub(super) const FIRST: f64 = 1e-6;
 
-/// Why a step does not stand.
+/// Why a step is rejected.
 enum Refusal {
-    /// The error is so large, or no number.
+    /// The error, more than 1 or NaN.
     Error(f64),
-    /// A component leaves what it has to satisfy.
+    /// A component violates its inequality.
     Inequality,
     /// A failure of the field.
     Failure(Reason, Failure),
-    /// The field does something at this time that the step has not seen.
+    /// The field has a feature at this time that the stages missed.
     Surprise(f64),
 }
 
@@ -60,7 +61,7 @@ impl<F: VectorField> Dop853<F> {
                         factor = factor.min(1.0);
                     }
                     let next = (to - t).abs() * factor;
-                    // A step that had to end there says little of how long one may be.
+                    // A step cut short does not tell how long the next may be.
                     let next = if ends && !refused { next.max(planned) } else { next };
                     self.accept(direction, next.min(self.control.longest).max(self.control.shortest));
                     return Ok(());
@@ -95,7 +96,7 @@ impl<F: VectorField> Dop853<F> {
         }
     }
 
-    /// The stop time or the next break of the field, at which the step ends at the latest.
+    /// The stop time or the next break of the field, which the step must not pass.
     fn limit(&mut self, direction: f64) -> Result<Option<f64>, SolveError> {
         if self.field.breaks().is_empty() {
             return Ok(self.stop_time);
@@ -108,7 +109,7 @@ impl<F: VectorField> Dop853<F> {
         Ok(next.or(self.stop_time))
     }
 
-    /// Tries a step to t₁; its error, which is at most 1.
+    /// Tries a step to t₁; returns its error, at most 1.
     fn attempt(&mut self, t1: f64) -> Result<f64, Refusal> {
         let Dop853 { field, control, end, trial, tried, early, argument, statistics, .. } = self;
         let count = &mut statistics.rhs_evaluations;
@@ -136,7 +137,8 @@ impl<F: VectorField> Dop853<F> {
         }
     }
 
-    /// Moves components that violate their inequality by no more than the tolerance to its boundary; false if others do.
+    /// Sets components that violate their inequality by at most the tolerance to its boundary;
+    /// false if one violates it by more.
     fn satisfy_inequalities(&mut self) -> bool {
         for (i, inequality) in self.limits.inequalities.iter().enumerate() {
             let value = self.trial.y[i];
@@ -151,12 +153,12 @@ impl<F: VectorField> Dop853<F> {
         true
     }
 
-    /// The step that was tried is the last one now.
+    /// Makes the trial step the last step.
     fn accept(&mut self, direction: f64, next: f64) {
         let dim = self.dim();
         let h = self.trial.t - self.end.t;
         if self.stiffness.examines() {
-            // The argument of the last stage has been kept, unless dense output has been looked at.
+            // The argument of the last stage is still there, unless dense output was computed.
             let states = distance(&self.trial.y[..dim], &self.argument[..dim]);
             let rates = distance(&self.trial.rates[..dim], &self.tried[6][..dim]);
             if states > 0.0 && !self.has_polynomial {
@@ -177,7 +179,8 @@ impl<F: VectorField> Dop853<F> {
         (work.last_step, work.current_step, work.current_time) = (h, next * direction, self.end.t);
     }
 
-    /// The length of the first step by the sizes of y, ẏ and a difference quotient for ÿ [Hairer, Nørsett, Wanner 1993, II.4].
+    /// The length of the first step from the sizes of y, ẏ and a difference quotient for ÿ [Hairer,
+    /// Nørsett, Wanner 1993, II.4].
     fn first_length(&mut self, direction: f64, end: f64) -> f64 {
         let Dop853 { field, control, end: node, trial, argument, statistics, .. } = self;
         let dim = field.dim();
@@ -189,7 +192,7 @@ impl<F: VectorField> Dop853<F> {
         let counted = (&mut *field, &mut statistics.rhs_evaluations);
         add(argument, &node.y, h * direction, &[1.0], [&node.rates[..]]);
         if evaluate(counted, node.t + h * direction, argument, &mut trial.rates).is_err() {
-            return h; // where it fails, the steps will be tried
+            return h; // failures there are left to the step itself
         }
         for (change, rate) in trial.rates.iter_mut().zip(&node.rates) {
             *change -= rate;
@@ -200,7 +203,7 @@ impl<F: VectorField> Dop853<F> {
         (100.0 * h).min(by_rates).min(farthest)
     }
 
-    /// The error of steps that had to be made ever shorter.
+    /// The error when steps become too short.
     fn too_short(&mut self) -> SolveError {
         let dim = self.dim();
         match self.trial.y[..dim].iter().position(|value| !value.is_finite()) {

@@ -56,7 +56,7 @@ impl<F: VectorField> Stepper for Dop853<F> {
 
     fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
         if !self.has_polynomial {
-            // The field may have been told since that it goes on from a break.
+            // The field may meanwhile have entered the interval after a break.
             if !self.field.breaks().is_empty() {
                 self.field.enter(self.start.t, self.end.t);
             }
@@ -89,8 +89,8 @@ impl<F: VectorField> Stepper for Dop853<F> {
         self.end.y[..y.len()].copy_from_slice(y);
         (self.time, self.begins) = (t, true);
         (self.has_rates, self.has_polynomial) = (false, false);
-        // What follows a jump may change faster than what was before it: a step as long as the last would pass over an event that
-        // comes back at once, as the next impact of a ball does whose bounces accumulate.
+        // After a jump the motion may change faster: a step as long as the last could pass over an
+        // event that recurs at once, like the impacts of a ball whose bounces accumulate.
         self.control.next = self.control.initial;
         self.stiffness.restart();
         self.statistics.limited_steps += self.places.limited;

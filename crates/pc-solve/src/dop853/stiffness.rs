@@ -1,30 +1,30 @@
-//! Whether the stability of the method limits the steps.
+//! Detection that stability limits the steps.
 //!
 //! The last two evaluations of a step are at the same time and at nearby states, so that
 //! ```text
 //! ρ = ‖f(t₁, y₁) − k₁₂‖ / ‖y₁ − g₁₂‖
 //! ```
-//! with g₁₂ the argument of the last stage, is an estimate of the largest eigenvalue of ∂f/∂y from below. Where h ρ
-//! lies beyond the boundary of stability for many steps that pass their error tests, it is not accuracy that makes them
-//! short [Hairer, Wanner 1996, IV.2].
+//! with g₁₂ the argument of the last stage, estimates the largest eigenvalue of ∂f/∂y from below.
+//! If h ρ lies beyond the boundary of stability in many accepted steps, stability rather than
+//! accuracy limits their length [Hairer, Wanner 1996, IV.2].
 
 /// The boundary of stability on the negative real axis.
 const BOUNDARY: f64 = 6.1;
-/// Steps are examined so often while none is suspect.
+/// One in this many steps is examined while none is suspect.
 const EVERY: u64 = 20;
-/// So many suspect steps show stiffness …
+/// Number of suspect steps that indicate stiffness …
 const SUSPECT: u32 = 15;
-/// … unless so many in sequence between them are not.
+/// … unless this many successive steps in between are not suspect.
 const CLEAR: u32 = 6;
 
-/// What the last steps have shown.
+/// The findings of the last steps.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Stiffness {
     suspect: u32,
     clear: u32,
-    /// Since the start.
+    /// Steps since the start.
     steps: u64,
-    /// When it was seen first, if it was.
+    /// When stiffness was first detected, if it was.
     pub(super) seen: Option<f64>,
 }
 
@@ -35,7 +35,7 @@ impl Stiffness {
         self.seen.is_none() && (self.suspect > 0 || self.steps.is_multiple_of(EVERY))
     }
 
-    /// Takes note of h ρ of a step that ends at t.
+    /// Notes h ρ of a step that ends at t.
     pub(super) fn note(&mut self, product: f64, t: f64) {
         if product > BOUNDARY {
             self.clear = 0;
@@ -51,7 +51,7 @@ impl Stiffness {
         }
     }
 
-    /// For a new start.
+    /// Forgets suspect steps, for a restart.
     pub(super) fn restart(&mut self) {
         (self.suspect, self.clear) = (0, 0);
     }

@@ -1,13 +1,13 @@
-//! Many motions at once: initial states and parameter sets over all cores.
+//! Many motions at once: initial states and parameter sets on all cores.
 //!
-//! Each member has its own vector field and its own solver. Results are given to a consumer in the order of the
-//! members, so that nothing depends on the number of threads. A member that fails is a result like any other; the
-//! others continue.
+//! Each member has its own vector field and its own solver. A consumer receives the results in the
+//! order of the members, so that nothing depends on the number of threads. The failure of a member
+//! is a result like any other; the others continue.
 //! ```
 //! use std::ops::ControlFlow;
 //! use pc_solve::{Ensemble, Failure, Options, from_fn};
 //!
-//! // φ̈ = −sin φ, let go at ten heights; the amplitude of each is its own.
+//! // φ̈ = −sin φ, released at ten angles.
 //! let pendulum = |member: u64| {
 //!     let field = from_fn(2, |_t, y, ydot| {
 //!         ydot[0] = y[1];
@@ -50,25 +50,26 @@ use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 use crate::solve::solve::Solve;
 
-/// Members that may be ahead of the one that is consumed next, for each thread.
+/// Number of members, for each thread, that may be ahead of the one consumed next.
 const WINDOW: usize = 64;
 
-/// Threads beyond these help on no machine, and so many more that none has room for them would end the program.
+/// Maximum number of threads: more do not help, and far more would exhaust memory and end the
+/// program.
 const MOST_THREADS: usize = 1024;
 
-/// Bytes of stack of a thread, as the main one usually has: making a member may go deep.
+/// Stack of a thread in bytes, the usual size of the main one: making a member may recurse deeply.
 const STACK: usize = 8 << 20;
 
 /// Options of the computation of an ensemble.
 ///
-/// It keeps the machine code that it has made for the steps of its last members, also for its clones: integrating more of them by the same one
-/// saves making it again.
+/// It caches the machine code compiled for the steps of its last members, and shares it with its
+/// clones.
 #[derive(Debug, Clone)]
 pub struct Ensemble<'a> {
     threads: NonZeroUsize,
     window: Option<NonZeroUsize>,
     flag: Option<&'a AtomicBool>,
-    /// How many lanes are used.
+    /// Number of lanes used by a thread.
     pub(super) lanes: usize,
     pub(super) shelf: Shelf,
 }
@@ -91,30 +92,33 @@ impl<'a> Ensemble<'a> {
         Ensemble { threads, ..self }
     }
 
-    /// The number of members that may be begun and not yet consumed; 64 for each thread unless given. It bounds the memory:
-    /// results that wait for an earlier one are held.
+    /// The maximum number of members begun and not yet consumed, by default 64 for each thread. It
+    /// bounds memory: results that wait for an earlier one are held.
     pub fn window(self, members: NonZeroUsize) -> Self {
         Ensemble { window: Some(members), ..self }
     }
 
-    /// How many members are integrated [beside each other](Ensemble::map_in_lanes) by a thread, at most; 16 unless given, in two
-    /// vectors of eight. The results are the same for any number.
+    /// The maximum number of members that a thread integrates [together](Ensemble::map_in_lanes),
+    /// by default 16, in two vectors of eight. The results are the same for any number.
     pub fn lanes(self, lanes: NonZeroUsize) -> Self {
         Ensemble { lanes: lanes.get(), ..self }
     }
 
-    /// Stops as soon as `flag` is true: members in progress end at their next internal step and are dropped.
+    /// Stops as soon as `flag` is true: members in progress end at their next internal step and are
+    /// dropped.
     pub fn stopped_by(self, flag: &'a AtomicBool) -> Self {
         Ensemble { flag: Some(flag), ..self }
     }
 
-    /// Integrates each member, as [`solve`](crate::solve()) does, and gives the trajectories to `consume` in the order of
-    /// the members.
+    /// Integrates each member as [`solve`](crate::solve()) does, and passes the trajectories to
+    /// `consume` in the order of the members.
     ///
-    /// `make` gives a member its vector field and its state at `t0`. It is called on the thread that integrates.
+    /// `make` returns the vector field of a member and its state at `t0`. It is called on the
+    /// thread that integrates.
     ///
-    /// By [`Method::Dop853`](crate::Method::Dop853), members whose fields are [programs](VectorField::lanes) that do not read time
-    /// are integrated sixteen at a time, each in a lane of a vector, as [`map_in_lanes`](Ensemble::map_in_lanes) says.
+    /// By [`Method::Dop853`](crate::Method::Dop853), members whose fields are
+    /// [programs](VectorField::lanes) that do not read time are integrated sixteen at a time, each
+    /// in a lane of a vector, as described for [`map_in_lanes`](Ensemble::map_in_lanes).
     ///
     /// # Errors
     /// [`EnsembleError`] if threads cannot be started. An error of a member is its result.
@@ -131,7 +135,7 @@ impl<'a> Ensemble<'a> {
         F: VectorField,
         E: Send,
     {
-        // None where the member was stopped on its way.
+        // None if the member was stopped.
         let alone = |made: Result<(F, Vec<f64>), MemberError<E>>, stop: &Stop<'_>| {
             let reached = RefCell::new(None);
             let solved = caught(|| {
@@ -171,12 +175,15 @@ impl<'a> Ensemble<'a> {
         self.map_in_lanes(members, (t0, times, options), begin, in_lane, alone, consume)
     }
 
-    /// Does any `work` for each member and gives its result to `consume` in the order of the members.
+    /// Does any `work` for each member and passes its result to `consume` in the order of the
+    /// members.
     ///
-    /// The work should check [`Stop`] now and then, and end on request. `consume` is called on this thread.
+    /// The work should check [`Stop`] regularly, and end on request. `consume` is called on this
+    /// thread.
     ///
     /// # Errors
-    /// [`EnsembleError`] if threads cannot be started. A panic of the work is the result of its member.
+    /// [`EnsembleError`] if threads cannot be started. A panic of the work is the result of its
+    /// member.
     pub fn map<T: Send>(
         &self,
         members: Range<u64>,
@@ -192,18 +199,19 @@ impl<'a> Ensemble<'a> {
         self.of_items(members, self.items_in_window(), worker, &mut consume)
     }
 
-    /// The number of threads that work.
+    /// The number of worker threads.
     pub(super) fn workers(&self) -> usize {
         self.threads.get().min(MOST_THREADS)
     }
 
-    /// The number of members that may be begun and not yet consumed.
+    /// The maximum number of members begun and not yet consumed.
     pub(super) fn items_in_window(&self) -> u64 {
         self.window.map_or(WINDOW.saturating_mul(self.workers()), NonZeroUsize::get) as u64
     }
 
-    /// Has a worker on each thread take items from a queue and give back their results, of which `window` may be begun and not
-    /// yet consumed; these are consumed in the order of the items.
+    /// Runs a worker on each thread, which takes items from a queue and returns their results;
+    /// these are consumed in the order of the items. At most `window` items are begun and not yet
+    /// consumed.
     pub(super) fn of_items<R: Send>(
         &self,
         items: Range<u64>,
@@ -217,9 +225,9 @@ impl<'a> Ensemble<'a> {
         let queue = Queue::new(items.clone(), window, &stop);
         let consume_all = |pool: &ThreadPool| {
             pool.in_place_scope(|scope| {
-                // One for each thread; work that is itself parallel cannot begin another of these.
+                // One worker for each thread; work that is itself parallel cannot start another.
                 scope.spawn_broadcast(|_, _| worker(&queue, &stop));
-                // Lets the threads end however this one does.
+                // Ends the threads however this one ends.
                 let _closing = queue.closing();
                 for item in items {
                     let Some(result) = queue.take(item) else { return Ending::Stopped };
@@ -240,7 +248,8 @@ impl<'a> Ensemble<'a> {
             let pool = pool.build()?;
             let ending = consume_all(&pool);
             drop(pool);
-            // The scope would wait for their work, but not for their ends; a program may unload what it called.
+            // The scope waits for their work only, but the caller may unload this library: wait
+            // until they end.
             for handle in handles {
                 let joined = handle.join();
                 debug_assert!(joined.is_ok(), "what panics is caught");
@@ -260,9 +269,9 @@ pub enum MemberError<E> {
     Solve(Box<SolveFailure>),
     /// Its vector field panicked.
     Panic {
-        /// What the panic said.
+        /// The message of the panic.
         message: String,
-        /// End of the last internal step, (t, y), if there was one.
+        /// The end (t, y) of the last internal step, if there was one.
         reached: Option<(f64, Vec<f64>)>,
     },
 }
@@ -302,11 +311,11 @@ impl<E: Error> Error for MemberError<E> {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("panicked: {message}")]
 pub struct Panicked {
-    /// What the panic said.
+    /// The message of the panic.
     pub message: String,
 }
 
-/// Why there is no ensemble.
+/// Why an ensemble was not computed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnsembleError {
@@ -315,9 +324,9 @@ pub enum EnsembleError {
     Threads(#[from] ThreadPoolBuildError),
 }
 
-/// What `compute` gives, or what it said when it panicked.
+/// The result of `compute`, or the message of its panic.
 pub(super) fn caught<T>(compute: impl FnOnce() -> T) -> Result<T, String> {
-    // Unwind safe: what the computation worked on is dropped with it.
+    // Unwind safe: the data of the computation are dropped with it.
     catch_unwind(AssertUnwindSafe(compute)).map_err(|panic: Box<dyn Any + Send>| {
         let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
         let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
@@ -325,7 +334,7 @@ pub(super) fn caught<T>(compute: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
-/// Overwrites the last (t, y) without asking for memory again.
+/// Overwrites the last (t, y) without allocating again.
 fn keep(last: &mut Option<(f64, Vec<f64>)>, t: f64, y: &[f64]) {
     let (time, state) = last.get_or_insert_with(|| (t, y.to_vec()));
     *time = t;

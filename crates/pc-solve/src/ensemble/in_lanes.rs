@@ -1,4 +1,4 @@
-//! Members of an ensemble beside each other, in the lanes of vectors.
+//! Members of an ensemble together, in the lanes of vectors.
 
 use std::collections::VecDeque;
 use std::ops::{ControlFlow, Range};
@@ -18,22 +18,25 @@ use crate::integration::integration::Ending;
 use crate::integration::trajectory::Trajectory;
 use crate::settings::options::Options;
 
-/// Members are handed out in groups of up to so many: a group takes longer than handing it out.
+/// Maximum number of members in a group, handed out at once to reduce the overhead.
 const GROUP: u64 = 64;
 
 impl Ensemble<'_> {
-    /// Integrates members beside each other, as far as that can be, and gives what comes of each to `consume` in their order.
+    /// Integrates members together in vector lanes, where possible, and passes their results to
+    /// `consume` in order.
     ///
-    /// `begin` gives what is known of a member and, if it can be in a lane, its [field](pc_expr::VectorField::lanes) and its state at
-    /// t₀ of (t₀, times, options). What `in_lane` makes of its complete motion is its result. A member that is in no lane, and one
-    /// that does not come to its end there, is integrated by `alone`, which should look at [`Stop`] now and then. All are called
-    /// on the thread that integrates.
+    /// `begin` returns any data of a member and, if lanes can integrate it, its
+    /// [field](pc_expr::VectorField::lanes) and its state at t₀. `in_lane` turns its complete
+    /// motion into its result. `alone` integrates members for which there is no lane, or whose
+    /// motion was not completed there; it should check [`Stop`] regularly. All are called on the
+    /// thread that integrates.
     ///
-    /// Lanes are used by [`Method::Dop853`](crate::Method::Dop853), for fields that do not read time, without inequalities, a
-    /// least length of steps and a stop time. Whatever else they may need — events, projections, breaks — is for `begin` to see.
-    /// In a lane the method is that of [`Dop853`](crate::Dop853), whose steps and errors are computed with fused multiply-adds,
-    /// so that the last digits differ, and stiffness is not looked for. Each lane does just the operations that it would do alone: results
-    /// do not depend on the number of threads, on that of lanes, or on the other members.
+    /// Lanes are used with [`Method::Dop853`](crate::Method::Dop853), for fields that do not read
+    /// time, without inequalities, a minimum step or a stop time. `begin` has to exclude events,
+    /// projections and breaks. Lanes use the method of [`Dop853`](crate::Dop853), but with fused
+    /// multiply-adds, so that the last digits differ, and without detection of stiffness. Each lane
+    /// does the same operations as it would alone: results depend neither on the number of threads
+    /// or lanes nor on the other members.
     ///
     /// # Errors
     /// [`EnsembleError`] if threads cannot be started. A panic is the result of its member.
@@ -57,7 +60,7 @@ impl Ensemble<'_> {
         let groups = 0..count.div_ceil(size);
         let of_group =
             |group: u64| members.start + group * size..(members.start + (group + 1) * size).min(members.end);
-        // A thread takes no more than its part of few members.
+        // With few members each thread takes its share at most.
         let fair = count.div_ceil(self.workers() as u64);
         let width = self.lanes.min(usize::try_from(fair).unwrap_or(usize::MAX));
         let worker = |queue: &Queue<'_, Group<T>>, stop: &Stop<'_>| {
@@ -81,7 +84,7 @@ impl Ensemble<'_> {
         };
         let mut consume_group = |group: u64, results: Group<T>| {
             for (member, result) in of_group(group).zip(results) {
-                // None where all was stopped.
+                // None if the ensemble was stopped.
                 let Some(result) = result else { return ControlFlow::Break(()) };
                 consume(member, result)?;
             }
@@ -91,14 +94,14 @@ impl Ensemble<'_> {
     }
 }
 
-/// The results of a group, as far as there are any.
+/// The results of a group, as far as they are known.
 type Group<T> = Vec<Option<Result<T, Panicked>>>;
 
-/// A group on the way.
+/// A group in progress.
 struct Open<T> {
     number: u64,
     members: Range<u64>,
-    /// The next to begin.
+    /// The next member to begin.
     next: u64,
     results: Group<T>,
     missing: usize,
@@ -109,16 +112,16 @@ struct Supply<'a, 'q, 's, C, T, G, B, L, A> {
     queue: &'a Queue<'q, Group<T>>,
     stop: &'a Stop<'s>,
     plan: &'a Plan,
-    /// Kernels that any thread has made.
+    /// Kernels compiled by any thread.
     shelf: &'a Shelf,
     kernels: Option<Arc<Kernels>>,
     of_group: &'a G,
     begin: &'a B,
     in_lane: &'a L,
     alone: &'a A,
-    /// Groups on the way, of which the last has members to begin.
+    /// Groups in progress; only the last may have members to begin.
     open: VecDeque<Open<T>>,
-    /// A member that was begun and waits for a lane of another program.
+    /// A member that was begun and waits for a block of its program.
     held: Option<Begun<C>>,
 }
 
@@ -162,7 +165,7 @@ where
         None
     }
 
-    /// The next member of the groups on the way, or of a new one.
+    /// The next member of the groups in progress, or of a new one.
     fn next_member(&mut self, from: Source) -> Option<u64> {
         let has_more = |open: &Open<T>| open.next < open.members.end;
         if !self.open.back().is_some_and(has_more) {
@@ -193,7 +196,7 @@ where
         self.store(member, result.map_err(|message| Panicked { message }));
     }
 
-    /// Keeps the result of a member, and gives back the group whose last it is.
+    /// Keeps the result of a member, and delivers its group when it is complete.
     fn store(&mut self, member: u64, result: Result<T, Panicked>) {
         let Some(place) = self.open.iter().position(|open| open.members.contains(&member)) else { return };
         let open = &mut self.open[place];
@@ -206,7 +209,7 @@ where
         }
     }
 
-    /// Gives back what is there of the groups on the way.
+    /// Delivers the groups in progress, incomplete.
     fn give_up(&mut self) {
         for open in self.open.drain(..) {
             self.queue.finish(open.number, open.results);

@@ -7,8 +7,8 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use crate::ensemble::stop::Stop;
 
-/// Hands members out in order and takes their results in any; gives the results in order. No member is begun that is
-/// `window` or more ahead of the one to be taken next.
+/// Hands members out in order, receives their results in any order, and delivers these in order.
+/// Members begun are less than `window` ahead of the one delivered next.
 pub(super) struct Queue<'a, T> {
     end: u64,
     window: u64,
@@ -21,9 +21,9 @@ pub(super) struct Queue<'a, T> {
 }
 
 struct State<T> {
-    /// The member to be begun next.
+    /// The member to begin next.
     next: u64,
-    /// The member to be taken next.
+    /// The member to deliver next.
     wanted: u64,
     /// Results that wait for an earlier one.
     results: BTreeMap<u64, T>,
@@ -36,7 +36,8 @@ impl<'a, T> Queue<'a, T> {
         Queue { end: members.end, window, stop, state, finished: Condvar::new(), taken: Condvar::new() }
     }
 
-    /// The next member to work on, as soon as the window has room; none if all are begun, or to stop.
+    /// Waits until the window has room and returns the next member; none if all have been begun, or
+    /// on a request to stop.
     pub(super) fn begin(&self) -> Option<u64> {
         let mut state = self.state();
         let full = |state: &State<T>| state.next < self.end && state.next - state.wanted >= self.window;
@@ -46,7 +47,7 @@ impl<'a, T> Queue<'a, T> {
         self.hand_out(&mut state)
     }
 
-    /// The same; none if the window has no room now.
+    /// The same without waiting; none if the window has no room.
     pub(super) fn begin_if_room(&self) -> Option<u64> {
         let mut state = self.state();
         if state.next < self.end && state.next - state.wanted >= self.window {
@@ -64,13 +65,13 @@ impl<'a, T> Queue<'a, T> {
         Some(state.next - 1)
     }
 
-    /// The result of a member that was begun.
+    /// Receives the result of a member that was begun.
     pub(super) fn finish(&self, member: u64, result: T) {
         self.state().results.insert(member, result);
         self.finished.notify_all();
     }
 
-    /// The result of the member that comes next; none if it will never be begun.
+    /// Waits for the result of the member that comes next; none if it will never be begun.
     pub(super) fn take(&self, member: u64) -> Option<T> {
         let mut state = self.state();
         loop {
@@ -92,7 +93,7 @@ impl<'a, T> Queue<'a, T> {
     }
 
     fn state(&self) -> MutexGuard<'_, State<T>> {
-        // No code of others runs while it is locked.
+        // No foreign code runs while it is locked, so a poisoned lock is sound.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,4 +1,4 @@
-//! Early ends of an ensemble.
+//! Ending an ensemble early.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -1,4 +1,4 @@
-//! What is wrong with a problem or an option.
+//! Errors of a problem or an option.
 
 use crate::settings::inequality::Inequality;
 use crate::settings::method::Method;
@@ -49,18 +49,18 @@ pub enum InputError {
         value: f64,
     },
 
-    /// The largest order is 0 or beyond what the method has.
+    /// The maximum order is 0 or beyond the orders of the method.
     #[error("the maximum order is {found}, but {method} has orders 1 to {limit}")]
     MaxOrder {
         /// The method.
         method: Method,
         /// Its highest order.
         limit: u32,
-        /// The order asked for.
+        /// The order requested.
         found: u32,
     },
 
-    /// A choice that a method does not have.
+    /// An option that the method does not have.
     #[error("{method} has no choice of {what}")]
     Explicit {
         /// The method.
@@ -69,7 +69,7 @@ pub enum InputError {
         what: &'static str,
     },
 
-    /// What only CVODES can do, such as sensitivities, is asked of another method.
+    /// A feature of CVODES only, such as sensitivities, is requested from another method.
     #[error(
         "{method} is no method of CVODES, which alone has sensitivities, adjoint gradients and integrals along a motion: choose Adams, BDF or auto"
     )]
@@ -99,7 +99,7 @@ pub enum InputError {
         "the checkpoint has {found} columns of sensitivities, but {expected} are requested: an integration with sensitivities must be resumed with the same ones"
     )]
     Sensitivities {
-        /// Columns asked for.
+        /// Columns requested.
         expected: usize,
         /// Columns of the checkpoint.
         found: usize,
@@ -117,7 +117,7 @@ pub enum InputError {
     #[error("the integration was begun without sensitivities")]
     NoSensitivities,
 
-    /// Derivatives by parameters, with events whose own derivatives by these are not known.
+    /// Derivatives by parameters are requested, with events whose derivatives by these are unknown.
     #[error(
         "an event resets the state, but it is unknown how its function and its reset depend on the parameters of the sensitivities"
     )]
@@ -132,7 +132,7 @@ pub enum InputError {
         "the fraction of an interval within which events accumulate is {within}, but must be at least 0 and less than 1"
     )]
     Accumulation {
-        /// The part given.
+        /// The fraction given.
         within: f64,
     },
 
@@ -176,7 +176,7 @@ pub enum InputError {
         components: usize,
     },
 
-    /// An entry of ∂f/∂y that may be other than zero lies outside of the band chosen.
+    /// An entry of ∂f/∂y that may be nonzero lies outside the band chosen.
     #[error(
         "the rate of {row} depends on {column}, outside of the band of {lower} diagonals below the main one and \
          {upper} above"
@@ -218,7 +218,7 @@ pub enum InputError {
         index: usize,
         /// The time before it.
         previous: f64,
-        /// The time that goes back or stays.
+        /// The time that repeats or reverses.
         time: f64,
     },
 
@@ -232,25 +232,25 @@ pub enum InputError {
     /// A time lies against the direction of integration.
     #[error("t = {requested} lies behind t = {current}")]
     Behind {
-        /// The time asked for.
+        /// The time requested.
         requested: f64,
-        /// Where the integration stands.
+        /// The current time of the integration.
         current: f64,
     },
 
     /// A time lies beyond the stop time.
     #[error("t = {requested} lies beyond the stop time {stop_time}")]
     BeyondStopTime {
-        /// The time asked for.
+        /// The time requested.
         requested: f64,
         /// The stop time.
         stop_time: f64,
     },
 
-    /// A time outside what a dense output covers.
+    /// A time outside the span of a dense output.
     #[error("t = {requested} lies outside the dense output, which goes from {start} to {end}")]
     OutsideSpan {
-        /// The time asked for.
+        /// The time requested.
         requested: f64,
         /// Where the output begins.
         start: f64,
@@ -258,10 +258,10 @@ pub enum InputError {
         end: f64,
     },
 
-    /// A time outside the last internal step, or beyond the event up to which that is known.
+    /// A time outside the last internal step, or beyond the next event in it.
     #[error("t = {requested} lies outside the last step, which goes from t = {start} to {end}")]
     OutsideStep {
-        /// The time asked for.
+        /// The time requested.
         requested: f64,
         /// Where the step begins.
         start: f64,
@@ -274,9 +274,9 @@ pub enum InputError {
         "the derivative of order {order} is requested, but the last step has derivatives up to order {highest}"
     )]
     DerivativeOrder {
-        /// The order asked for.
+        /// The order requested.
         order: u32,
-        /// The highest there is.
+        /// The highest order available.
         highest: u32,
     },
 
@@ -287,7 +287,7 @@ pub enum InputError {
     /// There is no such parameter.
     #[error("the vector field has {len} parameters, but number {index} (from 0) is requested")]
     NoParameter {
-        /// The number asked for.
+        /// The number requested.
         index: usize,
         /// Number of parameters.
         len: usize,
@@ -296,7 +296,7 @@ pub enum InputError {
     /// There is no such component.
     #[error("the vector field has {dim} components, but number {index} (from 0) is requested")]
     NoComponent {
-        /// The number asked for.
+        /// The number requested.
         index: usize,
         /// Dimension of the vector field.
         dim: usize,
@@ -305,7 +305,7 @@ pub enum InputError {
     /// The number of Lyapunov exponents is out of range.
     #[error("{count} exponents are requested, but a flow in {dim} dimensions has 1 to {dim}")]
     Exponents {
-        /// The number asked for.
+        /// The number requested.
         count: usize,
         /// Dimension of the vector field.
         dim: usize,

@@ -1,6 +1,7 @@
 //! Numbers that are not finite.
 
-/// A number that is not finite, written by a vector field that reported no failure, or never written.
+/// A number that is not finite, written by a vector field that reported no failure, or never
+/// written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NonFinite {
@@ -80,7 +81,7 @@ pub enum NonFinite {
         t: f64,
     },
 
-    /// A component of what a [preconditioner](crate::Preconditioner) wrote.
+    /// A component written by a [preconditioner](crate::Preconditioner).
     #[error("the preconditioner makes {component} {value} at t = {t}")]
     Preconditioned {
         /// Name of the component.

@@ -14,15 +14,15 @@ pub enum Reason {
     Cvode {
         /// Its return code.
         code: Code,
-        /// What it said.
+        /// Its message.
         message: String,
     },
 
     /// The limit of steps from one output to the next was reached.
     Steps {
-        /// How many were made.
+        /// The number of steps made.
         steps: u64,
-        /// The output on the way to which they were made.
+        /// The time of the next output.
         t: f64,
         /// The length of the last one.
         last: f64,
@@ -31,8 +31,8 @@ pub enum Reason {
     /// The [deadline](crate::Options::deadline) passed.
     Ended(Spent),
 
-    /// The integration of the adjoint equations, from the end back, could not go on; time and state reached are those of
-    /// the motion there.
+    /// The backward integration of the adjoint equations could not go on; time and state reached
+    /// are those of the motion there.
     Adjoint(Box<Reason>),
 
     /// The end term of a [functional](crate::Functional) failed.
@@ -46,13 +46,14 @@ pub enum Reason {
         t: f64,
     },
 
-    /// A tangent vector became a combination of those before it, to rounding, in the course of one interval.
+    /// Within one interval a tangent vector became a combination of those before it, up to
+    /// rounding.
     Collapsed {
         /// Its number.
         vector: usize,
     },
 
-    /// A component grew beyond the largest number in a step that CVODES accepted.
+    /// A component became infinite or NaN in a step.
     Overflow {
         /// Name of the component.
         component: String,
@@ -62,37 +63,40 @@ pub enum Reason {
         t: f64,
     },
 
-    /// The state could not be [projected](pc_expr::VectorField::project) to the surface it belongs to.
+    /// The state could not be [projected](pc_expr::VectorField::project) to the surface it belongs
+    /// to.
     Projection {
         /// Time of that state.
         t: f64,
     },
 
-    /// The steps became so short that t + h rounds to t: the motion is singular there, or every further step fails.
+    /// The steps became so short that t + h rounds to t: the motion is singular there, or every
+    /// further step fails.
     Stalled,
 
-    /// By its explicit dependence on time the field turns faster than floating-point times can resolve, and by more
-    /// than the tolerances.
+    /// The explicit dependence of the field on time turns faster than floating-point times can
+    /// resolve, by more than the tolerances.
     Unresolved {
-        /// Where it was seen.
+        /// Where it was detected.
         t: f64,
     },
 
-    /// The vector field could not be evaluated, by a method that has no shorter step to try.
+    /// The vector field could not be evaluated, and no shorter step is possible.
     Rates {
         /// Time of the state at which it was evaluated.
         t: f64,
     },
 
-    /// What the field has a corner or a jump at is reached and neither crossed nor left: the motion would go on along it.
+    /// The motion reaches a corner or a jump of the field and neither crosses nor leaves it: it
+    /// would slide along it.
     Sliding {
-        /// What is 0 there.
+        /// The expression that vanishes there.
         branch: String,
         /// When it was reached.
         t: f64,
     },
 
-    /// The function of an event, or of one together with it, could not be evaluated.
+    /// The function of an event could not be evaluated, or that of another event evaluated with it.
     Event {
         /// Its name.
         event: String,
@@ -100,7 +104,7 @@ pub enum Reason {
         t: f64,
     },
 
-    /// An event did not give a new state.
+    /// The reset of an event failed.
     Reset {
         /// Its name.
         event: String,
@@ -136,7 +140,7 @@ pub enum Reason {
         event: String,
         /// How often it has occurred.
         occurrences: u64,
-        /// The time that its occurrences approach, if their distances go on as a geometric series.
+        /// The limit of its occurrences, if their intervals continue as a geometric series.
         t: f64,
     },
 }
@@ -147,7 +151,7 @@ impl Reason {
         match self {
             Reason::Cvode { code, .. } => Some(*code),
             Reason::Adjoint(reason) => reason.code(),
-            // CVODE has a name for it, whatever the method.
+            // The name that CVODE has for it, for any method.
             Reason::Steps { .. } => Some(Code::TooMuchWork),
             Reason::Ended(_)
             | Reason::Overflow { .. }

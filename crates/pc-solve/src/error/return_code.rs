@@ -133,7 +133,8 @@ mod tests {
             unsafe { free(theirs.cast()) };
             let code = Code::from(number);
             assert_eq!(code.number(), number);
-            // CVodeGetReturnFlagName knows fewer codes than cvodes.h and answers NONE for the others.
+            // CVodeGetReturnFlagName knows fewer codes than cvodes.h and answers NONE for the
+            // others.
             if name != "NONE" {
                 assert_eq!(code.name(), name);
             }

@@ -13,11 +13,12 @@ use crate::error::return_code::Code;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// The problem or an option is not valid; no step was taken.
+    /// The problem or an option is invalid; no step was made.
     #[error(transparent)]
     Input(#[from] InputError),
 
-    /// SUNDIALS could not make or set up one of its objects; with valid input, it ran out of memory.
+    /// SUNDIALS could not create or set up one of its objects: with valid input, because memory ran
+    /// out.
     #[error("{function} failed with code {code}: {message}")]
     Setup {
         /// The function of SUNDIALS.
@@ -69,10 +70,10 @@ pub struct IntegrationError {
     pub reason: Reason,
     /// End of the last successful internal step.
     pub time: f64,
-    /// The state at [`time`](IntegrationError::time); as many numbers as the field has components.
+    /// The state at [`time`](IntegrationError::time), as long as the field has components.
     pub state: Vec<f64>,
-    /// The last failure of the vector field there: what it reported, or [`NonFinite`](crate::NonFinite) if it wrote such a
-    /// number.
+    /// The last failure of the vector field there: its own, or [`NonFinite`](crate::NonFinite) for
+    /// a number that is not finite.
     pub failure: Option<Failure>,
 }
 

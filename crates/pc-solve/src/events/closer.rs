@@ -1,25 +1,27 @@
-//! Where functions are looked at more closely.
+//! Refinement of the samples of functions along a step.
 //!
-//! Between two samples a and b of a function g, h apart in time, g differs from their chord by g[a, b, c] (t − t_a)(t − t_b), the
-//! remainder of Newton's interpolation with the divided difference through a third sample c. A function with samples on one side
-//! of zero stays there in between, and one with samples on both sides passes through zero once, as far as the samples tell, if
+//! Between two samples a and b of a function g, h apart in time, g differs from their chord by g[a,
+//! b, c] (t − t_a)(t − t_b), the remainder of Newton's interpolation with the divided difference
+//! through a third sample c. As far as the samples tell, a function of one sign at a and b keeps it
+//! in between, and one that changes sign passes through zero once, if
 //! ```text
 //! (√|a| + √|b|)² > |g[a, b, c]| h²   and   |b − a| > |g[a, b, c]| h².
 //! ```
-//! An interval for which one of its neighbours lets doubt that is halved.
+//! An interval for which this fails with the third sample of either neighbour is halved.
 
 use crate::events::samples::{Look, Sample};
 
-/// The remainder is estimated by another divided difference, and taken for so many times what that says.
+/// Safety factor of the remainder, since its divided difference is only an estimate.
 const SAFETY: f64 = 3.0;
-/// Most samples of a search.
+/// Maximum number of samples of a search.
 const MOST: usize = 256;
-/// No interval is halved that is shorter than this part of the whole.
+/// Intervals shorter than this fraction of the whole are not halved.
 const SHORTEST: f64 = 1.0 / 4096.0;
 
-/// Adds samples from `left` through `samples` where a function may have more roots than its signs tell.
+/// Adds samples between `left` and the last of `samples` where a function may have more roots than
+/// its signs show.
 ///
-/// Where the functions have no value the samples end, with the failure.
+/// Where the functions fail, the samples end; the failure is returned.
 pub(crate) fn look_closer<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     left: &Sample,
     samples: &mut Vec<Sample>,
@@ -41,13 +43,14 @@ pub(crate) fn look_closer<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
                 return Some(failure);
             }
         }
-        // The interval before has another neighbour now.
+        // The previous interval has a new neighbour.
         k = k.saturating_sub(1);
     }
     None
 }
 
-/// Whether a function may have more roots than its signs tell in the interval that ends at sample number `k`.
+/// Whether a function may have more roots than its signs show in the interval that ends at sample
+/// `k`.
 fn is_doubtful(left: &Sample, samples: &[Sample], k: usize) -> bool {
     let at = |k: usize| if k == 0 { left } else { &samples[k - 1] };
     let (a, b) = (at(k), at(k + 1));

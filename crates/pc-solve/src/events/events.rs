@@ -14,7 +14,7 @@ type Reset<'a> = Box<dyn FnMut(f64, &mut [f64]) -> Result<(), Failure> + 'a>;
 /// ```
 /// use pc_solve::{Event, FnEvents, Solve, from_fn};
 ///
-/// // A ball falls on the floor and loses half of its speed there.
+/// // A ball bounces on the floor and loses half its speed.
 /// let ball = from_fn(2, |_t, y, ydot| {
 ///     ydot[0] = y[1];
 ///     ydot[1] = -9.81;
@@ -46,7 +46,7 @@ impl<'a> FnEvents<'a> {
         FnEvents::default()
     }
 
-    /// One more event, where `function` of (t, y) passes through zero.
+    /// Adds an event where `function` of (t, y) passes through zero.
     pub fn with(
         mut self,
         event: Event,
@@ -58,7 +58,7 @@ impl<'a> FnEvents<'a> {
         self
     }
 
-    /// One more event, and the reset that turns y⁻ into y⁺ there.
+    /// Adds an event with the reset that turns y⁻ into y⁺.
     pub fn with_reset(
         mut self,
         event: Event,
@@ -73,8 +73,9 @@ impl<'a> FnEvents<'a> {
 }
 
 impl<'a> FnEvents<'a> {
-    /// The same events with their derivatives by parameters, for sensitivities: a closure of (event, parameter, t, y) that
-    /// returns ∂g/∂pⱼ and writes ∂R/∂pⱼ to its last argument, as [`Events::by_parameter`] does.
+    /// The same events with their derivatives by parameters, for sensitivities: a closure of
+    /// (event, parameter, t, y) that returns ∂g/∂pⱼ and writes ∂R/∂pⱼ to its last argument, as
+    /// [`Events::by_parameter`] does.
     pub fn with_parameter_derivatives(
         self,
         by_parameter: impl FnMut(usize, usize, f64, &[f64], &mut [f64]) -> Result<f64, Failure> + 'a,
@@ -143,7 +144,8 @@ impl Events for FnEvents<'_> {
 
 /// An event that occurred.
 ///
-/// Of simultaneous ones each has the state that it found, which those before it may have changed, and the one it left.
+/// The resets of simultaneous events apply in order: each starts from the state that the previous
+/// one left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Occurrence {
     /// Its number among the [events](Events::events), from 0.
@@ -152,51 +154,52 @@ pub struct Occurrence {
     pub time: f64,
     /// y⁻
     pub state_before: Vec<f64>,
-    /// y⁺, projected where the field [projects](pc_expr::VectorField::has_projection) its states; y⁻ where nothing is reset.
+    /// y⁺, projected where the field [projects](pc_expr::VectorField::has_projection) its states;
+    /// y⁻ without a reset.
     pub state_after: Vec<f64>,
 }
 
-/// When occurrences of an event count as accumulated, such as the bounces of a ball that comes to rest: no integration
-/// from event to event passes that time.
+/// When occurrences of an event count as accumulated, like the bounces of a ball that comes to
+/// rest: an integration from event to event cannot pass that time.
 ///
-/// They do if each of their last intervals is shorter than the one before, and continued as a geometric series they
-/// would end within a small fraction of the first of the shrinking intervals; or if rounding barely separates their
-/// times: all of the last ones lie within 1e-12 |t|. Neither depends on how long the integration has been going on. An
-/// event whose function stays below the absolute tolerance of the state between two occurrences is not resolved, and
-/// may be passed without being seen.
+/// They do if their last intervals shrink steadily and, continued as a geometric series, sum to
+/// less than a small fraction of the first of the shrinking intervals; or if rounding barely
+/// separates them: the last times lie within 1e-12 |t|. Neither depends on the length of the
+/// integration. An event whose function stays below the absolute tolerance of the state between two
+/// occurrences is not resolved, and may be missed.
 ///
-/// A regular motion whose intervals shrink so far before they grow again needs a smaller fraction, down to 0: then
-/// only rounding counts.
+/// A regular motion whose intervals shrink that far before they grow again needs a smaller
+/// fraction; with 0 only rounding counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accumulation {
-    /// The number of consecutive occurrences of one event that are considered, at least 4.
+    /// The number of consecutive occurrences of one event considered, at least 4.
     pub occurrences: usize,
     /// The fraction of the first of the shrinking intervals, at least 0 and less than 1.
     pub within: f64,
 }
 
 impl Default for Accumulation {
-    /// 6 occurrences and a rest of 1e-5.
+    /// 6 occurrences and a remaining fraction of 1e-5.
     fn default() -> Self {
         Accumulation { occurrences: 6, within: 1e-5 }
     }
 }
 
-/// Times that lie within this part of themselves are hardly told apart.
+/// Relative difference below which times are barely resolved.
 const UNRESOLVED: f64 = 1e-12;
 
-/// The last times of one event, and how often it has occurred.
+/// The latest times of one event, and its number of occurrences.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct History {
     pub(crate) times: VecDeque<f64>,
     pub(crate) occurrences: u64,
-    /// The distance since which each has been less than the one before.
+    /// The interval since which each has been shorter than the one before.
     pub(crate) longest: f64,
 }
 
 impl History {
-    /// Notes an occurrence at `t`. If the last ones accumulate, the time at which they
-    /// do, by the sum of a geometric series [Aitken 1926].
+    /// Notes an occurrence at `t`. If the last ones accumulate, returns their limit, by the sum of
+    /// a geometric series [Aitken 1926].
     pub(crate) fn note(&mut self, t: f64, limit: Accumulation) -> Option<f64> {
         let kept = limit.occurrences.max(4);
         self.occurrences += 1;

@@ -1,22 +1,22 @@
-//! Where functions along a step pass through zero first.
+//! The first passage of functions through zero along a step.
 
 use pc_expr::Direction;
 
 use crate::events::closer::look_closer;
 use crate::events::samples::{Look, Sample};
 
-/// Times closer than so many units of rounding are the same: events between are simultaneous.
+/// Times within this relative difference are the same: events between them are simultaneous.
 const SAME: f64 = 64.0 * f64::EPSILON;
-/// A passage is located between two times so many units of rounding apart.
+/// A passage is bracketed by two times with this relative difference.
 const LOCATED: f64 = 4.0 * f64::EPSILON;
 
-/// On which side of zero each function is.
+/// The side of zero on which each function is.
 #[derive(Debug)]
 pub(crate) struct Sides {
     directions: Vec<Direction>,
     /// 1, −1, or 0 while a function is at zero.
     sides: Vec<f64>,
-    /// What a function that is or was at zero has to exceed to have left it.
+    /// The magnitude that a function at zero must exceed to count as having left it.
     noise: Vec<f64>,
 }
 
@@ -33,52 +33,52 @@ impl Clone for Sides {
     }
 }
 
-/// What is found along a step.
+/// The result of the search along a step.
 pub(crate) enum Passage {
-    /// Nothing occurs up to this sample.
+    /// No event occurs up to this sample.
     Clear(Sample),
     /// Some functions pass through zero in their directions.
     Crossing(Crossing),
 }
 
-/// Functions that pass through zero together.
+/// Functions that pass through zero simultaneously.
 pub(crate) struct Crossing {
-    /// Just after the first of them has.
+    /// Just after the first passage.
     pub(crate) at: Sample,
-    /// Which they are, in order.
+    /// The numbers of these functions, ascending.
     pub(crate) events: Vec<usize>,
-    /// What each function has to exceed there to be told from zero.
+    /// The magnitude above which each function differs from zero there.
     pub(crate) noise: Vec<f64>,
-    /// The side of each of them a little later; 0 where it stays at zero.
+    /// The side of each of them just afterwards; 0 where it stays at zero.
     pub(crate) beyond: Vec<f64>,
 }
 
-/// What is seen where a function is at or beyond zero.
+/// The result of locating a passage.
 enum Located {
     Crossing(Crossing),
-    /// All functions are back where they were, at this sample.
+    /// All functions are back on their side at this sample.
     Touch(Sample),
 }
 
-/// A function that touches zero so often within one step is taken to pass through it.
+/// A function that touches zero more often than this within one step is taken to pass through it.
 const MOST_TOUCHES: u32 = 32;
 
-/// Parts of a step after which a function that was at zero is looked at, one after the other until it has left.
+/// Fractions of a step at which a function that starts at zero is sampled until it has left zero.
 const EARLY: [f64; 4] = [1e-12, 1e-9, 1e-6, 1e-3];
 
 impl Sides {
-    /// Functions that pass in these directions, of which nothing else is known.
+    /// Functions with these event directions, whose sides are not yet known.
     pub(crate) fn new(directions: Vec<Direction>) -> Sides {
         let n = directions.len();
         Sides { directions, sides: vec![0.0; n], noise: vec![0.0; n] }
     }
 
-    /// The side of each function, and what it has to exceed to have left zero.
+    /// The side of each function, and the magnitude it must exceed to have left zero.
     pub(crate) fn known(&self) -> impl Iterator<Item = (f64, f64)> {
         self.sides.iter().copied().zip(self.noise.iter().copied())
     }
 
-    /// The functions on these sides, as [`known`](Sides::known).
+    /// The inverse of [`known`](Sides::known).
     pub(crate) fn from_known(
         directions: Vec<Direction>,
         known: impl IntoIterator<Item = (f64, f64)>,
@@ -87,7 +87,7 @@ impl Sides {
         Sides { directions, sides, noise }
     }
 
-    /// Where the functions are after a jump of the state. Those that are not told from zero by `noise` go on to the side
+    /// Sets the sides after a jump of the state. Functions within `noise` of zero take the side
     /// that they move to.
     pub(crate) fn jump(&mut self, values: &[f64], noise: Vec<f64>) {
         self.sides.fill(0.0);
@@ -95,8 +95,8 @@ impl Sides {
         self.pass(values);
     }
 
-    /// After the functions `events` have passed through zero at `values`, to the sides `beyond`; all have to exceed `noise`
-    /// to pass again.
+    /// Notes that the functions `events` have passed through zero at `values`, to the sides
+    /// `beyond`; they must exceed `noise` to pass again.
     pub(crate) fn cross(&mut self, events: &[usize], values: &[f64], noise: &[f64], beyond: &[f64]) {
         for (&i, &side) in events.iter().zip(beyond) {
             self.sides[i] = side;
@@ -115,7 +115,7 @@ impl Sides {
         values.iter().enumerate().any(|(i, &value)| self.crossed(i, value))
     }
 
-    /// Takes note of values at which nothing has occurred.
+    /// Notes values up to which no event has occurred.
     pub(crate) fn pass(&mut self, values: &[f64]) {
         values.iter().enumerate().for_each(|(i, &value)| self.pass_one(i, value));
     }
@@ -127,11 +127,12 @@ impl Sides {
         }
     }
 
-    /// Looks from `from` for the first passage, with values by `evaluate`.
+    /// Searches for the first passage after `from`.
     ///
-    /// The functions are seen at these `times`, the last of which is where to look to, at first also near `from` while one of them
-    /// is at zero. Unless the times separate the roots they are also seen [where there is doubt](look_closer), and at the vertex of the
-    /// parabola through three of the values in sequence where it suggests that a function passes through zero twice.
+    /// The functions are sampled at `times`, the last of which ends the search, and near `from`
+    /// while one of them is at zero. If the times do not separate the roots, they are also sampled
+    /// [where there is doubt](look_closer). The vertex of a parabola through three successive
+    /// values is sampled where it suggests that a function passes through zero twice.
     pub(crate) fn first<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         from: Sample,
@@ -147,7 +148,7 @@ impl Sides {
             look.room.take_back(left);
             return Ok(Passage::Crossing(crossing));
         }
-        // What is beyond a passage need not have values.
+        // Functions may be undefined beyond a passage: an error counts only if there is none.
         let (mut samples, mut fault) = (std::mem::take(&mut look.room.samples), None);
         samples.clear();
         let length = to - left.t;
@@ -190,7 +191,8 @@ impl Sides {
         }
     }
 
-    /// Goes from `left` on until no function is at zero, or by a small part of the way to the time `to`.
+    /// Moves `left` on until no function is at zero, at most by a small fraction of the way to
+    /// `to`.
     fn leave<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         left: &mut Sample,
@@ -226,7 +228,7 @@ impl Sides {
         Ok(None)
     }
 
-    /// Goes from `left` to `right` unless there is a passage between.
+    /// Moves `left` to `right` unless there is a passage in between.
     fn between<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         left: &mut Sample,
@@ -243,12 +245,12 @@ impl Sides {
                 Located::Touch(after) if (right.t - after.t) * (right.t - left.t) > 0.0 => {
                     look.room.take_back(std::mem::replace(left, after));
                 }
-                // Beyond `right`, where it touches.
+                // It touches at `right`.
                 Located::Touch(_) => break,
             }
             touches += 1;
         }
-        // A function that touches zero here keeps its side.
+        // A function that touches zero at `right` keeps its side.
         for (i, &value) in right.values.iter().enumerate() {
             let value = if self.crossed(i, value) { 0.0 } else { value };
             self.pass_one(i, value);
@@ -257,7 +259,7 @@ impl Sides {
         Ok(None)
     }
 
-    /// Samples at which functions are beyond zero that are on one side of it at all three.
+    /// Samples at which a function is beyond zero that has one sign at all three given samples.
     fn hidden<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &self,
         three: [&Sample; 3],
@@ -298,8 +300,9 @@ impl Sides {
         Ok(found)
     }
 
-    /// The first passage between `a`, where there has been none, and `b`, where there has, unless it is a touch: by secants, each the earliest
-    /// of those of the functions, with Illinois' weights, and by bisection where these are slow.
+    /// Locates the first passage, or touch, between `a`, before it, and `b`, after it: by the
+    /// Illinois method with the earliest secant of the functions, and by bisection where that is
+    /// slow.
     fn locate<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &self,
         mut a: Sample,
@@ -344,7 +347,7 @@ impl Sides {
                 look.room.take_back(std::mem::replace(&mut b, middle));
             } else {
                 (weight_a, weight_b) = (1.0, if repeated < 1.0 { 0.5 * weight_b } else { 1.0 });
-                sides.pass(&middle.values); // what is told from zero need not be so again
+                sides.pass(&middle.values); // a function that has left zero is no longer compared with noise
                 look.room.take_back(std::mem::replace(&mut a, middle));
             }
             b_moved = Some(moves_b);
@@ -371,7 +374,8 @@ impl Sides {
     }
 }
 
-/// The lowest point of the parabola through three points in order, if it lies between the outer ones.
+/// The lowest point of the parabola through three points in order, if it lies between the outer
+/// ones.
 fn vertex([(t0, u0), (t1, u1), (t2, u2)]: [(f64, f64); 3]) -> Option<(f64, f64)> {
     let slope = (u1 - u0) / (t1 - t0);
     let bend = ((u2 - u1) / (t2 - t1) - slope) / (t2 - t0);

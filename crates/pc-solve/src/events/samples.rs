@@ -1,41 +1,41 @@
-//! Values of the functions of events along a step.
+//! Values of event functions along a step.
 
-/// All functions at a time.
+/// The values of all functions at a time.
 #[derive(Debug, Clone)]
 pub(crate) struct Sample {
     pub(crate) t: f64,
     pub(crate) values: Vec<f64>,
 }
 
-/// What looks at the functions: `evaluate` writes their values at a time.
+/// Access to the functions: `evaluate` writes their values at a time.
 pub(crate) struct Look<'a, F> {
     pub(crate) evaluate: F,
-    /// How many functions there are.
+    /// The number of functions.
     pub(crate) functions: usize,
-    /// Whether it is known that no function has more than one root between two of the times that it is looked at.
+    /// Whether each function is known to have at most one root between successive sample times.
     pub(crate) separated: bool,
     pub(crate) room: &'a mut Room,
 }
 
-/// Room for what is seen along a step: steps in which nothing occurs allocate nothing.
+/// Room for samples along a step, so that steps without events do not allocate.
 #[derive(Debug, Clone)]
 pub(crate) struct Room {
     values: Vec<Vec<f64>>,
     pub(crate) samples: Vec<Sample>,
 }
 
-/// Samples for which there is room from the beginning.
+/// Number of samples allocated at the beginning.
 const ROOM: usize = 64;
 
 impl Room {
-    /// Room for values of that many functions.
+    /// Room for values of `functions` functions.
     pub(crate) fn new(functions: usize) -> Room {
         let samples = if functions == 0 { 0 } else { ROOM };
         let values = (0..samples).map(|_| Vec::with_capacity(functions)).collect();
         Room { values, samples: Vec::with_capacity(samples) }
     }
 
-    /// Takes back what is no longer needed.
+    /// Recycles a sample.
     pub(crate) fn take_back(&mut self, sample: Sample) {
         self.values.push(sample.values);
     }

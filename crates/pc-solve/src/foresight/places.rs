@@ -4,24 +4,25 @@ use pc_expr::{Surprises, TimeDependence, VectorField};
 
 use crate::error::SolveError;
 
-/// Places at which a field that is known by its values alone is looked at, from the start to where it is to be integrated.
+/// Number of places, from start to end, at which a field with unknown time dependence is examined.
 const SAMPLES: f64 = 64.0;
-/// Most places of fast oscillations looked at in one step.
+/// Maximum number of places of fast oscillations examined in one step.
 const MOST: usize = 16;
-/// Twice as many may lie in a step for each one before it whose places were as foreseen, so many times.
+/// Each previous step without surprises doubles the number of places allowed in a step, up to this
+/// many times.
 const DOUBLINGS: u32 = 20;
-/// After so many such steps an oscillation is taken to be too small to matter.
+/// After this many such steps an oscillation is considered too small to matter.
 const ENOUGH: u32 = 200;
 
 /// The step ahead.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ahead {
-    /// Where it begins, and where it is planned to end.
+    /// Its start and its planned end.
     pub(crate) t: f64,
     pub(crate) reach: f64,
-    /// Where the integration leads.
+    /// The end of the integration.
     pub(crate) end: f64,
-    /// Whether it is the first one, whose length was given: it is taken at the word.
+    /// Whether it is the first one, with a given length, which is trusted.
     pub(crate) given: bool,
 }
 
@@ -32,24 +33,24 @@ impl Ahead {
     }
 }
 
-/// What is to be looked out for, and what that has taken.
+/// The places to examine, and the work this has taken.
 #[derive(Debug)]
 pub(crate) struct Places {
     dependence: TimeDependence,
-    /// When the integration began.
+    /// The start of the integration.
     begin: f64,
-    /// The least length of a step, if there is one.
+    /// The minimum step, or 0.
     min_step: f64,
-    /// Steps in sequence that were full of places, all as foreseen.
+    /// Successive steps crowded with places, all without surprises.
     unsurprising: u32,
     /// Evaluations and shortened steps since the last restart.
     pub(crate) evaluations: u64,
     pub(crate) limited: u64,
-    /// The places in the step ahead, in its order.
+    /// The places in the step ahead, in its direction.
     pub(crate) found: Vec<f64>,
-    /// A place beyond which there are too many for it.
+    /// A place beyond which there are too many for one step.
     pub(crate) crowded: Option<f64>,
-    /// Places of fast oscillations, and how many there are.
+    /// Places of fast oscillations, and their number.
     many: Vec<f64>,
     crowd: usize,
     unknown: bool,
@@ -63,7 +64,7 @@ pub(crate) trait Here {
     /// [`SolveError`] if the method cannot tell.
     fn tangent(&mut self) -> Result<(&[f64], &[f64]), SolveError>;
 
-    /// Whether f is noise between there and a place near by.
+    /// Whether f is noise between there and a nearby place.
     ///
     /// # Errors
     /// [`SolveError::Integration`] with [`Reason::Unresolved`](crate::Reason::Unresolved) if so.
@@ -87,17 +88,17 @@ impl Places {
         }
     }
 
-    /// Whether there are none ever.
+    /// Whether there are never any places.
     pub(crate) fn are_absent(&self) -> bool {
         matches!(self.dependence, TimeDependence::Absent)
     }
 
-    /// For a new start.
+    /// Resets the counts, for a restart.
     pub(crate) fn restart(&mut self) {
         (self.unsurprising, self.evaluations, self.limited) = (0, 0, 0);
     }
 
-    /// Finds those of the step ahead; whether there are any.
+    /// Finds the places in the step ahead; returns whether there are any.
     ///
     /// # Errors
     /// Those of [`Here`].
@@ -105,7 +106,7 @@ impl Places {
         let Ahead { t, reach, end, .. } = ahead;
         self.found.clear();
         self.crowded = None;
-        // No method can go to where rounding is felt.
+        // Methods cannot resolve times closer than this.
         let least = (1e-13 * t.abs().max(reach.abs())).max(self.min_step);
         if self.are_absent() || ahead.length() <= least {
             return Ok(false);
@@ -140,7 +141,8 @@ impl Places {
         let many = &mut self.many;
         self.crowd = many.len();
         self.unknown = until.is_some();
-        // Of fast oscillations not all are looked at, and a step holds no more than those before it let expect.
+        // Only some places of fast oscillations are examined, and a step may contain more of them
+        // only after steps without surprises.
         let allowed = MOST << self.unsurprising.min(DOUBLINGS);
         self.crowded = many.get(allowed).copied().or(until.filter(|until| (until - t).abs() > least));
         many.truncate(allowed);
@@ -154,29 +156,29 @@ impl Places {
         Ok(true)
     }
 
-    /// Takes note that at one of them the field does what was not to be expected: the step ends there.
+    /// Notes a surprise at a place, where the step ends.
     pub(crate) fn surprised(&mut self) {
         self.unsurprising = 0;
         self.limited += 1;
     }
 
-    /// Takes note that all was to be expected, up to where there are too many of them.
+    /// Notes that no place examined was a surprise.
     pub(crate) fn as_expected(&mut self) {
         self.unsurprising =
             if self.crowd > MOST || self.unknown { self.unsurprising.saturating_add(1) } else { 0 };
         self.limited += u64::from(self.crowded.is_some());
     }
 
-    /// Adds places evenly spaced over the integration from its start to its end, those of the next step.
+    /// Adds those places of the next step that are evenly spaced over the integration.
     fn sample(&mut self, Ahead { t, reach, end, .. }: Ahead) {
         let begin = self.begin;
         let spacing = (end - begin).abs().max((reach - begin).abs()) / SAMPLES;
         let (from, to) = ((t - begin).abs() / spacing, (reach - begin).abs() / spacing);
         let direction = 1.0_f64.copysign(reach - t);
         let place = |k: f64| begin + (k * spacing).copysign(direction);
-        // None of an integration that has turned round.
+        // None for an integration that has reversed past its start.
         let is_ahead = (t - begin) * direction >= 0.0 && spacing.is_normal();
-        // In the middle between whole multiples, which steps and switches tend to fall on.
+        // Midway between whole multiples, on which steps and switches tend to fall.
         let first = (from - 0.5).ceil().max(0.0);
         let count = if is_ahead { (to - 0.5 - first).ceil().clamp(0.0, 2.0 * SAMPLES) } else { 0.0 };
         let places = (0..count as u32).map(|k| place(first + f64::from(k) + 0.5));

@@ -1,15 +1,16 @@
-//! Functions of time that are noise to a method.
+//! Detection of functions of time that are noise to a method.
 
 use crate::foresight::SURPRISE;
 
-/// Places at which the field is looked at.
+/// Number of intervals between evaluations of the field.
 const PLACES: usize = 16;
 
-/// Whether f scatters between a time and one `near` by, by what a step of this `length` would feel: its second differences are
-/// large, of which what is smooth has none so near.
+/// Whether f scatters between a time and a nearby one, enough to affect a step of this `length`:
+/// its second differences are large, while those of a smooth function vanish at so small a
+/// distance.
 ///
-/// `rates` writes f at a part of the way, and the tolerances of the state there; false where it has no value, which the
-/// method will meet.
+/// `rates` writes f at a fraction of the way, and the tolerances of the state there; false where f
+/// fails, which is left to the method.
 pub(crate) fn scatters(
     dim: usize,
     length: f64,

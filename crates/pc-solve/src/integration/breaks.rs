@@ -1,14 +1,14 @@
 //! Times at which a field is not smooth: no step crosses one.
 
-/// What CVODES takes two times for the same by, and as much again.
+/// Relative difference below which two times count as equal: twice that of CVODES.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
-/// Whether two times are the same but for rounding.
+/// Whether two times are equal up to rounding.
 fn are_close(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDINGS * a.abs().max(b.abs())
 }
 
-/// The first of the breaks, which rise, after t and before the end in its direction.
+/// The first break strictly between t and the end, in the direction of the end; `breaks` ascend.
 fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
     let next = if end >= t {
         breaks.get(breaks.partition_point(|&time| time <= t)).copied().filter(|&time| time < end)
@@ -19,9 +19,10 @@ fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
     next.filter(|&time| end.is_infinite() || !are_close(time, end))
 }
 
-/// From where on the breaks lie ahead of t, and the first of them before the end.
+/// The time after which breaks lie ahead, t or a break close to it, and the first of them before
+/// the end.
 ///
-/// A break no farther than rounding, as after an event, is too close for a step: it has been reached.
+/// A break within rounding of t, as after an event, is too close for a step and counts as reached.
 pub(crate) fn next_break(breaks: &[f64], mut t: f64, end: f64) -> (f64, Option<f64>) {
     let mut next = following(breaks, t, end);
     while let Some(time) = next.filter(|&time| are_close(time, t)) {

@@ -2,13 +2,15 @@
 
 use crate::error::InputError;
 
-/// A motion along one internal step, or along a part of it: a polynomial of degree q + 1, q the order of the step.
+/// A motion along one internal step, or part of one: a polynomial of degree q + 1 for a step of
+/// order q.
 ///
-/// With s = (t − centre)/(end − start), it is y = Σ_k c_k sᵏ with c_k = y⁽ᵏ⁾(centre) (end − start)ᵏ/k! from the method's own
-/// polynomial for k ≤ q. The centre is the end, the start of the step for a Taylor polynomial, which loses digits elsewhere. The
-/// polynomial begins where the step did, and ends where it did, to rounding. Where states are projected after a
-/// step it misses the end that is not at the centre by the error of a step, and the term of degree q + 1 corrects this. So the
-/// segments of a motion fit together, and are of the order of the method.
+/// With s = (t − centre)/(end − start), it is y = Σ_k c_k sᵏ with c_k = y⁽ᵏ⁾(centre)
+/// (end − start)ᵏ/k! from the method's own polynomial for k ≤ q. The centre is the end of the step;
+/// for a Taylor polynomial, which loses digits elsewhere, its start. Where states are projected
+/// after a step, the method's polynomial misses the end opposite the centre by the error of a step;
+/// the term of degree q + 1 corrects this. So the segments of a motion join to rounding, and have
+/// the order of the method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
     start: f64,
@@ -20,7 +22,7 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// The constant segment; derivatives at the centre follow.
+    /// The constant segment, to which [`push`](Segment::push) adds derivatives at the centre.
     pub(crate) fn new((start, end): (f64, f64), centre: f64, state: &[f64]) -> Segment {
         Segment { start, end, centre, dim: state.len(), coefficients: state.to_vec() }
     }
@@ -51,7 +53,8 @@ impl Segment {
         self.dim
     }
 
-    /// Writes y(t) to `state`, of length [`dim`](Segment::dim), not projected; outside the span the polynomial is extrapolated.
+    /// Writes y(t) to `state`, of length [`dim`](Segment::dim), not projected; outside the span the
+    /// polynomial is extrapolated.
     pub fn evaluate(&self, t: f64, state: &mut [f64]) {
         let s = (t - self.centre) / (self.end - self.start);
         state.fill(0.0);
@@ -77,13 +80,14 @@ impl Segment {
 
 /// A motion as a function of time: [`Segment`]s, each beginning where the one before ends.
 ///
-/// It is continuous except at resets by events, where it is continuous from the right in the direction of integration. At
-/// its very end it is the limit from before.
+/// It is continuous except at resets by events, where it is continuous from the right in the
+/// direction of integration; at its end it is the limit from the left.
 ///
-/// It is made of the polynomials alone and knows no vector field: where that [projects](pc_expr::VectorField::project) its
-/// states, those inside steps are off the constraints, and off the values of the integrals that are kept, by the error of
-/// a step. Outputs and what [`Integration::interpolate`](crate::Integration::interpolate) gives are on them; to have
-/// such states, interpolate during the integration, or project what is evaluated here.
+/// It consists of the polynomials alone, without the vector field: where the field
+/// [projects](pc_expr::VectorField::project) its states, those inside steps miss the constraints
+/// and the conserved integrals by the error of a step. Outputs and
+/// [`Integration::interpolate`](crate::Integration::interpolate) are projected; for projected
+/// states, interpolate during the integration, or project the states evaluated here.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DenseOutput {
     segments: Vec<Segment>,
@@ -100,7 +104,7 @@ impl DenseOutput {
         Some((self.segments.first()?.start, self.segments.last()?.end))
     }
 
-    /// y(t), which is not projected.
+    /// y(t), not projected.
     ///
     /// # Errors
     /// [`InputError::OutsideSpan`]
@@ -111,7 +115,7 @@ impl DenseOutput {
         Ok(state)
     }
 
-    /// ẏ(t), which may jump by the error of a step where one step meets the next.
+    /// ẏ(t), which may jump between steps by the error of a step.
     ///
     /// # Errors
     /// [`InputError::OutsideSpan`]
@@ -135,7 +139,7 @@ impl DenseOutput {
 }
 
 impl Extend<Segment> for DenseOutput {
-    /// Goes on with segments, the first from where the last ends.
+    /// Appends segments; the first begins where the last one ends.
     fn extend<I: IntoIterator<Item = Segment>>(&mut self, segments: I) {
         self.segments.extend(segments);
     }

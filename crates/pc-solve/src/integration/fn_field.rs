@@ -2,9 +2,9 @@
 
 use pc_expr::{Failure, Pattern, TimeDependence, VectorField};
 
-/// A function that writes to its last argument, of (t, y).
+/// A function of (t, y) that writes to its last argument.
 type Write = fn(f64, &[f64], &mut [f64]) -> Result<(), Failure>;
-/// … of (t, y, v).
+/// A function of (t, y, v) that writes to its last argument.
 type WriteProduct = fn(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>;
 /// A function of t that changes y.
 type Change = fn(f64, &mut [f64]) -> Result<(), Failure>;
@@ -14,7 +14,7 @@ type Change = fn(f64, &mut [f64]) -> Result<(), Failure>;
 /// ```
 /// use pc_solve::{Options, Pattern, from_fn, solve};
 ///
-/// // ẏ₁ = −k y₁, ẏ₂ = k y₁ with all that is known of it.
+/// // ẏ₁ = −k y₁, ẏ₂ = k y₁ with its derivatives and its invariant.
 /// let k = 0.5;
 /// let decay = from_fn(2, move |_t, y, ydot| {
 ///     ydot.copy_from_slice(&[-k * y[0], k * y[0]]);
@@ -55,7 +55,7 @@ pub struct FnField<R, J = Write, S = Write, V = WriteProduct, P = Write, C = Cha
     vjp: Option<W>,
 }
 
-/// What is not a closure.
+/// The data other than closures.
 #[derive(Debug, Clone, Default)]
 struct Shape {
     dim: usize,
@@ -67,7 +67,8 @@ struct Shape {
 
 /// The vector field of dimension `dim` whose closure writes f(t, y) to its last argument.
 ///
-/// Both slices have length `dim`. Where f is not defined, the closure returns an error as [`VectorField::rhs`] does.
+/// Both slices have length `dim`. Where f is not defined, the closure returns an error as
+/// [`VectorField::rhs`] does.
 pub fn from_fn<R>(dim: usize, rhs: R) -> FnField<R>
 where
     R: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
@@ -84,7 +85,7 @@ where
     }
 }
 
-/// The field with one closure in place of another, of another type.
+/// The field with one closure replaced by one of another type.
 macro_rules! with {
     ($field:expr, $name:ident = $closure:expr, $($kept:ident),*) => {{
         let field = $field;
@@ -93,7 +94,8 @@ macro_rules! with {
 }
 
 impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
-    /// The same field with a closure that writes ∂fᵢ/∂yⱼ to entry `i + j * dim` of its last argument.
+    /// The same field with a closure that writes ∂fᵢ/∂yⱼ to entry `i + j * dim` of its last
+    /// argument.
     ///
     /// Every entry must be written, zeros too.
     pub fn with_jacobian<K>(self, jacobian: K) -> FnField<R, K, S, V, P, C, W>
@@ -103,15 +105,16 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
         with!(self, jacobian = jacobian, sparse_jacobian, jvp, parameter_jacobian, projection, vjp)
     }
 
-    /// The same field, whose ∂fᵢ/∂yⱼ are zero outside of `pattern`, dim × dim.
+    /// The same field, whose ∂fᵢ/∂yⱼ vanish outside `pattern`, dim × dim.
     pub fn with_sparsity(self, pattern: Pattern) -> Self {
         FnField { shape: Shape { pattern: Some(pattern), ..self.shape }, ..self }
     }
 
-    /// The same field with a closure that writes the ∂fᵢ/∂yⱼ of the [pattern](FnField::with_sparsity), in its order, to
-    /// its last argument.
+    /// The same field with a closure that writes the ∂fᵢ/∂yⱼ of the
+    /// [pattern](FnField::with_sparsity), in its order, to its last argument.
     ///
-    /// Every entry must be written. It serves as dense Jacobian too, unless that has its own closure.
+    /// Every entry must be written. It also provides the dense Jacobian, unless that has its own
+    /// closure.
     pub fn with_sparse_jacobian<K>(self, sparse_jacobian: K) -> FnField<R, J, K, V, P, C, W>
     where
         K: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
@@ -135,8 +138,8 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
         with!(self, vjp = vjp, jacobian, sparse_jacobian, jvp, parameter_jacobian, projection)
     }
 
-    /// The same field with a number of parameters p and a closure that writes ∂fᵢ/∂pⱼ to entry `i + j * dim` of its
-    /// last argument.
+    /// The same field with a number of parameters p and a closure that writes ∂fᵢ/∂pⱼ to entry
+    /// `i + j * dim` of its last argument.
     ///
     /// Every entry must be written, zeros too.
     pub fn with_parameters<K>(self, parameters: usize, parameter_jacobian: K) -> FnField<R, J, S, V, K, C, W>
@@ -147,9 +150,10 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
         with!(field, parameter_jacobian = parameter_jacobian, jacobian, sparse_jacobian, jvp, projection, vjp)
     }
 
-    /// The same field with a closure that moves its last argument to the surface of the states at time t.
+    /// The same field with a closure that moves its last argument to the surface of the states at
+    /// time t.
     ///
-    /// Where none is near, it returns an error as [`VectorField::project`] does.
+    /// Far from that surface it returns an error, as [`VectorField::project`] does.
     pub fn with_projection<K>(self, projection: K) -> FnField<R, J, S, V, P, K, W>
     where
         K: FnMut(f64, &mut [f64]) -> Result<(), Failure>,
@@ -157,12 +161,14 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
         with!(self, projection = projection, jacobian, sparse_jacobian, jvp, parameter_jacobian, vjp)
     }
 
-    /// The same field, declared not to depend on t explicitly, so that an integrator need not examine it.
+    /// The same field, declared not to depend on t explicitly, so that an integrator need not
+    /// examine it.
     pub fn autonomous(self) -> Self {
         FnField { shape: Shape { autonomous: true, ..self.shape }, ..self }
     }
 
-    /// The same field with names of its components, for messages; a component without one is called `y[i]`.
+    /// The same field with names of its components, for messages; a component without one is called
+    /// `y[i]`.
     pub fn with_names<N: Into<String>>(self, names: impl IntoIterator<Item = N>) -> Self {
         let names = names.into_iter().map(Into::into).collect();
         FnField { shape: Shape { names, ..self.shape }, ..self }
@@ -279,7 +285,7 @@ where
     }
 }
 
-/// What a vector field was not given.
+/// A closure or pattern that the vector field lacks.
 #[derive(Debug, thiserror::Error)]
 #[error("this vector field was given no {0}")]
 struct Missing(&'static str);

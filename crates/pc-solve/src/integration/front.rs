@@ -1,4 +1,4 @@
-//! The front of an integration: up to where it is known what occurs.
+//! The front of an integration: the time up to which its events are known.
 
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
         let to = self.engine.end_time();
         if self.events.events().is_empty() {
-            // The end of the step is in `ahead`, and there are no other states in it to look for.
+            // Without events only the end of the step is needed, which is in `ahead`.
             if time == self.front.t {
                 std::mem::swap(&mut self.output, &mut self.front_state);
             }
@@ -88,9 +88,12 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(())
     }
 
-    /// Writes the times, up to `to` or to a time before at which the search is to end, at which the functions of events are looked at. Where
-    /// these are a program the times separate their roots along the polynomial of the step; for others, where states are read through
-    /// constraints or as momenta or functions are closures, they are the ends of equal parts. Whether all roots are separated.
+    /// Writes the times at which the event functions are evaluated, the last being `to`, or an
+    /// earlier time at which the search ends. Returns whether they separate all roots.
+    ///
+    /// Where the functions are a program, the times separate their roots along the polynomial of
+    /// the step; for closures, and where states are read through constraints or as momenta, they
+    /// divide the step into equal parts.
     fn look_at(&mut self, mut to: f64, times: &mut Vec<f64>) -> Result<bool, SolveError> {
         times.clear();
         let from = self.front.t;
@@ -108,13 +111,13 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             separated = separation.separate(motion, (from - start, to - start), parameters, times);
             let ends_before = times.last() != Some(&(to - start));
             times.iter_mut().for_each(|time| *time += start);
-            // What lies at the ends or beyond by rounding is not looked at.
+            // Drop times that rounding puts at or beyond the ends.
             let direction = 1.0_f64.copysign(to - from);
             times.retain(|time| (time - from) * direction > 0.0 && (to - time) * direction > 0.0);
             if ends_before {
                 to = times.pop().unwrap_or(to);
             }
-            // The polynomial is not that of states that are projected.
+            // Projected states do not lie on the polynomial.
             separated &=
                 program.outputs_len() == self.events.events().len() && !self.engine.field().has_projection();
         }
@@ -128,7 +131,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(separated)
     }
 
-    /// Whether the end is so near to a restart that no step can go there. Then it is where the integration is.
+    /// Whether the end is too close to a restart for a step; the integration is then moved there.
     fn arrives(&mut self, towards: f64) -> Result<bool, SolveError> {
         let target = self.engine.stop_time().unwrap_or(towards);
         let rounding = 4.0 * f64::EPSILON * target.abs().max(self.front.t.abs());
@@ -143,7 +146,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(true)
     }
 
-    /// The functions at a state.
+    /// The event functions at a state.
     pub(crate) fn evaluate(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
         let (mut values, mut blamed) = (vec![f64::NAN; self.events.events().len()], 0);
         match values_at(&mut self.events, t, state, &mut values, &mut blamed) {
@@ -152,7 +155,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// The error of the function of an event.
+    /// The error of an event function that failed.
     pub(crate) fn event_error(&mut self, event: usize, t: f64, failure: Failure) -> SolveError {
         let reason = Reason::Event { event: self.name(event), t };
         self.failed(reason, Some(failure))
@@ -162,7 +165,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.events.events().get(event).map_or_else(String::new, |event| event.name().to_owned())
     }
 
-    /// The error of something that did not succeed beyond the front, where the integration stands then.
+    /// The error of a failure beyond the front; the integration stays at the front.
     pub(crate) fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
         let error = self.engine.failed(reason, failure);
         self.stay(error)
@@ -178,14 +181,14 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 }
 
-/// Why the events in a step cannot be found.
+/// Why the search for events in a step failed.
 enum SearchFailure {
     Method(SolveError),
     Event(f64, Failure),
 }
 
-/// Writes the functions at a state to what is NaN before; `blamed` is the first that is not finite, or was not written before the
-/// failure.
+/// Writes the event functions at a state to `values`, initially NaN; `blamed` becomes the first
+/// that is not finite or was not written before a failure.
 fn values_at(
     events: &mut impl Events,
     t: f64,

@@ -15,70 +15,74 @@ use crate::integration::stepper::Stepper;
 
 /// An integration of ẏ = f(t, y) by a [method](Stepper), with [`Events`] or without.
 ///
-/// It stands at a [`time`](Integration::time) with a [`state`](Integration::state). The method may be up to one step ahead;
-/// outputs in between are interpolated with its polynomial, so that asking for more of them changes no step. The direction of
-/// time is that of the first step. After an error or a panic of the field it stands at the last state it reached.
+/// It is at a [`time`](Integration::time) with a [`state`](Integration::state). The method may be
+/// up to one step ahead; outputs in between are interpolated by its polynomial, so that further
+/// outputs change no step. The first step fixes the direction of time. After an error or a panic of
+/// the field the integration is at the last state it reached.
 ///
 /// # Events
 ///
-/// Along each step the functions of the events are evaluated at states on the polynomial of the method,
-/// [projected](VectorField::project) where the field does so. Those that are [a program](Events::program) of the state are looked at at
-/// times [between which](pc_expr::RootSeparation) each has at most one root along that polynomial: none is lost. Others are looked at at
-/// the ends of so many equal parts of the step as [asked for](crate::Options::samples_per_step), once more between two of
-/// these where divided differences leave doubt, and where three values in sequence suggest that a function passes through zero
-/// twice. Between two of these places an even number of passages of such a function may be missed; of an odd
-/// number one is found, so that its side of zero is always known. After a passage the rest of the step is searched anew.
+/// Along each step the event functions are evaluated at states on the polynomial of the method,
+/// [projected](VectorField::project) where the field does so. Functions given as [a
+/// program](Events::program) of the state are sampled at times [between
+/// which](pc_expr::RootSeparation) each has at most one root along that polynomial: none is missed.
+/// Others are sampled at the ends of [`samples_per_step`](crate::Options::samples_per_step) equal
+/// parts of the step, again between two of these where divided differences leave doubt, and where
+/// three successive values suggest that a function passes through zero twice. Between two samples
+/// an even number of passages of such a function may be missed; of an odd number one is found, so
+/// that its sign is always known. After a passage the rest of the step is searched anew.
 ///
-/// A passage is located to 1e-15 max(|t|, h/1000) in a step of length h, and functions that pass through zero within 16
-/// times that of each other do so together: their resets are applied one after the other, in the order of
-/// the events, each to the state that the one before has left. After a reset the integration
+/// A passage is located to 1e-15 max(|t|, h/1000) in a step of length h, and functions that pass
+/// through zero within 16 times that of each other do so simultaneously: their resets are applied
+/// one after the other, in the order of the events. After a reset the integration
 /// [restarts](Integration::restart) with the same options.
 ///
-/// A function that reaches zero, or beyond it, and is back on its side that much later only touches zero: no event
-/// occurs. One that reaches zero and stays there passes when it arrives, not when it leaves. This holds for the
-/// function as computed, with its rounding.
+/// A function that reaches or crosses zero and is back on its side within that time only touches
+/// zero: no event occurs. For one that reaches zero and stays there the event occurs on arrival,
+/// not on departure. This holds for the function as computed, with its rounding.
 ///
-/// After a reset the events that caused it have to leave zero before they can occur again: a function that the reset
-/// has left within the tolerances of zero counts as on the side that it moves to.
+/// After a reset the functions of the events that caused it have to leave zero before these events
+/// can occur again: a function within the tolerances of zero counts as being on the side it moves
+/// to.
 ///
-/// CVODES has a search for roots of its own. It is not used because it takes account neither of projected states nor
-/// of resets, reports at most one of two roots in a step, and may report a root again after a restart.
+/// The root finding of CVODES is not used: it ignores projections and resets, reports at most one
+/// of two roots in a step, and may report a root again after a restart.
 ///
-/// Where the integration stands at an event, its state is y⁺: states are continuous from the right in the direction of
-/// integration. After an error or a panic it stands where it last could.
+/// At an event the state is y⁺: states are continuous from the right in the direction of
+/// integration.
 pub struct Integration<S, E = NoEvents> {
-    /// Stands where this integration does.
+    /// Its time is that of this integration.
     pub(crate) engine: S,
     pub(crate) events: E,
     pub(crate) histories: Vec<History>,
     /// 1 or −1 since the first step.
     pub(crate) direction: Option<f64>,
-    /// Up to where it is known what occurs, the functions there, and y.
+    /// The time up to which events are known, with the event functions there, and y.
     pub(crate) front: Sample,
     pub(crate) front_state: Vec<f64>,
     pub(crate) sides: Sides,
-    /// The sides before the front moved there, and room for those after the next step.
+    /// The sides before the front's last move, and room for those after the next step.
     pub(crate) sides_before: Sides,
     pub(crate) sides_after: Sides,
-    /// Room for what is looked at along a step.
+    /// Room for samples along a step.
     pub(crate) room: Room,
-    /// The events that occur at the front and have yet to be dealt with.
+    /// The events at the front that are still to be applied.
     pub(crate) due: Vec<usize>,
     pub(crate) noise: Vec<f64>,
-    /// The side of zero that each of those due goes on to.
+    /// The sign that each of the `due` functions takes next.
     pub(crate) beyond: Vec<f64>,
     /// y(`time`), unless `time` is the front.
     pub(crate) output: Vec<f64>,
     /// Room for the end of a step.
     pub(crate) ahead: Vec<f64>,
-    /// Room for the times at which functions of events are looked at, and for the polynomial of a step.
+    /// Room for the times at which event functions are evaluated, and for the polynomial of a step.
     pub(crate) times: Vec<f64>,
     pub(crate) coefficients: Vec<f64>,
-    /// Of the roots of those functions that are a program.
+    /// Separates the roots of event functions given as a program.
     pub(crate) separation: Option<RootSeparation>,
-    /// Whether there has been no step since a new start on the way.
+    /// Whether no step has been made since a restart.
     pub(crate) restarted: bool,
-    /// Whether the motion has been started anew from a state that it did not come to by itself.
+    /// Whether the motion has been restarted, by a reset for example.
     pub(crate) jumped: bool,
 }
 
@@ -108,7 +112,7 @@ impl<S: Stepper, E: Events> fmt::Debug for Integration<S, E> {
 }
 
 impl<S: Stepper> Integration<S> {
-    /// An integration by a method that has made no step.
+    /// An integration by a method that has made no step yet.
     pub fn of(stepper: S) -> Self {
         let (t, state) = (stepper.time(), stepper.end_state().to_vec());
         let sides = Sides::new(Vec::new());
@@ -136,15 +140,16 @@ impl<S: Stepper> Integration<S> {
         }
     }
 
-    /// This integration, with events from where it stands.
+    /// This integration, with events from its current time on.
     ///
-    /// Its [sensitivities](crate::Cvode::with_sensitivities), if there are any, are those of the motion with its events: they
-    /// jump where a reset does. For this, resets are also applied to nearby states, and events that reset must have
-    /// [derivatives](Events::by_parameter) by the parameters of the sensitivities.
+    /// Its [sensitivities](crate::Cvode::with_sensitivities), if any, are those of the motion with
+    /// its events: they jump at resets. For this, resets are also applied to nearby states, and
+    /// events with resets need [derivatives](Events::by_parameter) by the parameters of the
+    /// sensitivities.
     ///
     /// # Errors
-    /// [`SolveError::Integration`] with [`Reason::Event`](crate::Reason::Event) if a function of an event cannot be evaluated there;
-    /// [`InputError::EventParameters`].
+    /// [`SolveError::Integration`] with [`Reason::Event`](crate::Reason::Event) if an event
+    /// function cannot be evaluated there; [`InputError::EventParameters`].
     pub fn with_events<E: Events>(mut self, events: E) -> Result<Integration<S, E>, SolveError> {
         let resets = events.events().iter().any(Event::resets);
         let by_parameters = self.engine.column_parameters().iter().any(Option::is_some);
@@ -175,7 +180,8 @@ impl<S: Stepper> Integration<S> {
             due: Vec::new(),
             noise: Vec::new(),
             beyond: Vec::new(),
-            // Polynomials of CVODES have up to 13 coefficients a component; the order rises on the way.
+            // Polynomials of CVODES have up to 13 coefficients a component; the order rises during
+            // the integration.
             times: Vec::with_capacity(64),
             coefficients: Vec::with_capacity(16 * state.len()),
             separation: None,
@@ -211,14 +217,15 @@ pub(crate) fn directions(events: &impl Events) -> Vec<Direction> {
 }
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// When occurrences of an event count as accumulated, which is an error; as in the
-    /// [options](crate::Options::accumulation) unless given.
+    /// When occurrences of an event count as accumulated, which is an error; the default is that of
+    /// the [options](crate::Options::accumulation).
     pub fn accumulation(mut self, accumulation: Accumulation) -> Self {
         self.engine.limits_mut().accumulation = accumulation;
         self
     }
 
-    /// The current time: the time last advanced to, or that of the event that stopped the integration.
+    /// The current time: the time last advanced to, or that of the event that stopped the
+    /// integration.
     pub fn time(&self) -> f64 {
         self.engine.time()
     }
@@ -243,17 +250,17 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         &self.engine
     }
 
-    /// Ends the integration and gives the vector field back.
+    /// Ends the integration and returns the vector field.
     pub fn into_field(self) -> S::Field {
         self.engine.into_field()
     }
 
-    /// Ends the integration and gives the vector field and the events back.
+    /// Ends the integration and returns the vector field and the events.
     pub fn into_parts(self) -> (S::Field, E) {
         (self.engine.into_field(), self.events)
     }
 
-    /// The work so far, that before restarts included.
+    /// The work so far, including that before restarts.
     pub fn statistics(&self) -> Statistics {
         self.engine.statistics()
     }
@@ -280,16 +287,16 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.set_stop_time(stop_time)
     }
 
-    /// Restarts at y(t) = y, for example after a jump of the state.
+    /// Restarts from y(t) = y, for example after a jump of the state.
     ///
-    /// Options and stop time stay, and the [statistics](Integration::statistics) continue. A multistep method begins
-    /// at order 1; the next step may go either way. The functions of events are on the side of zero that they have
-    /// there.
+    /// Options and stop time stay, and the [statistics](Integration::statistics) continue. A
+    /// multistep method begins at order 1; the next step may go either way. The signs of the event
+    /// functions are those at the new state.
     ///
     /// # Errors
-    /// [`SolveError::Input`] unless all is finite and of the right length, or if there are sensitivities, which
-    /// [have to be given too](Integration::restart_with_sensitivities); [`SolveError::Setup`] if CVODES refuses. The
-    /// integration is then unchanged.
+    /// [`SolveError::Input`] if a value is not finite or a length is wrong, or if there are
+    /// sensitivities, which [have to be given too](Integration::restart_with_sensitivities);
+    /// [`SolveError::Setup`] if CVODES refuses. The integration is then unchanged.
     pub fn restart(&mut self, t: f64, y: &[f64]) -> Result<(), SolveError> {
         if !self.engine.column_parameters().is_empty() {
             return Err(InputError::Restart.into());
@@ -322,8 +329,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(())
     }
 
-    /// Changes the field at the current time, such as the value of an input, and [restarts](Integration::restart)
-    /// there: the part of a step ahead of [`time`](Integration::time) is discarded.
+    /// Changes the field at the current time, for example the value of an input, and
+    /// [restarts](Integration::restart) there: the part of a step beyond
+    /// [`time`](Integration::time) is discarded.
     ///
     /// # Errors
     /// As for [`restart`](Integration::restart); the field is changed nevertheless.

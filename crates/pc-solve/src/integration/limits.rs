@@ -1,21 +1,21 @@
-//! Limits of an integration, whatever the method.
+//! Limits of an integration by any method.
 
 use pc_expr::Deadline;
 
 use crate::events::events::Accumulation;
 use crate::settings::inequality::Inequality;
 
-/// Limits of an integration, whatever the method.
+/// Limits of an integration by any method.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Limits {
-    /// Most steps from one output to the next.
+    /// Maximum number of steps from one output to the next.
     pub max_steps: u64,
     /// The number of parts of each step that are searched for events.
     pub samples_per_step: u32,
     /// When occurrences of an event count as accumulated.
     pub accumulation: Accumulation,
-    /// Signs that components keep; empty if none does.
+    /// Inequalities that components keep, one for each component; empty if there are none.
     pub inequalities: Vec<Inequality>,
     /// The time after which no further step begins, if there is one.
     pub deadline: Option<Deadline>,

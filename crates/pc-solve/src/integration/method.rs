@@ -1,4 +1,4 @@
-//! Methods with their options.
+//! Methods of integration with their options.
 
 use pc_expr::VectorField;
 
@@ -7,10 +7,11 @@ use crate::integration::stepper::Stepper;
 
 /// A method with its options, which can begin at a state.
 pub trait IntegrationMethod<F: VectorField> {
-    /// The method at work.
+    /// The method once begun.
     type Stepper: Stepper<Field = F>;
 
-    /// Begins at y(t0) = y0; the field is never to be evaluated beyond `stop`, nor beyond the stop time of the method.
+    /// Begins at y(t0) = y0; the field is never to be evaluated beyond `stop`, nor beyond the stop
+    /// time of the method.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges.

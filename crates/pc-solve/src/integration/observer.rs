@@ -11,12 +11,14 @@ pub trait Observer {
     /// An output.
     fn output(&mut self, t: f64, y: &[f64]) -> ControlFlow<()>;
 
-    /// An event that occurred. All simultaneous ones are reported, even where one of them stops the motion.
+    /// An event that occurred. All simultaneous ones are reported, even where one of them stops the
+    /// motion.
     fn occurred(&mut self, _occurrence: &Occurrence) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
-    /// The end (t, y⁻) of a step, or of the part of it before an event, before the outputs inside: to show progress, or to stop.
+    /// The end (t, y⁻) of a step, or of the part of it before an event; called before the outputs
+    /// inside the step, to show progress or to stop.
     fn step(&mut self, _t: f64, _y: &[f64]) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }

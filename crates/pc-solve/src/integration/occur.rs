@@ -10,12 +10,13 @@ use crate::integration::checks::check_inequalities;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::stepper::Stepper;
 
-/// A function is near zero after a reset within so many times what the tolerances of the state make of zero.
+/// After a reset a function is near zero if it is at most this many times its change by the
+/// tolerances of the state.
 const TOLERANCES: f64 = 10.0;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// Deals with the events that occur at the front, and tells them to `occurred`; how the integration ends, if it does:
-    /// by the first terminal event, else where `occurred` stops it.
+    /// Applies the events at the front and reports them to `occurred`. Returns how the integration
+    /// ends, if it does: by the first terminal event, else because `occurred` stops it.
     pub(crate) fn occur(
         &mut self,
         occurred: &mut impl FnMut(&Occurrence) -> ControlFlow<()>,
@@ -32,7 +33,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 self.reset(event, t, &mut after)?;
                 if !matrix.is_empty() {
                     matrix = self.jump_of_sensitivities(event, t, &state, &after, &matrix)?;
-                    // Resets of states near by may have changed what the field keeps.
+                    // Resets of nearby states may have changed data kept in the field.
                     after.copy_from_slice(&state);
                     self.reset(event, t, &mut after)?;
                 }
@@ -76,7 +77,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(ending)
     }
 
-    /// S⁻ at the front, if a reset is to change it: no more than one, since it is not defined where several occur together.
+    /// S⁻ at the front if a reset changes it; empty otherwise. An error for simultaneous resets,
+    /// where S⁺ is not defined.
     fn sensitivities_before(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
         let resets = self.due.iter().filter(|&&event| self.events.events()[event].resets()).count();
         if resets == 0 || self.engine.column_parameters().is_empty() {
@@ -89,8 +91,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.columns()
     }
 
-    /// What each function has to exceed after a reset to be told from zero. For those that caused it that is what the
-    /// tolerances of the state make of zero, Σᵢ |g(y + δᵢ) − g(y)| with δᵢ = rtol |yᵢ| + atolᵢ, if they are that near.
+    /// The magnitude above which each function differs from zero after a reset. For a function that
+    /// caused it and is near zero, |g| ≤ 10 Σᵢ |g(y + δᵢ) − g(y)| with the tolerances
+    /// δᵢ = rtol |yᵢ| + atolᵢ of the state, this is 2 |g|.
     fn noise_after_reset(&mut self, t: f64, state: &[f64], values: &[f64]) -> Vec<f64> {
         let mut noise = std::mem::take(&mut self.noise);
         if self.due.iter().all(|&event| values[event].abs() <= noise[event]) {
@@ -101,7 +104,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         let mut at = vec![0.0; values.len()];
         for i in 0..state.len() {
             moved[i] = state[i] + self.engine.tolerance(i, state[i]);
-            // Where a function has no value nothing is known.
+            // A state at which a function is undefined does not contribute.
             if self.events.evaluate(t, &moved, &mut at).is_ok() {
                 let changes = perturbation.iter_mut().zip(at.iter().zip(values));
                 changes.for_each(|(sum, (at, value))| *sum += (at - value).abs());
@@ -117,7 +120,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         noise
     }
 
-    /// y⁺ of one event, in the place of y⁻.
+    /// Replaces y⁻ by y⁺ of one event.
     pub(crate) fn reset(&mut self, event: usize, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
         self.reset_alone(event, t, state)?;
         if !self.field().has_projection() {
@@ -131,7 +134,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// The same before the field projects it.
+    /// The same without the projection of the field.
     pub(crate) fn reset_alone(&mut self, event: usize, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
         let mut result = self.events.reset(event, t, state);
         if let (Ok(()), Some(i)) = (&result, state.iter().position(|value| !value.is_finite())) {

@@ -12,14 +12,14 @@ use crate::integration::observer::{Observed, Observer};
 use crate::integration::stepper::Stepper;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// Integrates to `t`, or to a terminal event before, and reports events, those at `t` included, to `occurred`,
-    /// which may stop it. All simultaneous events are reported; if one of them is terminal, it ends the integration,
-    /// even where `occurred` stops it.
+    /// Integrates to `t`, or to an earlier terminal event, and reports events, including those at
+    /// `t`, to `occurred`, which may stop it. All simultaneous events are reported; if one of them
+    /// is terminal, the [`Ending`] is that event, even if `occurred` stops the integration.
     ///
     /// # Errors
-    /// [`SolveError::Input`] if `t` is not finite, lies behind or beyond the stop time; [`SolveError::Integration`] if the
-    /// integration fails, with [`Reason::Event`], [`Reason::Reset`], [`Reason::Projection`] and [`Reason::Accumulation`] for
-    /// events.
+    /// [`SolveError::Input`] if `t` is not finite, lies behind the current time or beyond the stop
+    /// time; [`SolveError::Integration`] if the integration fails, with [`Reason::Event`],
+    /// [`Reason::Reset`], [`Reason::Projection`] and [`Reason::Accumulation`] for events.
     pub fn advance_to(
         &mut self,
         t: f64,
@@ -30,13 +30,15 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(self.advance(t, t, &mut observer)?.unwrap_or(Ending::Completed))
     }
 
-    /// Integrates through `times`, which go one way from the current time, and gives each (t, y) to `output`, which may stop it.
+    /// Integrates through `times`, monotonic from the current time, and passes each (t, y) to
+    /// `output`, which may stop it.
     ///
-    /// The first may be the current time, the last may not. The output at the time of an event is y⁺; a
-    /// terminal event is the last output.
+    /// The first may be the current time, the last may not. The output at an event is y⁺; a
+    /// terminal event gives the last output.
     ///
     /// # Errors
-    /// As for [`advance_to`](Integration::advance_to); outputs before the failure have been given.
+    /// As for [`advance_to`](Integration::advance_to); outputs before the failure have been passed
+    /// on.
     pub fn run(
         &mut self,
         times: &[f64],
@@ -45,7 +47,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.run_observed(times, Observed::new(output))
     }
 
-    /// As [`run`](Integration::run), and reports to an [`Observer`].
+    /// As [`run`](Integration::run), but reports to an [`Observer`].
     ///
     /// # Errors
     /// As for [`run`](Integration::run).
@@ -53,7 +55,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.run_through(times, &mut observer, |_| Ok(()))
     }
 
-    /// The same; each output begins by what `arrived` does there.
+    /// The same, calling `arrived` before each output.
     pub(crate) fn run_through(
         &mut self,
         times: &[f64],
@@ -62,7 +64,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     ) -> Result<Ending, SolveError> {
         let end = self.check_times(times)?;
         for &t in times {
-            // There may be many outputs in a step.
+            // Many outputs may fall in one step.
             self.check_deadline()?;
             let ending = self.advance(t, end, observer)?;
             if let Some(Ending::Stopped) = ending {
@@ -80,7 +82,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(Ending::Completed)
     }
 
-    /// That one more step may be taken after so many on the way to `t`.
+    /// Checks that after `steps` steps another may be made towards `t`.
     pub(crate) fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
         if steps < self.engine.limits().max_steps {
             return Ok(());
@@ -89,7 +91,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Err(self.failed(Reason::Steps { steps, t, last }, None))
     }
 
-    /// That there is time left.
+    /// Checks that the deadline has not passed.
     pub(crate) fn check_deadline(&mut self) -> Result<(), SolveError> {
         match self.engine.limits().deadline.as_ref().and_then(Deadline::passed) {
             None => Ok(()),
@@ -97,7 +99,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// Goes to `t`, which has been checked, with steps towards `end` as far as needed.
+    /// Advances to `t`, which has been checked, by steps towards `end`.
     fn advance(
         &mut self,
         t: f64,
@@ -116,7 +118,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 break;
             }
             self.check_steps(steps, t)?;
-            // It stands where it has come to, also if the field or the observer panics.
+            // So that it is at the front if the field or the observer panics.
             self.engine.stand_at(self.front.t);
             self.go_on(end)?;
             self.engine.stand_at(self.front.t);
@@ -129,7 +131,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(None)
     }
 
-    /// Deals with what occurs where an observer has stopped the integration; how it ends, if it does.
+    /// Applies the events at the time where an observer has stopped the integration; returns how it
+    /// ends, if it does.
     pub(crate) fn settle(
         &mut self,
         occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
@@ -138,12 +141,12 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.advance(self.front.t, self.front.t, &mut observer)
     }
 
-    /// Whether it is known what occurs at `t`, and nothing does.
+    /// Whether `t` lies before the front, so that no event is left to occur at `t`.
     pub(crate) fn is_before_front(&self, t: f64) -> bool {
         self.direction.is_some_and(|direction| (self.front.t - t) * direction > 0.0)
     }
 
-    /// Stands at a time up to the front, in the last step.
+    /// Moves to a time in the last step, at most the front.
     pub(crate) fn stand_at(&mut self, t: f64) -> Result<(), SolveError> {
         if t != self.front.t && t != self.engine.time() {
             match self.engine.interpolate(t, 0) {
@@ -155,7 +158,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(())
     }
 
-    /// Checks that the integration can go on to `t`.
+    /// Checks that the integration can advance to `t`.
     pub(crate) fn check_ahead(&self, t: f64) -> Result<(), InputError> {
         finite("the time", t)?;
         let current = self.time();

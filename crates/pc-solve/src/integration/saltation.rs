@@ -6,11 +6,12 @@ use crate::error::{Reason, SolveError};
 use crate::integration::integration::Integration;
 use crate::integration::stepper::Stepper;
 
-/// A projection that moves what a reset gives by no more than this, absolute or relative whichever is larger, changes nothing
-/// but rounding.
+/// A projection that moves the result of a reset by at most this, absolutely or relatively,
+/// whichever is larger, only changes rounding.
 const OFF: f64 = 1e-8;
 
-/// A function that changes at less than this part of the sum of its terms along the motion only touches zero.
+/// A function whose rate along the motion is smaller than this fraction of the sum of its terms
+/// only touches zero.
 const GRAZING: f64 = 1e-9;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
@@ -18,9 +19,10 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// ```text
     /// s⁺ = R_y s⁻ + R_p + (R_t + R_y f⁻ − f⁺) τ,    τ = ∂tₑ/∂p = −(g_y s⁻ + g_p)/(g_t + g_y f⁻)
     /// ```
-    /// with f⁻ = f(t, y⁻) and f⁺ = f(t, y⁺) [Hiskens, Pai, IEEE Trans. Circuits Syst. I 47 (2000) 204, eqs. (37)–(43)]. The
-    /// derivatives by parameters are the events' own, and those by (t, y) too where [there are such](Events::has_derivatives),
-    /// else central difference quotients along the columns and along the motion.
+    /// with f⁻ = f(t, y⁻) and f⁺ = f(t, y⁺) [Hiskens, Pai, IEEE Trans. Circuits Syst. I 47 (2000)
+    /// 204, eqs. (37)–(43)]. The derivatives by parameters are those of the events; so are those by
+    /// (t, y) if the events [have them](Events::has_derivatives), else they are central difference
+    /// quotients along the columns and along the motion.
     pub(crate) fn jump_of_sensitivities(
         &mut self,
         event: usize,
@@ -58,11 +60,12 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(jumped)
     }
 
-    /// λ⁻, and what ∂G/∂p grows by, from λ⁺ at such an event, for each of so many parameters p,
+    /// λ⁻, and the increment of ∂G/∂p for each parameter p, from λ⁺ at such an event,
     /// ```text
     /// λ⁻ = R_yᵀ λ⁺ − κ g_y,    R_pᵀ λ⁺ − κ g_p,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + δ)/(g_t + g_y f⁻)
     /// ```
-    /// where the density of G is larger by δ before the event than after it: S⁺ above, multiplied by λ⁺ from the left.
+    /// where the density of G is larger by δ before the event than after it: S⁺ above, multiplied
+    /// by λ⁺ from the left.
     #[cfg(feature = "cvode")] // for the adjoint equations
     pub(crate) fn transposed_jump(
         &mut self,
@@ -102,8 +105,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok((jumped, by_parameters))
     }
 
-    /// Whether the [projection](VectorField::project) of the field moves what the reset gives. One that does not is none of
-    /// R: columns by parameters that move the surface leave it, and must not be brought back to where it was.
+    /// Whether the [projection](VectorField::project) of the field moves the result of the reset.
+    /// If not, it is no part of R: derivatives by parameters that move the surface point out of it,
+    /// and must not be projected to it.
     fn is_projected(
         &mut self,
         event: usize,
@@ -125,7 +129,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// The derivatives of g and R, with the projection of the field or without, along (1, v) or (0, v) of time and state, and |g_t| + Σ |g_yᵢ vᵢ| or what is known of it.
+    /// The derivative of g along (1, v) or (0, v) of time and state, its size |g_t| + Σ |g_yᵢ vᵢ|
+    /// or an estimate of it, and the derivative of R, with the projection of the field or without.
     fn derivative_along(
         &mut self,
         event: usize,
@@ -141,7 +146,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         if self.events.has_derivatives() && !projects {
             return self.own_derivative_along(event, (t, state), (in_time, v));
         }
-        // As for products with ∂f/∂y: truncation and rounding are alike.
+        // As for products with ∂f/∂y, truncation and rounding errors are of like size.
         let least = self.engine.least_size();
         let step = f64::EPSILON.cbrt() * largest(state).max(least) / length;
         let (mut values, mut states) = (Vec::new(), Vec::new());
@@ -163,7 +168,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok((quotient(values[0], values[1]), size, reset))
     }
 
-    /// The same by the derivatives that the events have.
+    /// The same, from the derivatives that the events provide.
     fn own_derivative_along(
         &mut self,
         event: usize,

@@ -2,13 +2,13 @@
 
 /// Counts since the start, and the last internal step.
 ///
-/// Those of a linear solver are 0 if there is none, or none of that kind.
+/// Counts of a linear solver are 0 where it does not apply.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Statistics {
     /// Internal steps.
     pub steps: u64,
-    /// Evaluations of f, with those for difference quotients.
+    /// Evaluations of f, including those for difference quotients.
     pub rhs_evaluations: u64,
     /// Evaluations of ∂f/∂y, by the field or by difference quotients.
     pub jacobian_evaluations: u64,
@@ -16,7 +16,7 @@ pub struct Statistics {
     pub error_test_failures: u64,
     /// Iterations of the nonlinear solver.
     pub nonlinear_iterations: u64,
-    /// Failures of the nonlinear solver, with those recovered by a new Jacobian.
+    /// Failures of the nonlinear solver, including those recovered by a new Jacobian.
     pub nonlinear_failures: u64,
     /// Steps tried again because the nonlinear solver failed.
     pub step_failures: u64,
@@ -24,8 +24,8 @@ pub struct Statistics {
     pub linear_setups: u64,
     /// Iterations of the Krylov solver.
     pub linear_iterations: u64,
-    /// Linear systems that were not solved: not to the tolerance of the Krylov solver, or for a singular matrix that
-    /// was found only then.
+    /// Linear systems that were not solved: the Krylov solver missed its tolerance, or the matrix
+    /// proved singular.
     pub linear_failures: u64,
     /// Products (∂f/∂y) v, by the field or by difference quotients.
     pub jacobian_products: u64,
@@ -33,16 +33,17 @@ pub struct Statistics {
     pub preconditioner_evaluations: u64,
     /// Systems solved with the preconditioner.
     pub preconditioner_solves: u64,
-    /// Steps shortened to end where the explicit dependence on time shows something that the motion so far gives no
-    /// hint of: the beginning of a pulse, a jump.
+    /// Steps shortened to end where the explicit dependence on time has a feature that the motion
+    /// so far does not reveal: the beginning of a pulse, a jump.
     pub limited_steps: u64,
-    /// Steps by the formulas for stiff systems of a method that changes by itself.
+    /// Steps by the stiff formulas of [`Auto`](crate::Method::Auto).
     pub implicit_steps: u64,
-    /// Steps made beside those of other members of an [ensemble](crate::Ensemble), in vectors.
+    /// Steps made in vector lanes together with other members of an [ensemble](crate::Ensemble).
     pub lane_steps: u64,
-    /// How often a method that changes by itself did so.
+    /// Changes between the two methods of [`Auto`](crate::Method::Auto).
     pub changes: u64,
-    /// When an explicit method saw first that stability and not accuracy limits its steps, if it did.
+    /// When an explicit method first detected that stability rather than accuracy limits its steps,
+    /// if it did.
     pub stiff_from: Option<f64>,
     /// Order of the last step, 0 before the first.
     pub last_order: u32,
@@ -52,7 +53,7 @@ pub struct Statistics {
     pub first_step: f64,
     /// Length of the last step, with the sign of the direction; 0 before the first.
     pub last_step: f64,
-    /// Length with which the next step is tried, with the sign of the direction; 0 before the first.
+    /// Trial length of the next step, with the sign of the direction; 0 before the first.
     pub current_step: f64,
     /// End of the last step.
     pub current_time: f64,

@@ -12,13 +12,14 @@ use crate::integration::observer::{Observed, Observer};
 use crate::integration::stepper::Stepper;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// Takes one step in the direction of `towards`, or the part of it before the next event, and reports events at
-    /// its end, which may lie beyond `towards`, to `occurred`.
+    /// Takes one step towards `towards`, possibly beyond it, or the part of a step before the next
+    /// event, and reports events at its end to `occurred`.
     ///
-    /// If the integration stands inside such a step, goes to its end instead. It then stands at y⁺.
+    /// From inside such a step, moves to its end instead. The state is then y⁺.
     ///
     /// # Errors
-    /// As for [`advance_to`](Integration::advance_to); [`InputError::EndIsStart`] if `towards` is where it stands.
+    /// As for [`advance_to`](Integration::advance_to); [`InputError::EndIsStart`] if `towards` is
+    /// the current time.
     pub fn step(
         &mut self,
         towards: f64,
@@ -38,28 +39,28 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(self.occur(&mut occurred)?.unwrap_or(Ending::Completed))
     }
 
-    /// The derivative of y of the given order at `t` in the last step, by the polynomial of the method, as far as
-    /// events have been searched.
+    /// The derivative of y of the given order at `t` in the last step, by the polynomial of the
+    /// method, up to the front of the search for events.
     ///
-    /// Order 0 is y itself, [projected](pc_expr::VectorField::project) where the field does so. The polynomial of a multistep
-    /// method has the degree of the order of that step.
+    /// Order 0 is y itself, [projected](pc_expr::VectorField::project) where the field does so. The
+    /// degree of a multistep method's polynomial is the order of that step.
     ///
     /// # Errors
-    /// [`InputError::NoStep`] before the first step, and after a reset, which is a new start; [`InputError::OutsideStep`]
-    /// outside the last step, and beyond the next event; [`InputError::DerivativeOrder`] above the degree;
-    /// [`Reason::Projection`](crate::Reason::Projection).
+    /// [`InputError::NoStep`] before the first step and after a reset; [`InputError::OutsideStep`]
+    /// outside the last step, and beyond the next event; [`InputError::DerivativeOrder`] above the
+    /// degree; [`Reason::Projection`](crate::Reason::Projection).
     pub fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
         self.engine.last_step().check_inside(t, order, self.front.t)?;
         self.engine.interpolate(t, order)
     }
 
-    /// Integrates to `end`, gives the motion as [`Segment`]s, one for each step or part of it between events, and
-    /// reports events to `occurred`, after the segment that ends there.
+    /// Integrates to `end`, passes the motion to `segment`, one [`Segment`] for each step or part
+    /// of it between events, and reports events to `occurred` after the segment that ends there.
     ///
-    /// Only the last step is kept here: `segment` has to keep the others if they are needed.
+    /// Only the last step is kept.
     ///
     /// # Errors
-    /// As for [`run`](Integration::run); segments before the failure have been given.
+    /// As for [`run`](Integration::run); segments before the failure have been passed on.
     pub fn run_dense(
         &mut self,
         end: f64,
@@ -72,7 +73,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         })
     }
 
-    /// The same; `piece` is given where a segment begins and ends, with the states there, and stands at its end.
+    /// The same; `piece` receives the start and the end of a segment with the states there, while
+    /// the integration is at its end.
     pub(crate) fn run_in_pieces(
         &mut self,
         end: f64,
@@ -104,13 +106,13 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// The last step between two of its states.
+    /// The part of the last step between two of its states.
     pub(crate) fn segment(
         &mut self,
         (start, from): (f64, &[f64]),
         (end, to): (f64, &[f64]),
     ) -> Result<Segment, SolveError> {
-        // About the end, where a part of a step ends before the step does, too.
+        // A part of a step that ends early is also expanded about its own end.
         let centre =
             if self.engine.centre() == self.engine.last_step().end { end } else { self.engine.centre() };
         let degree = self.engine.last_step().degree.unwrap_or(0);

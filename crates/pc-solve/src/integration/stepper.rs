@@ -9,9 +9,9 @@ use crate::integration::statistics::Statistics;
 
 /// A method that makes steps: the interface to [`Integration`](crate::Integration).
 ///
-/// A stepper has made a last step, whose states it knows from start to end, and stands at a [`time`](Stepper::time) in
-/// it. Outputs, events and their resets, dense output and checkpoints are not the task of a method: `Integration`
-/// makes them from these functions, for every method alike.
+/// A stepper knows the states along its last step and is at a [`time`](Stepper::time) in it. From
+/// these functions `Integration` makes outputs, events and their resets, dense output and
+/// checkpoints, alike for every method.
 ///
 /// ```
 /// use pc_solve::{FixedStep, Integration, RungeKutta4, from_fn};
@@ -31,7 +31,7 @@ pub trait Stepper {
     /// The vector field, between steps.
     fn field_mut(&mut self) -> &mut Self::Field;
 
-    /// The vector field; the integration is over.
+    /// Ends the integration and returns the vector field.
     fn into_field(self) -> Self::Field
     where
         Self: Sized;
@@ -39,13 +39,13 @@ pub trait Stepper {
     /// The limits of the integration.
     fn limits(&self) -> &Limits;
 
-    /// The same, to be changed.
+    /// The limits of the integration, mutable.
     fn limits_mut(&mut self) -> &mut Limits;
 
     /// The last step.
     fn last_step(&self) -> LastStep;
 
-    /// Its end alone, which is asked for at each step.
+    /// The end of the last step, which is needed at each step.
     fn end_time(&self) -> f64 {
         self.last_step().end
     }
@@ -56,31 +56,34 @@ pub trait Stepper {
     /// The current time, in the last step.
     fn time(&self) -> f64;
 
-    /// Moves to a time in the last step, for which derivatives and integrals, if there are any, are read next.
+    /// Moves to a time in the last step, at which derivatives and integrals, if any, are read next.
     fn stand_at(&mut self, t: f64);
 
-    /// Makes a step from the end of the last one in the direction of `towards`, possibly beyond it, but not beyond the
-    /// stop time, and stands at its end.
+    /// Makes a step from the end of the last one in the direction of `towards`, possibly beyond it,
+    /// but not beyond the stop time, and moves to its end.
     ///
     /// # Errors
-    /// [`SolveError::Integration`]; the last step is then the one before, and the stepper stands at its end.
+    /// [`SolveError::Integration`]; the last step is then still the previous one, and the stepper
+    /// is at its end.
     fn step(&mut self, towards: f64) -> Result<(), SolveError>;
 
-    /// The derivative of y of the given order at `t` in the last step, both of which have been checked; order 0 is y itself,
-    /// [projected](VectorField::project) where the field does so.
+    /// The derivative of y of the given order at `t` in the last step, both validated by the
+    /// caller; order 0 is y itself, [projected](VectorField::project) where the field does so.
     ///
     /// # Errors
     /// [`SolveError::Integration`]
     fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError>;
 
-    /// The time in the last step about which its polynomial is given: the derivatives there are its coefficients, others are sums of them.
+    /// The time in the last step about which its polynomial is expanded; its derivatives there are
+    /// the coefficients up to factorials.
     fn centre(&self) -> f64 {
         self.last_step().end
     }
 
-    /// Restarts at y(t) = y, which has been checked, with these [columns](Stepper::columns); statistics continue.
+    /// Restarts from y(t) = y, validated by the caller, with these [columns](Stepper::columns);
+    /// statistics continue.
     ///
-    /// With events the direction of integration stays; without, the next step may go either way.
+    /// If a direction is given it stays; otherwise the next step may go either way.
     ///
     /// # Errors
     /// [`SolveError`] if this is not possible; the stepper is then unchanged.
@@ -95,10 +98,10 @@ pub trait Stepper {
     /// A time beyond which the field is never evaluated.
     fn stop_time(&self) -> Option<f64>;
 
-    /// Sets that time, which has been checked, or removes it.
+    /// Sets that time, validated by the caller, or removes it.
     ///
     /// # Errors
-    /// [`SolveError`] if that cannot be.
+    /// [`SolveError`] if the method cannot do so.
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), SolveError>;
 
     /// The work so far.
@@ -107,10 +110,11 @@ pub trait Stepper {
     /// The tolerance of component `i` where its value is y.
     fn tolerance(&self, i: usize, y: f64) -> f64;
 
-    /// The least size of a component that matters: values below the tolerances are not a measure of a state.
+    /// The smallest significant size of a component: values below the tolerances carry no scale.
     fn least_size(&self) -> f64;
 
-    /// The derivatives of the motion that are integrated with it, where it stands, column-major; empty if there are none.
+    /// The derivatives integrated with the motion, at the current time, column-major; empty if
+    /// there are none.
     ///
     /// # Errors
     /// [`SolveError::Integration`] if they are not finite.
@@ -118,13 +122,13 @@ pub trait Stepper {
         Ok(Vec::new())
     }
 
-    /// The parameter by which each column is the derivative, if it is one by a parameter.
+    /// For each column the number of its parameter, if it is a derivative by one.
     fn column_parameters(&self) -> &[Option<usize>] {
         &[]
     }
 
-    /// The states along the last step as a polynomial about its [centre](Stepper::centre), with room for its coefficients; those inside
-    /// are not projected.
+    /// The states along the last step as a polynomial about its [centre](Stepper::centre), without
+    /// projection; `room` holds its coefficients.
     ///
     /// # Errors
     /// [`SolveError::Integration`]
@@ -139,7 +143,7 @@ pub trait Stepper {
         Ok(PolynomialMotion { start: centre, coefficients: room })
     }
 
-    /// The error of a failure beyond the end of the last step, where the stepper then stands.
+    /// The error of a failure beyond the end of the last step; the stepper moves to that end.
     fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
         let (time, state) = (self.end_time(), self.end_state().to_vec());
         self.stand_at(time);
@@ -147,20 +151,20 @@ pub trait Stepper {
     }
 }
 
-/// The last step of a method: the states between its start and its end are known.
+/// The last step of a method, along which states are known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LastStep {
     /// Its start.
     pub start: f64,
-    /// Its end; the start of a method that has made no step yet.
+    /// Its end; before the first step, the start of the integration.
     pub end: f64,
-    /// The degree of the polynomial that the states along it lie on; none where there is no step but a start.
+    /// The degree of the polynomial of the states along it; none before the first step.
     pub degree: Option<u32>,
 }
 
 impl LastStep {
-    /// Checks that `t` lies in the step, as far as that is asked for up to `end`, and that its polynomial has a derivative
-    /// of that order. A time may lie outside by its rounding, 100 ε of the time, as CVODE has it.
+    /// Checks that `t` lies between the start of the step and `end`, and that its polynomial has a
+    /// derivative of that order. As in CVODE, `t` may lie outside by rounding, 100 ε of the time.
     pub(crate) fn check_inside(&self, t: f64, order: u32, end: f64) -> Result<(), InputError> {
         finite("the time", t)?;
         let Some(highest) = self.degree else { return Err(InputError::NoStep) };

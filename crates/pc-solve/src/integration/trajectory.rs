@@ -24,7 +24,7 @@ impl Trajectory {
         }
     }
 
-    /// With room for so many outputs.
+    /// With room for `outputs` outputs.
     #[cfg(feature = "cvode")] // for the members of an ensemble
     pub(crate) fn with_capacity(dim: usize, outputs: usize) -> Self {
         let (times, states) = (Vec::with_capacity(outputs), Vec::with_capacity(dim * outputs));
@@ -99,12 +99,13 @@ impl Trajectory {
         self.times.last().map(|&t| (t, self.state(self.len() - 1)))
     }
 
-    /// Whether all output times asked for were reached.
+    /// Whether all requested output times were reached.
     pub fn is_complete(&self) -> bool {
         self.complete
     }
 
-    /// The work done, beyond the last output too if the integration failed or was stopped.
+    /// The work done, including that beyond the last output if the integration failed or was
+    /// stopped.
     pub fn statistics(&self) -> &Statistics {
         &self.statistics
     }

@@ -21,14 +21,15 @@ pub struct LyapunovOptions {
 impl LyapunovOptions {
     /// The `count` largest exponents, from `intervals` intervals of time of length `interval`.
     ///
-    /// The vectors are made orthogonal after each interval. It should be short enough for them to stay distinct: the
-    /// difference of the largest and the least exponent times `interval` below about 10.
+    /// The vectors are orthonormalised after each interval, which should be short enough for them
+    /// to stay distinct: the difference of the largest and the smallest exponent times `interval`
+    /// below about 10.
     pub fn new(count: usize, interval: f64, intervals: u32) -> Self {
         LyapunovOptions { count, interval, intervals, transient: 0 }
     }
 
-    /// Intervals before those that count, in which the motion approaches its attractor and the vectors find their
-    /// directions; none unless given.
+    /// Initial intervals that do not count, in which the motion approaches its attractor and the
+    /// vectors their directions; none by default.
     pub fn transient(self, intervals: u32) -> Self {
         LyapunovOptions { transient: intervals, ..self }
     }
@@ -42,14 +43,14 @@ impl LyapunovOptions {
     }
 }
 
-/// Lyapunov exponents, the largest first as far as they have converged.
+/// Lyapunov exponents, in descending order as far as they have converged.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Lyapunov {
-    /// The exponents, one for each tangent vector, in units of 1/t.
+    /// The exponents, one for each tangent vector, in inverse units of time.
     pub exponents: Vec<f64>,
-    /// The mean exponents up to the end of each interval, to see how they converge: entry `j + k * count` is exponent j
-    /// after interval k.
+    /// The mean exponents up to the end of each interval, to see how they converge: entry
+    /// `j + k * count` is exponent j after interval k.
     pub history: Vec<f64>,
     /// The end of the motion.
     pub time: f64,
@@ -59,16 +60,19 @@ pub struct Lyapunov {
 
 /// The largest Lyapunov exponents of the motion from y(t0) = y0, forward in time.
 ///
-/// Tangent vectors v̇ = (∂f/∂y) v are integrated along the motion, from orthonormal ones Q over an interval τ, and
-/// made orthonormal again, V = QR. Then [Benettin, Galgani, Giorgilli, Strelcyn, Meccanica 15 (1980) 9]
+/// Tangent vectors v̇ = (∂f/∂y) v are integrated along the motion over an interval τ, from
+/// orthonormal ones, and orthonormalised again, V = QR. Then [Benettin, Galgani, Giorgilli,
+/// Strelcyn, Meccanica 15 (1980) 9]
 /// ```text
 /// λ_j = lim 1/(kτ) (ln R_jj⁽¹⁾ + … + ln R_jj⁽ᵏ⁾).
 /// ```
-/// The first vectors span a parallelepiped whose volume grows as their exponents together; the sum over all vectors of
-/// a flow is its mean divergence. The mean over a finite time converges no faster than as 1/t.
+/// The volume spanned by the first vectors grows with the sum of their exponents; the sum of all
+/// exponents of a flow is its mean divergence. The mean over a finite time converges no faster than
+/// 1/t.
 ///
-/// Products with ∂f/∂y are as for [`Sensitivities`]; the vectors have to pass the error test with the tolerances of the
-/// state. The method restarts with each interval. The first vectors are always the same, in generic directions.
+/// Products with ∂f/∂y are as for [`Sensitivities`]; the vectors have to pass the error test with
+/// the tolerances of the state. The method restarts at each interval. The initial vectors are
+/// fixed, in generic directions.
 ///
 /// ```
 /// use pc_solve::{LyapunovOptions, Options, from_fn, lyapunov_exponents};
@@ -86,8 +90,9 @@ pub struct Lyapunov {
 /// ```
 ///
 /// # Errors
-/// [`SolveError::Input`] if the problem or an option is not valid; [`SolveError::Integration`] if the motion fails, and
-/// with [`Reason::Collapsed`] if intervals are too long for the vectors to stay distinct.
+/// [`SolveError::Input`] if the problem or an option is invalid; [`SolveError::Integration`] if the
+/// motion fails, with [`Reason::Collapsed`] if intervals are too long for the vectors to stay
+/// distinct.
 pub fn lyapunov_exponents<F: VectorField>(
     mut field: F,
     t0: f64,
@@ -115,7 +120,8 @@ pub fn lyapunov_exponents<F: VectorField>(
     Ok(Lyapunov { exponents, history, time, state })
 }
 
-/// Takes the state and its tangent vectors from `time` to `end`, makes these orthonormal, and returns the diagonal of R.
+/// Integrates the state and its tangent vectors from `time` to `end`, orthonormalises these, and
+/// returns the diagonal of R.
 fn advance(
     field: &mut impl VectorField,
     options: &Options,
@@ -138,7 +144,7 @@ fn advance(
     let lengths_before: Vec<f64> = vectors.chunks_exact(dim).map(length).collect();
     let lengths = orthonormalise(vectors, dim);
     for (vector, (&length, before)) in lengths.iter().zip(lengths_before).enumerate() {
-        // What is left of a vector is then mostly rounding error.
+        // The remaining vector is then mostly rounding error.
         if length.is_nan() || length <= 16.0 * f64::EPSILON * before {
             let reason = Reason::Collapsed { vector };
             let error = IntegrationError { reason, time: end, state: state.clone(), failure: None };
@@ -148,7 +154,8 @@ fn advance(
     Ok(lengths)
 }
 
-/// Orthonormal vectors in no particular direction: the fractional parts of multiples of the golden ratio.
+/// Orthonormal vectors in generic directions, from the fractional parts of i² times the golden
+/// ratio.
 fn first_vectors(dim: usize, count: usize) -> Vec<f64> {
     let ratio = (5.0_f64.sqrt() - 1.0) / 2.0;
     let mut vectors: Vec<f64> =

@@ -1,10 +1,12 @@
 //! Orthonormal columns.
 
-/// Replaces the columns of a dim × k matrix A = QR, column-major, by those of Q, and returns the diagonal of R.
+/// Replaces the columns of a dim × k matrix A = QR, column-major, by those of Q, and returns the
+/// diagonal of R.
 ///
-/// By modified Gram–Schmidt, each column twice, so that the columns are orthogonal to rounding whatever their angles
-/// were [Giraud, Langou, Rozložník, van den Eshof, Numer. Math. 101 (2005) 87]. The diagonal is not negative; where it
-/// is zero or not finite the column is not a unit vector.
+/// By modified Gram–Schmidt, twice for each column, so that the columns are orthogonal to rounding
+/// whatever their original angles [Giraud, Langou, Rozložník, van den Eshof, Numer. Math. 101
+/// (2005) 87]. The diagonal is not negative; where it is zero or not finite the column is not a
+/// unit vector.
 pub(crate) fn orthonormalise(columns: &mut [f64], dim: usize) -> Vec<f64> {
     let mut diagonal = Vec::with_capacity(columns.len() / dim);
     for k in 0..columns.len() / dim {
@@ -27,7 +29,7 @@ pub(crate) fn orthonormalise(columns: &mut [f64], dim: usize) -> Vec<f64> {
     diagonal
 }
 
-/// |v|, without overflow on the way.
+/// |v|, without intermediate overflow.
 pub(crate) fn length(v: &[f64]) -> f64 {
     v.iter().fold(0.0, |length: f64, v| length.hypot(*v))
 }
@@ -36,10 +38,10 @@ pub(crate) fn length(v: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A = QR with Q orthonormal, and R of the volumes: the product of its diagonal is |det A|.
+    /// A = QR with Q orthonormal; the product of the diagonal of R is |det A|.
     #[test]
     fn columns_become_orthonormal() {
-        // Two columns at an angle of 1e-9, where one pass alone loses seven digits.
+        // Two columns at an angle of 1e-9, where a single pass loses seven digits.
         let mut columns = [1.0, 1.0, 1.0, 1.0, 1.0 + 1e-9, 1.0, 2.0, 0.0, 5.0];
         let diagonal = orthonormalise(&mut columns, 3);
         for (i, p) in columns.chunks(3).enumerate() {

@@ -8,28 +8,30 @@ use crate::sensitivity::adjoint_options::AdjointOptions;
 use crate::sensitivity::adjoint_pass;
 use crate::sensitivity::functional::{Functional, Gradient};
 
-/// The gradient of a functional G of the motion from y(t0) = y0 to t1, which may be before t0, by y₀ and by the
-/// parameters.
+/// The gradient by y₀ and the parameters of a functional G of the motion from y(t0) = y0 to t1,
+/// which may be before t0.
 ///
 /// With λ(t₁) = ∂h/∂y and
 /// ```text
 /// λ̇ = −(∂f/∂y)ᵀ λ − ∂g/∂y,    ∂G/∂y₀ = λ(t₀),    ∂G/∂p = ∂h/∂p + ∫ (∂g/∂p + (∂f/∂p)ᵀ λ) dt
 /// ```
-/// the cost does not grow with the number of parameters, but for those integrals [Cao, Li, Petzold, Serban, SIAM J. Sci.
-/// Comput. 24 (2003) 1076]. The motion is integrated to t₁ and, from one checkpoint to the next, once again on the way
-/// back, where it is looked up by the polynomials of the method. Each evaluation of λ̇ takes a
-/// [product](VectorField::vjp) with (∂f/∂y)ᵀ if the field has these, else its Jacobian:
-/// [sparse](VectorField::sparse_jacobian) if its [pattern](VectorField::sparsity) is known. A field without a Jacobian
-/// has one assembled from [products](VectorField::jvp), or pairs of evaluations of f, one for each colour of the
-/// pattern, or for each component.
+/// the cost does not depend on the number of parameters, except for those integrals [Cao, Li,
+/// Petzold, Serban, SIAM J. Sci. Comput. 24 (2003) 1076]. The motion is integrated to t₁ and,
+/// during the backward integration, once again from each checkpoint to the next; states are read
+/// from the polynomials of the method. Each evaluation of λ̇ takes a [product](VectorField::vjp)
+/// with (∂f/∂y)ᵀ if the field has these, else its Jacobian, [sparse](VectorField::sparse_jacobian)
+/// if its [pattern](VectorField::sparsity) is known. A missing Jacobian is assembled from
+/// [products](VectorField::jvp), or pairs of evaluations of f, one for each colour of the pattern,
+/// or for each component.
 ///
-/// The memory for n components is the states at checkpoints, and up to 13 vectors for each step of one
-/// [interval](AdjointOptions::checkpoint_interval) between them: for large n an interval of few steps takes less.
+/// Memory is needed for the states at checkpoints, and for up to 13 vectors for each step of one
+/// [interval](AdjointOptions::checkpoint_interval) between them: large systems need less with short
+/// intervals.
 ///
-/// Where states lie on a surface, λ follows the [projected](VectorField::project) motion, but is not projected itself:
-/// ∂G/∂y₀ is the gradient of the field in all of space, of which the part tangent to the surface applies to starts on
-/// it. Where motions off the surface drift away from it, λ grows large across the surface, and its errors are relative
-/// to that: choose smaller tolerances.
+/// Where states lie on a surface, λ follows the [projected](VectorField::project) motion, but is
+/// not projected itself: ∂G/∂y₀ is the gradient for starts in the whole space; its part tangent to
+/// the surface applies to starts on it. Where motions off the surface drift away from it, λ grows
+/// large across the surface, and its errors with it: choose smaller tolerances.
 ///
 /// ```
 /// use pc_solve::{AdjointOptions, Failure, Functional, Options, adjoint_gradient, from_fn};
@@ -54,8 +56,8 @@ use crate::sensitivity::functional::{Functional, Gradient};
 /// ```
 ///
 /// # Errors
-/// [`SolveError::Input`] if the problem or an option is not valid; [`SolveError::Integration`] if the motion fails, and
-/// with [`Reason::Adjoint`](crate::Reason::Adjoint) if the way back does.
+/// [`SolveError::Input`] if the problem or an option is invalid; [`SolveError::Integration`] if the
+/// motion fails, with [`Reason::Adjoint`](crate::Reason::Adjoint) if the backward integration does.
 pub fn adjoint_gradient<F: VectorField, G: Functional>(
     field: F,
     functional: G,
@@ -69,9 +71,9 @@ pub fn adjoint_gradient<F: VectorField, G: Functional>(
     first.ok_or_else(|| InputError::NoFunctional.into())
 }
 
-/// As [`adjoint_gradient`], of several functionals, [boxed](Box) if of several kinds: they share the forward motion,
-/// the checkpoints, and the motion between checkpoints on the way back, along which each has its adjoint equations.
-/// Each gradient is that of its functional alone.
+/// As [`adjoint_gradient`], for several functionals, [boxed](Box) if of several types: they share
+/// the forward motion, the checkpoints, and the motion between checkpoints, along which each has
+/// its own adjoint equations. Each gradient is the same as for its functional alone.
 ///
 /// # Errors
 /// As there; [`InputError::NoFunctional`]
@@ -86,19 +88,20 @@ pub fn adjoint_gradients<F: VectorField, G: Functional>(
     adjoint_gradients_with_events(field, FnEvents::new(), functionals, t0, y0, t1, options)
 }
 
-/// As [`adjoint_gradients`], of a motion with events. At a reset y⁺ = R(t, y⁻) where the function γ of an event vanishes, λ
-/// goes back by the transposed saltation matrix,
+/// As [`adjoint_gradients`], for a motion with events. At a reset y⁺ = R(t, y⁻) where the function
+/// γ of an event vanishes, λ changes backwards by the transposed saltation matrix,
 /// ```text
 /// λ⁻ = R_yᵀ λ⁺ − κ γ_y,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + g⁻ − g⁺)/(γ_t + γ_y f⁻),
 /// ```
-/// and ∂G/∂p grows by R_pᵀ λ⁺ − κ γ_p: the transpose of the rule for [sensitivities](crate::Sensitivities). The
-/// [derivatives](Events::by_parameter) of the events by parameters are needed if the field has derivatives by
-/// parameters.
+/// and ∂G/∂p changes by R_pᵀ λ⁺ − κ γ_p: the transpose of the rule for
+/// [sensitivities](crate::Sensitivities). The [derivatives](Events::by_parameter) of the events by
+/// parameters are needed if the field has derivatives by parameters.
 ///
 /// # Errors
 /// As there; [`Reason::EndsEarly`](crate::Reason::EndsEarly) at a terminal event before t1,
 /// [`Reason::Together`](crate::Reason::Together) where several events reset the state at once,
-/// [`Reason::Grazing`](crate::Reason::Grazing) where one is met at no speed, and [`InputError::EventParameters`].
+/// [`Reason::Grazing`](crate::Reason::Grazing) where an event function only touches zero, and
+/// [`InputError::EventParameters`].
 pub fn adjoint_gradients_with_events<F: VectorField, E: Events, G: Functional>(
     field: F,
     events: E,

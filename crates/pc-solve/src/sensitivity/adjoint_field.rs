@@ -13,7 +13,7 @@ use crate::sensitivity::motion_record::MotionRecord;
 use crate::sensitivity::transpose::Transpose;
 use crate::settings::options::Options;
 
-/// What the adjoint equations of all functionals of a motion have in common.
+/// What the adjoint equations of all functionals of a motion share.
 pub(crate) struct Path<F> {
     pub(crate) field: F,
     /// For derivatives by parameters.
@@ -29,7 +29,7 @@ impl<F: VectorField> Path<F> {
         Path { field, linearisation, transpose, motion: MotionRecord::default() }
     }
 
-    /// Whether nothing but products with (∂f/∂y)ᵀ is to be had.
+    /// Whether the field provides products with (∂f/∂y)ᵀ, but no entries.
     pub(crate) fn has_products_only(&self) -> bool {
         !self.transpose.has_entries(&self.field)
     }
@@ -47,7 +47,8 @@ impl<F: VectorField> Path<F> {
     }
 }
 
-/// λ̇ = −(∂f/∂y)ᵀ λ − ∂g/∂y along the recorded piece of a motion, with the integrals that the gradient takes.
+/// λ̇ = −(∂f/∂y)ᵀ λ − ∂g/∂y along the recorded piece of a motion, with the integrals of the
+/// gradient.
 pub(crate) struct AdjointField<F, G> {
     path: Rc<RefCell<Path<F>>>,
     functional: G,
@@ -55,7 +56,7 @@ pub(crate) struct AdjointField<F, G> {
     state: Vec<f64>,
     by_state: Vec<f64>,
     by_parameters: Vec<f64>,
-    // What the field says of itself, which it cannot be asked for by reference.
+    // Properties of the field, copied since references cannot be taken through the `RefCell`.
     pattern: Option<Pattern>,
     breaks: Vec<f64>,
     has_entries: bool,
@@ -108,7 +109,8 @@ impl<F: VectorField, G: Functional> AdjointField<F, G> {
         self.term(Term::Density, t)
     }
 
-    /// A term of the functional at (t, `state`) and, in `by_state` and `by_parameters`, its derivatives.
+    /// A term of the functional at (t, `state`) and, in `by_state` and `by_parameters`, its
+    /// derivatives.
     fn term(&mut self, term: Term, t: f64) -> Result<f64, Failure> {
         let AdjointField { path, functional, state, by_state, by_parameters, .. } = self;
         by_state.fill(f64::NAN);
@@ -195,7 +197,7 @@ impl<F: VectorField, G: Functional> VectorField for AdjointField<F, G> {
     }
 }
 
-/// What goes from zero at the end to ∫ (∂g/∂p + (∂f/∂p)ᵀ λ) dt, and ∫ g dt, at the start.
+/// Integrals from zero at the end to ∫ (∂g/∂p + (∂f/∂p)ᵀ λ) dt, and ∫ g dt, at the start.
 impl<F: VectorField, G: Functional> Quadratures for AdjointField<F, G> {
     fn count(&self) -> usize {
         self.by_parameters.len() + 1

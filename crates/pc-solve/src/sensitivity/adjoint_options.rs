@@ -8,7 +8,7 @@ use crate::settings::method::NonlinearSolver;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
-/// Largest dimension of the Krylov subspaces of the way back, unless a solver is chosen.
+/// Default dimension of the Krylov subspaces for the adjoint equations.
 const SUBSPACE: u32 = 30;
 
 /// Options of the integration of a motion and its adjoint equations.
@@ -22,8 +22,9 @@ pub struct AdjointOptions {
 }
 
 impl AdjointOptions {
-    /// The motion by these options, the way back by the same method with the same tolerances (the least of the
-    /// absolute ones) and limit of steps, and a checkpoint every 200 steps.
+    /// These options for the motion; the adjoint equations by the same method, with the same
+    /// tolerances (the smallest of the absolute ones) and limit of steps; a checkpoint every 200
+    /// steps.
     pub fn new(motion: Options) -> Self {
         let absolute_tolerance = match &motion.absolute_tolerance {
             Tolerance::Scalar(atol) => *atol,
@@ -39,27 +40,31 @@ impl AdjointOptions {
         }
     }
 
-    /// Relative and absolute tolerance of λ, of the integrals over g and of those of ∂G/∂p, positive.
+    /// Relative and absolute tolerance of λ, of the integrals over g and of those of ∂G/∂p,
+    /// positive.
     pub fn tolerances(self, relative: f64, absolute: f64) -> Self {
         AdjointOptions { relative_tolerance: relative, absolute_tolerance: absolute, ..self }
     }
 
     /// Steps from one checkpoint to the next, at least 1.
     ///
-    /// The states at checkpoints are held, and of one interval at a time all steps with their derivatives, at most 13
-    /// vectors a step. The method restarts at each checkpoint, so an interval should be longer than its starting phase.
+    /// Memory holds the states at checkpoints and, of one interval at a time, all steps with their
+    /// derivatives, at most 13 vectors a step. The method restarts at each checkpoint, so an
+    /// interval should be longer than its starting phase.
     pub fn checkpoint_interval(self, steps: u32) -> Self {
         AdjointOptions { checkpoint_interval: steps, ..self }
     }
 
-    /// How the linear systems of the way back are solved, by matrices that are transposed to those of the motion: unless given,
-    /// as [usual](LinearSolver) for what the field offers, and by [Krylov's method](LinearSolver::Krylov) where that is nothing
-    /// but [products](pc_expr::VectorField::vjp).
+    /// How the linear systems of the adjoint equations are solved, whose matrices are the
+    /// transposes of those of the motion; by default the [usual](LinearSolver) solver for the
+    /// field, or [Krylov's method](LinearSolver::Krylov) if it offers only
+    /// [products](pc_expr::VectorField::vjp).
     pub fn linear_solver(self, linear_solver: LinearSolver) -> Self {
         AdjointOptions { linear_solver: Some(linear_solver), ..self }
     }
 
-    /// For the adjoint equations of a field with entries of its Jacobian, or `products_only`.
+    /// The options for the adjoint equations of a field with entries of its Jacobian, or
+    /// `products_only`.
     pub(crate) fn back(&self, products_only: bool) -> Options {
         let Options { method, max_steps, .. } = self.motion;
         let (deadline, nonlinear_solver) = (self.motion.deadline.clone(), self.motion.iteration());

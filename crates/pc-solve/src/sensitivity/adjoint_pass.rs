@@ -1,4 +1,4 @@
-//! The motion there, and the adjoint equations back.
+//! The forward motion, and the adjoint equations backwards.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -17,7 +17,7 @@ use crate::sensitivity::adjoint_options::AdjointOptions;
 use crate::sensitivity::functional::{Functional, Gradient};
 use crate::settings::options::Options;
 
-/// A state that a piece of the motion begins at, and the event and the state before it where it is one after a reset.
+/// The start of a piece of the motion; after a reset, with the event and the state before it.
 struct Mark {
     t: f64,
     y: Vec<f64>,
@@ -54,7 +54,7 @@ pub(crate) fn gradients<F: VectorField, E: Events, G: Functional>(
         if mark.t != to {
             let mut path = path.borrow_mut();
             if there.has_jumps {
-                // What the field keeps is what it was after the last reset before this.
+                // Restore the data kept by the field since the last reset.
                 let since = there.marks[..=i].iter().rev().find(|mark| mark.jump.is_some());
                 let since = since.unwrap_or(&there.marks[0]);
                 path.field.restart(since.t, &since.y);
@@ -75,7 +75,7 @@ pub(crate) fn gradients<F: VectorField, E: Events, G: Functional>(
     ways.into_iter().map(|way| way.arrive((t0, y0), there.statistics)).collect()
 }
 
-/// What is kept of the motion.
+/// What is kept of the forward motion.
 struct There {
     marks: Vec<Mark>,
     has_jumps: bool,
@@ -83,7 +83,8 @@ struct There {
     statistics: Statistics,
 }
 
-/// Takes the motion to `t1`; keeps the start, each `interval`th step on the way, and the states after resets.
+/// Integrates the motion to `t1`; keeps the start, every `interval`th step, and the states after
+/// resets.
 fn there<F: VectorField, E: Events>(
     field: &mut F,
     events: &mut E,
@@ -118,7 +119,7 @@ fn there<F: VectorField, E: Events>(
                 together = Some((other, occurrence.clone()));
                 return ControlFlow::Break(());
             }
-            Some(None) => drop(marks.pop()), // a step that ends here is no place to begin at
+            Some(None) => drop(marks.pop()), // the mark at y⁻ is replaced by that at y⁺
             None => {}
         }
         let jump = Some((occurrence.event, occurrence.state_before.clone()));
@@ -153,18 +154,18 @@ fn there<F: VectorField, E: Events>(
 /// The equations of one functional, and λ.
 type Paused<F, G> = (AdjointField<F, G>, Vec<f64>);
 
-/// The way back of one functional.
+/// The backward integration for one functional.
 struct Way<F, G> {
     back: Option<Integration<Cvode<AdjointField<F, G>>>>,
     options: Options,
     tolerances: (f64, f64),
-    /// h, and what integrals behind the last jump add to it.
+    /// h, and the integrals beyond the last jump.
     value: f64,
     by_parameters: Vec<f64>,
 }
 
 impl<F: VectorField, G: Functional> Way<F, G> {
-    /// From y(t1) = y1 on.
+    /// Begins at y(t1) = y1.
     fn new(
         mut adjoint: AdjointField<F, G>,
         (t1, y1): (f64, &[f64]),
@@ -189,7 +190,7 @@ impl<F: VectorField, G: Functional> Way<F, G> {
         Ok(())
     }
 
-    /// Goes back to `t` along what is recorded.
+    /// Integrates back to `t` along the recorded motion.
     fn advance_to(&mut self, t: f64) -> Result<(), SolveError> {
         let Some(back) = &mut self.back else { return Ok(()) };
         back.set_stop_time(Some(t))?;
@@ -197,7 +198,7 @@ impl<F: VectorField, G: Functional> Way<F, G> {
         result.map_err(|error| of_motion(error, back.engine.field_mut()))
     }
 
-    /// Adds up the integrals, and takes the equations and λ out.
+    /// Adds up the integrals, and returns the equations and λ.
     fn pause(&mut self, t: f64, y: &[f64]) -> Result<Option<Paused<F, G>>, SolveError> {
         let Some(back) = self.back.take() else { return Ok(None) };
         let mut integrals = back.engine.quadratures()?;
@@ -214,7 +215,7 @@ impl<F: VectorField, G: Functional> Way<F, G> {
         Ok(Some((back.into_field(), state)))
     }
 
-    /// From λ⁺ to λ⁻ at an event that takes the state from `before` to `after`.
+    /// Changes λ⁺ to λ⁻ at an event that changes the state from `before` to `after`.
     fn jump<E: Events>(
         &mut self,
         path: &RefCell<Path<F>>,
@@ -229,7 +230,7 @@ impl<F: VectorField, G: Functional> Way<F, G> {
         let parameters = self.by_parameters.len();
         let jumped = {
             let field = &mut path.borrow_mut().field;
-            // No step is taken.
+            // No step is made.
             let options = Options { stop_time: None, ..options.clone() };
             let mut there = Integration::new(field, t, after, &options)?.with_events(events)?;
             there.transposed_jump(event, t, before, after, (&lambda, step), parameters)?
@@ -240,7 +241,7 @@ impl<F: VectorField, G: Functional> Way<F, G> {
         self.begin(adjoint, t, &jumped.0)
     }
 
-    /// The gradient, back at the start.
+    /// The gradient, after the integration back to the start.
     fn arrive(mut self, (t0, y0): (f64, &[f64]), statistics: Statistics) -> Result<Gradient, SolveError> {
         let by_start = self.pause(t0, y0)?.map_or_else(Vec::new, |(_, lambda)| lambda);
         Ok(Gradient { value: self.value, by_start, by_parameters: self.by_parameters, statistics })

@@ -1,4 +1,4 @@
-//! Derivatives of a motion where it is asked for: at outputs, inside steps, and as functions of time.
+//! Derivatives of a motion at outputs, inside steps, and as functions of time.
 
 use std::ops::ControlFlow;
 
@@ -31,12 +31,13 @@ impl<F: VectorField> Integration<Cvode<F>> {
     }
 }
 
-/// Derivatives are the matter of CVODES: no other method has them.
+/// Derivatives are integrated by CVODES only.
 impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
-    /// S at [`time`](Integration::time), S⁺ at an event: entry `i + j * dim` is the derivative of component i by what column j
-    /// stands for.
+    /// S at [`time`](Integration::time), S⁺ at an event: entry `i + j * dim` is the derivative of
+    /// component i for column j.
     ///
-    /// Empty unless the integration was begun [with sensitivities](Integration::with_sensitivities).
+    /// Empty unless the integration was begun [with
+    /// sensitivities](Integration::with_sensitivities).
     ///
     /// # Errors
     /// [`SolveError::Integration`] if a derivative has grown beyond the largest number.
@@ -49,13 +50,13 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         self.engine.sensitivity_statistics()
     }
 
-    /// Restarts at y(t) = y as [`restart`](Integration::restart) does, with these columns of S.
+    /// Restarts from y(t) = y as [`restart`](Integration::restart) does, with these columns of S.
     ///
     /// At a jump that depends on the state, S jumps too.
     ///
     /// # Errors
-    /// As for [`restart`](Integration::restart); [`SolveError::Input`] unless `matrix` is finite and as long as
-    /// [`sensitivities`](Integration::sensitivities).
+    /// As for [`restart`](Integration::restart); [`SolveError::Input`] unless `matrix` is finite
+    /// and as long as [`sensitivities`](Integration::sensitivities).
     pub fn restart_with_sensitivities(
         &mut self,
         t: f64,
@@ -70,7 +71,7 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         self.restart_with_columns(t, y, matrix)
     }
 
-    /// As [`run`](Integration::run), and gives each (t, y, S) to `output`, y⁺ and S⁺ at the time of an event.
+    /// As [`run`](Integration::run), but passes each (t, y, S) to `output`, y⁺ and S⁺ at an event.
     ///
     /// # Errors
     /// As for [`run`](Integration::run) and [`sensitivities`](Integration::sensitivities).
@@ -88,8 +89,8 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         })
     }
 
-    /// The derivative of S of the given order at `t` in the last step, as [`interpolate`](Integration::interpolate) gives that
-    /// of y; column-major.
+    /// The derivative of S of the given order at `t` in the last step, column-major, as
+    /// [`interpolate`](Integration::interpolate) for y.
     ///
     /// # Errors
     /// As there; [`InputError::NoSensitivities`] if there are none.
@@ -98,8 +99,8 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         self.engine.sensitivities_by_time(t, order)?.ok_or_else(|| InputError::NoSensitivities.into())
     }
 
-    /// As [`run_dense`](Integration::run_dense), with the segment of S of the same span, whose components are its entries,
-    /// column-major: from S⁺ to S⁻.
+    /// As [`run_dense`](Integration::run_dense), also with the segment of S on the same span, from
+    /// S⁺ to S⁻; its components are the entries of S, column-major.
     ///
     /// # Errors
     /// As there; [`InputError::NoSensitivities`] if there are none.

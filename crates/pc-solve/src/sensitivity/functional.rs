@@ -4,11 +4,12 @@ use pc_expr::Failure;
 
 use crate::integration::statistics::Statistics;
 
-/// A functional G = ∫ g(t, y, p) dt + h(t₁, y(t₁), p) of a motion from t₀ to t₁, with its derivatives.
+/// A functional G = ∫ g(t, y, p) dt + h(t₁, y(t₁), p) of a motion from t₀ to t₁, with its
+/// derivatives.
 ///
-/// Both terms write their derivatives by the state, of the dimension of the field, and by the parameters: as many as
-/// the field has, none if it has no [derivative](pc_expr::VectorField::parameter_jacobian) by them. Every entry must be written,
-/// zeros too. A term that is left out is zero.
+/// Both terms write their derivatives by the state and by the parameters of the field, the latter
+/// empty if it has no [derivatives](pc_expr::VectorField::parameter_jacobian) by them. Every entry
+/// must be written, zeros too. A term not implemented is zero.
 pub trait Functional {
     /// g(t, y), with ∂g/∂y and ∂g/∂p.
     ///
@@ -70,12 +71,13 @@ impl<G: Functional + ?Sized> Functional for Box<G> {
 pub struct Gradient {
     /// G
     pub value: f64,
-    /// ∂G/∂y₀, of the dimension of the field.
+    /// ∂G/∂y₀, one for each component of the field.
     pub by_start: Vec<f64>,
-    /// ∂G/∂p of a start that does not depend on p, one for each parameter; none if the field has no derivative by them.
+    /// ∂G/∂p for a start that does not depend on p, one for each parameter; empty if the field has
+    /// no derivatives by them.
     ///
-    /// If it does, (∂y₀/∂p)ᵀ ∂G/∂y₀ is to be added.
+    /// If the start does depend on p, add (∂y₀/∂p)ᵀ ∂G/∂y₀.
     pub by_parameters: Vec<f64>,
-    /// The work of the motion to t₁, without the way back.
+    /// The work of the forward motion to t₁ only.
     pub statistics: Statistics,
 }

@@ -1,4 +1,4 @@
-//! A piece of a motion, to be looked up at any time.
+//! A piece of a motion that can be evaluated at any time.
 
 use pc_expr::VectorField;
 
@@ -16,12 +16,12 @@ pub(crate) struct MotionRecord {
     ends: Vec<f64>,
     /// Where the coefficients of each step begin.
     first: Vec<usize>,
-    /// Of each step y⁽ᵏ⁾(end)/k!, for k = 0, 1, … to the order of the step.
+    /// y⁽ᵏ⁾(end)/k! of each step, for k from 0 to the order of the step.
     coefficients: Vec<f64>,
 }
 
 impl MotionRecord {
-    /// Integrates from y(t0) = y0 to `t1`, where nothing is evaluated beyond.
+    /// Integrates from y(t0) = y0 to `t1`, without evaluations beyond.
     pub(crate) fn of(
         field: &mut impl VectorField,
         t0: f64,

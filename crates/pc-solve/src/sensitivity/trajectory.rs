@@ -37,8 +37,8 @@ impl SensitivityTrajectory {
         self.columns
     }
 
-    /// S at output time `i`, dim × columns and column-major: entry `k + j * dim` is the derivative of component k by
-    /// what column j stands for.
+    /// S at output time `i`, dim × columns and column-major: entry `k + j * dim` is the derivative
+    /// of component k for column j.
     ///
     /// # Panics
     /// If `i` is not less than the number of outputs.
@@ -63,10 +63,11 @@ impl SensitivityTrajectory {
     }
 }
 
-/// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::solve()) does, and derivatives of the motion with it.
+/// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::solve()) does, and derivatives of the
+/// motion with it.
 ///
 /// # Errors
-/// [`SolveFailure`] with the outputs reached before the failure; none if the input is not valid.
+/// [`SolveFailure`] with the outputs reached before the failure; none if the input is invalid.
 pub fn solve_with_sensitivities<F: VectorField>(
     field: F,
     t0: f64,
@@ -98,10 +99,11 @@ pub fn solve_with_sensitivities<F: VectorField>(
     }
 }
 
-/// A motion with events and the derivatives of it.
+/// A motion with events, and its derivatives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SensitivitySolution {
-    /// The states and S at the output times, y⁺ and S⁺ at those of events; a terminal event is the last.
+    /// The states and S at the output times, y⁺ and S⁺ at events; a terminal event is the last
+    /// output.
     pub trajectory: SensitivityTrajectory,
     /// The occurrences, in order.
     pub occurrences: Vec<Occurrence>,
@@ -109,12 +111,12 @@ pub struct SensitivitySolution {
     pub ending: Option<Ending>,
 }
 
-/// As [`solve_with_sensitivities`], with events: S jumps where a reset does, by
-/// [its derivatives](Events::by_parameter). The motion begins at (t0, y0); `output` sees each output time with its state, and
-/// may stop the integration.
+/// As [`solve_with_sensitivities`], with events: S jumps at resets, by [their
+/// derivatives](Events::by_parameter). `output` receives each output time with its state, and may
+/// stop the integration.
 ///
 /// # Errors
-/// [`SolveFailure`] with what was reached before.
+/// [`SolveFailure`] with what was reached before the failure.
 pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
     field: F,
     (t0, y0): (f64, &[f64]),
@@ -151,8 +153,8 @@ pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
     }
 }
 
-/// Integrates ẏ = f(t, y) from y(t0) = y0 to `end` and returns the motion and S as functions of time, the
-/// entries of S column-major.
+/// Integrates ẏ = f(t, y) from y(t0) = y0 to `end` and returns the motion and S as functions of
+/// time, the entries of S column-major.
 ///
 /// # Errors
 /// As for [`Integration::run_dense_with_sensitivities`], which also gives what was reached.

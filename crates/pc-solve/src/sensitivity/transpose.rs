@@ -1,4 +1,4 @@
-//! Products with the transposed linear part of a vector field, by what the field offers.
+//! Products with the transposed Jacobian of a vector field, from whatever the field offers.
 
 use pc_expr::{Colouring, Failure, Pattern, VectorField};
 
@@ -6,8 +6,8 @@ use crate::cvode::forward::linearisation::Linearisation;
 use crate::error::NonFinite;
 use crate::settings::options::Options;
 
-/// (∂f/∂y)ᵀ of a field: its own products, else its sparse Jacobian, or that put together from products by the colours of its
-/// pattern, else its dense one.
+/// (∂f/∂y)ᵀ of a field: by its own products, else by its sparse Jacobian, which may be assembled
+/// from products by the colours of its pattern, else by its dense one.
 #[derive(Debug)]
 pub(crate) struct Transpose {
     linearisation: Linearisation,
@@ -19,10 +19,10 @@ pub(crate) struct Transpose {
 #[derive(Debug)]
 struct Sparse {
     pattern: Pattern,
-    /// Where the field does not write the entries.
+    /// For a field that does not write the entries.
     colouring: Option<Colouring>,
     entries: Vec<f64>,
-    /// The pattern of the transposed matrix, and for each of its entries the place of that in `entries`.
+    /// The pattern of the transposed matrix, and the place of each of its entries in `entries`.
     transposed: Pattern,
     places: Vec<usize>,
 }
@@ -96,12 +96,12 @@ impl Transpose {
         }
     }
 
-    /// The pattern of (∂f/∂y)ᵀ, where that is known to have zeros.
+    /// The pattern of (∂f/∂y)ᵀ, if it is known to have zeros.
     pub(crate) fn pattern(&self) -> Option<&Pattern> {
         self.sparse.as_ref().map(|sparse| &sparse.transposed)
     }
 
-    /// Whether entries are to be had for no more than products.
+    /// Whether entries cost no more than products.
     pub(crate) fn has_entries(&self, field: &impl VectorField) -> bool {
         !self.has_products || self.sparse.is_some() || field.has_jacobian()
     }
@@ -160,7 +160,8 @@ impl Transpose {
         Ok(())
     }
 
-    /// Writes the entries of −(∂f/∂y)ᵀ in the order of its [pattern](Transpose::pattern); nothing where that is not known.
+    /// Writes the entries of −(∂f/∂y)ᵀ in the order of its [pattern](Transpose::pattern); nothing
+    /// if that is unknown.
     pub(crate) fn negative_entries(
         &mut self,
         field: &mut impl VectorField,

@@ -2,14 +2,16 @@
 
 use std::fmt;
 
-/// What a component of y must satisfy at the end of every step, so that f is not evaluated far from where it makes sense.
+/// A condition on a component of y at the end of every step, so that f is not evaluated far outside
+/// its domain.
 ///
-/// A step whose end does not satisfy it is corrected if the violation is small, and otherwise tried again, shorter. Inside a step
-/// the polynomial of the method may err by the tolerance. Where the motion itself leads out, the steps become ever
-/// shorter, until the number of steps or the least step ends the integration.
+/// A step whose end violates it is corrected if the violation is small, else repeated with a
+/// shorter length. Inside a step the polynomial of the method may violate it by the tolerance.
+/// Where the motion itself leads out, the steps become ever shorter, until the limit of steps or
+/// the minimum step ends the integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Inequality {
-    /// Nothing.
+    /// No condition.
     Free,
     /// y ≥ 0.
     NotNegative,
@@ -35,7 +37,7 @@ impl Inequality {
 }
 
 impl fmt::Display for Inequality {
-    /// What is said of a component: `not negative`.
+    /// As an adjective of the component: `not negative`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Inequality::Free => "any number",

@@ -2,20 +2,21 @@
 
 use std::fmt;
 
-/// A family of methods of variable step.
+/// A family of variable-step methods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Method {
     /// Backward differentiation formulas of orders 1 to 5, for stiff systems.
     Bdf,
-    /// Adams–Moulton formulas of orders 1 to 12, for systems that are not stiff.
+    /// Adams–Moulton formulas of orders 1 to 12, for non-stiff systems.
     Adams,
-    /// The explicit Runge–Kutta method of order 8 of Dormand and Prince, for systems that are not stiff at tolerances of
-    /// 1e-6 and below: the fastest where f is cheap.
+    /// The explicit Runge–Kutta method of order 8 of Dormand and Prince, for non-stiff systems at
+    /// tolerances of 1e-6 and below: the fastest if f is cheap.
     Dop853,
-    /// Taylor's method of adaptive order and step, for systems that are not stiff and whose f is a program: the fastest at tolerances of
-    /// 1e-8 and below, and the one that follows a motion to rounding.
+    /// Taylor's method of adaptive order and step, for non-stiff systems whose f is a program: the
+    /// fastest at tolerances of 1e-8 and below, and accurate to rounding.
     Taylor,
-    /// [`Dop853`](Method::Dop853) where the motion is not stiff, [`Bdf`](Method::Bdf) where stiffness is seen.
+    /// [`Dop853`](Method::Dop853) where the motion is not stiff, [`Bdf`](Method::Bdf) where
+    /// stiffness is detected.
     Auto,
 }
 
@@ -51,6 +52,7 @@ impl fmt::Display for Method {
 pub enum NonlinearSolver {
     /// Newton's iteration, with a [`LinearSolver`](crate::LinearSolver).
     Newton,
-    /// Fixed-point iteration, which needs no matrix but contracts only for small steps of a stiff system.
+    /// Fixed-point iteration, which needs no matrix but in a stiff system converges for small steps
+    /// only.
     FixedPoint,
 }

@@ -14,12 +14,12 @@ use crate::settings::tolerance::Tolerance;
 
 /// Method, tolerances and limits of an integration.
 ///
-/// A step is accepted if the root mean square of eᵢ/(rtol |yᵢ| + atolᵢ) over the components is at most 1, where e
-/// is the estimated local error. Values are checked when an integration starts.
+/// A step is accepted if the root mean square of eᵢ/(rtol |yᵢ| + atolᵢ) over the components is at
+/// most 1, where e is the estimated local error. Values are checked when an integration starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     pub(crate) method: Method,
-    /// None for that of the method.
+    /// None for the default of the method.
     pub(crate) nonlinear_solver: Option<NonlinearSolver>,
     #[cfg(feature = "cvode")]
     pub(crate) linear_solver: Option<LinearSolver>,
@@ -38,15 +38,16 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// [`Method::Adams`], without the feature `cvode` [`Method::Dop853`], with the defaults of [`Options::new`].
+    /// [`Method::Adams`], or [`Method::Dop853`] without the feature `cvode`, with the defaults of
+    /// [`Options::new`].
     fn default() -> Self {
         Options::new(if cfg!(feature = "cvode") { Method::Adams } else { Method::Dop853 })
     }
 }
 
 impl Options {
-    /// A method with tolerances 1e-9 (relative) and 1e-12 (absolute), at most 500 000 steps between outputs, Newton's
-    /// iteration for BDF and the fixed-point iteration for Adams.
+    /// A method with tolerances 1e-9 (relative) and 1e-12 (absolute), at most 500 000 steps between
+    /// outputs, Newton's iteration for BDF and the fixed-point iteration for Adams.
     pub fn new(method: Method) -> Self {
         Options {
             method,
@@ -74,15 +75,16 @@ impl Options {
     }
 
     #[cfg(feature = "cvode")]
-    /// How the linear systems of Newton's iteration are solved; chosen by the field's dimension and zero pattern
-    /// [unless given](LinearSolver).
+    /// How the linear systems of Newton's iteration are solved; the [default](LinearSolver) depends
+    /// on the field's dimension and zero pattern.
     pub fn linear_solver(self, linear_solver: LinearSolver) -> Self {
         Options { linear_solver: Some(linear_solver), ..self }
     }
 
-    /// Inequalities to satisfy, one for each component; none unless given.
+    /// Inequalities to satisfy, one for each component; none by default.
     ///
-    /// They exclude a field [with a projection](pc_expr::VectorField::has_projection), which would move the states again.
+    /// They exclude a field [with a projection](pc_expr::VectorField::has_projection), which would
+    /// move the states again.
     pub fn inequalities(self, inequalities: Vec<Inequality>) -> Self {
         Options { inequalities, ..self }
     }
@@ -97,23 +99,23 @@ impl Options {
         Options { absolute_tolerance: absolute_tolerance.into(), ..self }
     }
 
-    /// Most internal steps from one output to the next, at least 1; beyond them the error is
+    /// Maximum number of internal steps from one output to the next, at least 1; more are the error
     /// [`Code::TooMuchWork`](crate::Code::TooMuchWork).
     pub fn max_steps(self, max_steps: u64) -> Self {
         Options { max_steps, ..self }
     }
 
-    /// Length of the first step, positive in both directions of time; estimated unless given.
+    /// Length of the first step, positive in both directions of time; estimated by default.
     pub fn initial_step(self, length: f64) -> Self {
         Options { initial_step: Some(length), ..self }
     }
 
-    /// Least length of a step, positive in both directions of time.
+    /// Minimum length of a step, positive in both directions of time.
     pub fn min_step(self, length: f64) -> Self {
         Options { min_step: Some(length), ..self }
     }
 
-    /// Largest length of a step, positive in both directions of time.
+    /// Maximum length of a step, positive in both directions of time.
     pub fn max_step(self, length: f64) -> Self {
         Options { max_step: Some(length), ..self }
     }
@@ -128,8 +130,9 @@ impl Options {
         Options { stop_time: Some(t), ..self }
     }
 
-    /// The number of equal parts of each internal step at whose ends functions of events are looked at that are no programs of the
-    /// state, at least 1 and 4 unless given; between two such places [an even number](crate::Integration) of their zeros may be missed.
+    /// The number of equal parts of each internal step at whose ends event functions are sampled
+    /// that are not programs of the state; at least 1, by default 4. Between two samples [an even
+    /// number](crate::Integration) of their zeros may be missed.
     pub fn samples_per_step(self, parts: u32) -> Self {
         Options { samples_per_step: parts, ..self }
     }
@@ -139,12 +142,12 @@ impl Options {
         Options { accumulation, ..self }
     }
 
-    /// The time after which no further step begins, which is [an error](crate::Reason::Ended).
+    /// The time after which no further step begins; passing it is [an error](crate::Reason::Ended).
     pub fn deadline(self, deadline: Deadline) -> Self {
         Options { deadline: Some(deadline), ..self }
     }
 
-    /// The same by a method of CVODES: Adams where the choice is open.
+    /// The same options for a method of CVODES: Adams for [`Method::Auto`].
     ///
     /// # Errors
     /// [`InputError::NotCvode`] if another method was chosen.
@@ -160,7 +163,7 @@ impl Options {
         }
     }
 
-    /// How the implicit equation of a step is solved, chosen or by the method.
+    /// How the implicit equation of a step is solved, as chosen or by default.
     #[cfg(feature = "cvode")]
     pub(crate) fn iteration(&self) -> NonlinearSolver {
         self.nonlinear_solver.unwrap_or(match self.method {
@@ -170,7 +173,7 @@ impl Options {
         })
     }
 
-    /// That what is chosen exists for the method.
+    /// Checks that the choices exist for the method.
     fn check_explicit(&self) -> Result<(), InputError> {
         #[cfg(feature = "cvode")]
         let linear = self.linear_solver.is_some();
@@ -186,7 +189,7 @@ impl Options {
         refused.map_or(Ok(()), |what| Err(InputError::Explicit { method: self.method, what }))
     }
 
-    /// What does not depend on the method.
+    /// The limits, which do not depend on the method.
     pub(crate) fn limits(&self) -> Limits {
         Limits {
             max_steps: self.max_steps,

@@ -1,4 +1,4 @@
-//! Failures of an integration, with what had been reached before.
+//! Failures of an integration, with what was reached before.
 
 use std::error::Error;
 use std::fmt;
@@ -6,7 +6,7 @@ use std::fmt;
 use crate::error::SolveError;
 use crate::integration::trajectory::Trajectory;
 
-/// A failed integration, such as [`solve`](crate::solve()), with what it had reached.
+/// A failed integration, for example by [`solve`](crate::solve()), with what it had reached.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct SolveFailure<R = Trajectory> {
@@ -17,7 +17,7 @@ pub struct SolveFailure<R = Trajectory> {
 }
 
 impl<R> SolveFailure<R> {
-    /// What was reached, all of it unless the integration failed, and why not more: for whoever shows both.
+    /// What was reached, and the error if the integration failed.
     pub fn split(outcome: Result<R, Box<SolveFailure<R>>>) -> (R, Option<SolveError>) {
         match outcome {
             Ok(reached) => (reached, None),

@@ -10,7 +10,8 @@ use crate::integration::trajectory::Trajectory;
 use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 
-/// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::solve()) does, with integrals from t0 to each output time.
+/// Integrates ẏ = f(t, y) from y(t0) = y0 as [`solve`](crate::solve()) does, with integrals from t0
+/// to each output time.
 ///
 /// # Errors
 /// As there.

@@ -4,10 +4,10 @@ use crate::events::events::Occurrence;
 use crate::integration::integration::Ending;
 use crate::integration::trajectory::Trajectory;
 
-/// A motion as far as it was integrated.
+/// The part of a motion that was integrated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
-    /// The states at the output times, y⁺ at those of events; a terminal event is the last.
+    /// The states at the output times, y⁺ at events; a terminal event is the last output.
     pub trajectory: Trajectory,
     /// The occurrences, in order.
     pub occurrences: Vec<Occurrence>,

@@ -15,13 +15,15 @@ use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 
-/// Integrates ẏ = f(t, y) from y(t0) = y0 by CVODES and returns the states at `times`: [`Solve`] has more to choose from.
+/// Integrates ẏ = f(t, y) from y(t0) = y0 by the method of the options and returns the states at
+/// `times`; [`Solve`] offers more choices.
 ///
-/// `y0` has as many numbers as `field` has components. The times go one way, forwards or backwards; the first may be
-/// t0. The vector field is not evaluated beyond the last time, nor beyond the stop time of the options.
+/// `y0` is as long as `field` has components. The times are monotonic, forwards or backwards; the
+/// first may be t0. The vector field is not evaluated beyond the last time, nor beyond the stop
+/// time of the options.
 ///
 /// # Errors
-/// [`SolveFailure`] with the outputs reached before the failure; none if the input is not valid.
+/// [`SolveFailure`] with the outputs reached before the failure; none if the input is invalid.
 pub fn solve<F: VectorField>(
     field: F,
     t0: f64,
@@ -40,7 +42,7 @@ pub fn solve<F: VectorField>(
 /// ```
 /// use pc_solve::{Event, FnEvents, Options, Solve, from_fn};
 ///
-/// // A ball that is dropped and bounces.
+/// // A ball is dropped and bounces.
 /// let ball = from_fn(2, |_t, y, ydot| { ydot[0] = y[1]; ydot[1] = -9.81; Ok(()) });
 /// let bounce = FnEvents::new().with_reset(
 ///     Event::new("bounce").falling(), |_t, y| Ok(y[0]), |_t, y| { y[1] *= -0.5; Ok(()) });
@@ -69,7 +71,7 @@ impl<'a, F: VectorField> Solve<'a, F> {
 }
 
 impl<'a, F: VectorField, M, E> Solve<'a, F, M, E> {
-    /// By this method: [`Options`] are CVODES'.
+    /// By this method: [`Options`] choose one of those built in.
     pub fn method<N: IntegrationMethod<F>>(self, method: N) -> Solve<'a, F, N, E> {
         let Solve { field, t0, y0, events, .. } = self;
         Solve { field, t0, y0, method, events }
@@ -83,7 +85,7 @@ impl<'a, F: VectorField, M, E> Solve<'a, F, M, E> {
 }
 
 impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
-    /// The integration at its start, to take it step by step.
+    /// The integration at its start, to be advanced step by step.
     ///
     /// # Errors
     /// As for [`IntegrationMethod::begin`] and [`Integration::with_events`].
@@ -96,21 +98,22 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         Integration::of(method.begin(field, t0, y0, end)?).with_events(events)
     }
 
-    /// The states at `times`, and the occurrences on the way.
+    /// The states at `times`, and the occurrences of events.
     ///
-    /// The times go one way, forwards or backwards; the first may be t0. The vector field is not evaluated beyond the last,
-    /// nor beyond the stop time of the method.
+    /// The times are monotonic, forwards or backwards; the first may be t0. The vector field is not
+    /// evaluated beyond the last, nor beyond the stop time of the method.
     ///
     /// # Errors
-    /// [`SolveFailure`] with what was reached before the failure; nothing if the input is not valid.
+    /// [`SolveFailure`] with what was reached before the failure; nothing if the input is invalid.
     pub fn run(self, times: &[f64]) -> Result<Solution, Box<SolveFailure<Solution>>> {
         self.run_observed(times, |_, _| ControlFlow::Continue(()))
     }
 
-    /// As [`run`](Solve::run), and gives the end (t, y⁻) of each step, or of the part of it before an event, to `step`, to show
-    /// progress or to stop.
+    /// As [`run`](Solve::run), but passes the end (t, y⁻) of each step, or of the part of it before
+    /// an event, to `step`, to show progress or to stop.
     ///
-    /// If stopped, the solution has the outputs before that step and is not [complete](Trajectory::is_complete).
+    /// If stopped, the solution has the outputs before that step and is not
+    /// [complete](Trajectory::is_complete).
     ///
     /// # Errors
     /// As for [`run`](Solve::run).
@@ -136,7 +139,8 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         }
     }
 
-    /// As [`run_observed`](Solve::run_observed): the motion as far as it can be computed, and why not further.
+    /// As [`run_observed`](Solve::run_observed): the motion as far as it can be computed, and the
+    /// error that stopped it, if any.
     pub fn follow(
         self,
         times: &[f64],
@@ -145,8 +149,8 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         SolveFailure::split(self.run_observed(times, step))
     }
 
-    /// As [`run_observed`](Solve::run_observed), and gives each (t, y) to `output`, which may stop it, instead of
-    /// keeping it: the trajectory of the solution has only the statistics.
+    /// As [`run_observed`](Solve::run_observed), but passes each (t, y) to `output`, which may stop
+    /// it, instead of keeping it: the trajectory of the solution has only the statistics.
     ///
     /// # Errors
     /// As for [`run`](Solve::run).
@@ -174,10 +178,10 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         }
     }
 
-    /// The motion to `end`, or to a terminal event before, as a function of time.
+    /// The motion to `end`, or to an earlier terminal event, as a function of time.
     ///
     /// # Errors
-    /// As for [`Integration::run_dense`], which also gives what was reached.
+    /// As for [`Integration::run_dense`], which also keeps what was reached before a failure.
     pub fn dense(self, end: f64) -> Result<DenseOutput, SolveError> {
         let mut motion = DenseOutput::default();
         let keep = |segment| {

@@ -1,4 +1,4 @@
-//! Corners and jumps of a field: the branch that a series belongs to, by the sides that functions are on.
+//! Corners and jumps of a field: the branch of a series, given by the signs of branch functions.
 
 use pc_expr::VectorField;
 
@@ -8,15 +8,15 @@ use crate::taylor::corners::first_exit;
 use crate::taylor::step::Refusal;
 use crate::taylor::stepper::Taylor;
 
-/// Functions that change their signs so near to each other, in parts of a step, do so together.
+/// Sign changes within this fraction of a step are simultaneous.
 const TOGETHER: f64 = 1e-12;
 
 impl<F: VectorField> Taylor<F> {
-    /// Expands at the end of the last step, on the sides that the motion goes to from there.
+    /// Expands at the end of the last step, on the sides that the motion enters from there.
     pub(super) fn expand_at_end(&mut self, direction: f64) -> Result<(), SolveError> {
         self.direction = direction;
         self.sides.fill(0.0);
-        // Each side that becomes known may show another one.
+        // Each side found may determine another one.
         for _ in 0..=2 * self.branches.len() {
             match self.expand(self.end) {
                 Ok(()) => {}
@@ -36,14 +36,14 @@ impl<F: VectorField> Taylor<F> {
         Err(self.failed(Reason::Sliding { branch: self.branches.join(", "), t: self.end }, None))
     }
 
-    /// The side that a branch function is on, or goes to.
+    /// The side that a branch function is on, or enters.
     pub(super) fn leading_side(&self, i: usize) -> f64 {
         let along = |k: usize| self.branch_series.of_order(k)[i] * self.direction.powi(k as i32 % 2);
         let leading = (0..=self.branch_series.order()).map(along).find(|c| *c != 0.0);
         leading.map_or(0.0, f64::signum)
     }
 
-    /// Where the branch functions first change their signs within h, and which do.
+    /// Where branch functions first change sign within h, and which of them do.
     pub(super) fn corner(&self, h: f64) -> Option<(f64, Vec<usize>)> {
         let mut first = None::<f64>;
         let mut exits = Vec::new();
@@ -65,7 +65,7 @@ impl<F: VectorField> Taylor<F> {
         Some((end, exits.iter().filter(|exit| together(exit)).map(|&(i, _)| i).collect()))
     }
 
-    /// How far the series of the branch functions hold.
+    /// The length on which the series of the branch functions hold.
     pub(super) fn branch_length(&self) -> f64 {
         let order = self.branch_series.order();
         let mut length = f64::INFINITY;
@@ -80,7 +80,7 @@ impl<F: VectorField> Taylor<F> {
         length
     }
 
-    /// Goes to the other side of these branch functions at the start of the step.
+    /// Changes to the other side of these branch functions at the start of the step.
     pub(super) fn turn(&mut self, which: &[usize], direction: f64) -> Result<(), SolveError> {
         for &i in which {
             self.sides[i] = -self.sides[i];
@@ -97,7 +97,7 @@ impl<F: VectorField> Taylor<F> {
         }
     }
 
-    /// Whether a branch function at zero goes back from the side that it has come to.
+    /// Whether a branch function at zero returns from the side it has entered.
     pub(super) fn returns(&self, i: usize, direction: f64) -> bool {
         self.branch_series.order() >= 1 && self.branch_series.of_order(1)[i] * direction * self.sides[i] < 0.0
     }

@@ -1,15 +1,16 @@
-//! Where functions along a step first change their signs, by their series.
+//! The first sign change of functions along a step, from their series.
 
-/// Parts of a step that are told apart.
+/// Resolution in fractions of a step.
 const RESOLVED: f64 = 1e-14;
-/// A function that begins below this part of its terms begins at zero.
+/// A function whose start is below this fraction of its largest term begins at zero.
 const AT_ZERO: f64 = 1e-13;
 
-/// The first s in [0, length] at which a polynomial with these coefficients, which begins on this side of zero or, but for rounding, at
-/// zero, goes to the other; none if it does not.
+/// The first s in [0, length] at which the polynomial with these coefficients leaves `side`, where
+/// it begins, or at zero up to rounding; none if it stays there.
 ///
-/// On an interval around m with coefficients d_k there, |p(s) − d_0| ≤ Σ |d_k| rᵏ: where that is less than |d_0| there is no root, and
-/// where Σ k |d_k| rᵏ⁻¹, k ≥ 2, is less than |d_1| there is at most one. Other intervals are halved.
+/// On an interval around m with coefficients d_k there, |p(s) − d_0| ≤ Σ |d_k| rᵏ: where that is
+/// less than |d_0| there is no root, and where Σ k |d_k| rᵏ⁻¹, k ≥ 2, is less than |d_1| there is
+/// at most one. Other intervals are halved.
 pub(super) fn first_exit(coefficients: &[f64], side: f64, length: f64) -> Option<f64> {
     // In units of the step.
     let mut scaled: Vec<f64> = coefficients.to_vec();
@@ -22,7 +23,7 @@ pub(super) fn first_exit(coefficients: &[f64], side: f64, length: f64) -> Option
     if largest == 0.0 {
         return None;
     }
-    // What begins at zero has left it: the other roots are those of p(s)/s.
+    // Past a root at zero, the other roots are those of p(s)/s.
     let terms = if scaled[0] <= AT_ZERO * largest { &scaled[1..] } else { &scaled[..] };
     if terms.iter().find(|c| **c != 0.0).is_some_and(|c| *c < 0.0) {
         return Some(0.0);
@@ -53,7 +54,7 @@ pub(super) fn first_exit(coefficients: &[f64], side: f64, length: f64) -> Option
     None
 }
 
-/// The coefficients at another point.
+/// The coefficients of the polynomial about another point.
 fn shifted(terms: &[f64], by: f64) -> Vec<f64> {
     let mut local = terms.to_vec();
     for i in 0..local.len() {
@@ -68,7 +69,8 @@ fn value(terms: &[f64], s: f64) -> f64 {
     terms.iter().rev().fold(0.0, |sum, c| sum * s + c)
 }
 
-/// A place at most a few roundings behind where the polynomial falls through zero between a and b.
+/// A point at most a few roundings beyond the one in [a, b] where the polynomial falls through
+/// zero.
 fn bisected(terms: &[f64], (mut a, mut b): (f64, f64)) -> f64 {
     while b - a > 4.0 * f64::EPSILON * b {
         let middle = 0.5 * (a + b);
@@ -100,10 +102,10 @@ mod tests {
     fn the_first_root_of_odd_order_is_found() {
         for (roots, first) in [
             (vec![0.3, 0.300001, 0.9], Some(0.3)),
-            (vec![0.25, 0.25, 0.7], Some(0.7)), // which the first two only touch
+            (vec![0.25, 0.25, 0.7], Some(0.7)), // touches zero at the double root
             (vec![0.5, 0.5], None),
             (vec![-0.5, 1.5], None),
-            (vec![0.0, 0.6], Some(0.6)), // begins at zero, on the side that it goes to
+            (vec![0.0, 0.6], Some(0.6)), // begins at zero, on the side it enters
             (vec![1.0], Some(1.0)),
         ] {
             let p = with_roots(&roots);
@@ -111,7 +113,7 @@ mod tests {
             for length in [1.0, 1.0 + 1e-9] {
                 let found = first_exit(&p, side, length);
                 match first {
-                    // A root is as exact as the coefficients are, of which each has rounding.
+                    // The accuracy of a root is limited by the rounding of the coefficients.
                     Some(root) if root < length => {
                         assert!((found.unwrap() - root).abs() < 1e-9, "{roots:?}: {found:?}");
                     }
@@ -119,13 +121,13 @@ mod tests {
                     _ => {}
                 }
             }
-            // Against time, on the mirror image.
+            // Backwards in time, on the mirror image.
             let mirrored: Vec<f64> =
                 p.iter().enumerate().map(|(k, c)| if k % 2 == 1 { -c } else { *c }).collect();
             let back = first_exit(&mirrored, side, -1.0 - 1e-9);
             assert_eq!(back.is_some(), first.is_some(), "{roots:?}");
         }
-        // What begins at zero and goes to the other side exits at once.
+        // A function that begins at zero and enters the other side exits at once.
         assert_eq!(first_exit(&[1e-17, -1.0, 0.5], 1.0, 1.0), Some(0.0));
         assert_eq!(first_exit(&[-1e-17, 1.0, 0.5], 1.0, 1.0), None);
     }

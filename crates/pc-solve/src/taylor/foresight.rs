@@ -1,7 +1,8 @@
-//! What a series does not know: the explicit dependence on time further ahead.
+//! The explicit dependence on time further ahead, which a series does not show.
 //!
-//! The series of exp(−((t − 5)/0.2)²) at t = 0 has coefficients that are no different from 0. At the [places](crate::foresight) in the
-//! next step where the dependence on time may turn or jump, the rates of the field are therefore compared with those of the polynomial.
+//! The coefficients of the series of exp(−((t − 5)/0.2)²) at t = 0 are indistinguishable from 0. At
+//! the [places](crate::foresight) in the next step where the dependence on time may turn or jump,
+//! the rates of the field are therefore compared with those of the polynomial.
 
 use pc_expr::VectorField;
 
@@ -12,7 +13,7 @@ use crate::integration::stepper::Stepper;
 use crate::taylor::stepper::Taylor;
 
 impl<F: VectorField> Taylor<F> {
-    /// A shorter length at which the step is to end because f does something on the way that the series does not know.
+    /// A shorter length for the step, if f has a feature in it that the series does not show.
     pub(super) fn foreseen(&mut self, h: f64, end: f64) -> Result<Option<f64>, SolveError> {
         let t = self.start;
         let ahead = Ahead { t, reach: t + h, end, given: false };
@@ -56,7 +57,7 @@ impl<F: VectorField> Taylor<F> {
         Ok(crowded.filter(|crowded| crowded.abs() < h.abs()))
     }
 
-    /// Whether f at a place in the step is other than the polynomial says.
+    /// Whether f at a place in the step differs from the prediction of the polynomial.
     fn surprises_at(&mut self, place: f64, h: f64) -> bool {
         let s = (place - self.start) - self.start_low;
         self.series.change(s, &mut self.state, &mut self.slope);
@@ -64,7 +65,7 @@ impl<F: VectorField> Taylor<F> {
             *state += y;
         }
         self.statistics.rhs_evaluations += 1;
-        // Where f is not defined the step is to end before; it is tried again then.
+        // A step ends where f is not defined, and is then shortened further.
         self.field.rhs(place, &self.state, &mut self.rates).is_err()
             || self.tolerances.feels(&self.rates, &self.slope, &self.state, h, self.series.order())
     }

@@ -26,7 +26,7 @@ impl Polynomial {
 
     /// Whether all coefficients are finite.
     pub(super) fn is_finite(&self) -> bool {
-        // One pass without branches: what is not finite is none of 0 and stays so.
+        // One pass without branches: c · 0 is NaN unless c is finite, and a NaN persists.
         self.coefficients.iter().fold(0.0, |sum, c| sum + c * 0.0) == 0.0
     }
 
@@ -48,7 +48,7 @@ impl Polynomial {
         }
     }
 
-    /// Writes the derivative of an order at s.
+    /// Writes the derivative of this order at s.
     pub(super) fn derivative(&self, s: f64, order: usize, state: &mut [f64]) {
         state.fill(0.0);
         for k in (order..=self.order()).rev() {

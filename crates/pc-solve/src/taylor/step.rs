@@ -7,18 +7,18 @@ use crate::integration::breaks::next_break;
 use crate::integration::stepper::Stepper;
 use crate::taylor::stepper::Taylor;
 
-/// A step that would end so near to a stop time or a break, in parts of its length, ends there.
+/// A step that would end within this fraction of its length of a stop time or a break ends there.
 const NEAR: f64 = 1e-9;
 
-/// Why a step has to be shorter.
+/// Why a step is rejected.
 pub(super) enum Refusal {
-    /// A smaller step may do.
+    /// A shorter step may succeed.
     Shorter(Reason, Option<Failure>),
     Fatal(SolveError),
 }
 
 impl<F: VectorField> Taylor<F> {
-    /// Where the next step towards a time has to end at the latest; none if nowhere.
+    /// The time that the next step towards `towards` must not pass, if there is one.
     pub(super) fn limit(&mut self, towards: f64) -> Result<Option<f64>, SolveError> {
         let from = self.end;
         let direction = 1.0_f64.copysign(towards - from);
@@ -37,7 +37,7 @@ impl<F: VectorField> Taylor<F> {
         Ok(next)
     }
 
-    /// How long a step along the series may be.
+    /// The maximum length of a step along the series.
     pub(super) fn longest(&mut self, towards: f64) -> Result<f64, SolveError> {
         let mut length = self.tolerances.length(&self.series).min(self.max_step);
         if !self.branches.is_empty() {
@@ -49,11 +49,12 @@ impl<F: VectorField> Taylor<F> {
         if length.is_nan() {
             return Err(self.failed(Reason::Stalled, None));
         }
-        // A series that ends goes as far as is asked for.
+        // A finite series holds everywhere.
         Ok(if length.is_infinite() { (towards - self.start).abs() } else { length })
     }
 
-    /// Makes a step along the series; the time at its end, and what of that a number does not hold.
+    /// Makes a step along the series; returns the time at its end, as the sum of a number and its
+    /// rounding error.
     pub(super) fn find_step(
         &mut self,
         towards: f64,
@@ -75,7 +76,7 @@ impl<F: VectorField> Taylor<F> {
             match self.corner(h) {
                 None => break (h, lands, Vec::new()),
                 Some((corner, which)) if from + corner != from => break (corner, false, which),
-                // The step before has ended at the corner.
+                // The previous step has ended at the corner.
                 Some((_, which)) if turns <= self.branches.len() => {
                     turns += 1;
                     self.turn(&which, direction)?;
@@ -90,7 +91,7 @@ impl<F: VectorField> Taylor<F> {
             crossed.clear();
         }
         loop {
-            // The end of the step, with the rounding of its time.
+            // The end of the step, with the rounding error of its time.
             let (t, rest) = match limit {
                 Some(limit) if lands => (limit, 0.0),
                 _ => {
@@ -126,13 +127,14 @@ impl<F: VectorField> Taylor<F> {
         }
     }
 
-    /// Tries a step of length h to the time `t`, across these branches; the series at its end is then that ahead.
+    /// Tries a step of length h to the time `t`, at which the functions `crossed` change sign;
+    /// `ahead` becomes the series at its end.
     pub(super) fn attempt(&mut self, t: f64, h: f64, crossed: &[usize]) -> Result<(), Refusal> {
         let order = self.series.order();
         self.series.change(h, &mut self.state, &mut self.slope);
         let projects = self.field.has_projection();
         for (i, change) in self.state.iter().enumerate() {
-            // Møller's and Knuth's sum: what of the change is lost in y is kept.
+            // Summation of Møller and Knuth: keeps the part of the change lost in y.
             let y = self.series.coefficients[i];
             let change = change + self.low[i];
             let sum = y + change;
@@ -170,7 +172,7 @@ impl<F: VectorField> Taylor<F> {
                 self.sides = sides;
                 return Err(refusal);
             }
-            // Beyond the corner the motion has to go on as it came.
+            // Beyond the corner the motion must continue to the other side.
             if let Some(&i) = crossed.iter().find(|&&i| self.returns(i, h.signum())) {
                 self.sides = sides;
                 return Err(Refusal::Fatal(self.sliding(i, t)));
@@ -180,7 +182,7 @@ impl<F: VectorField> Taylor<F> {
         Ok(())
     }
 
-    /// Expands at `t` the state that `ahead` begins with, on these sides.
+    /// Expands the state at the start of `ahead`, at time `t`, on the current sides.
     pub(super) fn expand(&mut self, t: f64) -> Result<(), Refusal> {
         self.statistics.rhs_evaluations += 1;
         let order = self.ahead.order();
@@ -195,7 +197,7 @@ impl<F: VectorField> Taylor<F> {
         if self.ahead.is_finite() { Ok(()) } else { Err(refused(self.blame(t))) }
     }
 
-    /// The failure of a series that is not finite.
+    /// The failure for a series that is not finite.
     #[cold]
     pub(super) fn blame(&mut self, t: f64) -> Failure {
         if let Err(failure) = self.field.rhs(t, self.ahead.of_order(0), &mut self.rates) {

@@ -4,16 +4,18 @@ use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 use crate::taylor::polynomial::Polynomial;
 
-/// Orders that are chosen by themselves.
+/// Orders chosen automatically.
 const ORDERS: std::ops::RangeInclusive<usize> = 6..=40;
-/// Nothing is gained by a tolerance below this.
+/// A tolerance below this gains nothing.
 const TIGHTEST: f64 = 1e-20;
-/// Changes of the state over a step below this part of it are rounding.
+/// Changes of the state over a step below this fraction of it are rounding.
 const ROUNDING: f64 = 1e-15;
-/// So are differences of rates below this part of them: of what cancels in f, some hundred roundings are left.
+/// So are differences of rates below this fraction of them: cancellation in f leaves some hundred
+/// roundings.
 const ROUNDING_OF_RATES: f64 = 1e-13;
-/// The rates at the end of a step may differ from those of the polynomial by so many times what the first term that is left out
-/// contributes: coefficients scatter, and the errors are of the order of the tolerance only.
+/// The rates at the end of a step may differ from those of the polynomial by this many times the
+/// contribution of the first neglected term: coefficients scatter, and tolerances hold only in
+/// order of magnitude.
 const DEFECT: f64 = 100.0;
 
 /// rtol |yᵢ| + atolᵢ
@@ -24,9 +26,10 @@ pub(super) struct Tolerances {
 }
 
 impl Tolerances {
-    /// Those of options, which have been checked.
+    /// The tolerances of validated options.
     pub(super) fn new(options: &Options) -> Tolerances {
-        // Far below the rounding of the state, which is carried on from step to step, for the sum of the errors of 10⁵ steps.
+        // Far below the rounding of the state, whose error is carried from step to step, so that
+        // errors stay small over 10⁵ steps.
         let relative = options.relative_tolerance.max(TIGHTEST);
         Tolerances { relative, absolute: options.absolute_tolerance.clone() }
     }
@@ -67,8 +70,8 @@ impl Tolerances {
         c.iter().zip(y).enumerate().map(inverse).fold(0.0, f64::max)
     }
 
-    /// The order p that takes least work on the way: cost(p)/h(p) with h = ρ tol^{1/(p+1)}, ρ the same for all p.
-    /// None is above `highest`.
+    /// The order p, at most `highest`, with the least work per time: cost(p)/h(p) with h = ρ
+    /// tol^{1/(p+1)}, ρ the same for all p.
     pub(super) fn order(&self, [a, b, c]: [f64; 3], highest: Option<u32>) -> usize {
         let highest = highest.map_or(*ORDERS.end(), |highest| (highest as usize).max(2));
         let work = |p: usize| {
@@ -78,21 +81,22 @@ impl Tolerances {
         (*ORDERS.start()..=highest).min_by(|&p, &q| work(p).total_cmp(&work(q))).unwrap_or(highest)
     }
 
-    /// How far the series holds to the tolerance, by its last two terms; infinite if both are 0.
+    /// The length on which the series holds to the tolerance, from its last two terms; infinite if
+    /// both are 0.
     pub(super) fn length(&self, series: &Polynomial) -> f64 {
         let (p, y) = (series.order(), series.of_order(0));
-        // Logarithms of the radius of convergence, for the tolerance, and for terms that do not yet fall as a geometric series does, as
-        // Jorba and Zou have it.
+        // Logarithms of the radius of convergence, of the factor for the tolerance, and of Jorba
+        // and Zou's factor for terms that do not yet decay geometrically.
         let radius = [p - 1, p].map(|k| -self.norm(series.of_order(k), y).log2() / k as f64);
         let order = p as f64;
         let tolerance = self.relative.log2() / (order + 1.0);
         (radius[0].min(radius[1]) + tolerance - 1.01 / (order - 1.0)).exp2()
     }
 
-    /// Whether rates that are wrong by so much, over a step of this length, matter.
+    /// Whether the difference of `rates` and `slope` matters over a step of this length.
     pub(super) fn feels(&self, rates: &[f64], slope: &[f64], y: &[f64], length: f64, order: usize) -> bool {
         let allowed = DEFECT * (order + 1) as f64 * self.relative.max(ROUNDING) / length.abs();
-        // So that what is none counts as large.
+        // Written so that a NaN counts as large.
         !rates.iter().zip(slope).zip(y).enumerate().all(|(i, ((rate, slope), y))| {
             (rate - slope).abs() <= allowed * self.size(i, *y) + ROUNDING_OF_RATES * rate.abs()
         })

@@ -15,12 +15,14 @@ use crate::taylor::step_length::Tolerances;
 
 /// Taylor's method of adaptive order and step as a [`Stepper`] [Jorba, Zou 2005]:
 ///
-/// y(t + h) = Σ_{k=0}^{p} y⁽ᵏ⁾(t) hᵏ/k!,   h = min_{k = p−1, p} (|y⁽ᵏ⁾/k!|/|y|)^{−1/k} · rtol^{1/(p+1)}.
+/// y(t + h) = Σ_{k=0}^{p} y⁽ᵏ⁾(t) hᵏ/k!, h = min_{k = p−1, p}
+/// (|y⁽ᵏ⁾/k!|/|y|)^{−1/k} · rtol^{1/(p+1)}.
 ///
-/// The polynomial is also what states inside a step are read from. Time and state are sums with
-/// the rounding of each addition carried on [Kahan 1965]. A step whose polynomial has not the rates of the field at its end is tried
-/// again at half its length; none passes a corner or a jump of the field. States are [projected](pc_expr::VectorField::project) at the
-/// end of each step, and inside steps where they are read.
+/// States inside a step are read from the polynomial. Time and state are compensated sums [Kahan
+/// 1965]. A step at whose end the rates of the polynomial differ from those of the field is
+/// repeated with half its length; no step crosses a corner or a jump of the field. States are
+/// [projected](pc_expr::VectorField::project) at the end of each step, and inside steps where they
+/// are read.
 #[derive(Debug)]
 pub struct Taylor<F> {
     pub(super) field: F,
@@ -30,26 +32,26 @@ pub struct Taylor<F> {
     pub(super) min_step: f64,
     pub(super) max_step: f64,
     pub(super) stop_time: Option<f64>,
-    /// The last step: where it began, and what of that time a number does not hold.
+    /// The start of the last step, with the rounding error of its time, and the series there.
     pub(super) start: f64,
     pub(super) start_low: f64,
     pub(super) series: Polynomial,
-    /// Where it ended, likewise, and the series there.
+    /// The end of the last step, likewise.
     pub(super) end: f64,
     pub(super) end_low: f64,
     pub(super) ahead: Polynomial,
-    /// That of the step before while one is made.
+    /// The series of the previous step, while a step is made.
     pub(super) before: Polynomial,
-    /// What of the state at the end its numbers do not hold.
+    /// The rounding error of the state at the end.
     pub(super) low: Vec<f64>,
     pub(super) next_low: Vec<f64>,
-    /// The signs of the branch functions at the end, and where they are computed.
+    /// The signs of the branch functions at the end, their names and their series.
     pub(super) sides: Vec<f64>,
     pub(super) branches: Vec<String>,
     pub(super) branch_series: Polynomial,
-    /// Whether there is no step since the start.
+    /// Whether no step has been made since the start.
     pub(super) begins: bool,
-    /// The direction in which the series ahead holds; 0 where there is none.
+    /// The direction of time in which `ahead` holds; 0 if it is not expanded.
     pub(super) direction: f64,
     pub(super) time: f64,
     pub(super) places: Places,
@@ -60,13 +62,13 @@ pub struct Taylor<F> {
 }
 
 impl<F: VectorField> Taylor<F> {
-    /// Starts at y(t0) = y0, where `y0` has as many numbers as `field` has components, with tolerances, lengths of steps, the highest order
-    /// and limits of the options, whose method does not matter.
+    /// Starts at y(t0) = y0, as long as `field` has components, with the tolerances, step lengths,
+    /// highest order and limits of the options; their method is ignored.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;
-    /// [`InputError::Explicit`](crate::InputError::Explicit) if they choose how implicit equations are solved; [`Reason::Rates`] if the field
-    /// has no [series](VectorField::series).
+    /// [`InputError::Explicit`](crate::InputError::Explicit) if they choose how implicit equations
+    /// are solved; [`Reason::Rates`] if the field has no [series](VectorField::series).
     pub fn new(mut field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
         check_start(&field, t0, y0)?;
         Options { method: Method::Taylor, ..options.clone() }.validate(y0.len())?;
@@ -188,7 +190,7 @@ impl<F: VectorField> Stepper for Taylor<F> {
                 Ok(())
             }
             Err(error) => {
-                // The step before is the last one again.
+                // Restore the previous step as the last one.
                 std::mem::swap(&mut self.series, &mut self.ahead);
                 std::mem::swap(&mut self.before, &mut self.series);
                 (self.start, self.start_low) = before;

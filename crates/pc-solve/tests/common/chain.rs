@@ -3,9 +3,9 @@
 use pc_expr::TimeDependence;
 use pc_solve::{Failure, Pattern, VectorField};
 
-/// Mass i has place and velocity y[4 i..4 i + 4] = (x, z, ẋ, ż). Spring i, of unit length, is between mass i − 1 and
-/// mass i, the first one at the origin. With d and ḋ the differences of its ends, it pulls with
-/// F = `stiffness` (1 − 1/|d|) d + `damping` ḋ, and
+/// Mass i has position and velocity y[4 i..4 i + 4] = (x, z, ẋ, ż). Spring i, of unit length, is
+/// between mass i − 1 and mass i, the first one at the origin. With d and ḋ the differences of its
+/// ends, it pulls with F = `stiffness` (1 − 1/|d|) d + `damping` ḋ, and
 ///
 /// r̈ᵢ = Fᵢ₊₁ − Fᵢ + g − `drag` ṙᵢ.
 pub(crate) struct Chain {
@@ -40,7 +40,7 @@ impl Chain {
         Chain { links, pattern, knows_jacobian: true, knows_products: true }
     }
 
-    /// At rest, straight, half a radian from the vertical, as much stretched as it would be hanging.
+    /// At rest, straight, half a radian from the vertical, stretched as if it were hanging.
     pub(crate) fn start(&self) -> Vec<f64> {
         let mut length = 0.0;
         let (sin, cos) = 0.5_f64.sin_cos();

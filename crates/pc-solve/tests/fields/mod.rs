@@ -30,7 +30,8 @@ pub(crate) fn oscillator() -> ProgramField {
     field(|_, [x, v]| [v, -x])
 }
 
-/// (Ω, γ) of a top with three different moments of inertia and its centre of mass off all axes.
+/// (Ω, γ) of a top with three different moments of inertia and its centre of mass off the principal
+/// axes.
 pub(crate) fn heavy_top() -> ProgramField {
     field(|_, [a, b, c, g, h, k]| {
         let [i1, i2, i3] = MOMENTS;
@@ -47,7 +48,7 @@ pub(crate) fn heavy_top() -> ProgramField {
 }
 
 const MOMENTS: [f64; 3] = [1.0, 1.5, 0.8];
-/// Times the weight.
+/// The centre of mass times the weight.
 const CENTRE: [f64; 3] = [9.81 * 0.03, -9.81 * 0.02, 9.81 * 0.4];
 
 pub(crate) fn top_start() -> [f64; 6] {
@@ -61,7 +62,7 @@ pub(crate) fn top_integrals(y: &[f64]) -> [f64; 2] {
     [kinetic + potential, y[3] * y[3] + y[4] * y[4] + y[5] * y[5]]
 }
 
-/// What a reset writes to a state.
+/// A reset of a state.
 pub(crate) type Reset = fn(&mut [f64]);
 
 /// Events whose functions are a program.
@@ -73,13 +74,13 @@ pub(crate) struct ProgramEvents {
 }
 
 impl ProgramEvents {
-    /// Those that change nothing.
+    /// Events without resets.
     pub(crate) fn new(program: Program) -> ProgramEvents {
         let events = (0..program.outputs_len()).map(|i| (Event::new(format!("g{i}")), None)).collect();
         ProgramEvents::with(program, events)
     }
 
-    /// These events, each with its reset if it has one.
+    /// These events, each with its reset, if any.
     pub(crate) fn with(program: Program, events: Vec<(Event, Option<Reset>)>) -> ProgramEvents {
         let program = Arc::new(program);
         let (events, resets) =

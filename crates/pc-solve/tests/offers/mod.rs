@@ -1,4 +1,4 @@
-//! Fields that offer less than they have.
+//! Fields that offer only some of their derivatives.
 
 #![allow(dead_code, reason = "each test uses some")]
 
@@ -14,7 +14,8 @@ pub(crate) enum Offer {
 
 pub(crate) const OFFERS: [Offer; 3] = [Offer::Products, Offer::Jacobian, Offer::Neither];
 
-/// A field with products, Jacobian and parameters, of which it offers the last and what it is told.
+/// A field with products, Jacobian and parameters, of which it offers the parameters and the given
+/// choice.
 #[derive(Clone, Debug)]
 pub(crate) struct Offering<F>(pub(crate) F, pub(crate) Offer);
 
@@ -102,7 +103,7 @@ impl Oscillator {
     }
 }
 
-/// A plane pendulum with quadratic drag, φ̈ = −p₀ sin φ − p₁ φ̇ |φ̇| + p₂ cos t: not linear in anything but p.
+/// A plane pendulum with quadratic drag, φ̈ = −p₀ sin φ − p₁ φ̇ |φ̇| + p₂ cos t: linear in p only.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pendulum(pub(crate) [f64; 3]);
 
@@ -122,7 +123,8 @@ impl Formulas for Pendulum {
     }
 }
 
-/// A pendulum of unit length and weight in Cartesian coordinates, which notes how far from the circle it is linearised.
+/// A pendulum of unit length and weight in Cartesian coordinates, which notes the largest distance
+/// from the circle at which it is linearised.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Circle {
     pub(crate) farthest: f64,
@@ -161,14 +163,16 @@ impl VectorField for Circle {
     }
 }
 
-/// A derivative by four values, of order 4: for steps of 1e-3 right to 1e-12 of formulas without large derivatives.
+/// A difference quotient of order 4, accurate to 1e-12 with steps of 1e-3 for functions without
+/// large derivatives.
 pub(crate) fn derivative(of: impl Fn(f64) -> f64, at: f64) -> f64 {
     let step = 1e-3;
     let slope = |step: f64| (of(at + step) - of(at - step)) / (2.0 * step);
     (4.0 * slope(step) - slope(2.0 * step)) / 3.0
 }
 
-/// Both methods with tolerances of 1e-11 and 1e-13, of which the local errors of some hundred steps make 1e-9.
+/// Both methods with tolerances of 1e-11 and 1e-13; the local errors of some hundred steps add up
+/// to 1e-9.
 pub(crate) fn precise() -> [Options; 2] {
     [Method::Adams, Method::Bdf]
         .map(|method| Options::new(method).relative_tolerance(1e-11).absolute_tolerance(1e-13))

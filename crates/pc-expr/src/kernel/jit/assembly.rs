@@ -1,4 +1,4 @@
-//! Compiled functions, and the memory that they lie in.
+//! Compiled functions, and their memory.
 
 use std::mem::ManuallyDrop;
 use std::sync::Mutex;
@@ -12,12 +12,12 @@ use cranelift_module::{FuncId, Module};
 use super::error::JitError;
 use crate::kernel::kernel::Entry;
 
-/// Compiled functions and the memory they lie in, which is freed with them.
+/// Compiled functions with their memory, which is freed with them.
 pub(super) struct Assembly(ManuallyDrop<JITModule>);
 
 impl Assembly {
     pub(super) fn new(isa: &OwnedTargetIsa) -> Assembly {
-        // No code refers to anything by name: addresses are written into it.
+        // The code refers to nothing by name: it contains addresses.
         let builder = JITBuilder::with_isa(isa.clone(), cranelift_module::default_libcall_names());
         Assembly(ManuallyDrop::new(JITModule::new(builder)))
     }
@@ -29,15 +29,15 @@ impl Assembly {
         Ok(id)
     }
 
-    /// A name by which a function may call another one.
+    /// A reference by which a function may call another one.
     pub(super) fn name_in(&mut self, id: FuncId, function: &mut Function) -> FuncRef {
         let name = self.0.declare_func_in_func(id, function);
-        // The two may lie further apart than a relative call reaches.
+        // The two may be further apart than a relative call reaches.
         function.dfg.ext_funcs[name].colocated = false;
         name
     }
 
-    /// Makes the code executable, to be entered at a function; `constants` are what it reads by address.
+    /// Makes the code executable, with this entry; `constants` are read by address.
     pub(super) fn finish(mut self, entry: FuncId, constants: Box<[f64]>) -> Result<Code, JitError> {
         self.0.finalize_definitions()?;
         let address = self.0.get_finalized_function(entry) as usize;
@@ -47,8 +47,8 @@ impl Assembly {
 
 impl Drop for Assembly {
     fn drop(&mut self) {
-        // SAFETY: the module is not used after it is taken here. Addresses of its code are in the `Code` that owns this
-        // assembly, and whoever copies them from there answers for not using them after it.
+        // SAFETY: the module is not used after it is taken here. Addresses of its code are in the
+        // `Code` that owns this assembly, and copies of them must not be used after it is dropped.
         unsafe { ManuallyDrop::take(&mut self.0).free_memory() };
     }
 }
@@ -56,7 +56,7 @@ impl Drop for Assembly {
 /// Executable code.
 pub(super) struct Code {
     address: usize,
-    /// Owned, never looked at; the mutex makes it `Sync`.
+    /// Owned, never read; the mutex makes it `Sync`.
     _assembly: Mutex<Assembly>,
     /// Read by the code.
     _constants: Box<[f64]>,
@@ -69,7 +69,8 @@ impl Code {
 
     /// The code as a function, for code of [`entry_signature`](super::host::Host::entry_signature).
     pub(super) fn entry(&self) -> Entry {
-        // SAFETY: the address is that of a finished function; making a pointer of it does not call it.
+        // SAFETY: the address is that of a finished function; making a pointer of it does not call
+        // it.
         unsafe { std::mem::transmute::<*const u8, Entry>(self.address as *const u8) }
     }
 }

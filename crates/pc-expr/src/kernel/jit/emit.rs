@@ -16,7 +16,7 @@ use super::{shim, sincos};
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
-/// Compiles a program; answers how many numbers of scratch memory it needs, too.
+/// Compiles a program; also returns the length of its scratch memory.
 pub(super) fn compile(host: &Host, program: &Program, plan: &Plan) -> Result<(Code, usize), JitError> {
     let constants: Box<[f64]> = program.constants().into();
     let mut assembly = Assembly::new(host.isa());
@@ -75,7 +75,7 @@ fn call_all(
     assembly.define(context)
 }
 
-/// Where a value waits.
+/// Where a value is in memory.
 #[derive(Clone, Copy)]
 enum Home {
     None,
@@ -85,16 +85,17 @@ enum Home {
     Output(u32),
 }
 
-/// What is known of the registers' values while the steps are written down.
+/// The values of the program's registers while the steps are emitted.
 struct Values {
-    /// The value in a machine register, as far as the plan holds it there.
+    /// The values held in machine registers, by the plan.
     live: Vec<Option<Value>>,
-    /// How many operands have been read.
+    /// The number of operands read so far.
     read: usize,
     home: Vec<Home>,
     free: Vec<u32>,
     slots: u32,
-    /// The outputs that are results: by register the first of them, and by output the next one of the same register.
+    /// Outputs that are results, as linked lists: by register the first output, and by output the
+    /// next one of the same register.
     first_output: Vec<u32>,
     next_output: Vec<u32>,
 }
@@ -152,7 +153,7 @@ impl Emitter<'_> {
         self.b.finalize(self.host.frontend_config());
     }
 
-    /// Time is the one input that comes in a register: where it is needed later, it waits in a slot of its own.
+    /// Time is the only input passed in a register: if it is needed later, it gets a slot.
     fn keep_time(&mut self) {
         let time = self.program.first_input();
         self.values.live[time] = Some(self.memory.t);
@@ -163,7 +164,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Outputs that are constants or inputs.
+    /// Writes the outputs that are constants or inputs.
     fn copy_outputs(&mut self) {
         for (i, &output) in self.program.outputs().iter().enumerate() {
             if output.index() < self.program.first_result() {
@@ -201,7 +202,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The operand to be read next, loaded where it is not in a machine register, and whether it stays in one.
+    /// The next operand, loaded unless it is in a machine register, and whether it stays in one.
     fn operand(&mut self, register: Register) -> (Value, bool) {
         let r = register.index();
         let Stay { held, dies } = self.plan.stays[self.values.read];
@@ -214,7 +215,7 @@ impl Emitter<'_> {
         (value, !dies)
     }
 
-    /// The value of the operand to be read next.
+    /// The value of the next operand.
     fn value(&mut self, register: Register) -> Value {
         self.operand(register).0
     }
@@ -233,7 +234,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Notes the result of a step, and stores it if it is an output or must wait.
+    /// Notes the result of a step, and stores it if it is an output or is needed from memory.
     fn set(&mut self, register: Register, value: Value) {
         let r = register.index();
         self.values.live[r] = Some(value);
@@ -249,7 +250,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Gives back the slots of values that step `now` was the last to read.
+    /// Frees the slots of values read for the last time by step `now`.
     fn free(&mut self, now: u32) {
         let (plan, values) = (self.plan, &mut *self.values);
         plan.steps[now as usize].for_each_operand(|register| {
@@ -309,7 +310,7 @@ impl Emitter<'_> {
     /// ±a·b ± c, rounded once.
     fn multiply_add(&mut self, abc: [Register; 3], negate_product: bool, negate_term: bool) -> Value {
         let [(a, a_stays), (b, b_stays), (c, _)] = abc.map(|r| self.operand(r));
-        // The result takes the place of the first operand: if that is not used again, nothing need be copied.
+        // The result overwrites the first operand: a factor that is not used again saves a copy.
         let (a, b) = if a_stays && !b_stays { (b, a) } else { (a, b) };
         let a = if negate_product { self.b.ins().fneg(a) } else { a };
         let c = if negate_term { self.b.ins().fneg(c) } else { c };

@@ -19,7 +19,7 @@ pub enum JitError {
         /// Its length.
         instructions: usize,
     },
-    /// The code generator failed, or memory for the code was not to be had.
+    /// The code generator failed, or memory for the code could not be allocated.
     #[error("the program could not be compiled")]
     Generator(#[source] Box<dyn Error + Send + Sync>),
 }

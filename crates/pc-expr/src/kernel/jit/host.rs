@@ -1,4 +1,4 @@
-//! The processor that code is made for.
+//! The processor for which code is compiled.
 
 use std::error::Error;
 
@@ -12,18 +12,18 @@ use super::assembly::Code;
 pub(super) struct Host {
     isa: OwnedTargetIsa,
     fma: bool,
-    /// The routine for sines and cosines out of the range of the code in line.
+    /// The routine for sines and cosines outside the range of the code in line.
     far_circle: Option<Code>,
 }
 
 impl Host {
-    /// The processor alone, without the routine that is compiled for it.
+    /// The processor, without `far_circle`.
     pub(super) fn new() -> Result<Host, Box<dyn Error + Send + Sync>> {
         if !cfg!(any(target_arch = "x86_64", target_arch = "aarch64")) {
             return Err(format!("the architecture {} is not supported", std::env::consts::ARCH).into());
         }
         let mut flags = settings::builder();
-        // The graph has been optimised already; Cranelift would only undo the order of the plan.
+        // The graph is already optimised; Cranelift would only undo the order of the plan.
         flags.set("opt_level", "none")?;
         flags.set("enable_verifier", if cfg!(debug_assertions) { "true" } else { "false" })?;
         flags.set("unwind_info", "false")?;
@@ -31,7 +31,7 @@ impl Host {
         flags.set("probestack_strategy", "inline")?;
         let isa = cranelift_native::builder()?.finish(settings::Flags::new(flags))?;
         let flags = isa.isa_flags();
-        let fma = cfg!(target_arch = "aarch64") // always there
+        let fma = cfg!(target_arch = "aarch64") // always available
             || flags.iter().any(|flag| flag.name == "has_fma" && flag.as_bool() == Some(true));
         Ok(Host { isa, fma, far_circle: None })
     }
@@ -48,7 +48,8 @@ impl Host {
         self.fma
     }
 
-    /// The address of what [`compile_far`](super::sincos::compile_far) made, where there is fused multiply-add.
+    /// The address of the routine by [`compile_far`](super::sincos::compile_far), on processors
+    /// with fused multiply-add.
     pub(super) fn far_circle(&self) -> usize {
         self.far_circle.as_ref().map_or(0, Code::address)
     }

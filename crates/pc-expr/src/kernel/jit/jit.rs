@@ -15,7 +15,7 @@ use super::options::JitOptions;
 use super::plan::Plan;
 use super::{emit, sincos};
 
-/// More registers than this are not compiled: offsets in memory are 32-bit.
+/// Maximum number of registers, since offsets in memory are 32-bit.
 const MOST_REGISTERS: usize = i32::MAX as usize / 16;
 
 /// A kernel that runs a program as machine code.
@@ -43,10 +43,10 @@ pub struct Jit {
 }
 
 impl Jit {
-    /// Compiles a program with the usual [options](JitOptions).
+    /// Compiles a program with the default [options](JitOptions).
     ///
     /// # Errors
-    /// [`JitError`], of which only [`JitError::Host`] is to be expected.
+    /// [`JitError`], normally only [`JitError::Host`].
     pub fn new(program: &Program) -> Result<Jit, JitError> {
         Jit::with_options(program, &JitOptions::default())
     }
@@ -54,7 +54,7 @@ impl Jit {
     /// Compiles a program.
     ///
     /// # Errors
-    /// [`JitError`], of which only [`JitError::Host`] is to be expected.
+    /// [`JitError`], normally only [`JitError::Host`].
     pub fn with_options(program: &Program, options: &JitOptions) -> Result<Jit, JitError> {
         let host = Host::get()?;
         if program.registers_len().max(program.outputs_len()) > MOST_REGISTERS {
@@ -72,7 +72,8 @@ impl Jit {
         })
     }
 
-    /// The address of the code, for callers that manage memory themselves; valid as long as this kernel or a clone of it.
+    /// The address of the code, for callers that manage memory themselves; valid as long as this
+    /// kernel or a clone of it.
     pub fn entry(&self) -> Entry {
         self.code.entry()
     }
@@ -99,7 +100,7 @@ impl Jit {
 }
 
 impl Host {
-    /// The host, looked at once.
+    /// The host, examined once.
     fn get() -> Result<&'static Host, JitError> {
         static HOST: OnceLock<Result<Host, String>> = OnceLock::new();
         HOST.get_or_init(|| Host::with_routines().map_err(|error| error.to_string()))
@@ -130,16 +131,18 @@ impl fmt::Debug for Jit {
 
 impl Kernel for Jit {
     /// # Panics
-    /// If a slice does not have the length that the program says: the code would read or write beyond it.
+    /// If a slice does not have the length given by the program: the code would read or write
+    /// beyond it.
     fn eval(&mut self, t: f64, state: &[f64], parameters: &[f64], outputs: &mut [f64]) {
-        // One by one, in registers: this is entered for every evaluation.
+        // Compared one by one, in registers, since this runs for every evaluation.
         let [of_state, of_parameters, of_outputs] = self.lengths;
         assert_eq!(state.len(), of_state, "length of the state");
         assert_eq!(parameters.len(), of_parameters, "number of parameters");
         assert_eq!(outputs.len(), of_outputs, "number of outputs");
         let entry = self.code.entry();
-        // SAFETY: `self.code` holds the code; it reads and writes within the lengths just checked and within
-        // `scratch_len` numbers of scratch, and exclusive borrows keep outputs and scratch apart from the rest.
+        // SAFETY: `self.code` holds the code; it reads and writes within the lengths just checked
+        // and within `scratch_len` numbers of scratch, and exclusive borrows keep outputs and
+        // scratch apart from the rest.
         unsafe {
             entry(t, state.as_ptr(), parameters.as_ptr(), outputs.as_mut_ptr(), self.scratch.as_mut_ptr());
         }

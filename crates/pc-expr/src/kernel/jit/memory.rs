@@ -1,14 +1,15 @@
-//! How compiled code finds numbers in memory.
+//! Addressing of memory by compiled code.
 //!
-//! On x86-64 an address less than 128 bytes away from that in a register takes one byte of an instruction, one further
-//! away takes four; and code too long for the instruction cache runs several times slower. So memory is seen through
-//! windows of 256 bytes, with an address in a register for the middle of each.
+//! On x86-64 an offset of less than 128 bytes from an address in a register takes one byte of an
+//! instruction, a larger one takes four; and code too long for the instruction cache runs several
+//! times slower. So memory is divided into windows of 256 bytes, with the address of the middle of
+//! each in a register.
 
 use cranelift_codegen::cursor::{Cursor, FuncCursor};
 use cranelift_codegen::ir::{Block, InstBuilder, MemFlagsData, Value, types};
 use cranelift_frontend::FunctionBuilder;
 
-/// Numbers in a window.
+/// Number of values in a window.
 const WINDOW: u32 = 32;
 
 /// Memory that compiled code reads or writes.
@@ -22,8 +23,8 @@ pub(super) enum Area {
 }
 
 impl Area {
-    /// Windows with a register; what lies further away is reached from the last of them. All together are fewer than
-    /// the registers there are.
+    /// Number of windows with a register; memory beyond them is addressed from the last one.
+    /// Together they leave registers free.
     fn windows(self) -> u32 {
         match self {
             Area::Scratch => 6,
@@ -37,7 +38,7 @@ impl Area {
 pub(super) struct Memory {
     entry: Block,
     body: Block,
-    /// The argument that is not an address.
+    /// The argument t, the only one that is not an address.
     pub(super) t: Value,
     /// Addresses of state, parameters, outputs and scratch.
     arguments: [Value; 4],
@@ -47,7 +48,8 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// Opens a function of [`Entry`](super::Entry)'s signature: a first block to compute addresses, and the body.
+    /// Opens a function with the signature of [`Entry`](super::Entry): a first block to compute
+    /// addresses, and the body.
     pub(super) fn open(b: &mut FunctionBuilder<'_>, constants: &[f64]) -> Memory {
         let entry = b.create_block();
         b.append_block_params_for_function_params(entry);
@@ -94,7 +96,7 @@ impl Memory {
             Area::Scratch => scratch,
             Area::Constants => entry.ins().iconst(types::I64, self.constants),
         };
-        // A sum would be taken apart again and computed at each use; a difference is not.
+        // Cranelift would fold a sum into each use and compute it there, but not a difference.
         let distance = entry.ins().iconst(types::I64, -i64::from(middle(window)));
         entry.ins().isub(start, distance)
     }
@@ -106,7 +108,7 @@ impl Memory {
     }
 }
 
-/// Where the middle of a window lies, in bytes from the start of its area.
+/// The offset of the middle of a window in bytes from the start of its area.
 fn middle(window: u32) -> i32 {
     (window * WINDOW * 8 + WINDOW * 4) as i32
 }

@@ -1,21 +1,22 @@
-//! The order of computation, and which values wait in memory.
+//! The order of computation, and which values stay in memory.
 //!
-//! Straight-line code of thousands of operations does not fit sixteen registers, and register allocators spill it
-//! badly. So the order is chosen here: depth first from the outputs, the operand that needs more registers first. And
-//! so are the values that wait in memory instead of holding a register: whenever there are too many, the one whose next
-//! use is furthest away (Belady, IBM Systems Journal 5 (1966) 78), which for straight-line code loads least often.
+//! Straight-line code of thousands of operations does not fit sixteen registers, and register
+//! allocators spill it badly. So the order is chosen here: depth first from the outputs, the
+//! operand that needs more registers first. So are the values that stay in memory: whenever there
+//! are too many for the registers, the one whose next use is furthest away (Belady, IBM Systems
+//! Journal 5 (1966) 78), which for straight-line code minimises the number of loads.
 
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
 use super::options::JitOptions;
 
-/// Programs of more instructions than this are cut into several functions.
+/// Programs with more instructions than this are divided into several functions.
 const WHOLE: usize = 50_000;
-/// How many circles further on the partner of one is looked for.
+/// Number of following circles among which a partner is sought.
 const PARTNERS: usize = 8;
 
-/// The sine and the cosine of one argument, as far as they are wanted.
+/// The sine and the cosine of an argument, as far as they are needed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Circle {
     pub(super) argument: Register,
@@ -29,7 +30,7 @@ impl Circle {
     }
 }
 
-/// What is computed at once.
+/// A unit of computation.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Step {
     /// One instruction and its register.
@@ -39,7 +40,7 @@ pub(super) enum Step {
 }
 
 impl Step {
-    /// Calls `f` with every register read.
+    /// Calls `f` for every register read.
     pub(super) fn for_each_operand(&self, mut f: impl FnMut(Register)) {
         match self {
             Step::One(_, instruction) => instruction.operands().for_each(f),
@@ -52,7 +53,7 @@ impl Step {
         }
     }
 
-    /// Calls `f` with every register written.
+    /// Calls `f` for every register written.
     pub(super) fn for_each_result(&self, mut f: impl FnMut(Register)) {
         match self {
             Step::One(register, _) => f(*register),
@@ -64,25 +65,25 @@ impl Step {
     }
 }
 
-/// The steps of a program and where their values live.
+/// The steps of a program and the places of their values.
 pub(super) struct Plan {
     pub(super) steps: Vec<Step>,
     /// By register: the last step that reads it.
     pub(super) last_use: Vec<u32>,
-    /// By register: whether it is needed again after it has left the machine's registers.
+    /// By register: whether it is needed again after leaving the machine registers.
     pub(super) waits: Vec<bool>,
     /// By operand, in the order of the steps.
     pub(super) stays: Vec<Stay>,
-    /// Steps in a function.
+    /// Number of steps in a function.
     pub(super) chunk: usize,
 }
 
-/// An operand's stay in the machine's registers.
+/// Whether an operand is in a machine register before and after its use.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stay {
-    /// Whether it is there already.
+    /// Whether it is there before.
     pub(super) held: bool,
-    /// Whether it does not stay for a further use.
+    /// Whether it is not kept for a further use.
     pub(super) dies: bool,
 }
 
@@ -137,7 +138,7 @@ impl Plan {
     }
 }
 
-/// When values are used next.
+/// The next uses of values.
 struct NextUses {
     /// By register: the first step that reads it.
     at_start: Vec<u32>,
@@ -160,7 +161,7 @@ impl NextUses {
             step.for_each_result(|r| registers.push(r.index()));
             after_result.extend(registers.drain(..).rev().map(|r| next[r]));
             step.for_each_operand(|r| registers.push(r.index()));
-            // An operand that is read twice in a step has the same next use both times.
+            // Both readings of an operand read twice in a step have the same next use.
             after_operand.extend(registers.iter().rev().map(|&r| next[r]));
             for r in registers.drain(..) {
                 last_use[r] = last_use[r].max(now);
@@ -179,7 +180,7 @@ struct MachineRegisters {
     values: Vec<usize>,
     /// By register of the program: its next use, if it is held.
     next: Vec<u32>,
-    /// By register of the program: the step and the operand that read it last.
+    /// By register of the program: the step and the operand of its last reading.
     read_at: Vec<usize>,
     read_last: Vec<usize>,
 }
@@ -209,7 +210,7 @@ impl MachineRegisters {
         }
     }
 
-    /// Keeps `value`, which is used next at step `next`, if there is room or a value is used later still.
+    /// Keeps `value`, next used at step `next`, if there is room or another value is used later.
     fn keep(&mut self, value: usize, next: u32) {
         if let Some(place) = self.values.iter().position(|&r| r == value) {
             self.next[value] = next;
@@ -231,12 +232,13 @@ impl MachineRegisters {
     }
 }
 
-/// The positions of the instructions that the outputs need, depth first, the more demanding operand first.
+/// The positions of the instructions that the outputs need, depth first, the operand that needs
+/// more registers first.
 fn depth_first(program: &Program) -> Vec<u32> {
     let first = program.first_result();
     let code = program.code();
     let position = |r: Register| r.index().checked_sub(first);
-    // How many registers an instruction takes if everything below it is a tree (Sethi and Ullman).
+    // Number of registers for an instruction if its operands form a tree (Sethi and Ullman).
     let mut needs: Vec<u32> = Vec::with_capacity(code.len());
     let sorted = |needs: &[u32], instruction: &Instruction| {
         let mut operands = [(0, 0); 3];
@@ -283,8 +285,8 @@ fn one(program: &Program, i: u32) -> Step {
     Step::One(register, program.code()[i as usize])
 }
 
-/// The steps with sines and cosines of the same argument together, and two such circles together where both arguments
-/// are known: two lanes cost as much as one.
+/// The steps, with sines and cosines of the same argument computed together, and two such circles
+/// together if both arguments are known: two lanes cost as much as one.
 fn with_circles(program: &Program, order: &[u32]) -> Vec<Step> {
     let mut circles: Vec<Circle> = Vec::new();
     let mut circle_of_argument = vec![u32::MAX; program.registers_len()];

@@ -1,11 +1,11 @@
-//! How every function begins and ends.
+//! The beginning and end of functions.
 
 use cranelift_codegen::ir::{InstBuilder, Value};
 use cranelift_frontend::FunctionBuilder;
 
 use super::host::Host;
 
-/// Opens the first block of a function; answers the function's parameters.
+/// Opens the first block of a function; returns the function's parameters.
 pub(super) fn open(b: &mut FunctionBuilder<'_>) -> Vec<Value> {
     let block = b.create_block();
     b.append_block_params_for_function_params(block);

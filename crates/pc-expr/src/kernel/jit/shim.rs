@@ -1,4 +1,4 @@
-//! The elementary functions as compiled code calls them: the values of [`Function::eval`] under the C calling convention.
+//! The elementary functions for compiled code: [`Function::eval`] under the C calling convention.
 
 use crate::graph::function::Function;
 
@@ -48,10 +48,10 @@ pub(super) fn multiply_add_address() -> usize {
     multiply_add as *const () as usize
 }
 
-/// The address of a function of x and a pointer to where (sin x, cos x) goes.
+/// The address of a function of x and a pointer, to which it writes (sin x, cos x).
 pub(super) fn circle_address() -> usize {
     extern "C" fn circle(x: f64, place: *mut [f64; 2]) {
-        // SAFETY: compiled code passes the address of two numbers of its own.
+        // SAFETY: compiled code passes the address of two numbers on its stack.
         unsafe { *place = [x.sin(), x.cos()] };
     }
     circle as *const () as usize

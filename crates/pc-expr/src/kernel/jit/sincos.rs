@@ -1,12 +1,13 @@
 //! Sines and cosines in line, two arguments in the two lanes of a vector.
 //!
-//! With n the integer nearest to 2x/π, r = x − nπ/2 lies in [−π/4, π/4]; sin r and cos r are polynomials of r (those of
-//! the Cephes library), and n mod 4 says which of them, with which sign, is the sine of x and which the cosine.
+//! With n the integer nearest to 2x/π, r = x − nπ/2 lies in [−π/4, π/4]; sin r and cos r are
+//! polynomials of r (those of the Cephes library), and n mod 4 determines which of them, with which
+//! sign, is the sine of x and which the cosine.
 //!
-//! For |x| ≤ [`RANGE`] the errors stay below 2 units in the last place: π/2 is the sum of [`HALF_PI`]; n has 17 bits,
-//! so that x − n·HALF_PI\[0\] is exact (a multiple of 2⁻⁵³ below 1), the second part is subtracted by a fused operation
-//! that rounds r once, and the third, which matters only where r is tiny, joins the polynomial of the sine, where it
-//! does not matter that the cosine does without it.
+//! For |x| ≤ [`RANGE`] the errors stay below 2 units in the last place: π/2 is the sum of
+//! [`HALF_PI`]; n has 17 bits, so that x − n·HALF_PI\[0\] is exact (a multiple of 2⁻⁵³ below 1),
+//! the second part is subtracted by a fused operation that rounds r once, and the third, which
+//! matters only for tiny r, is added to the polynomial of the sine; the cosine does not need it.
 
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
@@ -24,7 +25,7 @@ use super::prologue::{close, open};
 use super::shim;
 use crate::kernel::circle::{COS, HALF_PI, ROUNDING, SIN};
 
-/// Arguments beyond this, and those that are not numbers, go to the library.
+/// Arguments beyond this, and NaN, are left to the library.
 const RANGE: f64 = 1e5;
 
 /// Writes (sin x, cos x) of one or two arguments.
@@ -74,15 +75,15 @@ pub(super) fn emit(b: &mut FunctionBuilder<'_>, host: &Host, arguments: &[Value]
     results.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect()
 }
 
-/// The signature of the [far](compile_far) routine: it keeps all registers, so that the code around need not give way to
-/// a call that hardly ever happens.
+/// The signature of the [far](compile_far) routine: it preserves all registers, so that this rare
+/// call does not constrain the surrounding code.
 fn far_signature() -> Signature {
     let mut signature = Signature::new(CallConv::PreserveAll);
     signature.params.extend([AbiParam::new(types::F64), AbiParam::new(types::I64)]);
     signature
 }
 
-/// Compiles the routine that writes (sin x, cos x) by the library to a place in memory.
+/// Compiles the routine that writes (sin x, cos x), computed by the library, to memory.
 pub(super) fn compile_far(host: &Host) -> Result<Code, JitError> {
     let mut context = Context::new();
     context.func.signature = far_signature();
@@ -120,7 +121,7 @@ impl Lanes<'_, '_> {
         let z = self.b.ins().fmul(r, r);
         let z2 = self.b.ins().fmul(z, z);
         let z4 = self.b.ins().fmul(z2, z2);
-        // −sin r = (−r) − (r³p − n·π₃): of these signs, that of zero comes out right.
+        // −sin r = (−r) − (r³p − n·π₃): with these signs that of zero is right.
         let p = self.polynomial(&SIN, z, z2, z4);
         let tail = self.b.ins().fmul(minus_n, third);
         let r3 = self.b.ins().fmul(r, z);
@@ -152,7 +153,7 @@ impl Lanes<'_, '_> {
         })
     }
 
-    /// Σ cᵢ zⁱ, in pairs so that few operations wait for each other.
+    /// Σ cᵢ zⁱ, in pairs so that few operations depend on each other.
     fn polynomial(&mut self, c: &[f64; 6], z: Value, z2: Value, z4: Value) -> Value {
         let [c0, c1, c2, c3, c4, c5] = c.map(|c| self.number(c));
         let low = self.b.ins().fma(c1, z, c0);

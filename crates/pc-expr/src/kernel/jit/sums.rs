@@ -1,19 +1,21 @@
-//! Sums of products by the widest vectors of the processor, rounded once a term, as compiled code does.
+//! Sums of products with the widest vectors of the processor, rounded once per term, as in compiled
+//! code.
 
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
 
 use crate::taylor::sums::{Rows, sums, sums_by};
 
-/// Writes Σ_{j=1}^{k−1} a_j b_{k−j} of all sums.
+/// Writes Σ_{j=1}^{k−1} a_j b_{k−j} for all sums.
 pub(crate) type Sums = fn(Rows<'_>, usize, &mut [f64]);
 
-/// What this processor does fastest. The width of vectors does not change a bit of the results.
+/// The fastest implementation on this processor. The results do not depend on the width of vectors,
+/// to the last bit.
 pub(crate) fn fastest() -> Sums {
     #[cfg(target_arch = "x86_64")]
     {
         if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("fma") {
-            // SAFETY: the processor has what the function is compiled for, which looks at the lengths itself.
+            // SAFETY: the processor has the features of the function, which checks the lengths.
             return |rows, k, out| unsafe { by_eight(rows, k, out) };
         }
         if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
@@ -24,7 +26,8 @@ pub(crate) fn fastest() -> Sums {
     if cfg!(target_arch = "aarch64") { |rows, k, out| sums_by(rows, k, out, f64::mul_add) } else { sums }
 }
 
-/// A function that adds the terms in the order of [`order_of_terms`](crate::taylor::sums::order_of_terms) by vectors of a width.
+/// A function that adds the terms in the order of
+/// [`order_of_terms`](crate::taylor::sums::order_of_terms) with vectors of this width.
 #[cfg(target_arch = "x86_64")]
 macro_rules! by_vectors {
     ($name:ident, $features:literal, $lanes:literal, $load:ident, $store:ident, $fma:ident, $add:ident, $zero:ident) => {
@@ -33,8 +36,9 @@ macro_rules! by_vectors {
             assert!(rows.hold(k, out), "rows for all terms");
             let Rows { numbers, stride, sums: width } = rows;
             for place in (0..width).step_by($lanes) {
-                // SAFETY: `place` leaves a vector in both halves of a row, widths being multiples of 8, and j and k − j are at least 1 and
-                // at most k − 1, the number of rows that there are; `out` is as wide.
+                // SAFETY: `place` leaves a vector in both halves of a row, widths being multiples
+                // of 8, and j and k − j are at least 1 and at most k − 1, the number of rows; `out`
+                // is as wide.
                 unsafe {
                     let (a, b) = (numbers.as_ptr().add(place), numbers.as_ptr().add(width + place));
                     let term = |j: usize, sum| {
@@ -49,7 +53,7 @@ macro_rules! by_vectors {
                         parts[3] = term(j + 3, parts[3]);
                         j += 4;
                     }
-                    // The next of the parts in turn is always the first one.
+                    // The remaining terms begin with the first part again.
                     let mut left = 0;
                     while j + 1 < k {
                         parts[left] = term(j, parts[left]);
@@ -106,13 +110,13 @@ mod tests {
             sums_by(rows, k, &mut expected, f64::mul_add);
             if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
                 let mut found = vec![0.0; sums];
-                // SAFETY: the processor has what is asked for.
+                // SAFETY: the processor has these features.
                 unsafe { by_four(rows, k, &mut found) };
                 assert_eq!(found, expected, "order {k}");
             }
             if is_x86_feature_detected!("avx512f") {
                 let mut found = vec![0.0; sums];
-                // SAFETY: the processor has what is asked for.
+                // SAFETY: the processor has these features.
                 unsafe { by_eight(rows, k, &mut found) };
                 assert_eq!(found, expected, "order {k}");
             }

@@ -1,8 +1,8 @@
-//! The functions of expressions in lanes.
+//! Functions in lanes.
 //!
-//! sin and cos are computed in line with errors below 2 units in the last place, exp and log below 1.5; √, min, max, |x|, sign
-//! and step are operations; the others are called lane by lane. Where an argument is out of the range of what is in line, the library
-//! computes the function of that lane.
+//! sin and cos are computed in line with errors below 2 units in the last place, exp and log below
+//! 1.5; √, min, max, |x|, sign and step are operations; the others are called lane by lane. For an
+//! argument outside the range of the code in line, the library computes the function of that lane.
 
 use super::tape::{Binary, Fused, LaneTape, LaneValue};
 use crate::graph::function::Function;
@@ -10,12 +10,13 @@ use crate::kernel::circle::{COS, HALF_PI, ROUNDING, SIN};
 
 const SIGN: u64 = 1 << 63;
 
-/// Arguments of sin and cos up to here are reduced in line: with n below 2³⁰, x − n·HALF_PI\[0\] is a multiple of 2⁻⁵³ below 1 and
-/// therefore exact, and the third part of π/2 still stands for what is left.
+/// Arguments of sin and cos up to this are reduced in line: with n below 2³⁰, x − n·HALF_PI\[0\] is
+/// a multiple of 2⁻⁵³ below 1 and therefore exact, and the third part of π/2 still covers the
+/// remainder.
 const CIRCLE_RANGE: f64 = 1e9;
-/// log 2 as a sum, of which n times the first part is exact for |n| < 2¹¹.
+/// log 2 as a sum; n times the first part is exact for |n| < 2¹¹.
 const LOG_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
-/// Beyond these eˣ is 0 or infinite.
+/// Arguments beyond which eˣ is 0 or infinite.
 const EXP_RANGE: [f64; 2] = [-746.0, 710.0];
 /// (log (1+s)/(1−s) − 2s)/s in powers of s², for |s| below 0.1716 [the coefficients of fdlibm].
 const LOG: [f64; 7] = [
@@ -27,7 +28,7 @@ const LOG: [f64; 7] = [
     1.531_383_769_920_937_3e-1,
     1.479_819_860_511_658_6e-1,
 ];
-/// The upper half of the bits of √½, by which numbers are divided into 2ᵏ m with m around 1.
+/// The upper half of the bits of √½, for splitting numbers into 2ᵏ m with m around 1.
 const ROOT_OF_HALF: u64 = 0x3fe6_a09e << 32;
 
 impl LaneTape {
@@ -63,7 +64,7 @@ impl LaneTape {
         self.binary(Binary::And, a, rest)
     }
 
-    /// f of as many arguments as it has.
+    /// The function of its arguments, the first of these three.
     pub(super) fn function(&mut self, function: Function, arguments: [LaneValue; 3]) -> LaneValue {
         let [x, y, z] = arguments;
         let zero = self.constant(0.0);
@@ -104,8 +105,8 @@ impl LaneTape {
         }
     }
 
-    /// [sin x, cos x]: with n the integer nearest to 2x/π, r = x − nπ/2 lies in [−π/4, π/4], and n mod 4 says which of sin r
-    /// and cos r, with which sign, is which.
+    /// [sin x, cos x]: with n the integer nearest to 2x/π, r = x − nπ/2 lies in [−π/4, π/4], and n
+    /// mod 4 determines which of ±sin r and ±cos r is sin x and which cos x.
     fn circle(&mut self, x: LaneValue) -> [LaneValue; 2] {
         if let Some(&known) = self.circles.get(&x) {
             return known;
@@ -119,7 +120,7 @@ impl LaneTape {
         let z = self.multiply(r, r);
         let z2 = self.multiply(z, z);
         let z4 = self.multiply(z2, z2);
-        // −sin r = (−r) − (r³p − n·π₃): of these signs, that of zero comes out right.
+        // −sin r = (−r) − (r³p − n·π₃): with these signs that of zero is right.
         let p = self.six(&SIN, z, z2, z4);
         let minus_n = self.negate(n);
         let tail = self.multiply(minus_n, third);
@@ -150,11 +151,11 @@ impl LaneTape {
         both
     }
 
-    /// eˣ = 2ⁿ eʳ with r = x − n log 2, and 2ⁿ in two factors, so that only the last product is rounded where it is
-    /// subnormal.
+    /// eˣ = 2ⁿ eʳ with r = x − n log 2, and 2ⁿ in two factors, so that only the last product is
+    /// rounded if the result is subnormal.
     fn exp(&mut self, x: LaneValue) -> LaneValue {
         let [least, most] = EXP_RANGE.map(|bound| self.constant(bound));
-        // What is not a number stays so: it is the second operand.
+        // A NaN persists as the second operand.
         let x = self.binary(Binary::Greater, least, x);
         let x = self.binary(Binary::Lesser, most, x);
         let (scale, rounding) = (self.constant(std::f64::consts::LOG2_E), self.constant(ROUNDING));
@@ -164,7 +165,7 @@ impl LaneTape {
         let rest = self.fused(Fused::NegateMultiplyAdd, n, first, x);
         let r = self.fused(Fused::NegateMultiplyAdd, n, second, rest);
 
-        // (eʳ − 1 − r)/r²: the terms left out are below 4e-18.
+        // (eʳ − 1 − r)/r²: the neglected terms are below 4e-18.
         let (mut terms, mut factorial) = (Vec::new(), 1.0);
         for k in 2..=13 {
             factorial *= f64::from(k);
@@ -239,7 +240,7 @@ impl LaneTape {
         self.near((Function::Log, x), (x, most), value)
     }
 
-    /// Σ cᵢ zⁱ, in pairs so that few operations wait for each other.
+    /// Σ cᵢ zⁱ, in pairs so that few operations depend on each other.
     fn six(&mut self, c: &[f64; 6], z: LaneValue, z2: LaneValue, z4: LaneValue) -> LaneValue {
         let [c0, c1, c2, c3, c4, c5] = c.map(|c| self.constant(c));
         let low = self.multiply_add(c1, z, c0);

@@ -1,15 +1,15 @@
-//! Programs within tapes.
+//! Programs as parts of tapes.
 
 use super::tape::{Binary, Fused, LaneTape, LaneValue};
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
 impl LaneTape {
-    /// Appends the operations of a program, with multiply-adds fused, for these values of time, state and parameters; its
-    /// outputs.
+    /// Appends the operations of a program, with fused multiply-adds, at these values of time,
+    /// state and parameters; returns its outputs.
     ///
     /// # Panics
-    /// Unless there are as many as the program reads.
+    /// Unless the lengths are those of the program.
     pub fn inline(
         &mut self,
         program: &Program,
@@ -48,7 +48,8 @@ impl LaneTape {
         program.outputs().iter().map(|r| values[r.index()]).collect()
     }
 
-    /// The same function of the same arguments; those beyond its arity do not make a difference.
+    /// The function, with arguments beyond its arity made equal, so that the same call is one
+    /// value.
     fn apply(&mut self, function: Function, mut arguments: [LaneValue; 3]) -> LaneValue {
         for i in function.arity()..3 {
             arguments[i] = arguments[0];

@@ -1,6 +1,6 @@
-//! The instructions of processors that work on lanes.
+//! Instruction sets for lanes.
 
-/// What a [`LaneKernel`](crate::LaneKernel) runs on. The results are the same on all.
+/// The instruction set of a [`LaneKernel`](crate::LaneKernel). The results are the same with all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InstructionSet {
     /// Vectors of eight numbers: AVX-512 F and DQ.
@@ -12,7 +12,7 @@ pub enum InstructionSet {
 }
 
 impl InstructionSet {
-    /// Those of this processor, the fastest first.
+    /// The sets of this processor, the fastest first.
     pub fn available() -> Vec<InstructionSet> {
         let all = [InstructionSet::Avx512, InstructionSet::Avx2, InstructionSet::Portable];
         all.into_iter().filter(|set| set.is_available()).collect()

@@ -1,4 +1,4 @@
-//! Tapes that run.
+//! Execution of tapes.
 
 use std::sync::Arc;
 
@@ -8,11 +8,11 @@ use super::machine::code::Code;
 use super::portable::CHUNK;
 use super::tape::{LANES, LaneTape, Lanes};
 
-/// A [`LaneTape`] that can be run, by machine code where there is some for this processor.
+/// A [`LaneTape`] that can be run, by machine code if there is some for this processor.
 ///
-/// Each lane's results are those of its own inputs, bit for bit the same beside any others and on any
-/// processor; only where a function is called that is not computed in line do they depend on the library of the system.
-/// (Bits of what is not a number may differ.) Clones share the code.
+/// The results of a lane depend on its own inputs only, bit for bit the same beside any other lanes
+/// and on any processor; only for functions that are not computed in line do they depend on the
+/// system's library. (The bits of a NaN may differ.) Clones share the code.
 #[derive(Clone, Debug)]
 pub struct LaneKernel {
     tape: Arc<LaneTape>,
@@ -22,7 +22,7 @@ pub struct LaneKernel {
 }
 
 impl LaneKernel {
-    /// By the fastest instructions of this processor for which memory can be had.
+    /// With the fastest instructions of this processor for which memory can be allocated.
     pub fn new(tape: LaneTape) -> LaneKernel {
         let tape = Arc::new(tape);
         let mut kernels =
@@ -30,7 +30,7 @@ impl LaneKernel {
         kernels.next().unwrap_or_else(|| unreachable!("the last needs nothing"))
     }
 
-    /// By these instructions; none if they are not those of this processor, or no memory can be had.
+    /// With these instructions; none if this processor lacks them, or memory cannot be allocated.
     pub fn with_instructions(tape: LaneTape, set: InstructionSet) -> Option<LaneKernel> {
         LaneKernel::of(Arc::new(tape), set)
     }
@@ -52,7 +52,7 @@ impl LaneKernel {
         (set == InstructionSet::Portable).then_some(LaneKernel { tape, set })
     }
 
-    /// What it runs on.
+    /// Its instruction set.
     pub fn instructions(&self) -> InstructionSet {
         self.set
     }
@@ -65,7 +65,7 @@ impl LaneKernel {
         0
     }
 
-    /// Rows of a frame: inputs, outputs, and room.
+    /// Number of rows of a frame: inputs, outputs, and work space.
     pub fn rows(&self) -> usize {
         #[cfg(all(feature = "jit", target_arch = "x86_64", unix))]
         if let Some(code) = &self.code {
@@ -88,7 +88,7 @@ impl LaneKernel {
         self.tape.inputs + self.tape.outputs.len()
     }
 
-    /// Computes all lanes of a frame; rows beyond inputs and outputs may hold anything, before and after.
+    /// Computes all lanes of a frame; rows beyond inputs and outputs are work space.
     ///
     /// # Panics
     /// If the frame has fewer [`rows`](LaneKernel::rows).
@@ -104,7 +104,8 @@ impl LaneKernel {
         }
     }
 
-    /// Computes lanes one of which is out of the range of functions in line.
+    /// Computes the lanes of a vector again, one of which is outside the range of functions in
+    /// line.
     #[cfg(all(feature = "jit", target_arch = "x86_64", unix))]
     #[cold]
     fn again(&self, frame: &mut [Lanes], first: usize, width: usize) {

@@ -1,7 +1,8 @@
 //! Tapes as machine code of x86-64, for vectors of four or eight lanes.
 //!
-//! `lines` says what becomes instructions, `registers` which value is where, `emit` chooses the instructions, which
-//! `codes` names and `assembler` writes, and `code` is the result, which runs.
+//! `lines` lists the operations that become instructions, `registers` keeps track of the values,
+//! `emit` chooses the instructions, which `codes` names and `assembler` encodes, and `code` is the
+//! executable result.
 
 mod assembler;
 pub(super) mod code;

@@ -2,18 +2,19 @@
 
 use super::tape::{Binary, Fused, LANES, LaneTape, Lanes, Node};
 
-/// So many lanes go through the tape at a time.
+/// Number of lanes computed at a time.
 pub(super) const CHUNK: usize = 4;
 
 type Chunk = [f64; CHUNK];
 
 impl LaneTape {
-    /// Number of rows that [`walk`](LaneTape::walk) writes intermediate values to.
+    /// Number of rows for intermediate values of [`walk`](LaneTape::walk).
     pub(super) fn rows(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Computes the lanes from `first` on, [`CHUNK`] of them, in a frame; `room` is for intermediate values.
+    /// Computes the lanes from `first` on, [`CHUNK`] of them, in a frame; `room` is for
+    /// intermediate values.
     pub(super) fn walk(&self, frame: &mut [Lanes], room: &mut [Lanes], first: usize) {
         debug_assert!(first.is_multiple_of(CHUNK) && first + CHUNK <= LANES);
         let read = |rows: &[Lanes], row: usize| -> Chunk { std::array::from_fn(|i| rows[row].0[first + i]) };

@@ -1,15 +1,15 @@
-//! Operations on eight numbers at once, of which each lane is a computation of its own.
+//! Operations on eight numbers at once; each lane is an independent computation.
 //!
-//! The operations are those whose result is determined to the last bit: the four of arithmetic, square roots and fused
-//! multiply-add, each rounded once; comparisons, and operations on the bits. Functions are made of them once, for every kernel
-//! alike. So a lane's result depends on nothing but its own inputs: not on the other lanes, not on the instructions
-//! that a processor has.
+//! The results of all operations are determined to the last bit: the four of arithmetic, square
+//! roots and fused multiply-add, each rounded once; comparisons, and operations on the bits.
+//! Functions are composed of them, alike for every kernel. So the result of a lane depends on its
+//! own inputs only: neither on the other lanes nor on the instructions of the processor.
 
 use rustc_hash::FxHashMap;
 
 use crate::graph::function::Function;
 
-/// How many lanes there are.
+/// The number of lanes.
 pub const LANES: usize = 8;
 
 /// A number for each lane.
@@ -18,7 +18,7 @@ pub const LANES: usize = 8;
 pub struct Lanes(pub [f64; LANES]);
 
 impl Lanes {
-    /// The same number in each.
+    /// The same number in each lane.
     pub const fn splat(value: f64) -> Lanes {
         Lanes([value; LANES])
     }
@@ -45,25 +45,25 @@ pub enum Binary {
     Multiply,
     /// a / b
     Divide,
-    /// a where a < b, else b, also where one of them is not a number
+    /// a where a < b, else b, also where one of them is NaN
     Lesser,
     /// a where a > b, else b, likewise
     Greater,
-    /// the bits of both
+    /// bitwise and
     And,
-    /// the bits of either
+    /// bitwise or
     Or,
-    /// the bits of one of them
+    /// bitwise exclusive or
     Xor,
     /// the sum of the bits as integers
     IntegerAdd,
-    /// their difference
+    /// the difference of the bits as integers
     IntegerSubtract,
-    /// all bits where a < b, else none
+    /// all bits set where a < b, else none
     Less,
-    /// all bits where a ≤ b, else none
+    /// all bits set where a ≤ b, else none
     LessOrEqual,
-    /// all bits where a or b is not a number, else none
+    /// all bits set where a or b is NaN, else none
     Unordered,
 }
 
@@ -80,12 +80,12 @@ pub enum Fused {
     NegateMultiplySubtract,
 }
 
-/// How a value comes about.
+/// The origin of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Node {
     /// Read from a row of the frame.
     Input(u32),
-    /// By its bits.
+    /// A constant, by its bits.
     Constant(u64),
     Binary(Binary, LaneValue, LaneValue),
     Fused(Fused, LaneValue, LaneValue, LaneValue),
@@ -96,7 +96,7 @@ pub(super) enum Node {
     XorAnd(LaneValue, LaneValue, LaneValue),
     ShiftLeft(LaneValue, u8),
     ShiftRight(LaneValue, u8),
-    /// A function lane by lane.
+    /// A function, called lane by lane.
     Call(Function, [LaneValue; 3]),
     /// `value` where `size` ≤ `bound`, else the function of its argument.
     Near {
@@ -127,10 +127,10 @@ impl Node {
     }
 }
 
-/// Straight-line operations on [`Lanes`], from rows of a frame to rows of it; to be run by a [`LaneKernel`](crate::LaneKernel).
+/// Straight-line operations on the rows of a frame of [`Lanes`], to be run by a
+/// [`LaneKernel`](crate::LaneKernel).
 ///
-/// Inputs are the first rows of the frame, results that take the place of one are written there, the other
-/// results come after them.
+/// Inputs are the first rows of the frame; results are written after them, or replace an input.
 ///
 /// ```
 /// use pc_expr::{Fused, LaneKernel, LaneTape, Lanes};
@@ -151,9 +151,9 @@ impl Node {
 pub struct LaneTape {
     pub(super) nodes: Vec<Node>,
     pub(super) inputs: usize,
-    /// The results that have rows of their own, in order.
+    /// The results in separate rows, in order.
     pub(super) outputs: Vec<LaneValue>,
-    /// Rows of inputs, and what they are replaced by in the end.
+    /// Rows of inputs, and the values that replace them at the end.
     pub(super) replaced: Vec<(u32, LaneValue)>,
     known: FxHashMap<Node, LaneValue>,
     pub(super) circles: FxHashMap<LaneValue, [LaneValue; 2]>,
@@ -181,12 +181,12 @@ impl LaneTape {
         self.inputs
     }
 
-    /// A number that is the same in all lanes.
+    /// The same number in all lanes.
     pub fn constant(&mut self, value: f64) -> LaneValue {
         self.node(Node::Constant(value.to_bits()))
     }
 
-    /// The same by its bits.
+    /// The same constant in all lanes, by its bits.
     pub fn bits(&mut self, bits: u64) -> LaneValue {
         self.node(Node::Constant(bits))
     }
@@ -216,12 +216,12 @@ impl LaneTape {
         self.node(Node::XorAnd(a, b, c))
     }
 
-    /// The bits, moved up by fewer than 64 places.
+    /// The bits, shifted left by fewer than 64 places.
     pub fn shift_left(&mut self, a: LaneValue, places: u8) -> LaneValue {
         self.node(Node::ShiftLeft(a, places))
     }
 
-    /// The bits, moved down by fewer than 64 places.
+    /// The bits, shifted right by fewer than 64 places.
     pub fn shift_right(&mut self, a: LaneValue, places: u8) -> LaneValue {
         self.node(Node::ShiftRight(a, places))
     }
@@ -241,28 +241,28 @@ impl LaneTape {
         self.node(Node::Near { function, argument, size, bound, value })
     }
 
-    /// Writes a value to a row of its own; the row.
+    /// Writes a value to a separate row; returns the number of that row among the outputs.
     pub fn output(&mut self, value: LaneValue) -> usize {
         self.outputs.push(value);
         self.outputs.len() - 1
     }
 
-    /// Writes a value to the row of an input, after all has been read.
+    /// Writes a value to the row of an input, after everything has been read.
     ///
     /// # Panics
-    /// If the first is not an input, or the second is one.
+    /// If `input` is not an input, or `value` is one.
     pub fn replace(&mut self, input: LaneValue, value: LaneValue) {
         let Node::Input(row) = self.nodes[input.index()] else { panic!("an input is replaced") };
         assert!(!matches!(self.nodes[value.index()], Node::Input(_)), "by a result");
         self.replaced.push((row, value));
     }
 
-    /// Number of operations; those that nothing needs are counted too.
+    /// Number of operations, including those that are not needed.
     pub fn operations(&self) -> usize {
         self.nodes.iter().filter(|node| !matches!(node, Node::Input(_) | Node::Constant(_))).count()
     }
 
-    /// Which values are needed for what is written.
+    /// Whether each value is needed for a result.
     #[cfg(all(feature = "jit", target_arch = "x86_64", unix))]
     pub(super) fn needed(&self) -> Vec<bool> {
         let mut needed = vec![false; self.nodes.len()];
@@ -276,7 +276,7 @@ impl LaneTape {
         needed
     }
 
-    /// The same operation on the same operands is one value.
+    /// Interns a node: the same operation on the same operands is one value.
     fn node(&mut self, node: Node) -> LaneValue {
         let next = LaneValue(self.nodes.len() as u32);
         let value = *self.known.entry(node).or_insert(next);

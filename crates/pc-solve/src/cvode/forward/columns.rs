@@ -5,11 +5,11 @@ use sundials_sys as sys;
 use crate::cvode::forward::sensitivities::{Correction, SensitivityStatistics};
 use crate::cvode::handles::{NonlinearIteration, Vector};
 
-/// What an integration with sensitivities has besides.
+/// The data of the sensitivities of an integration.
 pub(crate) struct Forward {
     /// Referred to by CVODES.
     pub(super) _nonlinear_iteration: NonlinearIteration,
-    /// Where CVODES writes the columns.
+    /// Room for the columns, written by CVODES.
     pub(crate) columns: Vec<Vector>,
     /// S at the last start, column-major.
     pub(super) matrix: Vec<f64>,
@@ -19,7 +19,7 @@ pub(crate) struct Forward {
 }
 
 impl Forward {
-    /// The vectors as CVODES takes them.
+    /// The columns in the form that CVODES takes.
     pub(crate) fn raw(&self) -> Vec<sys::N_Vector> {
         self.columns.iter().map(Vector::raw).collect()
     }

@@ -20,7 +20,8 @@ impl<F: VectorField> Cvode<F> {
     /// Starts at y(t0) = y0 as [`new`](Cvode::new) does, with derivatives of the motion.
     ///
     /// # Errors
-    /// As for [`new`](Cvode::new); [`SolveError::Input`] if a column needs a derivative that the field does not have.
+    /// As for [`new`](Cvode::new); [`SolveError::Input`] if a column needs a derivative that the
+    /// field does not have.
     pub fn with_sensitivities(
         field: F,
         t0: f64,
@@ -33,7 +34,7 @@ impl<F: VectorField> Cvode<F> {
         Cvode::new(field, t0, y0, options)?.and_sensitivities(sensitivities, options, start)
     }
 
-    /// This integration, which has not begun, with columns that are `start` now.
+    /// This integration, which has not begun, with columns that begin at `start`.
     pub(crate) fn and_sensitivities(
         mut self,
         sensitivities: &Sensitivities,
@@ -73,7 +74,7 @@ impl<F: VectorField> Cvode<F> {
             NonlinearSolver::Newton => NonlinearIteration::newton_of(context, together, step_state)?,
             NonlinearSolver::FixedPoint => NonlinearIteration::fixed_point_of(context, together, step_state)?,
         };
-        // Kept before CVODES refers to it.
+        // Stored before CVODES refers to it.
         let forward = Forward {
             _nonlinear_iteration: nonlinear_iteration,
             columns,
@@ -85,13 +86,13 @@ impl<F: VectorField> Cvode<F> {
         self.sensitivity = Some(forward);
 
         let mem = memory.raw();
-        // SAFETY: the memory is initialised and has its user data, whose variation has `count` columns; CVODES copies
-        // the `count` vectors.
+        // SAFETY: the memory is initialised and has its user data, whose variation has `count`
+        // columns; CVODES copies the `count` vectors.
         let code =
             unsafe { sys::CVodeSensInit(mem, count, method, Some(equations::rates::<F>), raw.as_mut_ptr()) };
         context.check("CVodeSensInit", code)?;
-        // SAFETY: sensitivities are initialised; CVODES copies one size for each column, and needs no parameters, since their
-        // equations are ours.
+        // SAFETY: sensitivities are initialised; CVODES copies one size for each column; it needs
+        // no parameters, since the equations are given.
         let code = unsafe {
             sys::CVodeSetSensParams(mem, std::ptr::null_mut(), scales.as_mut_ptr(), std::ptr::null_mut())
         };
@@ -110,7 +111,8 @@ impl<F: VectorField> Cvode<F> {
         }
         let error_control = c_int::from(sensitivities.error_control);
         memory.set(context, "CVodeSetSensErrCon", sys::CVodeSetSensErrCon, error_control)?;
-        // SAFETY: sensitivities are initialised, with the method chosen; the iteration outlives the memory.
+        // SAFETY: sensitivities are initialised, with the method chosen; the iteration outlives the
+        // memory.
         let code = unsafe {
             match sensitivities.correction {
                 Correction::Staggered => sys::CVodeSetNonlinearSolverSensStg(mem, iteration),
@@ -120,7 +122,7 @@ impl<F: VectorField> Cvode<F> {
         context.check("the nonlinear solver of the sensitivities", code)
     }
 
-    /// Starts anew at y(t) = y with these columns of S, which are finite.
+    /// Restarts from y(t) = y with these columns of S, which are finite.
     pub(crate) fn restart_with_columns(
         &mut self,
         t: f64,
@@ -147,7 +149,7 @@ impl<F: VectorField> Cvode<F> {
         self.context.check("CVodeSensReInit", code)
     }
 
-    /// S where it stands, column-major; empty without sensitivities.
+    /// S at the current time, column-major; empty without sensitivities.
     pub(crate) fn columns_here(&self) -> Result<Vec<f64>, SolveError> {
         let Some(forward) = &self.sensitivity else { return Ok(Vec::new()) };
         let matrix = self.sensitivities_at(self.time)?.unwrap_or_else(|| forward.matrix.clone());
@@ -171,7 +173,7 @@ impl<F: VectorField> Cvode<F> {
             unsafe { get(self.memory.raw(), &raw mut value) };
             u64::try_from(value).unwrap_or(0)
         };
-        // Those of a simultaneous correction are counted with the state's.
+        // A simultaneous correction counts with that of the state.
         let alone = |get| if forward.correction == Correction::Staggered { counter(get) } else { 0 };
         let earlier = forward.earlier;
         SensitivityStatistics {

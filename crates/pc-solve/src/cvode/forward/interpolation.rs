@@ -9,12 +9,13 @@ use crate::error::{InputError, Reason, SolveError};
 use crate::integration::dense_output::Segment;
 
 impl<F: VectorField> Cvode<F> {
-    /// S at `t` in the last step; none where there is nothing but a start.
+    /// S at `t` in the last step; none before the first step.
     pub(crate) fn sensitivities_at(&self, t: f64) -> Result<Option<Vec<f64>>, SolveError> {
         self.sensitivities_by_time(t, 0)
     }
 
-    /// The derivative of S of that order at `t` in the last step, column-major; none where there is nothing but a start.
+    /// The derivative of S of that order at `t` in the last step, column-major; none before the
+    /// first step.
     pub(crate) fn sensitivities_by_time(&self, t: f64, order: u32) -> Result<Option<Vec<f64>>, SolveError> {
         let Some(forward) = self.sensitivity.as_ref().filter(|_| self.direction.is_some() && !self.restarted)
         else {
@@ -22,7 +23,8 @@ impl<F: VectorField> Cvode<F> {
         };
         let mut raw = forward.raw();
         let k = i32::try_from(order).unwrap_or(i32::MAX);
-        // SAFETY: a step has been taken with sensitivities; there are as many vectors as columns, which nobody looks at.
+        // SAFETY: a step has been taken with sensitivities; there is a vector for each column, and
+        // nobody borrows them.
         let code = unsafe { sys::CVodeGetSensDky(self.memory.raw(), t, k, raw.as_mut_ptr()) };
         if code != sys::CV_SUCCESS {
             let message = format!("the sensitivities at t = {t} cannot be interpolated");
@@ -31,8 +33,8 @@ impl<F: VectorField> Cvode<F> {
         Ok(Some(forward.columns.iter().flat_map(Vector::as_slice).copied().collect()))
     }
 
-    /// S along the last internal step, between two of its times: nothing moves S after a step, so that the polynomial begins
-    /// where the step did, to rounding.
+    /// S along the last internal step, between two of its times. S is not projected after a step,
+    /// so that the polynomials of successive steps join to rounding.
     pub(crate) fn segment_of_sensitivities(&self, start: f64, end: f64) -> Result<Segment, SolveError> {
         let at = |k: u32| -> Result<Vec<f64>, SolveError> {
             self.sensitivities_by_time(end, k)?.ok_or_else(|| InputError::NoSensitivities.into())

@@ -1,4 +1,4 @@
-//! The linear part of a vector field at a state, by what the field offers.
+//! The linear part of a vector field at a state, from whatever the field offers.
 
 use pc_expr::{Failure, VectorField};
 
@@ -20,9 +20,10 @@ enum Products {
 
 /// ∂f/∂y and ∂f/∂p of a field, and products with them.
 ///
-/// Products are the field's own if it has them, else by its Jacobian, else central difference quotients. A quotient
-/// is wrong by about ε^(2/3) = 4e-11 of its size if σ|v| is ε^(1/3) of the size of the state, where truncation and
-/// rounding are alike. That size is max |yᵢ|, at least atol/rtol: what the tolerances take for nothing is no measure.
+/// Products are the field's own if it has them, else by its Jacobian, else central difference
+/// quotients. The relative error of a quotient is about ε^(2/3) = 4e-11 if σ|v| is ε^(1/3) times
+/// the size of the state, where truncation and rounding errors are alike. That size is max |yᵢ|, at
+/// least atol/rtol, the smallest significant size.
 #[derive(Debug, Default)]
 pub(crate) struct Linearisation {
     products: Products,
@@ -30,7 +31,7 @@ pub(crate) struct Linearisation {
     dim: usize,
     jacobian: Vec<f64>,
     by_parameters: Vec<f64>,
-    /// Work for difference quotients.
+    /// Work space for difference quotients.
     moved: Vec<f64>,
     behind: Vec<f64>,
 }
@@ -64,7 +65,7 @@ impl Linearisation {
         Ok(())
     }
 
-    /// Writes (∂f/∂y) v at the state that was prepared for; entries may be NaN.
+    /// Writes (∂f/∂y) v at the [prepared](Linearisation::prepare) state; entries may be NaN.
     pub(crate) fn product(
         &mut self,
         field: &mut impl VectorField,

@@ -1,4 +1,4 @@
-//! The derivatives of a motion that are integrated with it.
+//! Derivatives of a motion that are integrated with it.
 
 use pc_expr::VectorField;
 
@@ -8,20 +8,20 @@ use crate::integration::checks::{check_length, finite, positive};
 
 /// Derivatives of a motion to be integrated along with it: the columns of S(t) = ∂y(t)/∂(p, y₀).
 ///
-/// Each column s satisfies the equation of variation, with one more term if it is a derivative by a parameter pⱼ,
+/// Each column s satisfies the equation of variation, with one more term if it is a derivative by a
+/// parameter pⱼ,
 /// ```text
 /// ṡ = (∂f/∂y) s + ∂f/∂pⱼ,    s(t₀) = ∂y₀/∂pⱼ.
 /// ```
-/// Columns come in the order in which they are added. Products with ∂f/∂y are the field's
-/// [own](VectorField::jvp) if it has them, else by its [Jacobian](VectorField::jacobian), else by difference
-/// quotients, which are accurate to about ten digits. Derivatives by parameters need the field's
+/// Columns are in the order in which they are added. Products with ∂f/∂y are the field's
+/// [own](VectorField::jvp) if it has them, else by its [Jacobian](VectorField::jacobian), else
+/// difference quotients, accurate to about ten digits. Derivatives by parameters need the field's
 /// [`parameter_jacobian`](VectorField::parameter_jacobian).
 ///
-/// Where the states lie on a surface that may move with the parameters, so must y₀: a start that satisfies constraints
-/// with parameters in them depends on these, and [`by_parameter_from`](Sensitivities::by_parameter_from) is to be told
-/// how. Columns that begin tangent to the surface stay so up to the tolerances; the
-/// [projection](VectorField::project) of the states after each step is not applied to them, but they are integrated
-/// along the projected states.
+/// If the states lie on a surface that depends on the parameters, so does y₀: its derivatives are
+/// given by [`by_parameter_from`](Sensitivities::by_parameter_from). Columns that begin tangent to
+/// the surface stay so up to the tolerances; they are integrated along the
+/// [projected](VectorField::project) states, but not projected themselves.
 ///
 /// ```
 /// use pc_solve::{Options, Sensitivities, from_fn, solve_with_sensitivities};
@@ -63,9 +63,9 @@ enum Start {
 /// When the implicit equations of the columns are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Correction {
-    /// After that of the state, once it has passed its error test.
+    /// After those of the state, once it has passed its error test.
     Staggered,
-    /// Together with that of the state.
+    /// Together with those of the state.
     Simultaneous,
 }
 
@@ -76,8 +76,8 @@ impl Default for Sensitivities {
 }
 
 impl Sensitivities {
-    /// No column yet; staggered correction, and the errors of the columns tested as those of the state are, with the
-    /// same tolerances.
+    /// No columns yet; staggered correction, and an error test of the columns with the tolerances
+    /// of the state.
     pub fn new() -> Self {
         Sensitivities {
             columns: Vec::new(),
@@ -93,32 +93,32 @@ impl Sensitivities {
         self
     }
 
-    /// A column ∂y/∂pⱼ, of a start that does not depend on pⱼ.
+    /// Adds a column ∂y/∂pⱼ, for a start that does not depend on pⱼ.
     pub fn by_parameter(self, j: usize) -> Self {
         self.with(Some(j), Start::Zero)
     }
 
-    /// A column ∂y/∂pⱼ for each j, of a start that depends on none of them.
+    /// Adds a column ∂y/∂pⱼ for each j, for a start that depends on none of them.
     pub fn by_parameters(self, parameters: impl IntoIterator<Item = usize>) -> Self {
         parameters.into_iter().fold(self, Sensitivities::by_parameter)
     }
 
-    /// A column ∂y/∂pⱼ, of a start with the derivative ∂y₀/∂pⱼ.
+    /// Adds a column ∂y/∂pⱼ, for a start with the derivative ∂y₀/∂pⱼ.
     pub fn by_parameter_from(self, j: usize, start: impl Into<Vec<f64>>) -> Self {
         self.with(Some(j), Start::Along(start.into()))
     }
 
-    /// A column ∂y/∂y₀ᵢ.
+    /// Adds a column ∂y/∂y₀ᵢ.
     pub fn by_start(self, i: usize) -> Self {
         self.with(None, Start::Unit(i))
     }
 
-    /// A column ∂y/∂y₀ᵢ for each i.
+    /// Adds a column ∂y/∂y₀ᵢ for each i.
     pub fn by_starts(self, components: impl IntoIterator<Item = usize>) -> Self {
         components.into_iter().fold(self, Sensitivities::by_start)
     }
 
-    /// A column (∂y/∂y₀) v, the derivative of the motion when its start moves along v.
+    /// Adds a column (∂y/∂y₀) v, the derivative of the motion when its start moves along v.
     pub fn along(self, direction: impl Into<Vec<f64>>) -> Self {
         self.with(None, Start::Along(direction.into()))
     }
@@ -128,25 +128,27 @@ impl Sensitivities {
         Sensitivities { correction, ..self }
     }
 
-    /// Whether steps have to pass the error test of the columns too.
+    /// Whether steps also have to pass the error test of the columns.
     ///
-    /// If not, a staggered correction leaves the steps of the state as they are without sensitivities, unless the
+    /// If not, with staggered correction the steps are those without sensitivities, unless the
     /// iteration for a column does not converge.
     pub fn error_control(self, error_control: bool) -> Self {
         Sensitivities { error_control, ..self }
     }
 
-    /// Scales p̄ of the parameters and start values by which the columns are derivatives, positive, one for each: p̄ s
-    /// has the unit of the state, and the absolute tolerance of the column s is that of the state over p̄.
+    /// Scales p̄ of the parameters or start values of the columns, positive, one for each column:
+    /// p̄ s has the unit of the state, and the absolute tolerance of the column s is that of the
+    /// state over p̄.
     ///
-    /// Unless given, p̄ is the [size of a parameter](VectorField::parameter_size), or where that is not known the one by which
-    /// ∂f/∂p at the start is as large as f; that of a component of the start is its own; and all are at least 1.
+    /// By default, p̄ is the [size of a parameter](VectorField::parameter_size), or if that is
+    /// unknown the one for which p̄ ∂f/∂p at the start is as large as f; for a component of the
+    /// start it is its magnitude; each is at least 1.
     pub fn scales(self, scales: impl Into<Vec<f64>>) -> Self {
         Sensitivities { scales: Some(scales.into()), ..self }
     }
 
-    /// Relative and absolute tolerance of the columns, positive; those of the state [scaled](Sensitivities::scales) unless
-    /// given.
+    /// Relative and absolute tolerance of the columns, positive; by default those of the state,
+    /// [scaled](Sensitivities::scales).
     pub fn tolerances(self, relative: f64, absolute: f64) -> Self {
         Sensitivities { tolerances: Some((relative, absolute)), ..self }
     }
@@ -180,7 +182,7 @@ impl Sensitivities {
         let is_unknown =
             |column: &Column| column.parameter.is_some_and(|j| field.parameter_size(j).is_none());
         let mut rates = vec![f64::NAN; y.len()];
-        // Where there is no derivative the integration will say so.
+        // A missing derivative is reported by the integration.
         let known = !self.columns.iter().any(is_unknown)
             || field.rhs(t, y, &mut rates).is_ok() && linearisation.parameter_jacobian(field, t, y).is_ok();
         let size = |column: &Column| match (column.parameter, &column.start) {
@@ -196,7 +198,7 @@ impl Sensitivities {
             (None, Start::Unit(i)) => y[*i].abs(),
             (None, _) => 1.0,
         };
-        // Never so small that the columns would be computed less exactly than the state.
+        // At least 1, so that the columns are at least as accurate as the state.
         self.columns
             .iter()
             .map(|column| {
@@ -263,12 +265,13 @@ impl Sensitivities {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct SensitivityStatistics {
-    /// Evaluations of the equations of variation, of all columns at once.
+    /// Evaluations of the equations of variation, for all columns at once.
     pub evaluations: u64,
     /// Steps tried again because the estimated error of a column was too large.
     pub error_test_failures: u64,
-    /// Iterations of the nonlinear solver for the columns alone; 0 if the correction is simultaneous.
+    /// Iterations of the nonlinear solver for the columns alone; 0 if the correction is
+    /// simultaneous.
     pub nonlinear_iterations: u64,
-    /// Failures of that solver to converge, with those recovered by a new Jacobian.
+    /// Failures of that solver to converge, including those recovered by a new Jacobian.
     pub nonlinear_failures: u64,
 }

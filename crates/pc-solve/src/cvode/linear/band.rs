@@ -12,8 +12,8 @@ use crate::cvode::handles::numbers_of;
 /// `CVLsJacFn`, from the field's sparse Jacobian.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a vector of its dimension and a
-/// band matrix that contains the field's pattern.
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a
+/// vector of its dimension and a band matrix that contains the field's pattern.
 pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     t: f64,
     y: sys::N_Vector,
@@ -24,10 +24,12 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     _tmp2: sys::N_Vector,
     _tmp3: sys::N_Vector,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
-    // SAFETY: `y` is a live serial vector of length `dim`; the columns of a band matrix are stored one after the other,
-    // `ldim` numbers each, with the entry of the diagonal at `diagonal`, and CVODES has set them to 0.
+    // SAFETY: `y` is a live serial vector of length `dim`; the columns of a band matrix are stored
+    // one after the other, `ldim` numbers each, with the entry of the diagonal at `diagonal`, and
+    // CVODES has set them to 0.
     let (y, ldim, diagonal, data) = unsafe {
         let ldim = sys::SUNBandMatrix_LDim(matrix) as usize;
         let data = slice::from_raw_parts_mut(sys::SUNBandMatrix_Data(matrix), ldim * callbacks.dim);

@@ -1,4 +1,4 @@
-//! Which linear solver.
+//! The choice of the linear solver.
 
 use pc_expr::{Pattern, VectorField};
 
@@ -7,15 +7,15 @@ use crate::error::InputError;
 use crate::settings::method::NonlinearSolver;
 use crate::settings::options::Options;
 
-/// From this many components on sparse factors are worth their overhead.
+/// Number of components from which sparse factors are worth their overhead …
 const SPARSE_FROM: usize = 60;
-/// … if no more than one entry in so many is other than zero.
+/// … if at most one entry in this many is nonzero.
 const SPARSE_DENSITY: usize = 8;
 
 /// The linear solver for `field`, if the nonlinear solver of `options` needs one.
 ///
 /// # Errors
-/// [`InputError`] if the chosen solver is not one for this field.
+/// [`InputError`] if the chosen solver does not suit this field.
 pub(crate) fn choose(
     field: &impl VectorField,
     options: &Options,

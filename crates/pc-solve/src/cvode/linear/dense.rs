@@ -17,9 +17,9 @@ use crate::cvode::context::Context;
 use crate::cvode::handles::{Vector, numbers_of};
 use crate::error::{NonFinite, SolveError};
 
-/// From this many components on the blocked factorisation is used. Measured interleaved, it takes 1/4 of the time of
-/// SUNDIALS' at 64 components, 1/5 at 100, 1/8 at 200 and 1/25 at 400, a solve 1/1.4, 1/1.7, 1/2 and 1/3; below some 20
-/// components SUNDIALS' is the faster.
+/// Number of components from which the blocked factorisation is used. In interleaved measurements
+/// it takes 1/4 of the time of that of SUNDIALS at 64 components, 1/5 at 100, 1/8 at 200 and 1/25
+/// at 400, a solve 1/1.4, 1/1.7, 1/2 and 1/3; below some 20 components that of SUNDIALS is faster.
 const BLOCKED_FROM: usize = 64;
 
 /// The solver for a dense `matrix`.
@@ -44,7 +44,8 @@ struct Blocked {
 impl Factors for Blocked {
     unsafe fn factorise(&mut self, matrix: sys::SUNMatrix) -> Result<(), Singular> {
         let dim = self.rows.len();
-        // SAFETY: the matrix is dense, dim × dim, column-major and contiguous, and ours during the call.
+        // SAFETY: the matrix is dense, dim × dim, column-major and contiguous, and ours during the
+        // call.
         let entries = unsafe { slice::from_raw_parts_mut(sys::SUNDenseMatrix_Data(matrix), dim * dim) };
         factor::lu_in_place(
             MatMut::from_column_major_slice_mut(entries, dim, dim),
@@ -101,8 +102,8 @@ impl<F: VectorField> Callbacks<F> {
 /// `CVLsJacFn`.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a vector of its dimension and a
-/// dense square matrix.
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a
+/// vector of its dimension and a dense square matrix.
 pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     t: f64,
     y: sys::N_Vector,
@@ -113,9 +114,11 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     _tmp2: sys::N_Vector,
     _tmp3: sys::N_Vector,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
-    // SAFETY: `y` is a live serial vector of length `dim`; `matrix` is dense, dim × dim, column-major and contiguous.
+    // SAFETY: `y` is a live serial vector of length `dim`; `matrix` is dense, dim × dim,
+    // column-major and contiguous.
     let (y, matrix) = unsafe {
         let y = slice::from_raw_parts(numbers_of(y), callbacks.dim);
         (y, nan_slice(sys::SUNDenseMatrix_Data(matrix), callbacks.dim * callbacks.dim))

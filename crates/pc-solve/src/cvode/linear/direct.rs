@@ -1,4 +1,4 @@
-//! Direct linear solvers of our own, as `SUNLinearSolver`.
+//! Our direct linear solvers, as `SUNLinearSolver`.
 
 use std::ffi::c_int;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,9 +12,9 @@ use crate::cvode::handles::numbers_of;
 use crate::error::SolveError;
 
 const SUCCESS: c_int = 0;
-/// Of `SUNLinSolSetup`: a smaller step, so a smaller γ, may help.
+/// Code of `SUNLinSolSetup`: a shorter step, hence a smaller γ, may help.
 const SINGULAR: c_int = sys::SUNLS_LUFACT_FAIL as c_int;
-/// Of `SUNLinSolSolve`: a smaller step may help.
+/// Code of `SUNLinSolSolve`: a shorter step may help.
 const NOT_SOLVED: c_int = sys::SUNLS_PACKAGE_FAIL_REC as c_int;
 const FATAL: c_int = -1;
 
@@ -37,7 +37,7 @@ pub(super) trait Factors {
     unsafe fn solve(&mut self, matrix: sys::SUNMatrix, b: &mut [f64]) -> Result<(), Singular>;
 }
 
-/// A solver with `factors`, to be used with `matrix` alone.
+/// A solver with `factors`, for `matrix` only.
 pub(super) fn solver<S: Factors>(
     context: &mut Context,
     _matrix: &Matrix,
@@ -66,7 +66,7 @@ unsafe extern "C" fn kind(_solver: sys::SUNLinearSolver) -> sys::SUNLinearSolver
 unsafe extern "C" fn setup<S: Factors>(solver: sys::SUNLinearSolver, matrix: sys::SUNMatrix) -> c_int {
     // SAFETY: the content is an `S`, which nobody else uses during a call of CVODES.
     let factors = unsafe { &mut *(*solver).content.cast::<S>() };
-    // Unwind safe: after a panic, which would be a mistake in the factorisation, the integration ends.
+    // Unwind safe: after a panic, which would be a bug in the factorisation, the integration ends.
     // SAFETY: CVODES gives the matrix that the solver was set with.
     match catch_unwind(AssertUnwindSafe(|| unsafe { factors.factorise(matrix) })) {
         Ok(Ok(())) => SUCCESS,
@@ -100,7 +100,8 @@ unsafe extern "C" fn solve<S: Factors>(
 }
 
 unsafe extern "C" fn free<S: Factors>(solver: sys::SUNLinearSolver) -> sys::SUNErrCode {
-    // SAFETY: the content was made by `Box::into_raw` and is owned by the solver, which is freed with it.
+    // SAFETY: the content was made by `Box::into_raw` and is owned by the solver, which is freed
+    // with it.
     unsafe {
         drop(Box::from_raw((*solver).content.cast::<S>()));
         sys::SUNLinSolFreeEmpty(solver);

@@ -31,7 +31,8 @@ pub(super) fn solver(krylov: &Krylov, context: &mut Context, y: &Vector) -> Resu
     Ok(solver)
 }
 
-/// Gives CVODES, whose linear solver is set, the tolerance and the callbacks; the preconditioner is for them.
+/// Sets the tolerance and the callbacks of CVODES, whose linear solver is set; returns the
+/// preconditioner for the callbacks.
 pub(super) fn attach<F: VectorField>(
     krylov: &Krylov,
     memory: &Memory,
@@ -72,7 +73,7 @@ impl<F: VectorField> Callbacks<F> {
         })
     }
 
-    /// Calls `evaluate` with the preconditioner too.
+    /// As `guard`, with the preconditioner.
     fn with_preconditioner(
         &mut self,
         evaluate: impl FnOnce(&mut dyn Preconditioner, &mut F, &[f64]) -> Result<(), Failure>,
@@ -91,7 +92,8 @@ impl<F: VectorField> Callbacks<F> {
 /// `CVLsJacTimesVecFn`.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData) and vectors of its dimension.
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData) and
+/// vectors of its dimension.
 unsafe extern "C" fn product<F: VectorField>(
     v: sys::N_Vector,
     product: sys::N_Vector,
@@ -101,7 +103,8 @@ unsafe extern "C" fn product<F: VectorField>(
     user_data: *mut c_void,
     _tmp: sys::N_Vector,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: all are live serial vectors of length `dim`, `product` distinct from the others.
     let (y, v, product) = unsafe {
@@ -124,7 +127,8 @@ unsafe extern "C" fn set_up<F: VectorField>(
     gamma: f64,
     user_data: *mut c_void,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: `y` is a live serial vector of length `dim`.
     let y = unsafe { slice::from_raw_parts(numbers_of(y), callbacks.dim) };
@@ -155,7 +159,8 @@ unsafe extern "C" fn precondition<F: VectorField>(
     _side: c_int,
     user_data: *mut c_void,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     // SAFETY: all are live serial vectors of length `dim`, `z` distinct from the others.
     let (y, r, z) = unsafe {

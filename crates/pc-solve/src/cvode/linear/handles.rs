@@ -1,6 +1,6 @@
 //! Owning handles of matrices and linear solvers.
 //!
-//! Each frees its object when dropped and must be dropped before the [`Context`] it was made in.
+//! Each frees its object when dropped and must be dropped before its [`Context`].
 
 use std::ptr::NonNull;
 
@@ -56,13 +56,15 @@ pub(super) struct Solver(NonNull<sys::_generic_SUNLinearSolver>);
 
 impl Solver {
     pub(super) fn dense(context: &mut Context, y: &Vector, matrix: &Matrix) -> Result<Self, SolveError> {
-        // SAFETY: all three are live and of one context; only the sizes of `y` and `matrix` are read.
+        // SAFETY: all three are live and of one context; only the sizes of `y` and `matrix` are
+        // read.
         let raw = unsafe { sys::SUNLinSol_Dense(y.raw(), matrix.raw(), context.raw()) };
         context.check_new("SUNLinSol_Dense", raw).map(Solver)
     }
 
     pub(super) fn band(context: &mut Context, y: &Vector, matrix: &Matrix) -> Result<Self, SolveError> {
-        // SAFETY: all three are live and of one context; only the sizes of `y` and `matrix` are read.
+        // SAFETY: all three are live and of one context; only the sizes of `y` and `matrix` are
+        // read.
         let raw = unsafe { sys::SUNLinSol_Band(y.raw(), matrix.raw(), context.raw()) };
         context.check_new("SUNLinSol_Band", raw).map(Solver)
     }

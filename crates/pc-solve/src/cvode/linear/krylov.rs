@@ -1,4 +1,4 @@
-//! Krylov's method, as chosen.
+//! The choices for Krylov's method.
 
 use std::fmt;
 use std::sync::Arc;
@@ -7,16 +7,17 @@ use crate::cvode::linear::preconditioner::Preconditioner;
 use crate::error::InputError;
 use crate::integration::checks::positive;
 
-/// On which side of A = I − γ ∂f/∂y the inverse of the preconditioner P stands.
+/// The side of A = I − γ ∂f/∂y on which the inverse of the preconditioner P is applied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Side {
-    /// P⁻¹ A x = P⁻¹ b: the residual that is made small is P⁻¹ (b − A x).
+    /// P⁻¹ A x = P⁻¹ b: the minimised residual is P⁻¹ (b − A x).
     Left,
     /// A P⁻¹ (P x) = b: the residual is b − A x, as without a preconditioner.
     Right,
 }
 
-/// The method of generalised minimal residuals, GMRES [Saad, Schultz, SIAM J. Sci. Stat. Comp. 7 (1986) 856].
+/// The method of generalised minimal residuals, GMRES [Saad, Schultz, SIAM J. Sci. Stat. Comp. 7
+/// (1986) 856].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Krylov {
     pub(super) dimension: u32,
@@ -33,13 +34,13 @@ impl Default for Krylov {
 }
 
 impl Krylov {
-    /// Searches spaces spanned by b, A b, A² b, … of the given dimension, at least 1; without restarts and
-    /// preconditioner, and with tolerance 0.05.
+    /// Searches spaces spanned by b, A b, A² b, … of the given dimension, at least 1; without
+    /// restarts or preconditioner, with tolerance 0.05.
     pub fn new(dimension: u32) -> Self {
         Krylov { dimension, restarts: 0, tolerance: 0.05, preconditioner: None }
     }
 
-    /// How often to restart from the residual with a new space when the first does not suffice.
+    /// How often to restart from the residual with a new space if the first does not suffice.
     pub fn restarts(self, restarts: u32) -> Self {
         Krylov { restarts, ..self }
     }
@@ -65,7 +66,7 @@ impl Krylov {
     }
 }
 
-/// Makes preconditioners. Two are equal if they are copies of one.
+/// Makes preconditioners. Two are equal if they are clones of one.
 #[derive(Clone)]
 pub(super) struct Maker(pub(super) Arc<dyn Fn() -> Box<dyn Preconditioner + Send> + Send + Sync>);
 

@@ -1,7 +1,7 @@
 //! The linear systems (I − γ ∂f/∂y) x = b of Newton's iteration, and their solvers.
 //!
-//! γ is the step times a coefficient of the method, so that a solver goes through three stages, each rarer than the
-//! one after it: ∂f/∂y is renewed, I − γ ∂f/∂y is factorised, a system is solved.
+//! γ is the step times a coefficient of the method. A solver has three stages, in order of
+//! increasing frequency: ∂f/∂y is renewed, I − γ ∂f/∂y is factorised, a system is solved.
 
 use std::borrow::Cow;
 use std::ptr;
@@ -30,7 +30,8 @@ pub(crate) struct Linear {
 }
 
 impl Linear {
-    /// The solver of `choice`, which has been [checked](crate::cvode::linear::choice::choose), for vectors like `y`.
+    /// The solver of `choice`, which has been [checked](crate::cvode::linear::choice::choose), for
+    /// vectors like `y`.
     pub(crate) fn new(
         context: &mut Context,
         y: &Vector,
@@ -61,8 +62,8 @@ impl Linear {
         &self.choice
     }
 
-    /// Gives the solver to CVODES, which has been initialised and knows its user data, with the callbacks that `F` has
-    /// the derivatives for.
+    /// Attaches the solver to CVODES, which has been initialised and has its user data, with the
+    /// callbacks for the derivatives that `F` has.
     pub(crate) fn attach<F: VectorField>(
         &self,
         memory: &Memory,
@@ -101,7 +102,8 @@ impl Linear {
         };
         callbacks.set_linear(work);
         if jacobian.is_some() {
-            // SAFETY: the linear solver is set, and its matrix is of the kind that the callback expects.
+            // SAFETY: the linear solver is set, and its matrix is of the kind that the callback
+            // expects.
             let code = unsafe { sys::CVodeSetJacFn(memory.raw(), jacobian) };
             context.check("CVodeSetJacFn", code)?;
         }
@@ -109,7 +111,7 @@ impl Linear {
     }
 }
 
-/// The zero pattern of ∂f/∂y; of a field that does not know it, the pattern without zeros.
+/// The zero pattern of ∂f/∂y; the full pattern if the field does not know it.
 fn pattern(field: &impl VectorField) -> Cow<'_, Pattern> {
     field.sparsity().map_or_else(|| Cow::Owned(Pattern::full(field.dim(), field.dim())), Cow::Borrowed)
 }

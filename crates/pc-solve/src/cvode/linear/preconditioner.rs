@@ -2,14 +2,15 @@
 
 use pc_expr::{Failure, VectorField};
 
-/// A matrix P like I − γ ∂f/∂y, with which systems are solved more easily.
+/// A matrix P close to I − γ ∂f/∂y, with which systems are easier to solve.
 ///
-/// GMRES is then applied to P⁻¹ A or A P⁻¹ in place of A = I − γ ∂f/∂y, and converges faster the nearer these are to I.
+/// GMRES is then applied to P⁻¹ A or A P⁻¹ instead of A = I − γ ∂f/∂y, and converges faster the
+/// closer these are to I.
 ///
 /// ```
 /// use pc_solve::{Failure, Krylov, LinearSolver, Method, Options, Preconditioner, Side, VectorField, from_fn, solve};
 ///
-/// /// Of the diagonal, which here makes up all that is stiff.
+/// /// Jacobi's preconditioner, the diagonal, which here contains all the stiffness.
 /// #[derive(Default)]
 /// struct Jacobi {
 ///     diagonal: Vec<f64>,
@@ -52,20 +53,21 @@ use pc_expr::{Failure, VectorField};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Preconditioner {
-    /// Takes from ∂f/∂y at (t, y) what it needs; called first, and again when that has become too old.
+    /// Computes what it needs of ∂f/∂y at (t, y); called first, and again when that is out of date.
     ///
     /// # Errors
     /// [`Failure`]; a recoverable one lets the integrator try a smaller step.
     fn linearise(&mut self, field: &mut dyn VectorField, t: f64, y: &[f64]) -> Result<(), Failure>;
 
-    /// Prepares P for I − γ ∂f/∂y with the ∂f/∂y that it has; called after each
+    /// Prepares P for I − γ ∂f/∂y with the current ∂f/∂y; called after each
     /// [`linearise`](Preconditioner::linearise), and when γ has changed.
     ///
     /// # Errors
     /// As for [`linearise`](Preconditioner::linearise).
     fn factorise(&mut self, gamma: f64) -> Result<(), Failure>;
 
-    /// Writes z with P z = r; both slices have the dimension of the field, and every number must be written.
+    /// Writes z with P z = r; both slices have the dimension of the field, and every number must be
+    /// written.
     ///
     /// # Errors
     /// As for [`linearise`](Preconditioner::linearise).

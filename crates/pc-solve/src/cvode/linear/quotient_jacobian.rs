@@ -11,7 +11,7 @@ use crate::cvode::handles::numbers_of;
 use crate::cvode::linear::quotients::Quotients;
 use crate::cvode::linear::sparse;
 
-/// What an increment must be at least, times the error weight: so that the change of f is more than its rounding,
+/// The smallest increment times the error weight for which the change of f exceeds its rounding:
 /// 1000 |γ| ε n ‖f‖ in the norm of the error test, or 1 if f is 0.
 fn least_increment(gamma: f64, f: &[f64], weights: &[f64]) -> f64 {
     let n = f.len() as f64;
@@ -23,8 +23,8 @@ fn least_increment(gamma: f64, f: &[f64], weights: &[f64]) -> f64 {
 /// `CVLsJacFn`, by difference quotients.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), vectors of its dimension and a
-/// matrix of our own for the field's pattern.
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData),
+/// vectors of its dimension and a matrix of our own for the field's pattern.
 pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     t: f64,
     z: sys::N_Vector,
@@ -35,17 +35,19 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     _tmp2: sys::N_Vector,
     _tmp3: sys::N_Vector,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
     let Some(mut quotients) = callbacks.linear.quotients.take() else { return FATAL };
     let mut gamma = 0.0;
-    // SAFETY: the memory is that of the call under way; `weights` is a vector to work with, and these functions only
-    // copy.
+    // SAFETY: the memory is that of the current call; `weights` is a work vector, and these
+    // functions only copy.
     let codes = unsafe {
         let code = sys::CVodeGetErrWeights(quotients.memory, weights);
         [code, sys::CVodeGetCurrentGamma(quotients.memory, &raw mut gamma)]
     };
-    // SAFETY: all are live serial vectors of length `dim`, distinct from each other; `matrix` is ours.
+    // SAFETY: all are live serial vectors of length `dim`, distinct from each other; `matrix` is
+    // ours.
     let (z, f, weights, matrix) = unsafe {
         let numbers = |vector| slice::from_raw_parts(numbers_of(vector), callbacks.dim);
         (numbers(z), numbers(f), numbers(weights), sparse::content(matrix))
@@ -61,7 +63,7 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
 }
 
 impl Quotients {
-    /// Gives each entry k of ∂f/∂y at z, where f is `f`, to `write`.
+    /// Passes each entry k of ∂f/∂y at z to `write`; `f` is f at z.
     fn evaluate<F: VectorField>(
         &mut self,
         callbacks: &mut Callbacks<F>,

@@ -7,10 +7,9 @@ use pc_expr::Pattern;
 use crate::cvode::handles::Memory;
 use crate::settings::inequality::Inequality;
 
-/// Difference quotients of f in the directions of sums of unit vectors, columns of one colour at once, with CVODE's
-/// increments.
+/// Difference quotients of f for all columns of one colour at once, with CVODE's increments.
 pub(super) struct Quotients {
-    /// To ask for the error weights and for γ.
+    /// For the error weights and γ.
     pub(super) memory: *mut c_void,
     pub(super) pattern: Pattern,
     /// The columns of each colour.
@@ -22,7 +21,7 @@ pub(super) struct Quotients {
 }
 
 impl Quotients {
-    /// For the CVODES of `memory`, which outlives them.
+    /// For the CVODES of `memory`, which must outlive them.
     pub(super) fn new(memory: &Memory, pattern: &Pattern, inequalities: &[Inequality]) -> Self {
         let colouring = pattern.colouring();
         let colours = (0..colouring.len()).map(|colour| colouring.columns(colour).collect()).collect();
@@ -46,7 +45,8 @@ impl Quotients {
         self.evaluations
     }
 
-    /// Moves component `j` of z by max(√ε |zⱼ|, `least`/wⱼ), so that no inequality is left, and returns by how much.
+    /// Moves component `j` of z by max(√ε |zⱼ|, `least`/wⱼ), in the direction that keeps its
+    /// inequality, and returns the increment.
     pub(super) fn shift(&mut self, j: usize, z: &[f64], weight: f64, least: f64) -> f64 {
         let length = (f64::EPSILON.sqrt() * z[j].abs()).max(least / weight);
         let forwards = self.inequalities.get(j).is_none_or(|inequality| inequality.holds(z[j] + length));

@@ -4,22 +4,22 @@ use crate::cvode::linear::krylov::Krylov;
 
 /// How the linear systems (I − γ ∂f/∂y) x = b of Newton's iteration are solved.
 ///
-/// Unless one is [chosen](crate::Options::linear_solver), it is [`Sparse`](LinearSolver::Sparse) for a field that knows its
-/// [zero pattern](pc_expr::VectorField::sparsity), has at least 60 components and at most one entry in eight other than zero,
-/// and else [`Dense`](LinearSolver::Dense).
+/// The default [choice](crate::Options::linear_solver) is [`Sparse`](LinearSolver::Sparse) for a
+/// field that knows its [zero pattern](pc_expr::VectorField::sparsity), with at least 60 components
+/// and at most one nonzero entry in eight, else [`Dense`](LinearSolver::Dense).
 #[derive(Debug, Clone, PartialEq)]
 pub enum LinearSolver {
-    /// LU factors of the whole matrix: SUNDIALS' own, and from 64 components on those of the crate `faer`.
+    /// LU factors of the whole matrix, by SUNDIALS, or from 64 components on by the crate `faer`.
     ///
-    /// ∂f/∂y is the field's [Jacobian](pc_expr::VectorField::jacobian), or comes from difference quotients, one evaluation of f
-    /// for each component.
+    /// ∂f/∂y is the field's [Jacobian](pc_expr::VectorField::jacobian), or else difference
+    /// quotients, with one evaluation of f for each component.
     Dense,
 
-    /// LU factors of a band matrix, whose entries (i, j) other than zero have −`upper` ≤ i − j ≤ `lower`.
+    /// LU factors of a band matrix, whose nonzero entries (i, j) have −`upper` ≤ i − j ≤ `lower`.
     ///
-    /// ∂f/∂y is the field's [sparse Jacobian](pc_expr::VectorField::sparse_jacobian) if it has one and knows its zero pattern,
-    /// or comes from difference quotients, one evaluation of f for each of the lower + upper + 1 diagonals. A known
-    /// pattern must lie in the band.
+    /// ∂f/∂y is the field's [sparse Jacobian](pc_expr::VectorField::sparse_jacobian) if it has one
+    /// and knows its zero pattern, or else difference quotients, with one evaluation of f for each
+    /// of the lower + upper + 1 diagonals. A known pattern must lie in the band.
     Band {
         /// Diagonals below the main one.
         lower: usize,
@@ -27,14 +27,14 @@ pub enum LinearSolver {
         upper: usize,
     },
 
-    /// Sparse LU factors, of the crate `faer`; the order of elimination is found once.
+    /// Sparse LU factors, by the crate `faer`; the order of elimination is found once.
     ///
-    /// Needs the field's [zero pattern](pc_expr::VectorField::sparsity). ∂f/∂y is the field's [sparse
-    /// Jacobian](pc_expr::VectorField::sparse_jacobian), or comes from difference quotients, one evaluation of f for each colour
-    /// of the pattern [Curtis, Powell, Reid 1974].
+    /// Needs the field's [zero pattern](pc_expr::VectorField::sparsity). ∂f/∂y is the field's
+    /// [sparse Jacobian](pc_expr::VectorField::sparse_jacobian), or else difference quotients, with
+    /// one evaluation of f for each colour of the pattern [Curtis, Powell, Reid 1974].
     Sparse,
 
-    /// GMRES without a matrix [Saad, Schultz 1986], from the field's [products](pc_expr::VectorField::jvp) (∂f/∂y) v, or from
-    /// difference quotients in the direction v.
+    /// GMRES without a matrix [Saad, Schultz 1986], with the field's
+    /// [products](pc_expr::VectorField::jvp) (∂f/∂y) v, or else difference quotients along v.
     Krylov(Krylov),
 }

@@ -15,7 +15,7 @@ use crate::error::{NonFinite, SolveError};
 
 const SUCCESS: c_int = 0;
 
-/// The pattern of I − γ ∂f/∂y, and where in it the entries of ∂f/∂y and the diagonal are.
+/// The pattern of I − γ ∂f/∂y, and the places in it of the entries of ∂f/∂y and of the diagonal.
 #[derive(Clone)]
 pub(super) struct Places {
     pattern: Arc<Pattern>,
@@ -113,7 +113,8 @@ unsafe extern "C" fn clone(matrix: sys::SUNMatrix) -> sys::SUNMatrix {
 }
 
 unsafe extern "C" fn destroy(matrix: sys::SUNMatrix) {
-    // SAFETY: the content was made by `Box::into_raw` and is owned by the matrix, which is freed with it.
+    // SAFETY: the content was made by `Box::into_raw` and is owned by the matrix, which is freed
+    // with it.
     unsafe {
         drop(Box::from_raw((*matrix).content.cast::<Compressed>()));
         sys::SUNMatFreeEmpty(matrix);
@@ -147,8 +148,8 @@ unsafe extern "C" fn scale_add_identity(c: f64, matrix: sys::SUNMatrix) -> sys::
 }
 
 impl<F: VectorField> Callbacks<F> {
-    /// Evaluates the sparse Jacobian and gives row, column, value and place in the field's order of each entry to
-    /// `write`.
+    /// Evaluates the sparse Jacobian and passes row and column, value and place in the field's
+    /// order of each entry to `write`.
     pub(super) fn entries(
         &mut self,
         t: f64,
@@ -156,7 +157,7 @@ impl<F: VectorField> Callbacks<F> {
         mut write: impl FnMut((usize, usize), f64, usize),
     ) -> c_int {
         let mut entries = std::mem::take(&mut self.linear.entries);
-        entries.fill(f64::NAN); // So that an entry the field leaves unwritten is found.
+        entries.fill(f64::NAN); // To detect entries that the field leaves unwritten.
         let answer = self.guard(|field, offset| {
             let y = offset.map_or(y, |offset| offset.state_of(y));
             field.sparse_jacobian(t, y, &mut entries)?;
@@ -178,8 +179,8 @@ impl<F: VectorField> Callbacks<F> {
 /// `CVLsJacFn`, from the field's sparse Jacobian.
 ///
 /// # Safety
-/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a vector of its dimension and a
-/// [`matrix`] of its places.
+/// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a
+/// vector of its dimension and a [`matrix`] of its places.
 pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     t: f64,
     y: sys::N_Vector,
@@ -190,9 +191,11 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     _tmp2: sys::N_Vector,
     _tmp3: sys::N_Vector,
 ) -> c_int {
-    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of CVODES.
+    // SAFETY: the address is of a live `Callbacks<F>`, which nobody else uses during a call of
+    // CVODES.
     let callbacks = unsafe { &mut *user_data.cast::<Callbacks<F>>() };
-    // SAFETY: `y` is a live serial vector of length `dim`; `matrix` is ours, and CVODES has set it to 0.
+    // SAFETY: `y` is a live serial vector of length `dim`; `matrix` is ours, and CVODES has set it
+    // to 0.
     let (y, matrix) = unsafe { (slice::from_raw_parts(numbers_of(y), callbacks.dim), content(matrix)) };
     callbacks.entries(t, y, |_, value, k| matrix.set(k, value))
 }

@@ -27,8 +27,8 @@ pub(super) fn solver(
     direct::solver(context, matrix, SparseLu::new(pattern).map_err(out_of_memory)?)
 }
 
-/// P A Q = L U. The order Q of the columns, which keeps L and U sparse whatever P is, is found once, from the pattern;
-/// the order P of the rows, by the largest pivot in each column, anew for each matrix.
+/// P A Q = L U. The order Q of the columns, which keeps L and U sparse for every P, is found once,
+/// from the pattern; the order P of the rows for each matrix, by the largest pivot in each column.
 struct SparseLu {
     symbolic: SymbolicLu<usize>,
     numeric: NumericLu<usize, f64>,
@@ -55,7 +55,7 @@ impl SparseLu {
             .map_err(|_| Singular)
     }
 
-    /// Replaces b by x with A x = b, or by numbers some of which are not finite if a pivot is 0.
+    /// Replaces b by x with A x = b; some numbers are not finite if a pivot is 0.
     fn solve_in_place(&mut self, b: &mut [f64]) {
         let rows = b.len();
         LuRef::new_unchecked(&self.symbolic, &self.numeric).solve_in_place_with_conj(
@@ -74,7 +74,8 @@ fn columns(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
 
 impl Factors for SparseLu {
     unsafe fn factorise(&mut self, matrix: sys::SUNMatrix) -> Result<(), Singular> {
-        // SAFETY: the matrix the solver was made for is one of ours, and nobody else uses it during the call.
+        // SAFETY: the matrix the solver was made for is one of ours, and nobody else uses it during
+        // the call.
         let matrix = unsafe { sparse::content(matrix) };
         self.set(matrix.pattern(), matrix.values())
     }
@@ -124,7 +125,8 @@ mod tests {
             ..ProptestConfig::default()
         })]
 
-        /// Diagonally dominant, so well conditioned: the error of either is a few roundings of n operations.
+        /// The matrices are diagonally dominant, so well conditioned: errors are a few roundings of
+        /// n operations.
         #[test]
         fn sparse_factors_are_the_dense_ones((pattern, first, second) in matrices()) {
             let n = pattern.rows();
@@ -174,7 +176,7 @@ mod tests {
                 assert!(!factorised || x.iter().any(|value| !value.is_finite()), "{values:?} {b:?}: {x:?}");
             }
         }
-        // The next matrix is none the worse for it.
+        // The next matrix is not affected.
         factors.set(&pattern, &[2.0, 0.0, 0.0, 2.0, 2.0]).unwrap();
         let mut x = [2.0, 4.0, 6.0];
         factors.solve_in_place(&mut x);

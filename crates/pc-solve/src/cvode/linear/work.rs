@@ -3,7 +3,7 @@
 use crate::cvode::linear::preconditioner::Preconditioner;
 use crate::cvode::linear::quotients::Quotients;
 
-/// What the callbacks of the linear solver read and write, beside the vector field.
+/// The data of the callbacks of the linear solver, besides the vector field.
 #[derive(Default)]
 pub(crate) struct Work {
     /// The entries of ∂f/∂y, in the order of the field's pattern.
@@ -13,14 +13,14 @@ pub(crate) struct Work {
 }
 
 impl Work {
-    /// Counts from the beginning, as CVODES does after a new start.
+    /// Resets the counts, as CVODES does when reinitialised.
     pub(crate) fn forget_counts(&mut self) {
         if let Some(quotients) = &mut self.quotients {
             quotients.forget_evaluations();
         }
     }
 
-    /// Evaluations of f for difference quotients of ours, which CVODES does not count.
+    /// Evaluations of f for our difference quotients, which CVODES does not count.
     pub(crate) fn quotient_evaluations(&self) -> u64 {
         self.quotients.as_ref().map_or(0, Quotients::evaluations)
     }

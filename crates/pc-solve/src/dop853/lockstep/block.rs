@@ -1,4 +1,4 @@
-//! Members at work in the lanes of a thread.
+//! The members in the lanes of one thread.
 
 use pc_expr::LANES;
 
@@ -8,12 +8,12 @@ use super::octet::Octet;
 use super::plan::Plan;
 use super::waiting::Waiting;
 
-/// So many vectors take turns: a step ends with numbers each of which waits for the one before, and meanwhile the
-/// processor begins with that of the other one.
+/// Number of vectors that alternate: a step ends with a chain of dependent operations, during which
+/// the processor begins the step of the other vector.
 const OCTETS: usize = 2;
-/// Members beside each other in a block, at most.
+/// Maximum number of members in a block.
 pub(crate) const WIDTH: usize = OCTETS * LANES;
-/// So many steps are made before somebody looks whether to go on.
+/// Number of steps between checks whether to go on.
 const UNWATCHED: usize = 64;
 
 /// Lanes with members of one program.
@@ -24,7 +24,7 @@ pub(crate) struct Block<'a, N> {
 }
 
 impl<'a, N> Block<'a, N> {
-    /// With so many lanes in use, at most [`WIDTH`].
+    /// A block that uses `width` lanes, at most [`WIDTH`].
     pub(crate) fn new(plan: &'a Plan, kernels: &'a Kernels, width: usize) -> Self {
         let width = width.clamp(1, WIDTH);
         let octets = (0..width).step_by(LANES).map(|first| Octet::new(plan, kernels, width - first));
@@ -46,14 +46,14 @@ impl<'a, N> Block<'a, N> {
             if unwatched >= UNWATCHED {
                 unwatched = 0;
                 if self.plan.deadline.as_ref().is_some_and(|deadline| deadline.passed().is_some()) {
-                    // Alone each will be told so.
+                    // Integrated alone, each reports the deadline.
                     self.octets.iter_mut().for_each(|octet| octet.clear(members));
                 }
             }
         }
     }
 
-    /// Gives free lanes to members; whether any is at work.
+    /// Assigns members to free lanes; returns whether any lane has a member.
     fn fill(&mut self, members: &mut impl Members<Name = N>) -> bool {
         if members.is_stopped() {
             return false;

@@ -9,8 +9,8 @@ use super::problem::Problem;
 /// Terms of the polynomial.
 pub(super) const TERMS: usize = 8;
 
-/// Reads the step's length with its sign, y, ẏ and stages 6 to 12, then y and ẏ at the end, then the numbers of a member; writes
-/// the terms, and all bits where they are known.
+/// Reads the step's length with its sign, y, ẏ and stages 6 to 12, then y and ẏ at the end, then a
+/// member's constants; writes the terms, and all bits set where they are valid.
 pub(super) fn polynomial(problem: &Problem<'_>) -> LaneTape {
     let tape = &mut LaneTape::new();
     let h = tape.input();
@@ -54,7 +54,7 @@ pub(super) fn polynomial(problem: &Problem<'_>) -> LaneTape {
     std::mem::take(tape)
 }
 
-/// Reads the terms and the part s of the step; writes y there.
+/// Reads the terms and the fraction s of the step; writes y there.
 pub(super) fn value(dim: usize) -> LaneTape {
     let tape = &mut LaneTape::new();
     let terms: [Vec<LaneValue>; TERMS] = std::array::from_fn(|_| tape.inputs(dim));

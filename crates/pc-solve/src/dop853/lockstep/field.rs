@@ -2,25 +2,26 @@
 
 use pc_expr::{Binary, LaneTape, LaneValue, Program};
 
-/// What f is computed from beside the state: the numbers of a member.
+/// f with its inputs other than the state: the constants of a member, computed from its parameters.
 pub(super) struct Field<'a> {
     pub(super) program: &'a Program,
-    /// Number of the pivots that are watched, and what is small against the sizes.
+    /// Number of pivots watched, and the ratio to the sizes below which a pivot vanishes.
     pub(super) pivots: usize,
     pub(super) vanishing: f64,
-    /// What it takes for parameters.
+    /// The inputs of the program in the place of parameters.
     pub(super) numbers: Vec<LaneValue>,
-    /// The smallest of the pivots that do not change, and the largest of such sizes.
+    /// The smallest of the constant pivots, and the largest of the constant sizes.
     pub(super) fixed: [LaneValue; 2],
 }
 
-/// The rows of a frame that a member's numbers take, after its state.
+/// Rows of the frame taken by `fixed`.
 pub(super) const FIXED: usize = 2;
 
-/// Components for which products h aⱼ are worth computing: a step has 50 of them, and saves a product in each of 11 stages.
+/// Number of components from which computing the products h aⱼ pays off: a step has 50 of them, and
+/// saves a product per component in each of 11 stages.
 const MANY: usize = 5;
 
-/// Whether all is well so far: a mask, and a sum that is 0 as long as all that was looked at is finite.
+/// The validity of the lanes: a mask, and a sum that is 0 as long as all values checked are finite.
 #[derive(Clone, Copy)]
 pub(super) struct Health {
     regular: LaneValue,
@@ -28,14 +29,14 @@ pub(super) struct Health {
 }
 
 impl Field<'_> {
-    /// f at a state; whether that is regular is noted.
+    /// f at a state; notes in `health` whether the pivots are regular.
     pub(super) fn rates(
         &self,
         tape: &mut LaneTape,
         state: &[LaneValue],
         health: &mut Health,
     ) -> Vec<LaneValue> {
-        let t = tape.constant(0.0); // which is not read
+        let t = tape.constant(0.0); // not read
         let mut outputs = tape.inline(self.program, t, state, &self.numbers);
         let watched = outputs.split_off(state.len());
         if self.pivots > 0 {
@@ -63,7 +64,7 @@ impl Health {
         Health { regular: tape.bits(u64::MAX), finite: tape.constant(0.0) }
     }
 
-    /// Notes whether these are finite: whether their sum is.
+    /// Checks that these values are finite, by their sum.
     pub(super) fn look(&mut self, tape: &mut LaneTape, values: &[LaneValue]) {
         let zero = tape.constant(0.0);
         let sum = values.iter().copied().reduce(|sum, value| tape.add(sum, value));
@@ -72,7 +73,7 @@ impl Health {
         }
     }
 
-    /// The mask of the lanes in which all is well.
+    /// The mask of the valid lanes.
     pub(super) fn mask(self, tape: &mut LaneTape) -> LaneValue {
         let zero = tape.constant(0.0);
         let finite = tape.binary(Binary::LessOrEqual, self.finite, zero);
@@ -80,7 +81,7 @@ impl Health {
     }
 }
 
-/// Σ aⱼ kⱼ, component after component, so that one does not wait for the one before.
+/// Σ aⱼ kⱼ, with the components innermost, so that successive operations are independent.
 pub(super) fn sum(tape: &mut LaneTape, a: &[f64], k: &[&[LaneValue]]) -> Vec<LaneValue> {
     let mut sums = Vec::new();
     for (j, (&a, k)) in a.iter().zip(k).enumerate() {
@@ -116,7 +117,8 @@ pub(super) fn sums(tape: &mut LaneTape, a: [&[f64]; 2], k: &[&[LaneValue]]) -> [
 
 /// y + h Σ aⱼ kⱼ
 ///
-/// Of many components by y + Σ (h aⱼ) kⱼ, with fewer operations, of which fewer wait for the last k.
+/// For many components as y + Σ (h aⱼ) kⱼ, which takes fewer operations, of which fewer wait for
+/// the last k.
 pub(super) fn advanced(
     tape: &mut LaneTape,
     y: &[LaneValue],

@@ -1,4 +1,4 @@
-//! What the steps of a program become.
+//! The compiled tapes of a program.
 
 use std::sync::Arc;
 
@@ -11,20 +11,20 @@ use super::problem::Problem;
 use super::start::start;
 use super::step::step;
 
-/// Longer steps are left to single members: their code would be slow to make, and too long to be read fast.
+/// Maximum number of operations of a step: longer code is slow to compile, and to fetch.
 const LONGEST: usize = 20_000;
 
-/// The kernels of a program, for members of any parameters.
+/// The kernels of a program, for members with any parameters.
 #[derive(Debug, Clone)]
 pub(crate) struct Kernels {
     key: Key,
     pub(super) dim: usize,
     pub(super) parameters: usize,
-    /// The rows of a member's numbers.
+    /// Number of rows of a member's constants.
     pub(super) numbers: usize,
     pub(super) start: LaneKernel,
     pub(super) step: LaneKernel,
-    /// For states inside steps, if these are asked for.
+    /// For states inside steps, if needed.
     pub(super) inside: Option<Inside>,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Inside {
 }
 
 impl Kernels {
-    /// None where the program reads time, or its steps would be too long.
+    /// None if the program reads time, or its steps would be too long.
     pub(crate) fn new(field: &LaneField, plan: &Plan, set: Option<InstructionSet>) -> Option<Kernels> {
         let program = &field.program;
         let dim = program.state_len();
@@ -71,13 +71,13 @@ impl Kernels {
         })
     }
 
-    /// Whether they are those of a field.
+    /// Whether these are the kernels of a field.
     pub(crate) fn are_of(&self, field: &LaneField) -> bool {
         self.key.is_of(field)
     }
 }
 
-/// What the kernels of a plan depend on.
+/// What the kernels depend on besides the plan.
 #[derive(Debug, Clone)]
 pub(super) struct Key {
     program: Arc<Program>,

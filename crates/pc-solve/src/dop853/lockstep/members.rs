@@ -1,31 +1,32 @@
-//! Whom lanes work for.
+//! The source of members, and the sink of their motions.
 
 use pc_expr::LaneField;
 
 use crate::integration::trajectory::Trajectory;
 
-/// What a block works on, and for whom.
+/// The members that a block integrates, and the receiver of their motions.
 pub(crate) trait Members {
-    /// What a member is known by.
+    /// Identifies a member.
     type Name;
 
-    /// The next member, with its field, whose kernels are those of the block, and its start; none if the source has none.
+    /// The next member, with its field, for which the kernels of the block hold, and its start;
+    /// none if the source has none.
     fn next(&mut self, from: Source) -> Option<(Self::Name, LaneField, Vec<f64>)>;
 
-    /// Takes the complete motion of one; none where it is to be integrated alone.
+    /// Receives the complete motion of a member; none if it has to be integrated alone.
     fn end(&mut self, name: Self::Name, motion: Option<Trajectory>);
 
-    /// Whether to end now.
+    /// Whether to stop now.
     fn is_stopped(&self) -> bool;
 }
 
 /// Where members come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
-    /// From those that have been handed to this thread.
+    /// Members that this thread already has.
     AtHand,
-    /// From those too that can be handed to it now.
+    /// These, and those it can get at once.
     Available,
-    /// From whichever come, for which to wait.
+    /// Any member, waiting for it if necessary.
     Awaited,
 }

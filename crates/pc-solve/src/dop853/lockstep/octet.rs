@@ -1,4 +1,4 @@
-//! Eight lanes at work.
+//! Eight lanes that step together.
 
 use pc_expr::{LANES, Lanes};
 
@@ -15,20 +15,20 @@ use crate::integration::trajectory::Trajectory;
 struct Occupant<N> {
     name: N,
     motion: Trajectory,
-    /// The next of the output times.
+    /// Index of the next output time.
     next: usize,
     /// Steps up to the last output.
     steps: u64,
 }
 
-/// A vector whose lanes have members of one program.
+/// A vector whose lanes hold members of one program.
 pub(super) struct Octet<'a, N> {
     plan: &'a Plan,
     kernels: &'a Kernels,
     /// Lanes in use.
     width: usize,
     lanes: [Option<Occupant<N>>; LANES],
-    /// How many of them have members.
+    /// Number of lanes with members.
     working: usize,
     frame: Vec<Lanes>,
     polynomial: Vec<Lanes>,
@@ -38,7 +38,7 @@ pub(super) struct Octet<'a, N> {
 }
 
 impl<'a, N> Octet<'a, N> {
-    /// With so many lanes in use, at most [`LANES`].
+    /// An octet that uses `width` lanes, at most [`LANES`].
     pub(super) fn new(plan: &'a Plan, kernels: &'a Kernels, width: usize) -> Self {
         let frames = |inside: &Inside| (inside.polynomial.frame(), inside.value.frame());
         let (polynomial, value) = kernels.inside.as_ref().map(frames).unwrap_or_default();
@@ -60,19 +60,20 @@ impl<'a, N> Octet<'a, N> {
         self.working == 0
     }
 
-    /// The number of lanes for further members.
+    /// The number of free lanes.
     pub(super) fn free(&self) -> usize {
         self.width - self.working
     }
 
-    /// One of them.
+    /// A free lane.
     pub(super) fn free_lane(&self) -> Option<usize> {
         if self.free() == 0 { None } else { self.lanes[..self.width].iter().position(Option::is_none) }
     }
 
-    /// Begins with a member in a lane.
+    /// Starts a member in a lane.
     pub(super) fn begin(&mut self, lane: usize, ready: Ready<N>, waiting: &Waiting<'_, N>) {
-        // Where nobody is, no numbers are left of which computing may take longer.
+        // An idle octet fills all lanes, so that no stale values, which could be slow to compute
+        // with, remain.
         let lanes = if self.is_idle() { 0..LANES } else { lane..lane + 1 };
         let start = self.plan.start;
         let (y, found) = waiting.columns(ready.lane);
@@ -97,7 +98,7 @@ impl<'a, N> Octet<'a, N> {
         self.working += 1;
     }
 
-    /// Makes a step in each lane; whether one of them has come to something.
+    /// Makes a step in each lane; returns whether one needs attention.
     #[inline]
     pub(super) fn step(&mut self) -> bool {
         if self.is_idle() {
@@ -107,7 +108,7 @@ impl<'a, N> Octet<'a, N> {
         self.result(Output::Attention).iter().fold(0, |bits, mask| bits | mask.to_bits()) != 0
     }
 
-    /// Deals with the lanes that have come to something in the last step.
+    /// Handles the lanes that need attention after the last step.
     pub(super) fn attend(&mut self, members: &mut impl Members<Name = N>) {
         let (attention, broken) = (self.result(Output::Attention), self.result(Output::Broken));
         let (from, to) = (self.result(Output::From), self.frame[Row::Time as usize].0);
@@ -127,7 +128,7 @@ impl<'a, N> Octet<'a, N> {
         }
     }
 
-    /// Makes the polynomials of the last step.
+    /// Computes the polynomials of the last step.
     fn expand(&mut self) {
         let Some(inside) = &self.kernels.inside else { return };
         let dim = self.kernels.dim;
@@ -141,7 +142,7 @@ impl<'a, N> Octet<'a, N> {
         self.value[..terms.len()].copy_from_slice(terms);
     }
 
-    /// Gives the outputs of the last step of a lane, if it is still at work.
+    /// Records the outputs in the last step of a lane, if it still has a member.
     fn put_out(&mut self, lane: usize, (from, to): (f64, f64), members: &mut impl Members<Name = N>) {
         let plan = self.plan;
         loop {
@@ -164,7 +165,7 @@ impl<'a, N> Octet<'a, N> {
         }
     }
 
-    /// Finds y in the part s of the last step of a lane; whether it is known.
+    /// Evaluates y at the fraction s of the last step of a lane; returns whether it is valid.
     fn inside(&mut self, lane: usize, s: f64) -> bool {
         let Some(inside) = &self.kernels.inside else { return false };
         let terms = TERMS * self.kernels.dim;
@@ -176,7 +177,7 @@ impl<'a, N> Octet<'a, N> {
         known.to_bits() != 0 && self.y.iter().all(|y| y.is_finite())
     }
 
-    /// A member has come to its end.
+    /// Finishes a member that has reached its last output.
     fn complete(&mut self, lane: usize, (from, to): (f64, f64), members: &mut impl Members<Name = N>) {
         let Some(Occupant { name, mut motion, steps, .. }) = self.vacate(lane) else { return };
         let read = |row: Row| self.frame[row as usize].0[lane];
@@ -184,7 +185,7 @@ impl<'a, N> Octet<'a, N> {
         let statistics = Statistics {
             steps,
             lane_steps: steps,
-            // Of each try, of the start and of the length of the first step.
+            // For each attempt, for the start, and for the length of the first step.
             rhs_evaluations: 12 * tries + 1 + u64::from(self.plan.first.is_none()),
             error_test_failures: tries - steps,
             last_order: 8,
@@ -199,12 +200,13 @@ impl<'a, N> Octet<'a, N> {
         members.end(name, Some(motion));
     }
 
-    /// All members are better integrated alone.
+    /// Gives up all members, to be integrated alone.
     pub(super) fn clear(&mut self, members: &mut impl Members<Name = N>) {
         (0..LANES).for_each(|lane| self.leave(lane, members));
     }
 
-    /// A member is better integrated alone; its lane goes on with the numbers of another one, if there is one.
+    /// Gives up a member, to be integrated alone; its lane continues with the values of another
+    /// one, if any.
     fn leave(&mut self, lane: usize, members: &mut impl Members<Name = N>) {
         let Some(occupant) = self.vacate(lane) else { return };
         if let Some(other) = self.lanes.iter().position(Option::is_some) {

@@ -1,4 +1,4 @@
-//! What all members have in common.
+//! What all members share.
 
 use pc_expr::Deadline;
 
@@ -6,7 +6,7 @@ use crate::settings::method::Method;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
-/// Times, tolerances and limits that lanes can keep.
+/// Times, tolerances and limits, as far as lanes support them.
 #[derive(Debug, Clone)]
 pub(crate) struct Plan {
     pub(crate) start: f64,
@@ -16,15 +16,15 @@ pub(crate) struct Plan {
     pub(crate) relative: f64,
     pub(crate) absolute: Tolerance,
     pub(crate) longest: Option<f64>,
-    /// The length of the first step, if it is given.
+    /// The length of the first step, if given.
     pub(crate) first: Option<f64>,
     pub(crate) max_steps: u64,
     pub(crate) deadline: Option<Deadline>,
 }
 
 impl Plan {
-    /// None where the input is not valid, about which each member is told alone, or where more is asked for: another method, inequalities, a least
-    /// length, a stop time.
+    /// None if the input is invalid, which each member then reports alone, or if lanes do not
+    /// support it: another method, inequalities, a minimum step, a stop time.
     pub(crate) fn new(start: f64, times: &[f64], options: &Options) -> Option<Plan> {
         let more = options.method != Method::Dop853
             || !options.inequalities.is_empty()
@@ -50,14 +50,14 @@ impl Plan {
                 max_steps: options.max_steps,
                 deadline: options.deadline.clone(),
             })
-            // What remains is checked with the length of a state.
+            // Other options are validated for the length of a state.
             .filter(|_| match &options.absolute_tolerance {
                 Tolerance::Scalar(_) => options.validate(1).is_ok(),
                 Tolerance::Vector(tolerances) => options.validate(tolerances.len()).is_ok(),
             })
     }
 
-    /// Whether the tapes of one plan are those of the other.
+    /// Whether both plans have the same tapes.
     pub(super) fn is_like(&self, other: &Plan) -> bool {
         let limits = |plan: &Plan| (plan.start, plan.end(), plan.direction, plan.relative, plan.max_steps);
         let lengths = |plan: &Plan| (plan.longest, plan.first, plan.has_inside());
@@ -69,7 +69,7 @@ impl Plan {
         self.times.iter().any(|&t| t != self.start && t != self.end())
     }
 
-    /// The absolute tolerance of each component; none unless there are as many.
+    /// The absolute tolerance of each component; none if their number differs.
     pub(super) fn absolute(&self, dim: usize) -> Option<Vec<f64>> {
         match &self.absolute {
             Tolerance::Scalar(tolerance) => Some(vec![*tolerance; dim]),

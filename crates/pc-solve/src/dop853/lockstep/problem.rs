@@ -1,14 +1,14 @@
-//! What the tapes are made of.
+//! The input of the tapes.
 
 use pc_expr::{LaneTape, LaneValue, Program};
 
 use super::field::Field;
 use super::plan::Plan;
 
-/// f and the plan, for the tapes.
+/// f and the plan.
 pub(super) struct Problem<'a> {
     pub(super) plan: &'a Plan,
-    /// What the numbers of a member are computed by from its parameters, and what f is computed by from these.
+    /// Computes a member's constants from its parameters; `program` computes f from these.
     pub(super) numbers: &'a Program,
     pub(super) program: &'a Program,
     pub(super) pivots: usize,
@@ -21,13 +21,13 @@ impl<'a> Problem<'a> {
         self.program.state_len()
     }
 
-    /// f, with the numbers of a member in the next rows.
+    /// f, with a member's constants in the next rows.
     pub(super) fn field(&self, tape: &mut LaneTape) -> Field<'a> {
         let numbers = tape.inputs(self.program.parameters_len());
         self.field_of(tape, numbers)
     }
 
-    /// f, with the parameters of a member in the next rows.
+    /// f, with a member's parameters in the next rows.
     pub(super) fn field_of_parameters(&self, tape: &mut LaneTape) -> Field<'a> {
         let parameters = tape.inputs(self.numbers.parameters_len());
         let none = tape.constant(0.0);

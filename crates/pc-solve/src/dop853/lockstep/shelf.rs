@@ -1,4 +1,4 @@
-//! Kernels that have been made.
+//! A cache of kernels.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -8,14 +8,14 @@ use pc_expr::LaneField;
 use super::kernels::{Kernels, Key};
 use super::plan::Plan;
 
-/// Kernels of so many different programs and plans are kept.
+/// Number of pairs of program and plan whose kernels are kept.
 const KEPT: usize = 8;
 
-/// The last kernels made, for all threads; clones share them.
+/// The latest kernels, for all threads; clones share them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Shelf(Arc<Mutex<VecDeque<Made>>>);
 
-/// What became of a program and a plan.
+/// The kernels of a program and a plan, if there are any.
 #[derive(Debug)]
 struct Made {
     key: Key,
@@ -24,9 +24,9 @@ struct Made {
 }
 
 impl Shelf {
-    /// The kernels of a field, which are made if they are not there; none where there can be none.
+    /// The kernels of a field, compiled if necessary; none if lanes do not support it.
     pub(crate) fn kernels(&self, field: &LaneField, plan: &Plan) -> Option<Arc<Kernels>> {
-        // While one thread makes them, the others wait for them.
+        // While one thread compiles them, the others wait.
         let mut shelf = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let fits = |made: &&Made| made.key.is_of(field) && made.plan.is_like(plan);
         if let Some(made) = shelf.iter().find(fits) {

@@ -1,4 +1,5 @@
-//! The tape of a start: the rates there, and the length of the first step [Hairer, Nørsett, Wanner 1993, II.4].
+//! The tape of a start: the rates there, and the length of the first step [Hairer, Nørsett, Wanner
+//! 1993, II.4].
 
 use pc_expr::{Binary, LaneTape, LaneValue};
 
@@ -6,8 +7,8 @@ use super::super::step::FIRST;
 use super::field::{Health, advanced};
 use super::problem::Problem;
 
-/// Reads y, the parameters of a member and what of its pivots does not change; writes ẏ, the numbers of the member, the length, and all
-/// bits where there is one.
+/// Reads y, the parameters of a member and its constant pivots; writes ẏ, the member's constants,
+/// the length, and all bits set where these are valid.
 pub(super) fn start(problem: &Problem<'_>) -> LaneTape {
     let tape = &mut LaneTape::new();
     let y = tape.inputs(problem.dim());
@@ -63,7 +64,7 @@ pub(super) fn start(problem: &Problem<'_>) -> LaneTape {
             let most = tape.multiply(hundred, h);
             let length = tape.binary(Binary::Lesser, most, by_rates);
             let length = tape.binary(Binary::Lesser, length, farthest);
-            // Where it fails there, the steps will be tried.
+            // Failures there are left to the step itself.
             tape.select(is_there, length, h)
         }
     };

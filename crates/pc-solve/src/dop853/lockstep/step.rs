@@ -1,7 +1,8 @@
 //! The tape of a step.
 //!
 //! The step and its errors are those of [`stages`](super::super::stages), its length that of
-//! [`control`](super::super::control), with roots and weights to some digits only: a length need not be better known.
+//! [`control`](super::super::control), with roots and weights to a few digits only, which suffice
+//! for a length.
 
 use pc_expr::{Binary, Fused, LaneTape, LaneValue};
 
@@ -10,47 +11,47 @@ use super::super::control::{GROWTH, SAFETY, SHRINKING};
 use super::field::{Health, advanced, sum, sums};
 use super::problem::Problem;
 
-/// The rows that a step reads and replaces, before those of y, ẏ and the numbers of a member.
+/// The rows that a step reads and replaces, before those of y, ẏ and the member's constants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Row {
     /// t
     Time,
-    /// The length with which the next step is tried.
+    /// The trial length of the next step.
     Length,
-    /// From this time on each accepted step is reported.
+    /// Accepted steps that reach this time are reported.
     Due,
-    /// All bits where a member is at work.
+    /// All bits set where a lane has a member.
     Active,
-    /// All bits where the last try was refused.
+    /// All bits set where the last attempt was rejected.
     Refused,
     /// Accepted steps since the last output.
     Steps,
-    /// Tries, which these are.
+    /// Attempts, accepted or not.
     Tries,
-    /// The length of the first step with its sign, 0 before.
+    /// The length of the first step with its sign; 0 before it.
     First,
 }
 
-/// How many there are.
+/// The number of these rows.
 pub(super) const ROWS: usize = 8;
 
-/// The results that have rows of their own.
+/// The results in separate rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Output {
-    /// All bits where an accepted step has come to what is due, or a step does not succeed.
+    /// All bits set where an accepted step has reached `Due`, or the integration cannot go on.
     Attention,
-    /// All bits where a step does not succeed.
+    /// All bits set where the integration cannot go on.
     Broken,
     /// The start of the step.
     From,
-    /// Its length, with its sign; after it, for states inside the step: y, ẏ and stages 6 to 12 of each lane.
+    /// Its length, with its sign; followed, for states inside the step, by y, ẏ and stages 6 to 12.
     Signed,
 }
 
-/// A step may be so much longer, in parts of itself, to end at the end.
+/// Fraction by which a step may be stretched to reach the end.
 const LEFT: f64 = 0.01;
 
-/// The tape of a step, with the results for states inside it if these are wanted.
+/// The tape of a step, with the results for states inside it if `inside`.
 pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
     let tape = &mut LaneTape::new();
     let [t, length, due, active, refused, steps, tries, first] = std::array::from_fn(|_| tape.input());
@@ -78,7 +79,8 @@ pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
         }
         field.rates(tape, &argument, &mut health)
     };
-    // What of the early stages is not finite shows in the arguments of 3, 4 and 12, what of the others in the end.
+    // Non-finite values of the early stages show in the arguments of stages 3, 4 and 12, those of
+    // the others at the end.
     let k2 = stage(&A2, &[&k1], false);
     let k3 = stage(&A3, &[&k1, &k2], true);
     let k4 = stage(&A4, &[&k1, &k3], true);
@@ -104,7 +106,7 @@ pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
     };
     let square = error(tape, problem, h, (&y, &y1), (&fifth, &third));
 
-    // Whether it stands, and how long the next one is.
+    // Whether the step is accepted, and the length of the next one.
     let well = health.mask(tape);
     let one = tape.constant(1.0);
     let small = tape.binary(Binary::LessOrEqual, square, one);
@@ -113,7 +115,7 @@ pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
         [SAFETY, SHRINKING, GROWTH, 0.5].map(|value| tape.constant(value));
     let root = inverse_sixteenth_root(tape, square);
     let factor = tape.multiply(root, safety);
-    let factor = tape.binary(Binary::Greater, factor, shrinking); // also where there is no number
+    let factor = tape.binary(Binary::Greater, factor, shrinking); // also for a NaN
     let most = tape.select(refused, one, growth);
     let factor = tape.binary(Binary::Lesser, factor, most);
     let halved = tape.binary(Binary::Lesser, factor, half);
@@ -125,7 +127,7 @@ pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
         next = tape.binary(Binary::Lesser, next, longest);
     }
 
-    // A step that no time shows is one that does not succeed, unless it is the last rest.
+    // A step too short to change t is a failure, unless it reaches the end.
     let (all, none) = (tape.bits(u64::MAX), tape.bits(0));
     let least = tape.constant(4.0 * f64::EPSILON);
     let time_size = tape.size(t);
@@ -184,7 +186,7 @@ pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
     std::mem::take(tape)
 }
 
-/// The square of the error, h² e₅⁴ / (n (e₅² + 0.01 e₃²)): at most 1 where the step may stand.
+/// The square of the error, h² e₅⁴ / (n (e₅² + 0.01 e₃²)); a step is accepted if it is at most 1.
 fn error(
     tape: &mut LaneTape,
     problem: &Problem<'_>,
@@ -206,7 +208,7 @@ fn error(
     }
     let [hundredth, least, n] = [0.01, f64::MIN_POSITIVE, y.len() as f64].map(|value| tape.constant(value));
     let both = tape.multiply_add(thirds, hundredth, fifths);
-    // No error is one of 0; what is not a number stays so.
+    // Avoids 0/0 without an error; a NaN remains.
     let both = tape.binary(Binary::Greater, least, both);
     let both = tape.multiply(both, n);
     let part = tape.multiply(h, fifths);
@@ -214,7 +216,8 @@ fn error(
     tape.binary(Binary::Divide, square, both)
 }
 
-/// 1/x, at most 0.3 % too small, for a positive normal number, by its bits and a step of Newton's method.
+/// 1/x for a positive normal number, at most 0.3 % too small, from its bits and a step of Newton's
+/// method.
 fn inverse(tape: &mut LaneTape, x: LaneValue) -> LaneValue {
     let one = tape.constant(1.0);
     let bits = tape.bits(0x7fde_6238_22fc_16e6);
@@ -223,14 +226,15 @@ fn inverse(tape: &mut LaneTape, x: LaneValue) -> LaneValue {
     tape.multiply_add(value, rest, value)
 }
 
-/// x^(−1/16), at most 1 % too small, by its bits and a step of Newton's method; no number where x is none, −∞ where x is
-/// infinite.
+/// x^(−1/16), at most 1 % too small, from its bits and a step of Newton's method; NaN for a NaN, −∞
+/// where x is infinite.
 fn inverse_sixteenth_root(tape: &mut LaneTape, x: LaneValue) -> LaneValue {
-    // Where so little is left, the length grows by as much as it may.
+    // For so small an error, the length grows by the maximum anyway.
     let least = tape.constant(1e-60);
     let x = tape.binary(Binary::Greater, least, x);
     let [one, part] = [1.0, 1.0 / 16.0].map(|value| tape.constant(value));
-    // 17/16 of the bits of 1, less what logarithms taken linearly are too large by.
+    // 17/16 of the bits of 1, less a correction since the bits are only piecewise linear in the
+    // logarithm.
     let bits = tape.bits((0x3ff0_0000_0000_0000_u64 / 16) * 17 - 0x0000_c000_0000_0000);
     let sixteenth = tape.shift_right(x, 4);
     let value = tape.binary(Binary::IntegerSubtract, bits, sixteenth);

@@ -7,15 +7,15 @@ use pc_expr::{LANES, LaneField, Lanes};
 use super::kernels::Kernels;
 use super::members::{Members, Source};
 
-/// Members with their first rates and lengths, which are computed for eight at once.
+/// Members with their initial rates and step lengths, computed for eight at once.
 pub(super) struct Waiting<'a, N> {
     kernels: &'a Kernels,
     names: [Option<N>; LANES],
-    /// The start of each in a lane.
+    /// The start of each member, in its lane.
     frame: Vec<Lanes>,
 }
 
-/// A member that can begin, whose start is in this lane.
+/// A member that can begin, with the lane of its start.
 pub(super) struct Ready<N> {
     pub(super) name: N,
     pub(super) lane: usize,
@@ -26,8 +26,9 @@ impl<'a, N> Waiting<'a, N> {
         Waiting { kernels, names: std::array::from_fn(|_| None), frame: kernels.start.frame() }
     }
 
-    /// The next member, of those that wait or of new ones: of all that are to be had, as many as there are free lanes, beyond them
-    /// only of those at hand, for which no other thread may be free.
+    /// The next waiting member, or a new one. New members are taken from any source while lanes are
+    /// free, beyond that only from those this thread already has, so as not to take work from other
+    /// threads.
     pub(super) fn next(
         &mut self,
         free: usize,
@@ -44,7 +45,7 @@ impl<'a, N> Waiting<'a, N> {
         }
     }
 
-    /// Takes new members; false if there is none.
+    /// Takes new members; false if there are none.
     fn gather(&mut self, free: usize, is_idle: bool, members: &mut impl Members<Name = N>) -> bool {
         let mut count = 0;
         while count < LANES {
@@ -77,7 +78,7 @@ impl<'a, N> Waiting<'a, N> {
         true
     }
 
-    /// That a member is one of these and can begin.
+    /// Whether a member fits the kernels and can begin.
     fn accepts(&self, field: &LaneField, y: &[f64]) -> bool {
         let watched = &field.watched;
         y.len() == self.kernels.dim
@@ -85,7 +86,7 @@ impl<'a, N> Waiting<'a, N> {
             && watched.smallest > watched.vanishing * watched.largest
     }
 
-    /// Writes state and numbers of a member to a lane, and where none has been written yet.
+    /// Writes state and parameters of a member to a lane; the first member fills all lanes.
     fn place(&mut self, lane: usize, field: &LaneField, y: &[f64]) {
         let watched = [field.watched.smallest, field.watched.largest];
         let numbers = y.iter().chain(&field.parameters).chain(&watched);
@@ -97,18 +98,18 @@ impl<'a, N> Waiting<'a, N> {
         }
     }
 
-    /// y, then ẏ and the numbers of the member in a lane.
+    /// y, then ẏ and the constants of the member in a lane.
     pub(super) fn columns(&self, lane: usize) -> (impl Iterator<Item = f64>, impl Iterator<Item = f64>) {
         let column = |rows: Range<usize>| self.frame[rows].iter().map(move |row| row.0[lane]);
         (column(0..self.kernels.dim), column(self.kernels.start.first_output()..self.after()))
     }
 
-    /// The length of its first step.
+    /// The length of the first step of the member in a lane.
     pub(super) fn length(&self, lane: usize) -> f64 {
         self.frame[self.after()].0[lane]
     }
 
-    /// The row after ẏ and the numbers.
+    /// The row after ẏ and the constants.
     fn after(&self) -> usize {
         self.kernels.start.first_output() + self.kernels.dim + self.kernels.numbers
     }

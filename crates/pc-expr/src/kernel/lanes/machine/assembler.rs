@@ -1,11 +1,12 @@
-//! Instructions, one after the other, as bytes.
+//! Encoding of instructions as bytes.
 
 use iced_x86::{Code, Encoder, Instruction, MemoryOperand, Register};
 
 use super::super::instruction_set::InstructionSet;
 use super::super::tape::LANES;
 
-/// The address of the frame, of the constants, and where lanes out of range are noted: registers that functions keep.
+/// Registers for the address of the frame, that of the constants, and the mask of lanes out of
+/// range; calls preserve them.
 const FRAME: Register = Register::RBX;
 const POOL: Register = Register::R12;
 pub(super) const NOTED: Register = Register::R13D;
@@ -13,7 +14,7 @@ pub(super) const NOTED: Register = Register::R13D;
 /// A vector register by its number.
 pub(super) type Vector = u8;
 
-/// Where a value waits.
+/// Where a value is in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Home {
     /// A row of the frame.
@@ -29,7 +30,7 @@ pub(super) enum Last {
     Memory(Home),
 }
 
-/// An instruction that does not exist, which no program leads to.
+/// An instruction that does not exist; no program leads to it.
 #[derive(Debug, thiserror::Error)]
 #[error("an instruction could not be encoded: {0}")]
 pub(crate) struct EncodeError(#[from] iced_x86::IcedError);
@@ -55,17 +56,18 @@ impl Assembler {
         if self.is_wide() { 32 } else { 16 }
     }
 
-    /// Lanes in a vector.
+    /// Number of lanes in a vector.
     pub(super) fn width(&self) -> usize {
         if self.is_wide() { LANES } else { LANES / 2 }
     }
 
-    /// Numbers in the pool for each constant: an instruction of AVX-512 repeats one number itself.
+    /// Numbers in the pool for each constant: AVX-512 instructions can broadcast a single one.
     pub(super) fn copies(&self) -> usize {
         if self.is_wide() { 1 } else { self.width() }
     }
 
-    /// What is added to the addresses, so that one byte of distance from them, in units of an operand, reaches most of the memory.
+    /// Biases of the addresses, so that one byte of displacement, in units of an operand, reaches
+    /// most of the memory.
     fn biases(&self) -> [i64; 2] {
         if self.is_wide() { [128 * 64, 128 * 8] } else { [128, 128] }
     }
@@ -124,7 +126,7 @@ impl Assembler {
         self.put(&instruction)
     }
 
-    /// The mask d ← a compared with b.
+    /// The mask d ← a compared with the last operand.
     pub(super) fn compare(
         &mut self,
         (code, predicate): (Code, u32),
@@ -154,7 +156,7 @@ impl Assembler {
         self.put(&instruction)
     }
 
-    /// Notes the lanes in which not a ≤ b; `free` is a vector that may be overwritten.
+    /// Notes the lanes in which a ≤ b does not hold; `free` is a vector that may be overwritten.
     pub(super) fn note(&mut self, free: Vector, a: Vector, last: Last) -> Result<(), EncodeError> {
         const NOT_LESS_OR_EQUAL: u32 = 0x16; // NLE_UQ
         let read = if self.is_wide() {
@@ -239,7 +241,7 @@ impl Assembler {
 
     /// Enters a function of (frame, pool) under the calling convention of System V.
     pub(super) fn enter(&mut self) -> Result<(), EncodeError> {
-        // Three of them leave the stack aligned for calls.
+        // Three registers leave the stack aligned for calls.
         for register in [FRAME, POOL, Register::R13] {
             self.put(&Instruction::with1(Code::Push_r64, register)?)?;
         }
@@ -258,19 +260,20 @@ impl Assembler {
         self.put(&Instruction::with2(Code::Mov_r32_imm32, Register::ESI, number)?)?;
         self.put(&Instruction::with2(Code::Mov_r32_imm32, Register::EDX, self.width() as u32)?)?;
         self.put(&Instruction::with2(Code::Mov_r64_imm64, Register::RAX, routine)?)?;
-        // Code of other sets of instructions waits for the upper halves of registers that are in use.
+        // Avoids the transition penalty of non-VEX code.
         self.put(&Instruction::with(Code::VEX_Vzeroupper))?;
         self.put(&Instruction::with1(Code::Call_rm64, Register::RAX)?)
     }
 
-    /// Leaves to the end if something was noted; the place where the distance has to be written.
+    /// Jumps to the end if a lane was noted; returns the place of the jump's distance, to be filled
+    /// in.
     pub(super) fn leave_if_noted(&mut self) -> Result<usize, EncodeError> {
         self.put(&Instruction::with2(Code::Test_rm32_r32, NOTED, NOTED)?)?;
         self.raw(&[0x0f, 0x85, 0, 0, 0, 0]); // jne
         Ok(self.len - 4)
     }
 
-    /// Returns what was noted.
+    /// Returns the noted lanes.
     pub(super) fn leave(&mut self) -> Result<(), EncodeError> {
         self.put(&Instruction::with2(Code::Mov_r32_rm32, Register::EAX, NOTED)?)?;
         self.put(&Instruction::with(Code::VEX_Vzeroupper))?;

@@ -1,4 +1,4 @@
-//! Executable code, and the functions that it calls.
+//! Executable code, and the routine that it calls.
 
 use std::io;
 
@@ -10,10 +10,11 @@ use super::assembler::EncodeError;
 use super::emit::{Emitted, emit};
 use crate::graph::function::Function;
 
-/// A frame, from the first lane of a vector on, and the constants; the lanes that are out of range.
+/// Takes a frame, from the first lane of a vector on, and the constants; returns the lanes that are
+/// out of range.
 type Enter = unsafe extern "sysv64" fn(*mut f64, *const f64) -> u32;
 
-/// Why there is no code.
+/// Why a tape was not compiled.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CodeError {
     #[error(transparent)]
@@ -37,7 +38,7 @@ impl Code {
     /// Compiles a tape.
     ///
     /// # Errors
-    /// [`CodeError`] if there is no memory.
+    /// [`CodeError`] if memory cannot be allocated.
     pub(crate) fn new(tape: &LaneTape, set: InstructionSet) -> Result<Code, CodeError> {
         let Emitted { bytes, pool, rows } = emit(tape, set, routine as *const () as u64)?;
         let mut memory = MmapMut::map_anon(bytes.len())?;
@@ -62,8 +63,8 @@ impl Code {
         self.memory.len()
     }
 
-    /// Runs it; the groups of lanes, so many in a group, one of which is out of range are given to `again`, with their
-    /// first lane and their inputs as they were.
+    /// Runs the code; for each vector with a lane out of range calls `again` with its first lane
+    /// and its width, the inputs unchanged.
     ///
     /// # Panics
     /// If the frame has too few rows.
@@ -74,10 +75,10 @@ impl Code {
         let enter = unsafe { std::mem::transmute::<*const u8, Enter>(self.memory.as_ptr()) };
         for first in (0..LANES).step_by(self.width) {
             let start = frame.as_mut_ptr().cast::<f64>();
-            // SAFETY: from the lane `first` on, the code reads and writes as many lanes as fit in each of the rows just
-            // checked, at places aligned to its vectors, for rows are aligned to 64 bytes and `first` is 0 or half a
-            // row; the pool holds the constants it was made with. The set of instructions was found on this processor
-            // by whoever made the code.
+            // SAFETY: from the lane `first` on, the code reads and writes as many lanes as fit in
+            // each of the rows just checked, at addresses aligned to its vectors, since rows are
+            // aligned to 64 bytes and `first` is 0 or half a row; the pool holds its constants.
+            // Callers of `new` have checked that this processor has the instruction set.
             let noted = unsafe { enter(start.add(first), self.pool.as_ptr().cast()) };
             if noted != 0 {
                 again(frame, first, self.width);
@@ -86,12 +87,13 @@ impl Code {
     }
 }
 
-/// The function of that number of the first `width` lanes of three rows, written to the first of them.
+/// Applies the function of that number to the first `width` lanes of three rows, and writes to the
+/// first row.
 extern "sysv64" fn routine(rows: *mut f64, number: u32, width: u32) {
     let Some(function) = Function::ALL.get(number as usize) else { return };
     for lane in 0..width as usize {
-        // SAFETY: the code passes the address of three rows of its frame, in which the lanes of a vector begin there; a row
-        // that holds no argument may hold anything.
+        // SAFETY: the code passes the address of three rows of its frame, in which the lanes of a
+        // vector begin there; a row that holds no argument may hold anything.
         unsafe {
             let place = rows.add(lane);
             let arguments = [*place, *place.add(LANES), *place.add(2 * LANES)];

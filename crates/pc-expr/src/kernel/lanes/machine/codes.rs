@@ -1,11 +1,11 @@
-//! The instructions of both sets.
+//! The instructions of both instruction sets.
 
 use iced_x86::Code;
 
 use super::super::instruction_set::InstructionSet;
 use super::super::tape::{Binary, Fused};
 
-/// Which operand of a fused multiply-add is overwritten.
+/// The operand of a fused multiply-add that is overwritten.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
     /// d ← d · third ± second
@@ -16,7 +16,7 @@ pub(super) enum Form {
     Sum,
 }
 
-/// An instruction of two operands; with a number for a comparison.
+/// An instruction of two operands; with the predicate for a comparison.
 pub(super) fn binary(set: InstructionSet, operation: Binary) -> (Code, Option<u32>) {
     let wide = set == InstructionSet::Avx512;
     let pick = |avx512, avx2| (if wide { avx512 } else { avx2 }, None);
@@ -52,14 +52,14 @@ pub(super) fn binary(set: InstructionSet, operation: Binary) -> (Code, Option<u3
         Binary::IntegerSubtract => {
             pick(Code::EVEX_Vpsubq_zmm_k1z_zmm_zmmm512b64, Code::VEX_Vpsubq_ymm_ymm_ymmm256)
         }
-        // Ordered comparisons that raise nothing: LT_OQ, LE_OQ, UNORD_Q.
+        // Comparisons that raise no exceptions: LT_OQ, LE_OQ, UNORD_Q.
         Binary::Less => compare(0x11),
         Binary::LessOrEqual => compare(0x12),
         Binary::Unordered => compare(0x03),
     }
 }
 
-/// Whether a and b may change places.
+/// Whether a and b may be exchanged.
 pub(super) fn commutes(operation: Binary) -> bool {
     matches!(
         operation,

@@ -7,16 +7,16 @@ use super::codes::{Form, binary, commutes, fused};
 use super::lines::{Line, Lines};
 use super::registers::Registers;
 
-/// A tape as bytes of instructions, with what they read and need.
+/// A tape as bytes of instructions, with its constants and its number of rows.
 pub(super) struct Emitted {
     pub(super) bytes: Vec<u8>,
     /// The constants.
     pub(super) pool: Vec<f64>,
-    /// Rows of the frame: inputs, outputs, and those in which values wait.
+    /// Number of rows of the frame: inputs, outputs, and spilled values.
     pub(super) rows: usize,
 }
 
-/// Makes instructions that call `routine` for functions.
+/// Emits instructions that call `routine` for functions.
 pub(super) fn emit(tape: &LaneTape, set: InstructionSet, routine: u64) -> Result<Emitted, EncodeError> {
     let assembler = Assembler::new(set);
     let mut pool = Vec::new();
@@ -57,15 +57,16 @@ struct Emitter<'a> {
     lines: &'a Lines,
     assembler: Assembler,
     registers: Registers,
-    /// The rows that each value is written to when it is made.
+    /// The rows to which each value is written when it is computed.
     rows_of: Vec<Vec<u32>>,
     routine: u64,
-    /// The line.
+    /// The current line.
     at: u32,
 }
 
 impl Emitter<'_> {
-    /// All up to the return; where the distance to that is to be written.
+    /// Emits everything up to the return; returns the place of the jump's distance to it, if there
+    /// is a jump.
     fn body(&mut self) -> Result<Option<usize>, EncodeError> {
         self.assembler.enter()?;
         let lines = self.lines;
@@ -95,7 +96,7 @@ impl Emitter<'_> {
         if self.tape.replaced.is_empty() {
             return Ok(None);
         }
-        // Inputs stay as they are where the lanes have to be computed once more.
+        // Inputs must not change if the lanes have to be computed again.
         let noting = lines.lines.iter().any(|line| matches!(line, Line::Note(..)));
         let leave = if noting { Some(self.assembler.leave_if_noted()?) } else { None };
         for &(row, value) in &self.tape.replaced {
@@ -111,7 +112,7 @@ impl Emitter<'_> {
         self.assembler.store(row, vector)
     }
 
-    /// Notes where a value is, and writes it to where it belongs.
+    /// Notes the register of a value, and writes it to its rows.
     fn made(&mut self, value: u32, vector: Vector) -> Result<(), EncodeError> {
         self.registers.put(value, vector);
         for &row in &self.rows_of[value as usize] {
@@ -122,7 +123,7 @@ impl Emitter<'_> {
         Ok(())
     }
 
-    /// The register of the value of a node, which is computed.
+    /// Computes the value of a node; returns its register.
     fn node(&mut self, value: u32) -> Result<Vector, EncodeError> {
         let get = |value: LaneValue| self.lines.value(value);
         match self.tape.nodes[value as usize] {
@@ -158,13 +159,13 @@ impl Emitter<'_> {
         self.registers.last(value, &mut self.assembler, self.at)
     }
 
-    /// The register of a value that nothing reads after this line, if it is in one.
+    /// The register of a value that is not read after this line, if it is in one.
     fn dying(&mut self, value: u32) -> Option<Vector> {
         let vector = self.registers.place(value)?;
         self.registers.is_last_use(value, self.at).then_some(vector)
     }
 
-    /// The register of one that dies, else a free one.
+    /// The register of an operand read for the last time, else a free one.
     fn target(&mut self, of: [u32; 2]) -> Result<Vector, EncodeError> {
         match self.dying(of[0]).or_else(|| self.dying(of[1])) {
             Some(vector) => Ok(vector),
@@ -200,8 +201,8 @@ impl Emitter<'_> {
         Ok(d)
     }
 
-    /// A register that may be overwritten, with the value of one of these operands in it: of one that nothing else reads, or a
-    /// copy. Which of the operands it is.
+    /// A register that may be overwritten and holds one of these operands, either read for the last
+    /// time or a copy; returned after the number of that operand.
     fn overwritten(&mut self, operands: [u32; 3], order: [usize; 3]) -> Result<(usize, Vector), EncodeError> {
         let alone = |i: usize| (0..3).all(|j| j == i || operands[j] != operands[i]);
         for i in order {
@@ -221,7 +222,8 @@ impl Emitter<'_> {
         Ok((i, d))
     }
 
-    /// The first of two operands as a register, the other as what may wait in memory; whether they have changed places.
+    /// One of two operands in a register, the other possibly in memory, and whether they are
+    /// exchanged.
     fn pair(&mut self, a: u32, b: u32) -> Result<(Vector, Last, bool), EncodeError> {
         let swaps = self.registers.place(a).is_none() && self.registers.place(b).is_some();
         let (a, b) = if swaps { (b, a) } else { (a, b) };
@@ -271,7 +273,7 @@ impl Emitter<'_> {
         Ok(d)
     }
 
-    /// Any function of three bits, by AVX-512.
+    /// Any function of three bits, with AVX-512.
     fn by_table(
         &mut self,
         operands: [u32; 3],
@@ -281,7 +283,7 @@ impl Emitter<'_> {
         let [second, third] = [(first + 1) % 3, (first + 2) % 3];
         let (vector, last, swapped) = self.pair(operands[second], operands[third])?;
         let [second, third] = if swapped { [third, second] } else { [second, third] };
-        // The bits of the place are those of the first, the second and the third operand.
+        // The bits of `place` are those of the first, the second and the third operand.
         let table = (0..8u8).fold(0, |table, place| {
             let mut bits = [0; 3];
             (bits[first], bits[second], bits[third]) = (place >> 2 & 1, place >> 1 & 1, place & 1);
@@ -292,7 +294,7 @@ impl Emitter<'_> {
         Ok(d)
     }
 
-    /// Calls a function of rows: all that is read later has to wait in memory.
+    /// Calls a function on rows; all values read later are spilled to memory.
     fn call(&mut self, number: u32, arguments: &[u32]) -> Result<Vector, EncodeError> {
         let rows = self.registers.rows_in_sequence(3);
         for (k, &argument) in arguments.iter().enumerate() {

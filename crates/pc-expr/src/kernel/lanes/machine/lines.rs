@@ -1,4 +1,4 @@
-//! What of a tape becomes instructions, in which order, and what each value is read by.
+//! The operations of a tape that become instructions, in order, and the uses of each value.
 
 use rustc_hash::FxHashSet;
 
@@ -9,16 +9,17 @@ use super::super::tape::{LaneTape, LaneValue, Node};
 pub(super) enum Line {
     /// The value of a node.
     Node(u32),
-    /// Notes the lanes in which not a ≤ b.
+    /// Notes the lanes in which a ≤ b does not hold.
     Note(u32, u32),
 }
 
 /// The lines of a tape.
 pub(super) struct Lines {
     pub(super) lines: Vec<Line>,
-    /// Values that are another one: those that are near enough to be what they are computed as.
+    /// For a value that equals another one in range ([`Node::Near`]), that other; else the value
+    /// itself.
     same_as: Vec<u32>,
-    /// The lines that read each value; what is written in the end is read by lines after the last.
+    /// The lines that read each value; values written at the end are read by a line after the last.
     pub(super) uses: Vec<Vec<u32>>,
 }
 
@@ -70,7 +71,7 @@ impl Lines {
         }
     }
 
-    /// The values that are written after the last line: to rows of inputs, and those that no line makes.
+    /// The values written after the last line: to rows of inputs, and those that no line computes.
     fn written_last(&self, tape: &LaneTape) -> Vec<u32> {
         let replaced = tape.replaced.iter().map(|&(_, value)| self.value(value));
         let passed = tape

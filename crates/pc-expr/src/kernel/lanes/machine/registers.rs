@@ -1,31 +1,32 @@
-//! Which value is in which register.
+//! Allocation of registers.
 //!
-//! Where none is free, the value goes that is needed last [Belady 1966]; it is stored unless it waits somewhere already.
+//! If none is free, the value with the latest next use is evicted [Belady 1966], and stored unless
+//! it is in memory already.
 
 use super::assembler::{Assembler, EncodeError, Home, Last, Vector};
 
-/// A value that is in memory is taken to a register if it is read again within so many lines.
+/// A value in memory is loaded to a register if it is read again within this many lines.
 const SOON: u32 = 24;
-/// A value that is not read again.
+/// The next use of a value that is not read again.
 pub(super) const NEVER: u32 = u32::MAX;
 
-/// The registers, the values and what is known of both.
+/// The registers and the values.
 pub(super) struct Registers {
     /// The value in each register.
     owner: Vec<Option<u32>>,
     locked: u32,
-    /// The register of each value, and where it waits.
+    /// The register of each value, and its place in memory.
     place: Vec<Option<Vector>>,
     home: Vec<Option<Home>>,
-    /// The lines that read each value, and how many of them are over.
+    /// The lines that read each value, and how many of them have passed.
     uses: Vec<Vec<u32>>,
     over: Vec<usize>,
-    /// Rows that are free again, and the first that was never taken.
+    /// Rows that are free again, and the first that was never used.
     free_rows: Vec<u32>,
     next_row: u32,
-    /// Rows that are given back when the value is not read again.
+    /// Whether a value has a row that becomes free after its last use.
     spilled: Vec<bool>,
-    /// The first of the rows for the arguments of calls, if there are any.
+    /// The first of the rows for arguments of calls, if there are calls.
     for_calls: Option<u32>,
 }
 
@@ -51,7 +52,7 @@ impl Registers {
         }
     }
 
-    /// The number of rows taken.
+    /// The number of rows used.
     pub(super) fn rows(&self) -> u32 {
         self.next_row
     }
@@ -81,7 +82,7 @@ impl Registers {
         self.home[value as usize] = Some(home);
     }
 
-    /// Keeps the registers of these values until the line is over.
+    /// Reserves the registers of these values until the end of the line.
     pub(super) fn lock(&mut self, values: &[u32]) {
         for &value in values {
             if let Some(vector) = self.place(value) {
@@ -90,7 +91,7 @@ impl Registers {
         }
     }
 
-    /// A register to write to, kept until the line is over.
+    /// A register to write to, reserved until the end of the line.
     pub(super) fn take(&mut self, assembler: &mut Assembler, line: u32) -> Result<Vector, EncodeError> {
         let unlocked: Vec<usize> = (0..self.owner.len()).filter(|&i| self.locked & (1 << i) == 0).collect();
         let free = unlocked.iter().copied().find(|&i| self.owner[i].is_none());
@@ -138,7 +139,7 @@ impl Registers {
         })
     }
 
-    /// The first of so many rows in sequence, which calls share.
+    /// The first of `count` successive rows, which all calls share.
     pub(super) fn rows_in_sequence(&mut self, count: u32) -> u32 {
         *self.for_calls.get_or_insert_with(|| {
             self.next_row += count;
@@ -146,7 +147,7 @@ impl Registers {
         })
     }
 
-    /// The register of a value, which is loaded if need be.
+    /// The register of a value, which is loaded if necessary.
     pub(super) fn in_register(
         &mut self,
         value: u32,
@@ -163,7 +164,7 @@ impl Registers {
         Ok(vector)
     }
 
-    /// Loads a value that waits in memory, without noting that it is there.
+    /// Loads a value from memory, without noting its register.
     pub(super) fn load(
         &mut self,
         vector: Vector,
@@ -174,7 +175,8 @@ impl Registers {
         assembler.load(vector, home)
     }
 
-    /// A value as the last operand of an instruction: from memory, unless it is read again soon.
+    /// A value as the last operand of an instruction: in memory, unless it is in a register or read
+    /// again soon.
     pub(super) fn last(
         &mut self,
         value: u32,
@@ -194,7 +196,7 @@ impl Registers {
         self.place[value as usize] = Some(vector);
     }
 
-    /// Ends a line: what it has read for the last time makes room.
+    /// Ends a line, and frees the registers of values that it has read for the last time.
     pub(super) fn end_line(&mut self, operands: &[u32], line: u32) {
         self.locked = 0;
         for &value in operands {
@@ -202,7 +204,7 @@ impl Registers {
         }
     }
 
-    /// Makes room if a value is not read after this line.
+    /// Frees the register and the row of a value that is not read after this line.
     pub(super) fn release(&mut self, value: u32, line: u32) {
         if !self.is_last_use(value, line) {
             return;
