@@ -11,7 +11,7 @@ pub enum IntegralError {
     Unknown {
         /// The name asked for.
         name: String,
-        /// Those there are.
+        /// The integrals of the system.
         known: Vec<String>,
     },
     /// A function to be kept that is not an integral.

@@ -6,7 +6,7 @@ use crate::error::lists::{approximately, at, quoted};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LagrangianError {
-    /// Neither a Lagrangian was given nor one that depends on the quasi-velocities.
+    /// There is no Lagrangian, or it does not depend on the quasi-velocities.
     #[error("the system has no Lagrangian")]
     Missing,
     /// ∂²L/∂η∂η is singular at almost all states.
@@ -19,7 +19,7 @@ pub enum LagrangianError {
         rank: usize,
         /// Number of quasi-velocities.
         size: usize,
-        /// The quasi-velocities in whose elimination no pivot was left.
+        /// The quasi-velocities for which elimination finds no pivot.
         quasi_velocities: Vec<String>,
     },
     /// H(t, x, y) was asked for where y = ∂L/∂η is not linear in the quasi-velocities.
