@@ -961,7 +961,7 @@ pc_status pc_model_add_output(pc_model *model,
 /**
  * Adds an input: a value that is constant until it is set, as a parameter is. Inputs come
  * after all parameters. Forces, rates of states, events, integrals and outputs may contain
- * it; frame, kinetic energy and constraints may not.
+ * it; velocities, momenta, constraints and positions of bodies may not.
  */
 pc_status pc_model_add_input(pc_model *model, const char *name, double value, pc_error **error);
 

@@ -12,7 +12,7 @@ use crate::machinery::draft::{Draft, Section, number, numbers as list_of, quoted
 
 /// Adds an input: a value that is constant until it is set, as a parameter is. Inputs come
 /// after all parameters. Forces, rates of states, events, integrals and outputs may contain
-/// it; frame, kinetic energy and constraints may not.
+/// it; velocities, momenta, constraints and positions of bodies may not.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input(
     model: *mut pc_model,

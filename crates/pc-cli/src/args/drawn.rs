@@ -19,7 +19,7 @@ pub struct DrawnArguments {
 }
 
 impl DrawnArguments {
-    /// The same without the command line.
+    /// The same for `pc_report`.
     pub fn wanted(&self) -> Wanted {
         let trimmed = |names: &[String]| names.iter().map(|name| name.trim().to_owned()).collect();
         Wanted { columns: trimmed(&self.columns), pairs: self.xy.clone(), wrapped: trimmed(&self.wrap) }
