@@ -1,4 +1,4 @@
-/* The same heavy top built call by call, and what its equations consist of. */
+/* The same heavy top built call by call, and the parts of its equations. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,7 +46,7 @@ int main(void)
     must(pc_model_set_potential(model, "mgl*g3", &error));
     must(pc_model_set(model, "C", 0.5, &error));
 
-    /* A mistake is shown where it stands, and can be mended. */
+    /* An unknown name is an error, which leaves the model usable. */
     must(pc_model_add_output(model, "tilt", "acos(g3)", &error));
     if (pc_model_set(model, "D", 1.0, &error) != PC_NOT_FOUND) {
         return 1;

@@ -5,9 +5,10 @@
 //     pc::solver solver(top);
 //     const pc::vector y = solver.advance(10.0);
 //
-// Each header below stands by itself. Objects move and do not copy, but for what has a clone(). What pc.h says of
-// threads holds here: objects are independent, and each is used by one call at a time. get() gives the handle, for
-// calls of C. Functions of the program may throw: catching.hpp says where the exception comes out.
+// Each header below can be included alone. Objects can be moved but not copied, except by a
+// clone(). What pc.h says of threads holds here: objects are independent, and each is used by one
+// call at a time. get() gives the handle, for calls of C. Functions of the program may throw:
+// catching.hpp says where the exception comes out.
 
 #ifndef PC_HPP
 #define PC_HPP
