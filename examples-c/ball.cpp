@@ -36,7 +36,7 @@ int main()
         right = right && std::fabs(motion(t0 / 2)[0] - 0.75) < 1e-9 && motion.t_end() == 1.5;
         right = right && solver.occurrences(0) == 2 && solver.last_occurrence(0)->t == bounces[1];
 
-        right = right && std::fabs(motion.rate(t0 / 2)[1] + 9.81) < 1e-6; // of a polynomial, over the length of a step
+        right = right && std::fabs(motion.rate(t0 / 2)[1] + 9.81) < 1e-6; // the error of a polynomial over one step
 
         // The function and the reset of the event, for another integrator.
         double y[] = {0.25, -2.0}, height = 0.0;

@@ -7,7 +7,7 @@
 
 typedef struct {
     size_t bounces;
-    double t;     /* of the last one */
+    double t;     /* of the last bounce */
     double worst; /* deviation from the closed form */
 } watch;
 

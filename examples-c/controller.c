@@ -24,7 +24,7 @@ static int steer(double t, const double *y, size_t y_length, double *q, size_t q
     const double A = 0.25, C = 0.5;
     (void)t;
     if (y_length != DIM || q_length != 1) {
-        return -1; /* never go on */
+        return -1; /* ends the integration */
     }
     q[0] = A * (c->lean * (y[THETA] - HALF_PI) + c->lean_rate * y[W1] - c->turn * y[W2]) - C * y[W3] * y[W1];
     return 0;

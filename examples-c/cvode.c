@@ -37,7 +37,7 @@ static pc_system *pendulum(void)
     pc_model *model;
     pc_system *system;
     must(pc_model_new("Pendulum", &model, &error));
-    must(pc_model_add_coordinate(model, "x", 1.0, &error)); /* let go at 90 degrees */
+    must(pc_model_add_coordinate(model, "x", 1.0, &error)); /* released at 90 degrees */
     must(pc_model_add_coordinate(model, "y", 0.0, &error));
     must(pc_model_set_kinetic(model, "(x'^2 + y'^2)/2", &error));
     must(pc_model_set_potential(model, "y", &error));

@@ -55,7 +55,7 @@ int main(void)
     pc_error_free(error);
 
     must(pc_system_new(model, NULL, &top, &error));
-    pc_model_free(model); /* The system needs it no more. */
+    pc_model_free(model); /* The system no longer needs it. */
 
     must(pc_system_start(top, &t, y, 6, &error));
     must(pc_system_rhs(top, t, y, 6, ydot, 6, &error));

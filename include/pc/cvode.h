@@ -299,7 +299,7 @@ static inline int pc_cvode_roots(double t, N_Vector y, double *gout, void *user_
     }
     for (i = 0; i < events + equations->roots_length; i++) {
         if (gout[i] != gout[i]) {
-            return -1; /* CVODE would pass over what is no number. */
+            return -1; /* CVODE would ignore NaN. */
         }
     }
     return 0;

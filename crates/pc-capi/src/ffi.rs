@@ -1,4 +1,4 @@
-//! The boundary: what every function does on its way in and out.
+//! The boundary: what every function does at its beginning and end.
 //!
 //! Pointers come in from C, and leave as references or as an error. Read `status` first, how a
 //! call ended, then `call_error`, the ways in which it can fail, with their `strings` as text

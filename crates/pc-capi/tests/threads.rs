@@ -58,7 +58,8 @@ fn clones_and_kernels_compute_the_same_on_all_threads() {
     });
 }
 
-/// A rotor in metres, kilograms and seconds: pivots of M that change with the state, and are small beside others.
+/// A rotor in metres, kilograms and seconds: pivots of M vary with the state, and differ greatly in
+/// size.
 const MOLECULE: &str = r#"
 [parameters]
 m = 5e-26

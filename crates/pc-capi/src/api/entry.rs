@@ -1,4 +1,4 @@
-//! Entries of a model that is put together call by call.
+//! Entries of a model that is built call by call.
 
 use std::ffi::c_char;
 

@@ -1,4 +1,4 @@
-//! What is observed along a motion.
+//! Observables, reactions and constraint residuals along a motion.
 
 use crate::api::rates::{State, Target, slices};
 use crate::ffi::call_error::CallError;

@@ -25,7 +25,7 @@ pub enum pc_format {
     PC_JSON = 2,
 }
 
-/// Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets,
+/// Derives and prints the equations, as `pc derive` does: constraints, kinematics, brackets,
 /// equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
 /// right-hand side. Where multipliers hold constraints, it shows the equations of independent
 /// velocities. `format` is a pc_format. Parameters have the values of the model. Free the text

@@ -1,4 +1,4 @@
-//! The boundary: what every function does on the way in and out.
+//! The boundary: what every function does at its beginning and end.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};

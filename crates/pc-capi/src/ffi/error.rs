@@ -1,4 +1,4 @@
-//! What went wrong, for C.
+//! Errors, for C.
 
 use std::ffi::{CString, c_char, c_int};
 

@@ -1,4 +1,4 @@
-//! What only one call may use at a time.
+//! Values that only one call may use at a time.
 
 use std::cell::UnsafeCell;
 use std::marker::PhantomData;

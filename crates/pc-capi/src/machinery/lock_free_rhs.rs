@@ -98,7 +98,7 @@ impl Direct {
         right && version.is_multiple_of(2) && self.version.load(Ordering::Relaxed) == version
     }
 
-    /// The same where nobody publishes meanwhile.
+    /// The same where nothing is published meanwhile.
     ///
     /// # Safety
     /// As for [`rates`](Direct::rates), with place for [`room`](Direct::room) numbers at `room`.

@@ -1,4 +1,4 @@
-//! What is drawn of a motion.
+//! Arguments for pictures of a motion.
 
 use clap::Args;
 use pc_report::picture::Wanted;

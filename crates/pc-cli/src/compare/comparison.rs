@@ -12,7 +12,7 @@ const ENERGY: &str = "energy";
 /// How two motions agree and differ.
 #[derive(Debug)]
 pub struct Comparison {
-    /// What is allowed.
+    /// The difference allowed.
     pub allowance: Allowance,
     /// How many times are compared.
     pub rows: usize,

@@ -43,7 +43,7 @@ pub enum CompareError {
     /// A column that is not in both motions.
     #[error("--columns: `{name}` is not a column of both motions; these are {}", shared.join(", "))]
     NotShared {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// The columns of both.
         shared: Vec<String>,

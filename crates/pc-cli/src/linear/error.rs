@@ -38,7 +38,7 @@ pub enum LinearError {
         help = if *of_linearization { "--at start gives their Jacobian at the start" } else { "give what drives them a constant value" }
     )]
     DependsOnTime {
-        /// Whether a linearization was asked for.
+        /// Whether a linearization was requested.
         of_linearization: bool,
     },
     /// A constraint that is not affine in the velocities.

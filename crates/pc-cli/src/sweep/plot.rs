@@ -294,7 +294,7 @@ fn bands(finished: &[Member], k: usize, name: &str) -> Panel {
     let mut curves: Vec<Curve> =
         QUANTILES.iter().map(|(_, label)| Curve { name: (*label).to_owned(), points: Vec::new() }).collect();
     for (i, &t) in times.iter().enumerate() {
-        // A member ended by an event has a row at a time of its own.
+        // A member ended by an event has a last row at another time.
         let here = finished.iter().filter_map(|member| member.rows.get(i)).filter(|row| row[0] == t);
         let mut values: Vec<f64> = here.map(|row| row[1 + k]).filter(|v| v.is_finite()).collect();
         values.sort_by(f64::total_cmp);

@@ -25,7 +25,7 @@ pub enum SweepPlotError {
     /// A column that does not exist.
     #[error("there is no column `{name}`; the columns are {}", known.join(", "))]
     UnknownColumn {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// The existing columns.
         known: Vec<String>,

@@ -9,7 +9,7 @@ pub enum IntegralError {
     /// An integral to be kept that the system does not have.
     #[error("`{name}` is not an integral of the system; there are {}", quoted(known))]
     Unknown {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// The integrals of the system.
         known: Vec<String>,

@@ -57,12 +57,13 @@ pub enum MechError {
 }
 
 impl MechError {
-    /// Whether a closed H(t, x, y) was asked for where [none is found](LagrangianError::NotQuadratic).
+    /// Whether a closed H(t, x, y) was requested where [none is
+    /// found](LagrangianError::NotQuadratic).
     pub fn is_not_quadratic(&self) -> bool {
         matches!(self, MechError::Lagrangian(LagrangianError::NotQuadratic { .. }))
     }
 
-    /// Whether Lagrange's equations were asked for in coordinates that are not independent: their
+    /// Whether Lagrange's equations were requested in coordinates that are not independent: their
     /// number is not that of the quasi-velocities, or their velocities do not follow from these.
     pub fn is_of_dependent_coordinates(&self) -> bool {
         matches!(
