@@ -155,8 +155,8 @@ impl CallError {
                 pc_status::PC_INVALID_CHECKPOINT
             }
             CallError::Busy => pc_status::PC_BUSY,
-            // What remains of the solver's errors is its set-up, which fails for want of memory, as
-            // threads do.
+            // The remaining errors of the solver are from its set-up, which fails for want of
+            // memory, as threads do.
             CallError::Broken | CallError::Panic { .. } | CallError::Ensemble(_) | CallError::Solve(_) => {
                 pc_status::PC_INTERNAL
             }

@@ -77,7 +77,7 @@ pub fn page(model: &Model, run: &Run) -> Result<String, CliError> {
     Ok(report(model, Some(&run.record()))?)
 }
 
-/// The motion, with rows enough for smooth curves.
+/// The motion, with enough rows for smooth curves.
 fn integrated(model: &mut Model, shown: &ShownArguments) -> Result<Run, CliError> {
     let arguments = shown.as_run();
     for name in &arguments.project {

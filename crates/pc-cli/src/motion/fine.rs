@@ -12,7 +12,7 @@ use crate::motion::table::Table;
 /// Most numbers in memory.
 const MOST_NUMBERS: usize = 4_000_000;
 
-/// Fewest points of a motion, and most of a step, which comes first.
+/// Fewest points of a motion, unless its steps would have more than the most points of a step.
 const FEWEST: usize = 2000;
 const MOST_POINTS: usize = 60;
 
@@ -29,9 +29,9 @@ fn points(method: Method) -> usize {
 /// The relative difference up to which an integrator takes two times for the same.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
-/// The time at which a table of inputs is read at the end `t` of a step on the side of `inside`:
-/// for a break at the beginning of the step the break itself, for one at its end the last number
-/// before it. So a jump shows both of its values.
+/// The time at which a table of inputs is read at an end `t` of a step that contains `inside`: at a
+/// break after `inside` the last number before the break, at one before it the break itself. So a
+/// jump shows both of its values.
 fn side(breaks: &[f64], t: f64, inside: f64) -> f64 {
     let near = ROUNDINGS * t.abs();
     let first = breaks.partition_point(|&time| time < t - near);

@@ -29,8 +29,7 @@ pub(super) fn make(file: &Path) -> io::Result<NamedTempFile> {
             let message = format!("no file can be created in {}: {}", directory.display(), error.kind());
             io::Error::new(error.kind(), message)
         })?;
-        // Without locks, no process removes it as a leftover. Before the lock, another one may
-        // have.
+        // Without locks, no process removes it as a leftover; before the lock, one may have.
         let _ = made.as_file().try_lock();
         if made.path().exists() {
             return Ok(made);
