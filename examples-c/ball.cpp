@@ -36,16 +36,16 @@ int main()
         right = right && std::fabs(motion(t0 / 2)[0] - 0.75) < 1e-9 && motion.t_end() == 1.5;
         right = right && solver.occurrences(0) == 2 && solver.last_occurrence(0)->t == bounces[1];
 
-        right = right && std::fabs(motion.rate(t0 / 2)[1] + 9.81) < 1e-6; // of a polynomial, over the length of a step
+        right = right && std::fabs(motion.rate(t0 / 2)[1] + 9.81) < 1e-6; // the error of a polynomial over one step
 
-        // What the event is, for an integrator of one's own.
+        // The function and the reset of the event, for another integrator.
         double y[] = {0.25, -2.0}, height = 0.0;
         ball.events(0.0, y, {&height, 1});
         ball.reset(0, 0.0, y);
         right = right && height == 0.25 && y[0] == 0.25 && std::fabs(y[1] - 1.6) < 1e-15;
         right = right && ball.event_direction(0) == PC_FALLING && !ball.event_is_terminal(0) && ball.event_resets(0);
 
-        // The same by functions of one's own, and an end on the way up.
+        // The same event by functions of the program, and a terminal event on the way up.
         pc::solver own(falling, options);
         own.add_event("floor", PC_FALLING, false, [](double, pc::view<const double> y) { return y[0]; },
                       [](double, pc::view<double> y) { y[1] *= -0.8; });
@@ -55,20 +55,20 @@ int main()
         right = right && own.ended_by() == std::size_t(1) && std::fabs(own.state()[0] - 0.3) < 1e-9;
 
         try {
-            own.checkpoint(); // functions of the program are in none
+            own.checkpoint(); // fails: a checkpoint cannot contain functions of the program
             right = false;
         } catch (const pc::error &error) {
             right = right && error.status() == PC_UNSUPPORTED;
         }
 
-        // Taken up again, to the last bit.
+        // Restored from a checkpoint, the motion is the same to the last bit.
         pc::solver first(falling, options);
         first.advance(0.5);
         const pc::bytes bytes = first.checkpoint("falling");
         auto second = pc::solver::restore(falling, bytes, options);
         right = right && first.advance(1.0) == second.advance(1.0) && pc::checkpoint_label(bytes) == "falling";
 
-        // Balls from many heights; one is nowhere.
+        // Balls from many heights, one of them NaN.
         const double starts[] = {1.0, 0.0, std::numeric_limits<double>::quiet_NaN(), 0.0, 4.0, 0.0};
         std::vector<double> speeds;
         std::size_t failed = 0;
@@ -88,7 +88,8 @@ int main()
         } catch (int) {
         }
 
-        // From the model's start, more or less elastic: y' = e g t0 - g (t - t0) after the first bounce. The first is enough.
+        // From the model's start, with two values of e: y' = e g t0 - g (t - t0) after the first
+        // bounce. Stops after one.
         double slower = 0.0;
         const bool all = pc::run_ensemble(ball, 0.0, {}, {0.5, 0.9}, {0.5}, [&](const pc::member &member) {
             slower = member.state(0)[1];

@@ -1,4 +1,5 @@
-/* Events: a ball told at each bounce, and an event of one's own that ends the integration. */
+/* Events: an observer that is called at each bounce, and an event of the program that ends the
+ * integration. */
 #include <math.h>
 #include <stdio.h>
 
@@ -6,11 +7,12 @@
 
 typedef struct {
     size_t bounces;
-    double t;     /* of the last one */
+    double t;     /* of the last bounce */
     double worst; /* deviation from the closed form */
 } watch;
 
-/* It lands first at t0 = sqrt(2h/g), h = 1; flight n takes 2 t0 e^n, e = 0.8. Returns 0 to go on. */
+/* The ball lands first at t0 = sqrt(2h/g), h = 1; flight n takes 2 t0 e^n, e = 0.8. Returns 0 to
+ * continue. */
 static int bounce(size_t event, double t, const double *before, const double *after, size_t length, void *user)
 {
     watch *w = user;
@@ -62,14 +64,14 @@ int main(void)
         pc_solver_new(ball, &options, 0.0, NULL, 0, &solver, &error) == PC_OK &&
         pc_solver_observe_events(solver, bounce, &w, &error) == PC_OK &&
         pc_solver_add_event(solver, "caught", PC_RISING, 1, high, NULL, &height, NULL, &error) == PC_OK) {
-        /* Somebody catches the ball where it comes up to 0.3 m after the first bounce. */
+        /* The integration ends where the ball rises to 0.3 m after the first bounce. */
         status = pc_solver_advance(solver, 1.2, y, 2, &error);
     }
     if (status == PC_EVENT && pc_solver_time(solver, &t, &error) == PC_OK &&
         pc_solver_terminal_event(solver, &event, &error) == PC_OK) {
         printf("%s at t = %.12f, %.6f m high\n", pc_solver_event_name(solver, event), t, y[0]);
         printf("pc run ball.toml --rtol 1e-12 --t-end 1.2\nt = %.17g: %.17g %.17g\n", t, y[0], y[1]);
-        /* Then it is let go, and bounces on. */
+        /* Then it continues. */
         status = pc_solver_advance(solver, 1.2, y, 2, &error);
         printf("%lu bounces, off the closed form by %.1e\n", (unsigned long)w.bounces, w.worst);
         printf("pc run bouncing-ball --rtol 1e-12 --t-end 1.2\nt = 1.2: %.17g %.17g\n", y[0], y[1]);
@@ -81,6 +83,6 @@ int main(void)
     pc_solver_free(solver);
     pc_system_free(ball);
     pc_model_free(model);
-    /* A tolerance of 1e-12, times the growth of errors in some hundred steps. */
+    /* A tolerance of 1e-12, times the growth of errors in a few hundred steps. */
     return status == PC_OK && event == 1 && w.bounces == 2 && w.worst < 1e-9 ? 0 : 1;
 }

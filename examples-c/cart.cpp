@@ -1,4 +1,5 @@
-// A pendulum on a cart from its bodies, and the parts of its equations against those written by hand.
+// A pendulum on a cart built from bodies, and the parts of its equations compared with those
+// derived by hand.
 #include <array>
 #include <cmath>
 #include <iostream>
@@ -51,7 +52,7 @@ int main()
         const std::array<double, 4> y{0.1, 0.7, 0.3, -1.1};
         const auto [s, phi] = accelerations(y);
         const double ydot[] = {y[2], y[3], s, phi};
-        const double rounding = 1e-13; // of some ten operations with numbers up to 20
+        const double rounding = 1e-13; // about ten operations with numbers up to 20
         bool right = system.names() == std::vector<std::string>{"s", "φ", "s'", "φ'"};
         right = right && system.start().second == pc::vector{0.0, 0.5, 0.2, 0.0};
 
@@ -91,15 +92,15 @@ int main()
         right = right && entries == sparse.size() && entries < 16 && largest(product) < 100 * rounding;
         right = right && kernel.jacobian(0.0, y, copied) == 0 && copied == dense;
 
-        // Other parameters, in the same equations.
+        // Other parameters in the same equations.
         pc::vector values = system.parameters(), heavier(4);
         system.set_parameter(0, 1e9);
         values[0] = 1e9;
         kernel.set_parameters(values);
         right = right && kernel(0.0, y, heavier) == 0 && heavier == system.rhs(0.0, y);
-        right = right && std::fabs(heavier[3] + g * std::sin(y[1]) / l) < 1e-6; // a cart that stands, but for m/M
+        right = right && std::fabs(heavier[3] + g * std::sin(y[1]) / l) < 1e-6; // up to m/M
 
-        // Printed, for programs too, as source, and as the text that the calls wrote.
+        // The equations printed, as JSON, as source, and the text that the calls wrote.
         const auto [header, source] = system.emit_c("cart", 10.0);
         right = right && has(system.print(), "M + m") && system.print(PC_JSON).front() == '{';
         right = right && has(system.theory(PC_TEXT, 2, {"cos(φ)"}), "momentum of s'") && has(system.theory(), "Routh");

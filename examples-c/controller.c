@@ -1,4 +1,5 @@
-/* A force of one's own: a disk rolls too slowly to stay upright, and a steering torque keeps it so. */
+/* A force computed by the program: a disk rolls too slowly to stay upright, and a steering torque
+ * keeps it upright. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,15 +16,15 @@ static const controller GAINS = {70.0 / 1.5, 25.0 / 1.5, 6.0};
 static const double HALF_PI = 1.5707963267948966;
 static int freed = 0;
 
-/* Upright, (A + mr²) δ'' = mgr δ − (C + mr²) ω3 ω2 and A ω2' = C ω3 δ' + Q for the lean δ = θ − π/2. This Q gives
- * ω2' = p δ + q δ' − s ω2, and for ω3 = 1 the three roots −2. */
+/* Near upright, (A + mr²) δ'' = mgr δ − (C + mr²) ω3 ω2 and A ω2' = C ω3 δ' + Q for the lean δ = θ
+ * − π/2. This Q gives ω2' = p δ + q δ' − s ω2, and for ω3 = 1 the three roots −2. */
 static int steer(double t, const double *y, size_t y_length, double *q, size_t q_length, void *user)
 {
     const controller *c = user;
     const double A = 0.25, C = 0.5;
     (void)t;
     if (y_length != DIM || q_length != 1) {
-        return -1; /* never go on */
+        return -1; /* ends the integration */
     }
     q[0] = A * (c->lean * (y[THETA] - HALF_PI) + c->lean_rate * y[W1] - c->turn * y[W2]) - C * y[W3] * y[W1];
     return 0;
@@ -35,7 +36,7 @@ static void forget(void *user)
     freed++;
 }
 
-/* The disk with ω3 = 1, leaning by 0.1, with the controller or none. */
+/* The disk with ω3 = 1, leaning by 0.1, with or without the controller. */
 static pc_system *disk(int steered, pc_error **error)
 {
     pc_model *model = NULL;
@@ -110,8 +111,9 @@ int main(void)
     pc_error_free(error);
     pc_system_free(steered);
     pc_system_free(left_alone);
-    /* ω3 comes to 0.978, where the slowest root is −1.09: of the lean e^(−21) is left. The balance has the errors of the
-     * tolerance, in some thousand steps, and of Simpson's rule with h = 1/400. */
+    /* ω3 tends to 0.978, where the slowest root is −1.09: e^(−21) of the lean remains. The balance
+     * has the errors of the tolerance in a few thousand steps, and of Simpson's rule with h =
+     * 1/400. */
     return ok && freed == 1 && fabs(y[THETA] - HALF_PI) < 1e-8 && fabs(y[W1]) + fabs(y[W2]) < 1e-7 &&
                    fallen[THETA] - HALF_PI > 0.4 && fabs(off) < 1e-8 && fabs(off_free) < 1e-8
                ? 0

@@ -1,5 +1,6 @@
-/* Your own CVODE with the equations of this library, in one program with the CVODE inside it: a pendulum in Cartesian
- * coordinates, held to its rod by projection, followed through its passages of the lowest point. */
+/* Your own CVODE with the equations of this library, in one program with the library's CVODE: a
+ * pendulum in Cartesian coordinates, kept on its rod by projection, followed through its passages
+ * of the lowest point. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,7 +37,7 @@ static pc_system *pendulum(void)
     pc_model *model;
     pc_system *system;
     must(pc_model_new("Pendulum", &model, &error));
-    must(pc_model_add_coordinate(model, "x", 1.0, &error)); /* let go at 90 degrees */
+    must(pc_model_add_coordinate(model, "x", 1.0, &error)); /* released at 90 degrees */
     must(pc_model_add_coordinate(model, "y", 0.0, &error));
     must(pc_model_set_kinetic(model, "(x'^2 + y'^2)/2", &error));
     must(pc_model_set_potential(model, "y", &error));
@@ -62,7 +63,7 @@ int main(void)
     double t, start[DIM], inner[DIM], late = 0.0, apart = 0.0, off = 0.0;
     int i, n;
 
-    /* Here: CVODE with BDF, Newton's iteration, the Jacobian, projection, a root. */
+    /* Your CVODE with BDF, Newton's iteration, the Jacobian, projection, a root. */
     must(pc_cvode_init(&equations, system, &error));
     must(pc_system_start(system, &t, start, DIM, &error));
     bottom.observable = pc_system_conserved_count(system); /* the first of the outputs */
@@ -82,7 +83,7 @@ int main(void)
     done(CVodeSetProjFn(cvode, pc_cvode_proj), "CVodeSetProjFn");
     done(CVodeRootInit(cvode, pc_cvode_root_count(&equations), pc_cvode_roots), "CVodeRootInit");
 
-    /* Inside: the library's own, with the same method and tolerance, step by step beside it. */
+    /* The library's CVODE, with the same method and tolerance. */
     pc_solver_options_init(&options, sizeof options);
     options.method = PC_BDF;
     options.relative_tolerance = options.absolute_tolerance = tolerance;
@@ -114,6 +115,7 @@ int main(void)
     pc_cvode_free(&equations);
     pc_solver_free(solver);
     pc_system_free(system);
-    /* Some thousand steps with local errors of 1e-10, growing with the time; roots lie inside steps, off by one such error. */
+    /* A few thousand steps with local errors of 1e-10, which grow with time; roots inside steps
+     * have one such error. */
     return late < 1e-6 && apart < 1e-6 && off < 1e-7 ? 0 : 1;
 }

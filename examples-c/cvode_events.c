@@ -1,4 +1,5 @@
-/* The events of a model in your own CVODE: a bouncing ball, started anew by CVodeReInit after each bounce. */
+/* The events of a model in your own CVODE: a bouncing ball, restarted by CVodeReInit after each
+ * bounce. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,7 +42,7 @@ int main(void)
              CVodeSetNonlinearSolver(cvode, iteration) == 0 && CVodeSStolerances(cvode, 1e-12, 1e-12) == 0,
          "CVODE", NULL);
 
-    /* The roots of the model: one, and falling. */
+    /* The model has one root, a falling one. */
     direction = pc_system_event_direction(ball, 0);
     must(CVodeRootInit(cvode, pc_cvode_root_count(&equations), pc_cvode_roots) == 0 &&
              CVodeSetRootDirection(cvode, &direction) == 0,
@@ -65,6 +66,6 @@ int main(void)
     pc_cvode_free(&equations);
     pc_system_free(ball);
     pc_model_free(model);
-    /* Local errors of 1e-12, times the steps and what a bounce makes of them. */
+    /* Local errors of 1e-12, times the number of steps and the growth at bounces. */
     return worst < 1e-9 ? 0 : 1;
 }

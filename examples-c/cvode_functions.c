@@ -1,5 +1,6 @@
-/* What pc/cvode.h gives CVODE, function by function, on a heavy top with integrals: the Jacobian as a dense and as a sparse
- * matrix, its product with a vector, a projection with the error estimate, and what is said where the equations end. */
+/* The functions that pc/cvode.h gives CVODE, one by one, on a heavy top with integrals: the
+ * Jacobian as a dense and as a sparse matrix, its product with a vector, a projection with the
+ * error estimate, and errors where f cannot be evaluated. */
 #include <math.h>
 #include <stdio.h>
 
@@ -82,7 +83,8 @@ int main(void)
     }
     check(i == 0 && worst < 1e-13, "the product is that of the matrix");
 
-    /* The shortest way to the unit sphere is along the radius; of an error, the part along it goes. */
+    /* The projection to the unit sphere is along the radius, and removes the radial part of an
+     * error. */
     for (i = 0; i < DIM; i++) {
         state[i] *= i < 3 ? 1.001 : 1.0;
         e[i] = expected[i] = 1e-6 * (1.0 + i);
@@ -92,10 +94,11 @@ int main(void)
         worst = fmax(worst, fabs(c[j] + (j < 3 ? state[j] / 1001.0 : 0.0)));
         worst = fmax(worst, fabs(e[j] - expected[j] + (j < 3 ? normal * state[j] : 0.0)));
     }
-    /* The square of the error, and e = 1e-6 by differences of numbers of order 1. */
+    /* The tolerance allows for e² and for rounding in e, a difference of numbers of order 1. */
     check(i == 0 && worst < 1e-11, "the projection, and that of the error estimate");
 
-    /* The area integral, 0.25 above its value 1.26 at the start, which grows with the vertical. */
+    /* A root at 0.25 of the area integral, which is 1.26 at the start and linear in the vertical.
+     * */
     equations.roots = &root;
     equations.roots_length = 1;
     i = pc_cvode_roots(t, y, &g, &equations);

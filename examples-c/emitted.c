@@ -1,4 +1,5 @@
-/* A program with the source that emit.c has written, and without the library: Runge and Kutta's method on top_rhs. */
+/* A program with the source that emit.c has written, without the library: the Runge–Kutta method on
+ * top_rhs. */
 #include <math.h>
 #include <stdio.h>
 
@@ -6,7 +7,7 @@
 
 int main(void)
 {
-    /* At t = 10, from an integration with 34 digits. */
+    /* The state at t = 10, from an integration with 34 digits. */
     static const double REFERENCE[TOP_DIM] = {-0.5983375993973925,   -0.1486439622069561, 0.7873354365496211,
                                               -0.06583376642272503, -0.2664489483922874, 3.0};
     static const double NODE[4] = {0.0, 0.5, 0.5, 1.0}, WEIGHT[4] = {1.0, 2.0, 2.0, 1.0};
@@ -42,7 +43,7 @@ int main(void)
     }
     drift = fabs(top_energy(TOP_T_END, y, p) - top_energy(TOP_T_START, top_start, p));
     printf("off the reference by %.1e, energy drift %.1e\n", worst, drift);
-    /* By the program pc, sharply: as near as both methods come. */
+    /* The program pc with tight tolerances agrees within the errors of both methods. */
     printf("pc run heavy-top-lagrange --rtol 1e-13 --atol 1e-15\nt = 10:");
     for (i = 0; i < TOP_DIM; i++) {
         printf(" %.17g", y[i]);

@@ -1,4 +1,5 @@
-/* Many pendulums at once: each its own length and amplitude, one of them wrong, on one thread and on all cores. */
+/* Many pendulums at once, each with its own length and amplitude, one of them invalid, on one
+ * thread and on all cores. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,7 +13,7 @@ typedef struct {
     size_t seen, failed;
 } results;
 
-/* Keeps what has come of a member. Members come in order, on the thread of the call. */
+/* Keeps the result of a member. Members come in order, on the thread of the call. */
 static int keep(const pc_member *member, void *user)
 {
     results *r = user;
@@ -64,7 +65,7 @@ int main(void)
         fprintf(stderr, "%s\n", pc_error_message(error));
     }
     for (i = 0; status == PC_OK && i < MEMBERS; i++) {
-        /* The energy of each: l θ'²/2 − g cos θ stays, by l. */
+        /* The energy of each divided by m l, l θ'²/2 − g cos θ, is conserved. */
         for (j = 0; i != 7 && j < TIMES; j++) {
             const double *y = together.states[i] + j * DIM;
             worst = fmax(worst, fabs(lengths[i] * y[1] * y[1] / 2 + 9.81 * (cos(states[i][0]) - cos(y[0]))));
@@ -82,8 +83,8 @@ int main(void)
     pc_error_free(error);
     pc_system_free(pendulum);
     pc_model_free(model);
-    /* A relative tolerance of 1e-9 over some hundred steps, energies of order 10; any number of threads gives the
-       same bits. */
+    /* A relative tolerance of 1e-9 over a few hundred steps, with energies of order 10; any number
+     * of threads gives the same bits. */
     return status == PC_OK && together.seen == MEMBERS && together.failed == 1 && worst < 1e-5 &&
                    memcmp(&alone, &together, sizeof alone) == 0
                ? 0

@@ -1,4 +1,4 @@
-/* The right-hand side in GSL's odeiv2: the kernel is its function as it stands. */
+/* The right-hand side in GSL's odeiv2, which takes pc_kernel_rhs directly. */
 #include <math.h>
 #include <stdio.h>
 
@@ -11,7 +11,7 @@ enum { DIM = 6 };
 
 int main(void)
 {
-    /* At t = 10, from an integration with 34 digits. */
+    /* The state at t = 10, from an integration with 34 digits. */
     static const double REFERENCE[DIM] = {-0.5983375993973925,   -0.1486439622069561, 0.7873354365496211,
                                           -0.06583376642272503, -0.2664489483922874, 3.0};
     pc_model *model = NULL;
@@ -41,7 +41,7 @@ int main(void)
         worst = fmax(worst, fabs(y[i] - REFERENCE[i]));
     }
     printf("off the reference by %.1e\n", worst);
-    /* By the program pc, sharply: as near as both methods come. */
+    /* The program pc with tight tolerances agrees within the errors of both methods. */
     printf("pc run heavy-top-lagrange --rtol 1e-13 --atol 1e-15\nt = 10:");
     for (i = 0; i < DIM; i++) {
         printf(" %.17g", y[i]);
@@ -52,6 +52,6 @@ int main(void)
     pc_kernel_free(kernel);
     pc_system_free(top);
     pc_model_free(model);
-    /* Some hundred steps with local errors of 1e-12, growing with the time. */
+    /* A few hundred steps with local errors of 1e-12, which grow with time. */
     return flag != GSL_SUCCESS || worst > 1e-9 ? 1 : 0;
 }

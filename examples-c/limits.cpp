@@ -1,4 +1,4 @@
-// What takes too long is ended, from another thread or after some time; parts of equations that depend on time.
+// Ending long work from another thread or by a time limit; parts of equations that depend on time.
 #include <array>
 #include <cstdint>
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace {
 
-// A pendulum of mass m whose rod of length 1 is hung from a point that moves by a sin ωt.
+// A pendulum of mass m whose rod of length 1 hangs from a point that moves by a sin ωt.
 pc::model shaken()
 {
     pc::model model("Shaken pendulum");
@@ -29,7 +29,7 @@ bool parts(const pc::model &model)
     const std::array<double, 2> y{0.7, -0.3};
     const double along = a * w * w * std::cos(y[0]), turned = std::sin(w * t);
     const double r = m * (along * turned - 9.81 * std::sin(y[0]));
-    const double rounding = 1e-14; // of some ten operations with numbers up to 20
+    const double rounding = 1e-14; // about ten operations with numbers up to 20
     const auto near = [rounding](double found, double expected) { return std::fabs(found - expected) < rounding; };
 
     const pc::vector v{3.0}, by_parameters = system.parameter_jacobian(t, y);
@@ -40,7 +40,7 @@ bool parts(const pc::model &model)
     return right && near(by_parameters[2 * of_a + 1], along * turned / a);
 }
 
-// That a call ends with PC_LIMIT, and in which words.
+// Whether a call ends with PC_LIMIT and a message that contains these words.
 template <class Call> bool limited(Call call, const std::string &words)
 {
     try {
@@ -59,7 +59,7 @@ int main()
         const pc::model model = shaken();
         bool right = parts(model);
 
-        // An integration for days, ended by another thread; it stands where it has got to.
+        // An integration of days, ended by another thread; it stays at the time that it reached.
         const pc::cancel cancel;
         pc::limits limits;
         limits.by = &cancel;
@@ -76,7 +76,7 @@ int main()
         right = right && cancel.is_requested() && solver.time() > 0.0 && std::isfinite(solver.state()[0]);
         right = limited([&] { pc::system(model, PC_POINCARE, limits); }, "cancelled") && right;
 
-        // A tenth of a second for each call: the next one goes on.
+        // A tenth of a second for each call; the next call continues.
         limits.by = nullptr;
         limits.time = 0.1;
         pc::system timed(model, PC_POINCARE, limits);
@@ -86,7 +86,7 @@ int main()
         hurried.advance(reached + 1.0);
         right = right && hurried.time() == reached + 1.0;
 
-        // And no more memory than there may be.
+        // A memory limit.
         limits.time = 0.0;
         limits.memory = 1000;
         right = limited([&] { pc::system(model, PC_POINCARE, limits); }, "more memory would be needed") && right;

@@ -1,4 +1,5 @@
-/* A callback of one's own: it follows the drift of the integrals, and stops the run when the top has sunk far enough. */
+/* An observer that follows the drift of the integrals, and stops the run when the top has sunk far
+ * enough. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +16,7 @@ typedef struct {
     double sunk;         /* height at which to stop */
 } watch;
 
-/* Returns 0 to go on. */
+/* Returns 0 to continue. */
 static int observe(double t, const double *y, size_t length, void *user)
 {
     watch *w = user;
@@ -84,6 +85,7 @@ int main(void)
     pc_solver_free(solver);
     pc_system_free(top);
     pc_model_free(model);
-    /* It sinks below 0.5 at an output before the end; the drift is that of a relative tolerance of 1e-9. */
+    /* The top sinks below 0.5 at an output before the end; the drift is that of a relative
+     * tolerance of 1e-9. */
     return status == PC_STOPPED && y[2] < 0.5 && y[2] > 0.45 && w.drift < 1e-7 ? 0 : 1;
 }

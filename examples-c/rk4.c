@@ -1,4 +1,4 @@
-/* The right-hand side in an integrator of one's own: Runge and Kutta's, with a fixed step. */
+/* The right-hand side in your own integrator: the Runge–Kutta method with a fixed step. */
 #include <math.h>
 #include <stdio.h>
 
@@ -6,7 +6,8 @@
 
 enum { DIM = 6 };
 
-/* ydot = f(t, y); not 0 where it cannot be evaluated. The type that GSL's odeiv2 takes, too. */
+/* Writes ydot = f(t, y); returns nonzero where it cannot be evaluated. GSL's odeiv2 takes the same
+ * type. */
 typedef int (*rhs)(double t, const double *y, double *ydot, void *context);
 
 static int rk4_step(rhs f, void *context, double t, double h, double y[DIM])
@@ -33,7 +34,7 @@ static int rk4_step(rhs f, void *context, double t, double h, double y[DIM])
 
 int main(void)
 {
-    /* At t = 10, from an integration with 34 digits. */
+    /* The state at t = 10, from an integration with 34 digits. */
     static const double REFERENCE[DIM] = {-0.5983375993973925,   -0.1486439622069561, 0.7873354365496211,
                                           -0.06583376642272503, -0.2664489483922874, 3.0};
     const int steps = 20000;
@@ -58,7 +59,7 @@ int main(void)
         worst = fmax(worst, fabs(y[i] - REFERENCE[i]));
     }
     printf("%d steps of Runge and Kutta: off the reference by %.1e\n", steps, worst);
-    /* By the program pc, sharply: as near as both methods come. */
+    /* The program pc with tight tolerances agrees within the errors of both methods. */
     printf("pc run heavy-top-lagrange --rtol 1e-13 --atol 1e-15\nt = 10:");
     for (i = 0; i < DIM; i++) {
         printf(" %.17g", y[i]);

@@ -44,7 +44,7 @@ int main()
                 std::printf("t = 4: %.17g %.17g %.17g %.17g %.17g\n", y[0], y[1], y[2], y[3], y[4]);
             }
             worst = std::fmax(worst, std::fabs(y[4] - 1.0 / std::cosh(k * t)));
-            // The blade presses with 4/5 v ω.
+            // The reaction of the blade is 4/5 v ω.
             sleigh.reactions(t, y, {&pressure, 1});
             worst = std::fmax(worst, std::fabs(pressure - 0.8 * y[3] * y[4]));
             return true;
@@ -58,7 +58,7 @@ int main()
         } catch (int) {
             caught = true;
         }
-        // A model that is wrong says where, and what would be right.
+        // The error of a wrong model says where it is wrong, and what would be right.
         bool right = failure([&] { pc::model::from_file("no such file"); }).status() == PC_NOT_FOUND;
         right = right && failure([&] { model.set("c", 1.0); }).status() == PC_NOT_FOUND;
         const std::string text = "[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^^2\"\n";
@@ -67,7 +67,7 @@ int main()
         right = right && error.status() == PC_INVALID_MODEL && error.line() == 4 && error.column() == 15;
         right = right && text.substr(error.offset(), error.length()) == "^" && error.integrator_code() == 0;
 
-        // Off its constraints none starts, unless it is moved there.
+        // A start off the constraints is refused, unless it is moved onto them.
         const auto names = pc::model::builtin_names();
         right = right && std::count(names.begin(), names.end(), "vertical-disk") == 1;
         auto disk = pc::model::builtin("vertical-disk");
@@ -76,7 +76,7 @@ int main()
         pc::system moved(disk.project_start());
         right = right && std::fabs(moved.constraint_residuals(0.0, moved.start().second)[0]) < 1e-13; // rounding
 
-        // Tolerance 1e-11, times the growth of the error in some hundred steps.
+        // A tolerance of 1e-11, times the growth of the error in a few hundred steps.
         return completed && caught && right && worst < 1e-8 ? 0 : 1;
     } catch (const std::exception &error) {
         std::cerr << error.what() << '\n';

@@ -1,5 +1,5 @@
-// A force of one's own in C++: a disk rolls too slowly to stay upright, and a lambda steers it, with its derivatives or
-// without.
+// A force computed by the program, in C++: a disk rolls too slowly to stay upright, and a lambda
+// steers it, with or without its derivatives.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -17,8 +17,8 @@ enum { THETA = 3, W1 = 5, W2 = 6, W3 = 7, DIM = 8 }; // of X, Y, ψ, θ, φ, ω1
 constexpr double half_pi = 1.5707963267948966;
 constexpr double a = 0.25, c = 0.5, lean = 70.0 / 1.5, lean_rate = 25.0 / 1.5, turn = 6.0;
 
-// Upright, (A + mr²) δ'' = mgr δ − (C + mr²) ω3 ω2 and A ω2' = C ω3 δ' + Q for the lean δ = θ − π/2. This Q gives
-// ω2' = p δ + q δ' − s ω2, and for ω3 = 1 the three roots −2.
+// Near upright, (A + mr²) δ'' = mgr δ − (C + mr²) ω3 ω2 and A ω2' = C ω3 δ' + Q for the lean δ = θ
+// − π/2. This Q gives ω2' = p δ + q δ' − s ω2, and for ω3 = 1 the three roots −2.
 double torque(pc::view<const double> y)
 {
     return a * (lean * (y[THETA] - half_pi) + lean_rate * y[W1] - turn * y[W2]) - c * y[W3] * y[W1];
@@ -51,7 +51,7 @@ int main()
         auto steered = disk(true), left_alone = disk(false);
         bool right = steered.force_names() == std::vector<std::string>{"ω2"} && left_alone.force_count() == 0;
         try {
-            steered.rhs(0.0, steered.start().second); // nobody steers yet
+            steered.rhs(0.0, steered.start().second); // fails: no force function is set yet
             right = false;
         } catch (const pc::error &error) {
             right = right && error.status() == PC_EVALUATION;
@@ -70,10 +70,10 @@ int main()
         pc::solver(left_alone, options).advance(0.8, fallen);
         std::cout << "left alone it leans by " << fallen[THETA] - half_pi << " after 0.8; steered by "
                   << y[THETA] - half_pi << " after 20\n";
-        // ω3 comes to 0.978, where the slowest root is −1.09: of the lean e^(−21) is left.
+        // ω3 tends to 0.978, where the slowest root is −1.09: e^(−21) of the lean remains.
         right = right && std::fabs(y[THETA] - half_pi) < 1e-8 && fallen[THETA] - half_pi > 0.4;
 
-        // Its derivatives, against difference quotients of step 1e-8.
+        // Its derivatives, compared with difference quotients of step 1e-8.
         const pc::vector there{0.0, 0.0, 0.3, 1.6, 0.2, 0.1, -0.2, 1.0};
         const pc::vector quotients = steered.jacobian(0.0, there);
         auto exact = disk(true);
@@ -88,7 +88,8 @@ int main()
         const double off = largest_difference(exact.jacobian(0.0, there), quotients);
         right = right && off > 0.0 && off < 1e-5;
 
-        // Copies on threads call the same function, which has to allow that, and give the same rates.
+        // Copies on several threads call the same function at the same time, and give the same
+        // rates.
         pc::vector rates[2];
         std::vector<std::thread> threads;
         for (pc::vector &rate : rates) {

@@ -1,5 +1,6 @@
-/* One model on several threads: each has a copy of the system, with a parameter of its own, and a kernel. It integrates by the
- * library and by Heun's method, and comes to the numbers of one thread alone, to the last bit. */
+/* One model on several threads: each has a copy of the system, with its own value of a parameter,
+ * and a kernel. It integrates by the library and by Heun's method, and gives the numbers of a
+ * single thread, to the last bit. */
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
@@ -15,7 +16,7 @@ typedef struct {
     int failed;
 } task;
 
-/* y moves on by h, by Heun's formula of order 2. */
+/* Advances y by h, by Heun's formula of order 2. */
 static int step(pc_kernel *f, double t, double h, double *y)
 {
     double k[DIM], l[DIM], moved[DIM];
@@ -74,7 +75,8 @@ int main(void)
         fprintf(stderr, "%s\n", pc_error_message(error));
         return 1;
     }
-    /* Copied here: a system that two threads copy at the same time is PC_BUSY for one of them. */
+    /* Copied on one thread: of two threads that copy a system at the same time, one gets PC_BUSY.
+     * */
     for (i = 0; i < THREADS; i++) {
         alone[i].weight = together[i].weight = 1.0 + 0.5 * i;
         if (pc_system_clone(top, &alone[i].top, NULL) != PC_OK || pc_system_clone(top, &together[i].top, NULL) != PC_OK) {

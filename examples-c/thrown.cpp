@@ -1,4 +1,4 @@
-// What the functions of a program throw comes out of the call that called them, on its thread.
+// Exceptions of the program's functions come out of the call that called them, on its thread.
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -12,7 +12,7 @@ struct too_low {
     double y;
 };
 
-// Whether the call throws it.
+// Whether the call throws too_low.
 template <class Call> bool throws(Call call)
 {
     try {
@@ -23,7 +23,7 @@ template <class Call> bool throws(Call call)
     }
 }
 
-// The height, for which nobody should ask below -1.
+// The height, which throws below -1.
 double height(pc::view<const double> y) { return y[0] < -1.0 ? throw too_low{y[0]} : y[0]; }
 
 // A body that sinks by y = 1 - t, to the floor at t = 1.
@@ -47,19 +47,20 @@ bool of_forces()
         pc::kernel kernel(system);
         pc::solver solver(system);
         right = right && throws([&] { system.rhs(0.0, low); }) && throws([&] { copy.jacobian(0.0, low); });
-        right = right && throws([&] { system.observe(0.0, low); }); // although C goes on without
+        right = right && throws([&] { system.observe(0.0, low); }); // C would succeed
         right = right && throws([&] { kernel(0.0, low, ydot); });
         right = right && throws([&] { solver.advance(3.0); }) && solver.time() > 0.0 && solver.state()[0] > -1.0;
 
-        // Where a program has C in between by itself, a catching keeps it, but not of another thread.
+        // Where a program calls C directly, a catching keeps the exception, but not that of another
+        // thread.
         pc::catching thrown;
         const auto call = [&] { return pc_kernel_rhs(0.0, low.data(), ydot.data(), kernel.get()); };
         std::thread(call).join();
         thrown.rethrow();
         right = right && call() == -1 && throws([&] { thrown.rethrow(); });
-        thrown.rethrow(); // once
+        thrown.rethrow(); // nothing is kept any more
 
-        // Of an ensemble only those members have failed that threw, on whatever threads.
+        // In an ensemble, only the members that threw have failed, on whatever thread.
         std::size_t failed = 0, told = 0;
         right = right && throws([&] {
             const double starts[] = {1.0, -1.0, -2.0, -1.0, 2.0, -1.0, -0.95, -1.0};
@@ -70,7 +71,7 @@ bool of_forces()
         });
         right = right && told == 4 && failed == 2 && kernel(0.0, high, ydot) == 0 && user.use_count() == 2;
     }
-    return right && user.use_count() == 1; // gone with the last that shared it
+    return right && user.use_count() == 1; // freed with the last handle that shared it
 }
 
 bool of_events()
@@ -87,14 +88,15 @@ bool of_events()
     const auto or_throw = [](double, pc::view<const double> y) { return height(y); };
     const auto refuse = [](double, pc::view<double> y) { throw too_low{y[0]}; };
 
-    // Beyond an event no number is needed. But what is thrown is never lost: it ends the call before the step.
+    // After an event, NaN is no failure. But an exception is never lost: it ends the call before
+    // the step.
     pc::solver nan = solver(or_nan, nullptr), thrown = solver(or_throw, nullptr), refused = solver(or_nan, refuse);
     nan.advance(3.0);
     bool right = nan.ended_by() == std::size_t(0) && std::fabs(nan.time() - 1.0) < 1e-12; // located to rounding
     right = right && throws([&] { thrown.advance(3.0); }) && thrown.time() == 0.0 && thrown.occurrences(0) == 0;
     right = right && throws([&] { refused.advance(3.0); }) && refused.time() < 1.0 + 1e-12;
 
-    // Of observers.
+    // Exceptions of observers.
     pc::solver watched = solver(or_nan, nullptr), run(system);
     watched.observe_events([](const pc::occurrence &event) -> bool { throw too_low{event.after[0]}; });
     right = right && throws([&] { watched.run_dense(3.0); }) && watched.occurrences(0) == 1;

@@ -1,4 +1,4 @@
-/* The same heavy top built call by call, and what its equations consist of. */
+/* The same heavy top built call by call, and the parts of its equations. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,7 +46,7 @@ int main(void)
     must(pc_model_set_potential(model, "mgl*g3", &error));
     must(pc_model_set(model, "C", 0.5, &error));
 
-    /* A mistake is shown where it stands, and can be mended. */
+    /* An unknown name is an error, which leaves the model usable. */
     must(pc_model_add_output(model, "tilt", "acos(g3)", &error));
     if (pc_model_set(model, "D", 1.0, &error) != PC_NOT_FOUND) {
         return 1;
@@ -55,7 +55,7 @@ int main(void)
     pc_error_free(error);
 
     must(pc_system_new(model, NULL, &top, &error));
-    pc_model_free(model); /* The system needs it no more. */
+    pc_model_free(model); /* The system no longer needs it. */
 
     must(pc_system_start(top, &t, y, 6, &error));
     must(pc_system_rhs(top, t, y, 6, ydot, 6, &error));

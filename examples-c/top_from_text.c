@@ -71,7 +71,7 @@ int main(void)
             worst = fmax(worst, fabs(y[i] - REFERENCE[i]));
         }
         printf("off the reference by %.1e\n", worst);
-        /* By the program pc the same, to the last bit; top.toml has the same text. */
+        /* The program pc gives the same to the last bit; top.toml has the same text. */
         printf("pc run top.toml --rtol 1e-12 --atol 1e-14\nt = 10:");
         for (i = 0; i < 6; i++) {
             printf(" %.17g", y[i]);
@@ -82,6 +82,6 @@ int main(void)
     pc_solver_free(solver);
     pc_system_free(top);
     pc_model_free(model);
-    /* Some thousand steps of local error 1e-12, growing linearly in time. */
+    /* A few thousand steps with local errors of 1e-12, which grow linearly with time. */
     return worst < 1e-9 ? 0 : 1;
 }

@@ -1,5 +1,5 @@
-// A rolling disk, whose constraints are kept in an integrator of one's own: everything is written to numbers that are
-// there. Then the same by steps of the library's.
+// A rolling disk, whose constraints are kept in an integrator of the program: everything is written
+// to existing arrays. Then the same by steps of the library.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 using state = std::array<double, 8>; // X, Y, φ, θ and their rates
 constexpr double m = 2.0, radius = 0.5, heading = 0.2, roll = 3.0, turn = 0.5;
 
-// It rolls in a circle: X' = R θ' cos φ, Y' = R θ' sin φ, with θ' = 3 and φ' = 1/2.
+// The disk rolls in a circle: X' = R θ' cos φ, Y' = R θ' sin φ, with θ' = 3 and φ' = 1/2.
 double off_circle(double t, pc::view<const double> y)
 {
     const double phi = heading + turn * t, r = radius * roll / turn;
@@ -22,7 +22,7 @@ double off_circle(double t, pc::view<const double> y)
     return std::fabs(y[0] - x) + std::fabs(y[1] - z) + std::fabs(y[2] - phi) + std::fabs(y[3] - roll * t);
 }
 
-// A step of Runge and Kutta's of order four, and back to the constraints.
+// A Runge–Kutta step of order four, then projection to the constraints.
 void step(pc::system &of, double t, double h, state &y)
 {
     const double part[] = {0.0, 0.5, 0.5, 1.0}, weight[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
@@ -70,7 +70,7 @@ int main()
         right = right && t == 0.0 && own < 4e-8; // 400 h⁵
         right = right && largest(disk.constraint_residuals(4.0, y)) < 1e-13;
 
-        // The constraints pull along X and Y with m X'' and m Y''.
+        // The reactions of the constraints along X and Y are m X'' and m Y''.
         double reactions[2], observables[5];
         disk.reactions(4.0, y, reactions);
         disk.observe(4.0, y, observables);
@@ -78,13 +78,13 @@ int main()
         right = right && std::fabs(reactions[1] - m * radius * roll * turn * std::cos(y[2])) < 1e-9;
         right = right && observables[3] == reactions[0] && std::fabs(observables[2] - disk.energy(0.0, start)) < 1e-12;
 
-        // Off the constraints a state is brought back.
+        // A state off the constraints is projected onto them.
         y[4] += 0.1;
         right = right && largest(disk.constraint_residuals(4.0, y)) > 0.05;
         disk.project(4.0, y);
         right = right && largest(disk.constraint_residuals(4.0, y)) < 1e-13;
 
-        // Steps of the method, and what is between them.
+        // Steps of the method, and interpolation between them.
         pc::solver_options options;
         options.method = PC_BDF;
         options.relative_tolerance = 1e-9;
@@ -107,7 +107,8 @@ int main()
             worst = std::fmax(worst, off_circle(work.step_time - 0.5 * work.last_step, between));
         }
         solver.state(between);
-        // Errors of 1e-9, that of the rates grown by four units of time and the radius of the circle.
+        // Errors of 1e-9 in the rates, amplified by four units of time and the radius of the
+        // circle.
         right = right && worst < 1e-6 && between == y && solver.statistics().steps > 10;
         std::cout << "off the circle by " << own << " and " << worst << '\n';
         return right ? 0 : 1;

@@ -16,36 +16,35 @@
  * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form), then
  * first-order states; ydot is its rate.
  *
- * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a
- * pc_error, or NULL. There it writes NULL if all went well, and otherwise a new error, which you
-  * free; what the place held before does not matter. PC_STOPPED and PC_EVENT are no failures: an
- * observer, or a terminal event, has ended an integration. Results are written unless the call
-  * fails; after a failure a new handle or text is NULL, and arrays for results may
-  * hold anything.
+ * Errors. A function that can fail returns a pc_status; its last argument is a place for a
+ * pc_error, or NULL. On success it writes NULL there, otherwise a new error, which you free; what
+ * the place held before does not matter. PC_STOPPED and PC_EVENT are no failures: an observer, or
+ * a terminal event, has ended an integration. Results are written unless the call fails; after a
+ * failure a new handle or text is NULL, and arrays for results may hold anything.
  *
-  * Ownership. What a function named ..._new, ..._clone, pc_model_parse, pc_model_from_file,
+ * Ownership. What a function named ..._new, ..._clone, pc_model_parse, pc_model_from_file,
  * pc_model_builtin, pc_solver_restore or pc_solver_run_dense gives, you free with the ..._free of
  * its type; `char *` you free with pc_string_free, bytes with pc_bytes_free; `const char *`
  * belongs to the handle it came from and lives as long, or is static. All ..._free allow NULL.
  * Handles are independent: a model can be freed while its system lives, and a system while its
  * solvers and kernels do.
  *
-  * Arrays. Each comes with its length, which must be exact, not merely large enough. They
-  * are `double`, aligned as such, and an array that is written must not overlap another one;
- * this is checked. NULL goes with the length 0. Matrices are dense and column-major,
- * A[i + j*rows], unless the function says otherwise. Text is UTF-8 and zero-terminated.
+ * Arrays. Each comes with its length, which must be exact, not merely large enough. They are
+ * `double`, aligned as such, and an array that is written must not overlap another one; this is
+ * checked. NULL goes with the length 0. Matrices are dense and column-major, A[i + j*rows],
+ * unless the function says otherwise. Text is UTF-8 and zero-terminated.
  *
  * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a
- * time: a second one at the same time returns PC_BUSY and does nothing; only of pc_system_rhs many
- * may succeed side by side, as it says. (Freeing a handle while another thread uses it is not
-  * safe.) Different handles are independent; to evaluate on many threads, give each its
- * own by pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second
- * call. Names and sizes may be read at any time, by any number of threads, and a pc_cancel used.
-  * A `const` handle says only that the call does not change what the handle computes.
+ * time: a second one at the same time returns PC_BUSY and does nothing. Only pc_system_rhs may
+ * run many times side by side, as it says. (Freeing a handle while another thread uses it is not
+ * safe.) Different handles are independent; to evaluate on many threads, give each its own by
+ * pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second call.
+ * Any number of threads may read names and sizes, and use a pc_cancel, at any time. A `const`
+ * handle says only that the call does not change what the handle computes.
  *
-  * Signal handlers may call pc_cancel_request only. A fault of the library is PC_INTERNAL and
-  * does not end your program; exhausted memory or an exhausted stack does: a thread needs 128 KiB,
-  * whatever the model; deeper work takes a stack of its own, of 8 MiB, while it derives.
+ * Signal handlers may call pc_cancel_request only. A fault of the library is PC_INTERNAL and does
+ * not end your program; exhausted memory or an exhausted stack does. A thread needs a stack of
+ * 128 KiB, whatever the model; deeper derivations run on a separate stack of 8 MiB.
  */
 
 #ifndef PC_H
@@ -94,11 +93,11 @@ typedef enum {
    */
   PC_INVALID_ARGUMENT = 1,
   /**
-   * The text of the model is wrong, or not UTF-8; the error has the place.
+   * The text of the model is wrong, or not UTF-8; the error says where.
    */
   PC_INVALID_MODEL = 2,
   /**
-   * The model contradicts itself; the error has the place.
+   * The model contradicts itself; the error says where.
    */
   PC_INCONSISTENT_MODEL = 3,
   /**
@@ -118,8 +117,8 @@ typedef enum {
    */
   PC_EVALUATION = 7,
   /**
-   * The integration could not begin or go on. Events that accumulate, such as the bounces
-   * of a ball that comes to rest, end it so.
+   * The integration could not begin or continue. Events that accumulate, such as the bounces
+   * of a ball that comes to rest, end it in this way.
    */
   PC_INTEGRATION = 8,
   /**
@@ -173,8 +172,8 @@ typedef enum {
   PC_CANONICAL = 1,
   /**
    * Poincaré's without the coordinates that nothing depends on, Euler–Poincaré's where none is
-   * left; the state has fewer coordinates. Where multipliers hold constraints,
-   * PC_INCONSISTENT_MODEL, as with all that follow, unless pc_model_add_independent says which
+   * left; the state has fewer coordinates. Where multipliers hold constraints, this form and
+   * those below are PC_INCONSISTENT_MODEL, unless pc_model_add_independent says which
    * velocities are independent.
    */
   PC_REDUCED = 2,
@@ -302,9 +301,9 @@ typedef enum {
 } pc_direction;
 
 /**
- * Ends the derivations of systems whose pc_system_options have this handle, and integrations
- * of these systems. Any number of threads may use it at the same time. Free it with
- * pc_cancel_free.
+ * A handle that ends the derivations of systems whose pc_system_options contain it, and
+ * integrations of these systems. Any number of threads may use it at the same time. Free it
+ * with pc_cancel_free.
  */
 typedef struct pc_cancel pc_cancel;
 
@@ -357,13 +356,13 @@ typedef struct {
    */
   int form;
   /**
-   * 0: room for a choice to come.
+   * Reserved; must be 0.
    */
   int reserved;
   /**
    * Most bytes that the expressions of a derivation may take, by estimate; 0, the default,
    * for 4 GiB. Beyond it, PC_LIMIT. It applies to pc_system_new and to each later call that
-   * derives, each by itself; so do the next two.
+   * derives, separately; so do the next two.
    */
   uint64_t memory_limit;
   /**
@@ -440,14 +439,14 @@ typedef struct {
    */
   double stop_time;
   /**
-   * Events whose functions are not expressions of the state alone (those of the program's own,
-   * and those read through constraints, momenta or tables) are looked for at the ends of so
-   * many equal parts of each step, at least 1, and closer where the values leave doubt; 4 by
-   * default. Between two such places an even number of zeros may be missed.
+   * Number of equal parts of each step, at least 1, at whose ends events are looked for that
+   * are not expressions of the state alone (those of your program, and those read through
+   * constraints, momenta or tables), and closer where the values leave doubt; 4 by default.
+   * Between two such places an even number of zeros may be missed.
    */
   uint32_t samples_per_step;
   /**
-   * 0: room for a choice to come.
+   * Reserved; must be 0.
    */
   uint32_t reserved;
   /**
@@ -586,7 +585,7 @@ typedef struct {
    */
   uint64_t limited_steps;
   /**
-   * Of the steps of PC_AUTO, those by PC_BDF.
+   * Steps that PC_AUTO made by PC_BDF.
    */
   uint64_t implicit_steps;
   /**
@@ -594,7 +593,7 @@ typedef struct {
    */
   uint64_t changes;
   /**
-   * When PC_DOP853 or PC_AUTO saw first that the motion is stiff; NaN if it did not.
+   * Time at which PC_DOP853 or PC_AUTO first found the motion stiff; NaN if never.
    */
   double stiff_from;
 } pc_statistics;
@@ -658,12 +657,12 @@ uint32_t pc_abi_version(void);
 const char *pc_status_name(int status);
 
 /**
- * Its status, never PC_OK; PC_OK for NULL.
+ * The status of the failed call, never PC_OK; PC_OK for NULL.
  */
 pc_status pc_error_status(const pc_error *error);
 
 /**
- * The message, in UTF-8, never null; it lives as long as the error. For a model it shows the
+ * The message, in UTF-8, never NULL; it lives as long as the error. For a model it shows the
  * line at fault and what would be right, over several lines of text. Empty for NULL.
  */
 const char *pc_error_message(const pc_error *error);
@@ -695,13 +694,13 @@ size_t pc_error_length(const pc_error *error);
 int pc_error_integrator_code(const pc_error *error);
 
 /**
- * 1 if the status is PC_EVALUATION and a nearby state may do, so that an integrator should
- * try a smaller step; else 0, and for NULL.
+ * 1 if the status is PC_EVALUATION and evaluation may succeed at a nearby state, so that an
+ * integrator should try a smaller step; else 0, and for NULL.
  */
 int pc_error_is_recoverable(const pc_error *error);
 
 /**
- * Frees an error. Null is allowed.
+ * Frees an error. NULL is allowed.
  */
 void pc_error_free(pc_error *error);
 
@@ -711,8 +710,8 @@ void pc_error_free(pc_error *error);
 void pc_string_free(char *text);
 
 /**
- * Reads a model from `length` bytes of text, which need no zero at the end. `name` is how
- * messages call it; NULL for "model".
+ * Reads a model from `length` bytes of text, which need no zero at the end. Messages call the
+ * model `name`; NULL means "model".
  */
 pc_status pc_model_parse(const char *text,
                          size_t length,
@@ -726,7 +725,7 @@ pc_status pc_model_parse(const char *text,
 pc_status pc_model_from_file(const char *path, pc_model **model, pc_error **error);
 
 /**
- * A model that comes with the library, such as "heavy-top-lagrange".
+ * Reads a model that comes with the library, such as "heavy-top-lagrange".
  */
 pc_status pc_model_builtin(const char *name, pc_model **model, pc_error **error);
 
@@ -741,12 +740,12 @@ size_t pc_builtin_count(void);
 const char *pc_builtin_name(size_t index);
 
 /**
- * A copy, which can be changed independently.
+ * Copies a model; either can be changed independently.
  */
 pc_status pc_model_clone(const pc_model *model, pc_model **copy, pc_error **error);
 
 /**
- * Frees a model. Null is allowed.
+ * Frees a model. NULL is allowed.
  */
 void pc_model_free(pc_model *model);
 
@@ -762,33 +761,33 @@ pc_status pc_model_set(pc_model *model, const char *name, double value, pc_error
 pc_status pc_model_keep(pc_model *model, const char *integral, pc_error **error);
 
 /**
- * Whether the start is moved onto the constraints (otherwise a start off them is refused).
+ * Sets whether the start is moved onto the constraints (otherwise a start off them is refused).
  * Any value but 0 means yes.
  */
 pc_status pc_model_project_start(pc_model *model, int yes, pc_error **error);
 
 /**
- * Holds the start value of this coordinate or quasi-velocity fixed where the start is moved
- * onto the constraints: the others follow. Without pc_model_project_start it has no effect.
+ * Holds the start value of this coordinate or quasi-velocity fixed while the others move onto
+ * the constraints. Without pc_model_project_start it has no effect.
  * An unknown name is reported by pc_system_new, with PC_NOT_FOUND.
  */
 pc_status pc_model_hold_start(pc_model *model, const char *name, pc_error **error);
 
 /**
- * Whether the reactions of the constraints are observed, each called `λ_` and the name of its
- * constraint. Any value but 0 means yes.
+ * Sets whether the reactions of the constraints are observed, each called `λ_` and the name of
+ * its constraint. Any value but 0 means yes.
  */
 pc_status pc_model_observe_reactions(pc_model *model, int yes, pc_error **error);
 
 /**
- * Whether systems of the model are derived with their derivatives by parameters, which
+ * Sets whether systems of the model are derived with their derivatives by parameters, which
  * pc_solver_add_sensitivity needs. Any value but 0 means yes.
  */
 pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
 
 /**
- * The text of the model, to be freed with pc_string_free. For a model built by calls it is
- * the text that the calls wrote; errors refer to its lines and columns. Settings that the
+ * Gives the text of the model, to be freed with pc_string_free. For a model built by calls it
+ * is the text that the calls wrote; errors refer to its lines and columns. Settings that the
  * text format does not have are not in it: pc_model_set of parameters, pc_model_set_start of
  * a model that was read, pc_model_keep, pc_model_project_start, pc_model_hold_start,
  * pc_model_observe_reactions, pc_model_differentiate, pc_model_add_external_force,
@@ -797,7 +796,7 @@ pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
 pc_status pc_model_text(const pc_model *model, char **text, pc_error **error);
 
 /**
- * An empty model, to be built by the calls below. Kinds of entries may come in any order;
+ * Makes an empty model, to be built by the calls below. Kinds of entries may come in any order;
  * coordinates, quasi-velocities, parameters and so on keep the order of their calls.
  * Expressions are those of the text model, where `x'` is the velocity of the coordinate x and
  * `t` the time. The model is read as a whole by pc_model_check and pc_system_new, whose
@@ -807,8 +806,8 @@ pc_status pc_model_new(const char *name, pc_model **model, pc_error **error);
 
 /**
  * Reads the model as a whole: PC_OK if all names are known, all expressions are well formed,
- * and the frame and the start are valid. Whether equations can be derived is found by
- * pc_system_new.
+ * and the frame and the start are valid. Only pc_system_new shows whether equations can be
+ * derived.
  */
 pc_status pc_model_check(const pc_model *model, pc_error **error);
 
@@ -868,9 +867,9 @@ pc_status pc_model_add_coordinate(pc_model *model,
 
 /**
  * Adds a quasi-velocity with its value at the start. Its `definition` is an expression affine in
- * the velocities x', or NULL where the kinematics are given the other way round, by
- * pc_model_set_kinematics. Without any quasi-velocities they are the velocities themselves;
- * `name` may then be `x'`, to give one its value at the start.
+ * the velocities x', or NULL where pc_model_set_kinematics gives the velocities in terms of
+ * quasi-velocities. A model without quasi-velocities uses the velocities themselves; `name` may
+ * then be `x'`, which sets the start value of this velocity.
  */
 pc_status pc_model_add_quasi_velocity(pc_model *model,
                                       const char *name,
@@ -895,7 +894,7 @@ pc_status pc_model_set_algebra(pc_model *model, const char *name, pc_error **err
 
 /**
  * Sets the bracket [X_left, X_right], (5), as a linear combination of quasi-velocities, such as
- * "w3"; brackets that are not set are zero. `left` may be "t", for X_0. Instead of
+ * "w3"; brackets that are not set are zero. `left` may be "t", for X_0. An alternative to
  * pc_model_set_algebra.
  */
 pc_status pc_model_set_bracket(pc_model *model,
@@ -905,8 +904,8 @@ pc_status pc_model_set_bracket(pc_model *model,
                                pc_error **error);
 
 /**
- * Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is
- * not affine in the velocities is declared so by pc_model_set_constraint_kind.
+ * Adds a constraint: the expression, of coordinates or of velocities, vanishes. If it is not
+ * affine in the velocities, declare this by pc_model_set_constraint_kind.
  */
 pc_status pc_model_add_constraint(pc_model *model,
                                   const char *name,
@@ -962,14 +961,14 @@ pc_status pc_model_add_output(pc_model *model,
 /**
  * Adds an input: a value that is constant until it is set, as a parameter is. Inputs come
  * after all parameters. Forces, rates of states, events, integrals and outputs may contain
- * it, but nothing that velocities or momenta depend on.
+ * it; velocities, momenta, constraints and positions of bodies may not.
  */
 pc_status pc_model_add_input(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
  * Adds an input that is a function of time: `length` values at increasing times, interpolated
  * by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the
- * times. Its values cannot be set in any other way.
+ * times. Only the table determines its values.
  */
 pc_status pc_model_add_input_table(pc_model *model,
                                    const char *name,
@@ -996,7 +995,7 @@ pc_status pc_model_add_input_file(pc_model *model,
 /**
  * Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of
  * its mass centre or of a point of the body that is at rest, as expressions in the
- * coordinates. Energy and forces follow from the bodies; no Lagrangian is needed as well.
+ * coordinates. Energy and forces follow from the bodies, so the model needs no Lagrangian.
  */
 pc_status pc_model_add_body(pc_model *model,
                             const char *name,
@@ -1007,7 +1006,7 @@ pc_status pc_model_add_body(pc_model *model,
                             pc_error **error);
 
 /**
- * Sets the force on a body, which acts at its position, in axes of space.
+ * Sets the force on a body, which acts at the position of the body, in axes fixed in space.
  */
 pc_status pc_model_set_body_force(pc_model *model,
                                   const char *body,
@@ -1049,7 +1048,7 @@ pc_status pc_model_set_body_inertia(pc_model *model,
 
 /**
  * Sets the rotation of a rigid body: the 9 entries of the matrix R from axes of the body to
- * axes in space, row by row.
+ * axes fixed in space, row by row.
  */
 pc_status pc_model_set_body_rotation(pc_model *model,
                                      const char *body,
@@ -1107,8 +1106,8 @@ pc_status pc_model_set_joint_axis(pc_model *model,
                                   pc_error **error);
 
 /**
- * Sets the two axes of a universal joint, of 3 numbers each: the first stands still in the
- * parent, the second in the body.
+ * Sets the two axes of a universal joint, of 3 numbers each: the first is fixed in the parent,
+ * the second in the body.
  */
 pc_status pc_model_set_joint_axes(pc_model *model,
                                   const char *body,
@@ -1117,7 +1116,7 @@ pc_status pc_model_set_joint_axes(pc_model *model,
                                   pc_error **error);
 
 /**
- * Sets the advance of a screw, a length a radian.
+ * Sets the pitch of a screw joint, a length per radian.
  */
 pc_status pc_model_set_joint_pitch(pc_model *model,
                                    const char *body,
@@ -1125,8 +1124,8 @@ pc_status pc_model_set_joint_pitch(pc_model *model,
                                    pc_error **error);
 
 /**
- * Sets how the axes of a joint stand in those of the parent: the 9 entries of the matrix from
- * the former to the latter, row by row. Excludes pc_model_set_joint_turns.
+ * Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
+ * matrix, row by row. Excludes pc_model_set_joint_turns.
  */
 pc_status pc_model_set_joint_rotation(pc_model *model,
                                       const char *body,
@@ -1135,8 +1134,8 @@ pc_status pc_model_set_joint_rotation(pc_model *model,
                                       pc_error **error);
 
 /**
- * Sets the same by turns about axes: `axes` has a letter x, y or z for each of the `length`
- * angles, every turn being about an axis as turned by those before it.
+ * Sets the same rotation by turns about axes: `axes` has a letter x, y or z for each of the
+ * `length` angles; each turn is about an axis that the turns before it have moved.
  */
 pc_status pc_model_set_joint_turns(pc_model *model,
                                    const char *body,
@@ -1164,8 +1163,8 @@ pc_status pc_model_name_joint_quasi_velocities(pc_model *model,
                                                pc_error **error);
 
 /**
- * Adds a point of a body that hangs by a joint, in axes of the body from its origin. Expressions
- * know its place as `NAME_x`, `NAME_y`, `NAME_z`.
+ * Adds a point of a body that hangs by a joint, in axes of the body from its origin. In
+ * expressions its coordinates are `NAME_x`, `NAME_y`, `NAME_z`.
  */
 pc_status pc_model_add_point(pc_model *model,
                              const char *name,
@@ -1176,8 +1175,8 @@ pc_status pc_model_add_point(pc_model *model,
                              pc_error **error);
 
 /**
- * Joins two bodies that hang by joints already: kind point, revolute or rod. `places` has 6
- * expressions: the point of the first in its axes, then that of the second.
+ * Closes a loop by joining two bodies that hang by joints: kind point, revolute or rod. `places`
+ * has 6 expressions: the point of the first body in its axes, then that of the second.
  */
 pc_status pc_model_add_loop(pc_model *model,
                             const char *name,
@@ -1198,7 +1197,7 @@ pc_status pc_model_set_loop_axes(pc_model *model,
                                  pc_error **error);
 
 /**
- * Sets the distance of the two points of a rod.
+ * Sets the distance between the two points of a rod.
  */
 pc_status pc_model_set_loop_length(pc_model *model,
                                    const char *name,
@@ -1212,8 +1211,8 @@ pc_status pc_model_set_loop_length(pc_model *model,
 pc_status pc_model_set_action(pc_model *model, const char *expression, pc_error **error);
 
 /**
- * Adds a constant of the action, with a value near which the action is defined: where there
- * is no proof that it solves the equation, it is tested numerically there.
+ * Adds a constant of the action, with a value near which the action is defined: without a
+ * proof that the action solves the equation, it is tested numerically near these values.
  */
 pc_status pc_model_add_action_constant(pc_model *model,
                                        const char *name,
@@ -1237,7 +1236,7 @@ pc_status pc_model_set_reference(pc_model *model, const char *reference, pc_erro
 pc_status pc_model_set_start(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
- * Changes it to an expression in parameters.
+ * Changes a start value to an expression in parameters; otherwise as pc_model_set_start.
  */
 pc_status pc_model_set_start_expression(pc_model *model,
                                         const char *name,
@@ -1260,7 +1259,7 @@ pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
 
 /**
  * Sets the time to which the program `pc` runs the model. It is written to the text, as are
- * the next five; a solver has options of its own.
+ * the next five; solvers take pc_solver_options instead.
  */
 pc_status pc_model_set_end_time(pc_model *model, double t, pc_error **error);
 
@@ -1305,13 +1304,13 @@ pc_status pc_model_set_method(pc_model *model, const char *method, pc_error **er
 pc_status pc_model_set_form(pc_model *model, const char *form, pc_error **error);
 
 /**
- * A handle by which derivations and integrations are ended.
+ * Makes a handle that can end derivations and integrations.
  */
 pc_status pc_cancel_new(pc_cancel **cancel, pc_error **error);
 
 /**
- * Ends the derivations and integrations under way with PC_LIMIT, soon, and those that begin later
- * at once. It takes no lock and allocates nothing: it is the one function that a signal
+ * Ends derivations and integrations with PC_LIMIT: those under way soon, later ones as soon as
+ * they begin. It takes no lock and allocates nothing: it is the one function that a signal
  * handler may call. NULL is allowed.
  */
 void pc_cancel_request(const pc_cancel *cancel);
@@ -1322,17 +1321,17 @@ void pc_cancel_request(const pc_cancel *cancel);
 int pc_cancel_is_requested(const pc_cancel *cancel);
 
 /**
- * Frees a handle; systems that have it continue without. NULL is allowed.
+ * Frees a handle; systems that have it continue without it. NULL is allowed.
  */
 void pc_cancel_free(pc_cancel *cancel);
 
 /**
- * Sets the options to their defaults. `size` is sizeof(pc_system_options). Null is allowed.
+ * Sets the options to their defaults. `size` is sizeof(pc_system_options). NULL is allowed.
  */
 void pc_system_options_init(pc_system_options *options, size_t size);
 
 /**
- * Sets the options to their defaults. `size` is sizeof(pc_solver_options). Null is allowed.
+ * Sets the options to their defaults. `size` is sizeof(pc_solver_options). NULL is allowed.
  */
 void pc_solver_options_init(pc_solver_options *options, size_t size);
 
@@ -1347,15 +1346,15 @@ pc_status pc_system_new(const pc_model *model,
                         pc_error **error);
 
 /**
- * A copy for another thread, with the parameters as they are now. It shares the machine code
- * that exists: that of f, and that of each derivative which the original has evaluated before
- * (its first evaluation compiles it).
+ * Makes a copy for another thread, with the current parameters. It shares the machine code that
+ * exists: that of f, and that of each derivative which the original has evaluated before (its
+ * first evaluation compiles it).
  */
 pc_status pc_system_clone(const pc_system *system, pc_system **copy, pc_error **error);
 
 /**
- * Frees a system. NULL is allowed. Called from a function that a call of this system runs it
- * does nothing.
+ * Frees a system. NULL is allowed. It does nothing when called from a function of your program
+ * that a call on this system runs.
  */
 void pc_system_free(pc_system *system);
 
@@ -1427,7 +1426,7 @@ const char *pc_system_constraint_name(const pc_system *system, size_t index);
 const char *pc_system_reaction_name(const pc_system *system, size_t index);
 
 /**
- * The time and state from which the model starts. `t` may be NULL.
+ * Writes the time and state from which the model starts. `t` may be NULL.
  */
 pc_status pc_system_start(const pc_system *system,
                           double *t,
@@ -1436,7 +1435,7 @@ pc_status pc_system_start(const pc_system *system,
                           pc_error **error);
 
 /**
- * The values of all parameters.
+ * Writes the values of all parameters.
  */
 pc_status pc_system_parameters(const pc_system *system,
                                double *values,
@@ -1444,9 +1443,9 @@ pc_status pc_system_parameters(const pc_system *system,
                                pc_error **error);
 
 /**
- * Sets all parameters; cheap, since nothing is derived again. The start stays, and solvers
- * and kernels made before keep their values. Inputs come after the parameters; one with a
- * table follows its table whatever it is set to.
+ * Sets all parameters; cheap, since nothing is derived again. The start stays the same, and
+ * solvers and kernels made before keep their values. Inputs come after the parameters; one with
+ * a table follows its table whatever it is set to.
  */
 pc_status pc_system_set_parameters(pc_system *system,
                                    const double *values,
@@ -1535,11 +1534,11 @@ pc_status pc_model_give_quasi_velocity(pc_model *model,
                                        pc_error **error);
 
 /**
- * Chooses a velocity as one of the independent ones, of which there are as many as the
- * constraints leave free: where multipliers would hold the constraints, systems then have
- * equations in which these are eliminated. The name is that of a quasi-velocity, or x' where
- * there are none. Without a choice, printed equations and source are in the velocities that
- * make them shortest. A wrong choice is reported by pc_system_new.
+ * Chooses a velocity as independent; there must be as many choices as the constraints leave
+ * velocities free. Where multipliers would hold the constraints, systems then have equations
+ * without multipliers. The name is that of a quasi-velocity, or x' where there are none. Without
+ * a choice, printed equations and source are in the velocities that make them shortest. A wrong
+ * choice is reported by pc_system_new.
  */
 pc_status pc_model_add_independent(pc_model *model, const char *name, pc_error **error);
 
@@ -1610,9 +1609,9 @@ pc_status pc_system_jvp(const pc_system *system,
 
 /**
  * Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their
- * product: by each parameter with all others fixed, also those that follow it; by the value
- * of an input with a table. PC_UNSUPPORTED unless pc_model_differentiate was called, and with
- * external forces.
+ * product: by each parameter with all others fixed, even those that are expressions in it; by
+ * the value of an input with a table. PC_UNSUPPORTED unless pc_model_differentiate was called,
+ * and with external forces.
  */
 pc_status pc_system_parameter_jacobian(const pc_system *system,
                                        double t,
@@ -1623,9 +1622,9 @@ pc_status pc_system_parameter_jacobian(const pc_system *system,
                                        pc_error **error);
 
 /**
- * Writes ∂f/∂t, as long as the state, as Rosenbrock's methods take it. The first call derives, as
- * pc_system_new does, unless no expression of the model has t. PC_UNSUPPORTED with external
- * forces, whose ∂/∂t is unknown, and with inputs that have tables.
+ * Writes ∂f/∂t, as long as the state, which Rosenbrock's methods need. The first call derives,
+ * as pc_system_new does, unless f is free of t. PC_UNSUPPORTED with external forces, whose ∂/∂t
+ * is unknown, and with inputs that have tables.
  */
 pc_status pc_system_time_derivative(const pc_system *system,
                                     double t,
@@ -1636,9 +1635,9 @@ pc_status pc_system_time_derivative(const pc_system *system,
                                     pc_error **error);
 
 /**
- * Moves the state, in place, onto the constraints by the shortest way in the kinetic metric,
- * and the integrals of pc_model_keep to their values at the start of the model, or at the
- * state of pc_system_keep_from. Without either the state stays as it is.
+ * Projects the state, in place: onto the constraints, along the shortest path in the kinetic
+ * metric, and to the values that the integrals of pc_model_keep have at the start of the model,
+ * or at the state of pc_system_keep_from. Without either the state stays as it is.
  */
 pc_status pc_system_project(const pc_system *system,
                             double t,
@@ -1661,8 +1660,8 @@ pc_status pc_system_keep_from(pc_system *system,
  * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
  * energy, the outputs.
  *
- * An observable without a value here is not finite; nor is one that contains accelerations
- * where external forces cannot be computed.
+ * Where an observable has no value, the number is not finite; so it is for one that contains
+ * accelerations where external forces cannot be computed.
  */
 pc_status pc_system_observe(const pc_system *system,
                             double t,
@@ -1695,9 +1694,8 @@ pc_status pc_system_energy(const pc_system *system,
                            pc_error **error);
 
 /**
- * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count:
- * together they add to the force Q_s the sum of each times the derivative of its constraint
- * by η_s.
+ * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: to
+ * the force Q_s each adds its value times the derivative of its constraint by η_s.
  */
 pc_status pc_system_reactions(const pc_system *system,
                               double t,
@@ -1770,8 +1768,8 @@ int pc_system_event_resets(const pc_system *system, size_t index);
 
 /**
  * Writes the functions of the events at (t, y), as many as pc_system_event_count: an event
- * occurs where its function passes through zero. A function without a value here is not
- * finite.
+ * occurs where its function passes through zero. Where a function has no value, the number is
+ * not finite.
  */
 pc_status pc_system_events(const pc_system *system,
                            double t,
@@ -1782,8 +1780,8 @@ pc_status pc_system_events(const pc_system *system,
                            pc_error **error);
 
 /**
- * Turns the state y before an event, number `event` from 0, into the state after it. One that
- * resets nothing leaves it as it is.
+ * Turns the state y before an event, number `event` from 0, into the state after it. An event
+ * without resets leaves y unchanged.
  */
 pc_status pc_system_event_reset(const pc_system *system,
                                 size_t event,
@@ -1915,11 +1913,11 @@ pc_status pc_system_to_quasi_velocities(const pc_system *system,
                                         pc_error **error);
 
 /**
- * Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets,
+ * Derives and prints the equations, as `pc derive` does: constraints, kinematics, brackets,
  * equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
- * right-hand side. Where multipliers hold constraints, those of independent velocities are
- * shown. `format` is a pc_format. Parameters have the values of the model. Free the text with
- * pc_string_free.
+ * right-hand side. Where multipliers hold constraints, it shows the equations of independent
+ * velocities. `format` is a pc_format. Parameters have the values of the model. Free the text
+ * with pc_string_free.
  */
 pc_status pc_system_print(const pc_system *system, int format, char **text, pc_error **error);
 
@@ -1930,7 +1928,7 @@ pc_status pc_system_print(const pc_system *system, int format, char **text, pc_e
  * keyword of C. The source has the right-hand side, its Jacobian, the mass matrix, the
  * energy, the integrals and the outputs of independent quasi-velocities, those of its momenta
  * where the system has these, and says at its head how it is used. External forces are
- * parameters of it, after the others, called `Q_` and the name of their quasi-velocity, and
+ * parameters, after the others, called `Q_` and the name of their quasi-velocity, and
  * zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
  * capitals) to a program that integrates from the start of the model to that time. Free both
  * texts with pc_string_free.
@@ -1973,12 +1971,12 @@ pc_status pc_system_theory(const pc_system *system,
 pc_status pc_system_verify(const pc_system *system, size_t states, char **text, pc_error **error);
 
 /**
- * A kernel of the system with the parameters as they are now.
+ * Makes a kernel of the system with its current parameters.
  */
 pc_status pc_kernel_new(const pc_system *system, pc_kernel **kernel, pc_error **error);
 
 /**
- * Frees a kernel. Null is allowed.
+ * Frees a kernel. NULL is allowed.
  */
 void pc_kernel_free(pc_kernel *kernel);
 
@@ -2022,8 +2020,8 @@ int pc_kernel_rhs_many(double t, const double *states, size_t count, double *rat
 size_t pc_kernel_dim(const pc_kernel *kernel);
 
 /**
- * An integration of the system from the state y at the time t, with the parameters as they
- * are now; from the start of the model if y is NULL, of length 0, and then t is ignored.
+ * Makes a solver that integrates the system from the state y at the time t, with its current
+ * parameters; from the start of the model if y is NULL, of length 0, and then t is ignored.
  * `options` may be NULL. Projection after each step keeps states on the constraints, and the
  * integrals of pc_model_keep at their values at this start. The events of the model are
  * followed: where one occurs, the state is reset as the model says, and a terminal one ends
@@ -2038,14 +2036,14 @@ pc_status pc_solver_new(const pc_system *system,
                         pc_error **error);
 
 /**
- * Frees a solver. NULL is allowed. Called from the solver's own observers and functions it
- * does nothing.
+ * Frees a solver. NULL is allowed. It does nothing when called from an observer or function of
+ * this solver.
  */
 void pc_solver_free(pc_solver *solver);
 
 /**
- * Makes a solver continue with the parameters and inputs of the system as they are now: it
- * restarts from where it stands, at order 1. This is how inputs change between two calls of
+ * Makes a solver continue with the current parameters and inputs of the system: it restarts
+ * at its current state, at order 1. This is how inputs change between two calls of
  * pc_solver_advance. The system is that of the solver, or one of the same model.
  * PC_UNSUPPORTED with events of pc_solver_add_event.
  */
@@ -2121,7 +2119,7 @@ pc_status pc_solver_set_event_observer(pc_solver *solver,
                                        pc_error **error);
 
 /**
- * Follows an event of the program's own, after those of the model and those added before:
+ * Follows an event of your program, after those of the model and those added before:
  * `function` passes through zero in a direction, a pc_direction. There `reset`, unless NULL,
  * changes the state, which is then projected onto the constraints; if `terminal` is not 0 the
  * event ends the call with PC_EVENT. Must be called before the first step. `name` is for
@@ -2272,18 +2270,19 @@ double pc_dense_t_begin(const pc_dense *dense);
 double pc_dense_t_end(const pc_dense *dense);
 
 /**
- * Frees a motion. Null is allowed.
+ * Frees a motion. NULL is allowed.
  */
 void pc_dense_free(pc_dense *dense);
 
 /**
  * Writes time and state of a solver as bytes, to be freed with pc_bytes_free and read by
- * pc_solver_restore, possibly in another run of the program. `label` says what it is a
- * checkpoint of; NULL for the empty text.
+ * pc_solver_restore, possibly in another run of the program. `label` says what the checkpoint
+ * is of; NULL means the empty text.
  *
  * A multistep method depends on earlier steps, so this solver restarts here too, at order 1:
- * from a checkpoint on, it and the restored ones go through the same numbers to the last bit.
- * Events of the model are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
+ * from here on, it and the solvers restored from the checkpoint give the same numbers to the
+ * last bit. Events of the model are part of it; PC_UNSUPPORTED with those of
+ * pc_solver_add_event.
  */
 pc_status pc_solver_checkpoint(pc_solver *solver,
                                const char *label,
@@ -2292,8 +2291,8 @@ pc_status pc_solver_checkpoint(pc_solver *solver,
                                pc_error **error);
 
 /**
- * An integration from a checkpoint, with the parameters of the system as they are now. It
- * continues as the checkpointed one did if system, parameters and options are the same.
+ * Makes a solver that continues from a checkpoint, with the current parameters of the system.
+ * It continues as the checkpointed one did if system, parameters and options are the same.
  * `options` may be NULL. PC_INVALID_CHECKPOINT unless the bytes are exactly what
  * pc_solver_checkpoint wrote, for a model with the same names and equations; values of
  * parameters may differ. Statistics of the solver count from here.
@@ -2326,14 +2325,14 @@ pc_status pc_solver_statistics(const pc_solver *solver,
 
 /**
  * Integrates many members through the times, each from its own state, with its own parameters,
- * as a solver of its own would: the numbers are the same for any number of threads. The events
+ * as a single solver would: the numbers are the same for any number of threads. The events
  * of the model are followed. By PC_DOP853, members of a model without events, projection,
  * tables and explicit dependence on time are integrated side by side in vectors: their last
  * digits may differ from those of a solver, within the tolerances.
  *
  * `states` has members × dim numbers, member by member, at the time t; NULL for the start of
  * the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
- * numbers; NULL for those of the system as they are now. The length that goes with NULL is 0.
+ * numbers; NULL for the current ones of the system. The length that goes with NULL is 0.
  * `options` may be NULL. `threads` is the number of threads, 0 for one on each core; they
  * have ended when this returns. A member that fails is passed to the observer like any other,
  * with what it reached, and the others continue. An error that all share, such as one in the

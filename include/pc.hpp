@@ -5,26 +5,27 @@
 //     pc::solver solver(top);
 //     const pc::vector y = solver.advance(10.0);
 //
-// Each header below stands by itself. Objects move and do not copy, but for what has a clone(). What pc.h says of
-// threads holds here: objects are independent, and each is used by one call at a time. get() gives the handle, for
-// calls of C. Functions of the program may throw: catching.hpp says where the exception comes out.
+// Each header below can be included alone. Objects can be moved but not copied, except by a
+// clone(). What pc.h says of threads holds here: objects are independent, and each is used by one
+// call at a time. get() gives the handle, for calls of C. Functions of the program may throw:
+// catching.hpp says where the exception comes out.
 
 #ifndef PC_HPP
 #define PC_HPP
 
-#include "pc/cancel.hpp"     // what derivations may take
-#include "pc/catching.hpp"   // what functions of the program throw
-#include "pc/checkpoint.hpp" // integrations that are taken up again
+#include "pc/cancel.hpp"     // limits and cancellation
+#include "pc/catching.hpp"   // exceptions of the program's functions
+#include "pc/checkpoint.hpp" // integrations that are resumed
 #include "pc/dense.hpp"      // motions as functions of time
 #include "pc/ensemble.hpp"   // many motions at once
 #include "pc/error.hpp"      // calls that failed
-#include "pc/event.hpp"      // what happens on the way
+#include "pc/event.hpp"      // events and observers
 #include "pc/force.hpp"      // forces that functions of the program compute
-#include "pc/kernel.hpp"     // the right-hand side for an integrator of one's own
-#include "pc/model.hpp"      // a text, or what is said call by call
+#include "pc/kernel.hpp"     // the right-hand side for your own integrator
+#include "pc/model.hpp"      // models from a text, or built call by call
 #include "pc/options.hpp"    // how to integrate
-#include "pc/solver.hpp"     // integration by CVODE
+#include "pc/solver.hpp"     // integration
 #include "pc/system.hpp"     // equations of motion
-#include "pc/view.hpp"       // numbers that belong to somebody else
+#include "pc/view.hpp"       // numbers that another object owns
 
 #endif // PC_HPP

@@ -35,8 +35,8 @@ private:
     Handle *raw_ = nullptr;
 };
 
-/// Calls a function with the place of its error last. Throws what a function of the program has thrown meanwhile, also
-/// if C could do without, or else the failure of the call.
+/// Calls a function with the place of its error last. Throws what a function of the program has
+/// thrown meanwhile, even if the call succeeded, or else the failure of the call.
 template <class Function, class... Arguments> pc_status call(Function function, Arguments... arguments)
 {
     catching thrown;

@@ -1,4 +1,4 @@
-// What derivations and integrations may take, and how they are ended.
+// Limits of derivations and integrations, and their cancellation.
 
 #ifndef PC_CANCEL_HPP
 #define PC_CANCEL_HPP
@@ -10,7 +10,7 @@
 
 namespace pc {
 
-/// Ends derivations and integrations, from another thread or a handler of signals.
+/// Ends derivations and integrations, from another thread or a signal handler.
 class cancel {
 public:
     cancel() : handle_(detail::make<handle>(pc_cancel_new)) {}
@@ -26,11 +26,11 @@ private:
     handle handle_;
 };
 
-/// What a derivation may take, and a call of a solver or an ensemble.
+/// Limits of each derivation, and of each call of a solver or an ensemble.
 struct limits {
-    /// Bytes of the expressions; 0 for 4 GiB.
+    /// Most bytes of the expressions; 0 for 4 GiB.
     std::uint64_t memory = 0;
-    /// Seconds for each; 0 for no limit.
+    /// Most seconds; 0 for no limit.
     double time = 0.0;
     /// Ends them, unless null; it may be destroyed once the system is made.
     const cancel *by = nullptr;

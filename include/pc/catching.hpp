@@ -1,4 +1,4 @@
-// What functions of the program throw, and where it comes out.
+// Exceptions of the program's functions, and where they come out.
 
 #ifndef PC_CATCHING_HPP
 #define PC_CATCHING_HPP
@@ -8,14 +8,16 @@
 
 namespace pc {
 
-/// Keeps what functions of the program throw where C stands between them and their caller.
+/// Keeps exceptions of the program's functions while C code is between them and their caller.
 ///
-/// Forces, events, resets and observers are called by C, through which nothing may be thrown. What they throw is kept by
-/// the youngest catching of the thread, and no such function is called again before it is rethrown: each counts as
-/// failed. So an exception is not a value; where a force or an event has none, its function writes NaN.
+/// Forces, events, resets and observers are called by C, through which nothing may be thrown. The
+/// youngest catching of the thread keeps what they throw; until it is rethrown, no such function is
+/// called again, and each counts as failed. So an exception does not stand for a missing value:
+/// where a force or an event has none, its function writes NaN.
 ///
-/// Every call of these headers has a catching of its own, and throws what it has kept, even where C succeeded without it.
-/// Another is needed where a program puts C in between, such as an integrator that is given pc_kernel_rhs:
+/// Every call of these headers has its own catching, and throws what that has kept, even where C
+/// succeeded in spite of it. A program needs another one where it puts C code in between, such as
+/// an integrator that is given pc_kernel_rhs:
 ///
 ///     pc::catching thrown;
 ///     const int status = gsl_odeiv2_driver_apply(driver, &t, 1.0, y);
@@ -37,7 +39,7 @@ public:
         }
     }
 
-    /// What `body` returns to C; `otherwise` if it throws, or if something has been thrown before.
+    /// What `body` returns to C, or `otherwise` if it throws or something has been thrown before.
     template <class Body> static int guard(int otherwise, Body body) noexcept
     {
         catching *const call = youngest();

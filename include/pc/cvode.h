@@ -1,5 +1,6 @@
 /*
- * pc/cvode.h: the equations of a pc_system for CVODE or CVODES of SUNDIALS 6 or 7, your own one, in C99 or C++.
+ * pc/cvode.h: the equations of a pc_system for your own CVODE or CVODES of SUNDIALS 6 or 7, in C99
+ * or C++.
  *
  *     pc_cvode equations;
  *     if (pc_cvode_init(&equations, system, &error) == PC_OK) {
@@ -7,19 +8,20 @@
  *         CVodeSetUserData(cvode, &equations);
  *         CVodeSetLinearSolver(cvode, solver, matrix);   the matrix dense, or sparse by columns
  *         CVodeSetJacFn(cvode, pc_cvode_jac);
- *         CVodeSetProjFn(cvode, pc_cvode_proj);          for CV_BDF, where there is something to be kept
+ *         CVodeSetProjFn(cvode, pc_cvode_proj);          for CV_BDF, to keep constraints and integrals
  *         CVodeRootInit(cvode, pc_cvode_root_count(&equations), pc_cvode_roots);
  *         CVode(cvode, ...);                             at a root pc_cvode_reset, then CVodeReInit
  *     }
  *     pc_cvode_free(&equations);
  *
- * The user data of all functions is a pc_cvode; each integration has its own. Nothing here is compiled into libpc, which has
- * another SUNDIALS inside and shows none of it: the two know nothing of each other. Vectors are those whose numbers
- * N_VGetArrayPointer gives, such as N_VNew_Serial's, of the length pc_system_dim.
+ * The user data of all functions is a pc_cvode; each integration has its own. Nothing here is
+ * compiled into libpc, which contains another SUNDIALS and exports none of it: the two are
+ * independent. Vectors are those whose numbers N_VGetArrayPointer gives, such as those of
+ * N_VNew_Serial, of the length pc_system_dim.
  *
- * The functions return what CVODE expects: 0; 1 where the equations cannot be evaluated, so that CVODE tries a smaller step;
- * -1 where no step helps. Then `error` of the pc_cvode says why; it is NULL if a vector, a matrix or the roots do not fit, or
- * a root is NaN.
+ * The functions return what CVODE expects: 0; 1 where the equations cannot be evaluated, so that
+ * CVODE tries a smaller step; -1 where no step helps. Then `error` of the pc_cvode says why; it is
+ * NULL if a vector, a matrix or the roots do not fit, or a root is NaN.
  */
 
 #ifndef PC_CVODE_H
@@ -43,28 +45,30 @@
 extern "C" {
 #endif
 
-/* A root beside the events of the model: where the observable of this place, as pc_system_observable_name counts, has this
- * value. */
+/* A root in addition to the events of the model: where the observable of this index, as for
+ * pc_system_observable_name, has this value. */
 typedef struct {
     size_t observable;
     double value;
 } pc_cvode_root;
 
-/* The equations of an integration. Made by pc_cvode_init; what is not said to be yours to set, leave. */
+/* The equations of an integration, made by pc_cvode_init. Change only the members that are said to
+ * be yours to set. */
 typedef struct {
-    /* Copies of its own. Their parameters are set by pc_kernel_set_parameters and pc_system_set_parameters, both. */
+    /* Its own copies. To set parameters, call both pc_kernel_set_parameters and
+     * pc_system_set_parameters. */
     pc_kernel *kernel;
     pc_system *system;
     /* Yours to set before CVodeRootInit: an array that you keep, and its length. */
     const pc_cvode_root *roots;
     size_t roots_length;
-    /* Why a function here failed last, or NULL. */
+    /* Why a function failed last, or NULL. */
     pc_error *error;
     /* Room for all observables, and for a state. */
     double *observables, *state;
 } pc_cvode;
 
-/* Frees what pc_cvode_init made. Twice does no harm. */
+/* Frees what pc_cvode_init made. It may be called twice. */
 static inline void pc_cvode_free(pc_cvode *equations)
 {
     pc_kernel_free(equations->kernel);
@@ -79,8 +83,8 @@ static inline void pc_cvode_free(pc_cvode *equations)
     equations->state = NULL;
 }
 
-/* Takes the equations of a system with its parameters as they are now, and no roots. After a failure there is nothing to be
- * freed; PC_INTERNAL without an error is that there is no memory. */
+/* Takes the equations of a system with its current parameters, and no roots. After a failure
+ * nothing has to be freed; PC_INTERNAL without an error means that memory is exhausted. */
 static inline pc_status pc_cvode_init(pc_cvode *equations, const pc_system *system, pc_error **error)
 {
     const size_t observables = pc_system_observable_count(system);
@@ -107,19 +111,19 @@ static inline pc_status pc_cvode_init(pc_cvode *equations, const pc_system *syst
     return status;
 }
 
-/* The numbers of a vector, if they are `dim`. */
+/* The numbers of a vector, if it has the length `dim`. */
 static inline double *pc_cvode_numbers(N_Vector vector, size_t dim)
 {
     return N_VGetLength(vector) == (sunindextype)dim ? N_VGetArrayPointer(vector) : NULL;
 }
 
-/* What CVODE is told of a status, with the error that belongs to it. */
+/* What CVODE expects for a status, with the error that belongs to it. */
 static inline int pc_cvode_answer(const pc_cvode *equations, pc_status status)
 {
     return status == PC_OK ? 0 : pc_error_is_recoverable(equations->error) ? 1 : -1;
 }
 
-/* Where the next error goes, in place of the last one. */
+/* The place for the next error, which replaces the last one. */
 static inline pc_error **pc_cvode_error(pc_cvode *equations)
 {
     pc_error_free(equations->error);
@@ -127,7 +131,8 @@ static inline pc_error **pc_cvode_error(pc_cvode *equations)
     return &equations->error;
 }
 
-/* The answer where something does not fit, without an error: that of an earlier call is not this one's. */
+/* The answer where an argument does not fit, without an error: it removes that of an earlier call.
+ * */
 static inline int pc_cvode_misfit(pc_cvode *equations)
 {
     pc_cvode_error(equations);
@@ -219,8 +224,9 @@ static inline int pc_cvode_jtimes(N_Vector v, N_Vector product, double t, N_Vect
  * pc_model_keep have their values at the start of the model, to rounding, whatever `tolerance` is. Where CVODE starts from
  * another state, say pc_system_keep_from(equations.system, t, y, n, &error).
  *
- * The error estimate e is projected as CVODE asks, by the derivative of Π at y + c, which is Π(y + c + e) - (y + c) but for
- * terms of the order e². It is what an error leaves after projection; across the surface nothing is left.
+ * The error estimate e is projected as CVODE asks, by the derivative of Π at y + c, which is
+ * Π(y + c + e) - (y + c) up to terms of order e². This is the error that remains after projection;
+ * across the surface none remains.
  *
  * CVODE projects at the ends of steps, with CV_BDF only, and interpolates between them: states that CVode gives in CV_NORMAL
  * are off the surface by the error of a step. Let it stop at the times wanted (CVodeSetStopTime), or use pc_system_project. */
@@ -293,15 +299,15 @@ static inline int pc_cvode_roots(double t, N_Vector y, double *gout, void *user_
     }
     for (i = 0; i < events + equations->roots_length; i++) {
         if (gout[i] != gout[i]) {
-            return -1; /* CVODE would pass over what is no number. */
+            return -1; /* CVODE would ignore NaN. */
         }
     }
     return 0;
 }
 
-/* Turns y before an event of the model, by its number among the roots, into the state after it, on the constraints, whose
- * integrals are those kept from now on. CVODE is then to be started anew there, by CVodeReInit. What resets nothing leaves y
- * as it is: an event, or one of `roots`; so does a failure. */
+/* Turns y before an event of the model, by its number among the roots, into the state after it, on
+ * the constraints; kept integrals have their values there from now on. Then restart CVODE there, by
+ * CVodeReInit. Events without resets, `roots` and failures leave y unchanged. */
 static inline int pc_cvode_reset(double t, N_Vector y, size_t event, pc_cvode *equations)
 {
     const size_t n = pc_kernel_dim(equations->kernel);

@@ -21,10 +21,10 @@ namespace pc {
 /// The result of a member of an ensemble, valid while its observer is called.
 struct member {
     std::size_t number;
-    /// PC_OK, PC_EVENT, or why it failed, which the message explains.
+    /// PC_OK, PC_EVENT, or the status of a failure, which the message explains.
     pc_status status;
     std::string_view message;
-    /// The output times that it reached, and the states at these, one after the other.
+    /// The output times that it reached, and the states at these times, one after the other.
     view<const double> times, states;
 
     /// The state at times[row].
@@ -50,7 +50,7 @@ inline int tell_member(const pc_member *of, void *user) noexcept
     });
 }
 
-/// A system whose forces throw on threads that no call of ours is on.
+/// A system whose forces throw on threads without a call of these headers.
 struct told_elsewhere {
     static std::optional<system> copy(const system &of, first_thrown &thrown)
     {
@@ -65,12 +65,13 @@ struct told_elsewhere {
 
 } // namespace detail
 
-/// Integrates many members through the times: from `states` at t, member by member, or from the start of the model if
-/// there are none, and with `parameters`, member by member, or those of the system if there are none. Calls `observe`
-/// for each in order until it answers false; whether it never did. `threads` is 0 for one on each core.
+/// Integrates many members through the times: from `states` at t, member by member, or from the
+/// start of the model if there are none, and with `parameters`, member by member, or those of the
+/// system if there are none. Calls `observe` for each in order until it returns false; returns
+/// whether it never did. `threads` is 0 for one on each core.
 ///
-/// What `observe` throws stops the ensemble and comes out. A member whose forces throw has failed and is reported so,
-/// the others continue, and the first exception comes out at the end.
+/// What `observe` throws stops the ensemble and comes out. A member whose forces throw is reported
+/// as failed, the others continue, and the first exception comes out at the end.
 inline bool run_ensemble(const system &of, double t, view<const double> states, view<const double> parameters,
                          view<const double> times, const member_observer &observe, std::size_t threads = 0,
                          const solver_options &options = {})

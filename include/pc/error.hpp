@@ -10,7 +10,8 @@
 
 namespace pc {
 
-/// A call that failed; what() is the message, of which that of a model shows the line at fault and what would be right.
+/// A call that failed; what() is the message, which for a model shows the line at fault and what
+/// would be right.
 class error : public std::runtime_error {
 public:
     /// From a status that is a failure, and the error of the call, which may be null.
@@ -35,7 +36,7 @@ public:
     std::size_t length() const noexcept { return length_; }
     /// The code of CVODES, or 0.
     int integrator_code() const noexcept { return integrator_code_; }
-    /// Whether a nearby state may do.
+    /// Whether evaluation may succeed at a nearby state.
     bool is_recoverable() const noexcept { return recoverable_; }
 
 private:

@@ -21,8 +21,8 @@ struct occurrence {
     vector before, after;
 };
 
-/// g(t, y), which passes through zero where the event occurs. Where it has no value it is NaN, which is no failure
-/// beyond an event that is seen to occur before.
+/// g(t, y), which passes through zero where the event occurs. It is NaN where it has no value,
+/// which is no failure after an event that is found before.
 using event_function = std::function<double(double t, view<const double> y)>;
 /// Turns the state before an event into the one after it.
 using event_reset = std::function<void(double t, view<double> y)>;
@@ -33,10 +33,10 @@ using observer = std::function<bool(double t, view<const double> y)>;
 
 namespace detail {
 
-/// What any of these returns to C if it throws.
+/// What these functions return to C if they throw.
 constexpr int stop = 1;
 
-/// An event of the program's own, for C.
+/// An event of the program, for C.
 struct event_user {
     event_function function;
     event_reset reset;

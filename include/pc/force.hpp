@@ -17,8 +17,8 @@
 
 namespace pc {
 
-/// Writes the external forces at (t, y) to q, as many as were declared, in that order. What it leaves unwritten is NaN,
-/// which means that a force is not defined there: a smaller step is tried.
+/// Writes the external forces at (t, y) to q, as many as were declared, in that order. A force left
+/// unwritten is NaN, which means that it is not defined there: a smaller step is tried.
 using force_function = std::function<void(double t, view<const double> y, view<double> q)>;
 /// Writes their derivatives, ∂q_i/∂y_j to dq[i + j*e] for e forces.
 using force_jacobian = std::function<void(double t, view<const double> y, view<double> dq)>;
@@ -54,7 +54,8 @@ private:
     std::exception_ptr thrown_;
 };
 
-/// The argument given to C: the functions, and what keeps their exceptions if it is not the catching of their thread.
+/// The argument given to C: the functions, and what keeps their exceptions unless the catching of
+/// their thread does.
 struct force_user {
     std::shared_ptr<const forces> functions;
     first_thrown *elsewhere;
@@ -92,7 +93,7 @@ private:
     }
 };
 
-/// Sets the functions of a system. Without any, C reports it.
+/// Sets the functions of a system; C reports an empty function.
 inline void set_force(pc_system *system, std::shared_ptr<const forces> functions, first_thrown *elsewhere = nullptr)
 {
     const auto force = functions->function ? &force_user::force : nullptr;

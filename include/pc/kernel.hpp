@@ -15,9 +15,9 @@
 
 namespace pc {
 
-/// f(t, y) for one thread, with the parameters and the forces that the system had. get() is the context of
-/// pc_kernel_rhs and pc_kernel_jacobian, for an integrator that takes functions of C; what forces throw is then kept by
-/// a catching.
+/// f(t, y) for one thread, with the parameters and the forces that the system had. get() is the
+/// context of pc_kernel_rhs and pc_kernel_jacobian, for an integrator that takes functions of C; a
+/// catching then keeps what forces throw.
 class kernel {
 public:
     explicit kernel(const system &of)
@@ -30,7 +30,8 @@ public:
     {
         detail::call(pc_kernel_set_parameters, get(), values.data(), values.size());
     }
-    /// Writes f(t, y). 0; 1 where it cannot be evaluated and a smaller step may help; -1 where no step helps.
+    /// Writes f(t, y). Returns 0; 1 where it cannot be evaluated and a smaller step may help; -1
+    /// where no step helps.
     int operator()(double t, view<const double> y, view<double> ydot)
     {
         return at(pc_kernel_rhs, dim_, t, y, ydot);
@@ -40,7 +41,7 @@ public:
     {
         return at(pc_kernel_jacobian, dim_ * dim_, t, y, matrix);
     }
-    /// Writes f of as many states as there are, one after the other; otherwise as f.
+    /// Writes f of states that follow one another; otherwise as f.
     int many(double t, view<const double> states, view<double> rates)
     {
         if (states.size() % dim_ != 0 || rates.size() != states.size()) {

@@ -31,7 +31,7 @@ public:
         return model(make(pc_model_parse, text.data(), text.size(), name.c_str()));
     }
     static model from_file(const std::string &path) { return model(make(pc_model_from_file, path.c_str())); }
-    /// One that comes with the library.
+    /// A model that comes with the library.
     static model builtin(const std::string &name) { return model(make(pc_model_builtin, name.c_str())); }
     static std::vector<std::string> builtin_names()
     {
@@ -55,7 +55,7 @@ public:
         return say(pc_model_add_parameter_expression, name.c_str(), expression.c_str());
     }
     model &input(const std::string &name, double value) { return say(pc_model_add_input, name.c_str(), value); }
-    /// By its values at times; `interpolation` is "linear", "cubic" or "hold".
+    /// An input by its values at times; `interpolation` is "linear", "cubic" or "hold".
     model &input(const std::string &name, const std::vector<double> &times, const std::vector<double> &values,
                  const std::string &interpolation = "linear")
     {
@@ -65,7 +65,7 @@ public:
         return say(pc_model_add_input_table, name.c_str(), times.data(), values.data(), times.size(),
                    interpolation.c_str());
     }
-    /// By a column of a file.
+    /// An input by a column of a file.
     model &input_file(const std::string &name, const std::string &path, const std::string &column,
                       const std::string &interpolation = "linear")
     {
@@ -187,7 +187,7 @@ public:
     {
         return say(pc_model_set_joint_axis, body.c_str(), axis.data());
     }
-    /// Those of a universal joint.
+    /// The axes of a universal joint.
     model &joint_axes(const std::string &body, const std::array<double, 3> &first,
                       const std::array<double, 3> &second)
     {
@@ -220,7 +220,7 @@ public:
         return say(pc_model_add_point, name.c_str(), body.c_str(), place[0].c_str(), place[1].c_str(),
                    place[2].c_str());
     }
-    /// Joins two bodies at a place of each.
+    /// Closes a loop by joining two bodies at a point of each.
     model &loop(const std::string &name, const std::string &kind, const std::string &first,
                 const std::string &second, const components &here, const components &there)
     {
@@ -279,7 +279,7 @@ public:
     model &observe_reactions(bool yes = true) { return say(pc_model_observe_reactions, yes); }
     model &differentiate(bool yes = true) { return say(pc_model_differentiate, yes); }
 
-    /// How the program `pc` runs the model; a solver has its own options.
+    /// How the program `pc` runs the model; solvers take solver_options instead.
     model &end_time(double t) { return say(pc_model_set_end_time, t); }
     model &samples(std::size_t samples) { return say(pc_model_set_samples, samples); }
     model &tolerances(double relative, double absolute)

@@ -10,12 +10,13 @@ namespace pc {
 
 /// The options of an integration, at first the defaults; pc.h says what they are.
 struct solver_options : pc_solver_options {
-    /// One for each component; none for `absolute_tolerance` of all. It stands for the pointer in C.
+    /// One for each component, or none, for `absolute_tolerance` for all. It replaces the pointer
+    /// in C.
     vector absolute_tolerances;
 
     solver_options() noexcept { pc_solver_options_init(this, sizeof(pc_solver_options)); }
 
-    /// The same for C, good for as long as these are there.
+    /// The options for C, valid as long as this object.
     pc_solver_options get() const noexcept
     {
         pc_solver_options options = *this;

@@ -1,4 +1,4 @@
-// Integration by CVODE.
+// Integration.
 
 #ifndef PC_SOLVER_HPP
 #define PC_SOLVER_HPP
@@ -24,8 +24,8 @@ namespace pc {
 
 /// An integration, with its current time and state.
 ///
-/// What a function or observer throws ends the call that called it, and comes out there; so does what the forces of the
-/// system throw. The integration then stays at what it reached, given by time() and state().
+/// What a function, an observer or a force of the system throws ends the call that called it, and
+/// comes out there. The integration then stays at what it reached, given by time() and state().
 class solver {
 public:
     /// From the start of the model.
@@ -38,7 +38,7 @@ public:
     solver(const system &of, double t, view<const double> y, const solver_options &options = {}) : dim_(of.dim())
     {
         const pc_solver_options chosen = options.get();
-        const double nothing = 0.0; // no numbers are not the start of the model
+        const double nothing = 0.0; // a null pointer would mean the start of the model
         detail::call(pc_solver_new, of.get(), &chosen, t, y.empty() ? &nothing : y.data(), y.size(), handle_.place());
     }
     /// From a checkpoint.
@@ -49,7 +49,7 @@ public:
                       of.dim());
     }
 
-    /// Follows an event of your own; to be called before the first step.
+    /// Follows an event of your program; to be called before the first step.
     void add_event(const std::string &name, pc_direction direction, bool terminal, event_function function,
                    event_reset reset = nullptr)
     {
@@ -69,15 +69,16 @@ public:
         event_observer_ = std::move(kept);
     }
 
-    /// Continues with the parameters and inputs of the system as they are now.
+    /// Continues with the current parameters and inputs of the system.
     void take_parameters(const system &from) { detail::call(pc_solver_take_parameters, get(), from.get()); }
 
-    /// Integrates the derivative of the state by a parameter too, of a start that has this derivative, or 0 if it is empty.
+    /// Also integrates the derivative of the state by a parameter; `start` is that of the start, 0
+    /// if empty.
     void add_sensitivity(std::size_t parameter, const vector &start = {})
     {
         detail::call(pc_solver_add_sensitivity, get(), parameter, start.empty() ? nullptr : start.data(), start.size());
     }
-    /// Such a derivative at the current time.
+    /// An added derivative at the current time.
     vector sensitivity(std::size_t number) const
     {
         vector column(dim_);
@@ -92,7 +93,7 @@ public:
         advance(t, y);
         return y;
     }
-    /// Writes it, and says with PC_OK, PC_EVENT or PC_STOPPED how the call ended.
+    /// Writes this state, and returns how the call ended: PC_OK, PC_EVENT or PC_STOPPED.
     pc_status advance(double t, view<double> y)
     {
         return detail::call(pc_solver_advance, get(), t, y.data(), y.size());
@@ -109,7 +110,7 @@ public:
         double t = 0.0;
         return detail::call(pc_solver_step, get(), towards, &t, y.data(), y.size());
     }
-    /// Calls `observe` at each time until it returns false; whether all times were reached.
+    /// Calls `observe` at each time until it returns false; returns whether all times were reached.
     bool run(view<const double> times, const observer &observe)
     {
         const auto told = observe ? &detail::tell_state : nullptr;
@@ -193,7 +194,7 @@ private:
 
     solver(handle made, std::size_t dim) : handle_(std::move(made)), dim_(dim) {}
 
-    // It stays in its place when the solver moves, and outlives the handle.
+    // It keeps its address when the solver moves, and outlives the handle.
     std::unique_ptr<event_observer> event_observer_;
     handle handle_;
     std::size_t dim_;

@@ -22,13 +22,14 @@ namespace detail {
 struct told_elsewhere;
 }
 
-/// The entries of ∂f/∂y that may be nonzero, in compressed columns: the rows of column j stand from place
-/// column_starts[j] up to, but not including, column_starts[j + 1]. It belongs to the system and its copies.
+/// The entries of ∂f/∂y that may be nonzero, in compressed columns: the rows of column j are
+/// row_indices from column_starts[j] up to, but not including, column_starts[j + 1]. It belongs to
+/// the system and its copies.
 struct sparsity {
     view<const std::size_t> column_starts, row_indices;
 };
 
-/// C source: the text of a header and that of what it declares.
+/// C source: the text of a header, and that of the source file.
 struct c_source {
     std::string header, source;
 };
@@ -48,7 +49,7 @@ public:
         options.cancel = within.by == nullptr ? nullptr : within.by->get();
         detail::call(pc_system_new, of.get(), &options, handle_.place());
     }
-    /// A copy for another thread. Both call the same functions of forces.
+    /// A copy for another thread. Both call the same force functions.
     system clone() const
     {
         return system(detail::make<handle>(pc_system_clone, get()), forces_);
@@ -101,7 +102,7 @@ public:
         detail::call(pc_system_start, get(), &start.first, start.second.data(), start.second.size());
         return start;
     }
-    /// The derivative of that state by a parameter.
+    /// The derivative of the state at the start by a parameter.
     vector start_by_parameter(std::size_t parameter) const
     {
         vector column(dim());
@@ -123,12 +124,13 @@ public:
         detail::call(pc_system_set_parameter, get(), index, value);
     }
 
-    /// Sets the function that computes the external forces, and, if given, that of their derivatives, which are difference
-    /// quotients otherwise.
-    /// Copies, solvers and kernels made from now on share the functions; used on several threads, they call them there.
+    /// Sets the function that computes the external forces and, if given, the one for their
+    /// derivatives, which are otherwise difference quotients. Copies, solvers and kernels made from
+    /// now on share the functions; used on several threads, they call them there.
     ///
-    /// An exception ends the call that called them, whether of the system, a copy, a solver or a kernel, and comes
-    /// out there. See catching for calls in C, and run_ensemble, whose members have threads of their own.
+    /// An exception ends the call that called the functions, whether of the system, a copy, a
+    /// solver or a kernel, and comes out there. See catching for calls in C, and run_ensemble,
+    /// whose members run on other threads.
     void set_force(force_function function, force_jacobian jacobian = nullptr)
     {
         const auto forces =
@@ -221,7 +223,7 @@ public:
     {
         detail::call(pc_system_keep_from, get(), t, y.data(), y.size());
     }
-    /// Moves the state onto the constraints, and the kept integrals to their values.
+    /// Projects the state onto the constraints and the values of the kept integrals.
     void project(double t, view<double> y)
     {
         detail::call(pc_system_project, get(), t, y.data(), y.size());
@@ -267,7 +269,7 @@ public:
         detail::call(pc_system_operator_count, get(), &operators);
         return operators;
     }
-    /// c_rs^m of [X_r, X_s] = c_rs^m X_m, at the place (r*(K + 1) + s)*K + m - 1, for r, s = 0 … K.
+    /// c_rs^m of [X_r, X_s] = c_rs^m X_m, at the index (r*(K + 1) + s)*K + m - 1, for r, s = 0 … K.
     vector structure_coefficients(double t, view<const double> y)
     {
         const std::size_t k = operator_count();
@@ -280,7 +282,8 @@ public:
     }
 
     std::string print(pc_format format = PC_TEXT) const { return detail::text(pc_system_print, get(), format); }
-    /// What can be said of the motions: integrals up to that degree in the velocities, with these functions in coefficients.
+    /// The analysis of the motions; integrals have up to this degree in the velocities and these
+    /// functions in coefficients.
     std::string theory(pc_format format = PC_TEXT, std::size_t degree = 2,
                        const std::vector<std::string> &functions = {}) const
     {
@@ -289,7 +292,8 @@ public:
             texts.push_back(function.c_str());
         return detail::text(pc_system_theory, get(), format, degree, texts.data(), texts.size());
     }
-    /// How closely the equations agree with a second derivation, at so many random states; an error where they do not.
+    /// How closely the equations agree with a second derivation, at random states; throws if they
+    /// do not.
     std::string verify(std::size_t states = 100) const { return detail::text(pc_system_verify, get(), states); }
     /// The equations as C source, which with -DNAME_MAIN is a program that integrates to t_end, if that is finite.
     c_source emit_c(const std::string &name, double t_end = std::numeric_limits<double>::infinity()) const
@@ -318,7 +322,7 @@ private:
         detail::call(find, get(), name.c_str(), &index);
         return index;
     }
-    /// Lets a function write its values at (t, y), and of further numbers, to the target.
+    /// Lets a function write its values at (t, y), with further arguments, to the target.
     template <class Function, class... Further>
     void to(view<double> target, Function function, double t, view<const double> y, Further... further)
     {

@@ -1,4 +1,4 @@
-// Views of numbers that another object owns, which functions take and fill.
+// Views of numbers that another object owns, which functions read and write.
 
 #ifndef PC_VIEW_HPP
 #define PC_VIEW_HPP
@@ -15,9 +15,9 @@ namespace pc {
 /// Owned numbers: what functions return.
 using vector = std::vector<double>;
 
-/// A pointer and a length. It owns nothing, and is good for as long as what it was made of: a vector, an array, an
-/// array of C, a std::span, another view, or, if nothing is written to it, a list in braces. Lengths are checked in the
-/// calls.
+/// A pointer and a length. It owns nothing, and is valid as long as what it was made from: a
+/// vector, an array, an array of C, a std::span, another view, or, for reading, a list in braces.
+/// Calls check lengths.
 template <class T> class view {
     template <class Container>
     using of = std::enable_if_t<

@@ -1,9 +1,9 @@
 //! The functions of pc.h, a file for each group of them.
 //!
-//! Numbers and pointers come in, which `ffi` checks; the crates below compute the results;
-//! what is remembered between two calls is in `machinery`. Models: `model`, `builder`, `inputs`,
-//! `bodies`, `joints` (of `entry`s), `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
-//! `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`,
+//! `ffi` checks the numbers and pointers of a call, the crates below compute the results, and
+//! `machinery` keeps what lives between calls. Models: `model`, `builder`, `inputs`, `bodies`,
+//! `joints` (with `entry`), `action`, `settings`. Equations: `system`, `names`, `rates`,
+//! `mechanics`, `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`,
 //! `cancel`, `solver`, `observe`, `events`, `occurrences`, `force`, `dense`, `checkpoint`,
 //! `statistics`, `ensemble`. The library: `version`.
 

@@ -1,12 +1,13 @@
 //! libpc, the C interface to the Poincaré–Chetaev equations: one header, one library.
 //!
-//! A [`pc_model`] is a text, or is built call by call; a [`pc_system`] its equations, compiled; a [`pc_solver`]
-//! their integration; a [`pc_kernel`] the right-hand side alone, for an integrator of one's own. The crate holds
-//! no mathematics: each function hands over to `pc_model`, `pc_mech` or `pc_solve`. What C programmers read is
-//! `include/pc.h`, generated from here, and what is true of every function stands at its head, the
-//! [`preamble`](crate::api::version::PREAMBLE).
+//! A [`pc_model`] is a text, or is built call by call; a [`pc_system`] its equations, compiled; a
+//! [`pc_solver`] their integration; a [`pc_kernel`] the right-hand side alone, for another
+//! integrator. The crate holds no mathematics: each function hands over to `pc_model`, `pc_mech` or
+//! `pc_solve`. C programmers read `include/pc.h`, generated from this crate; its head, the
+//! [`preamble`](crate::api::version::PREAMBLE), says what is true of every function.
 //!
-//! From Rust the functions can be called as they are from C, which is how they are tested; the layers below are nicer.
+//! The tests call the functions from Rust, as C does; Rust programs are better served by the crates
+//! below.
 //!
 //! # Around it
 //!

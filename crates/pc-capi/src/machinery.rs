@@ -1,9 +1,10 @@
-//! What stands behind the handles.
+//! The objects behind the handles.
 //!
-//! Read `exclusive` first, what one call may use at a time; `controller`, the functions of the program that compute
-//! forces, and `motion_field`, what is integrated with them or without; `lock_free_rhs`, f(t, y) by nothing but machine
-//! code, and `mechanics`, the parts of the equations; `system` is all these behind a handle. An `engine` is an integration
-//! with what is remembered of it, `event_set` the events it follows. `draft` is a model put together call by call.
+//! Read `exclusive` first, what one call may use at a time; `controller`, the functions of the
+//! program that compute forces, and `motion_field`, what is integrated with them or without;
+//! `lock_free_rhs`, f(t, y) by machine code alone, and `mechanics`, the parts of the equations;
+//! `system` is all these behind a handle. `engine` is an integration with a record of its events,
+//! `event_set` the events it follows. `draft` is a model built call by call.
 
 pub(crate) mod controller;
 pub(crate) mod draft;

@@ -30,7 +30,7 @@ fn the_interface_is_that_of_the_header() {
     );
 }
 
-/// Structure and member, with the place that the compiler has given it.
+/// Structure and member, with the offset that the compiler has given it.
 macro_rules! places {
     ($($structure:ident { $($member:ident),* $(,)? })*) => {
         vec![$($((stringify!($structure), stringify!($member), offset_of!(pc::$structure, $member))),*),*]
@@ -142,6 +142,6 @@ fn additions_are_compatible_and_removals_and_changes_are_not() {
         let message = with(from, to).unwrap_err();
         assert!(message.contains(lost) && message.contains("raise PC_ABI_VERSION"), "{message}");
     }
-    // With another version anything goes.
+    // Another version allows any change.
     assert_eq!(replaces(&interface("", 8), &old), Ok(()));
 }

@@ -68,7 +68,7 @@ fn the_bracket_with_the_energy_is_the_rate() {
     }
 }
 
-/// The second part of the motion: momenta, by Poincaré's equations of a top whose moments are known.
+/// ṗ = (p, H), compared with Poincaré's equations of a top with known moments of inertia.
 #[test]
 fn momenta_follow_the_bracket() {
     let system = System::of("heavy-top-lagrange");

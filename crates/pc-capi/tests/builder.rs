@@ -1,4 +1,4 @@
-//! A model built call by call is that of the text.
+//! A model built call by call is the same as that of a text.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 

@@ -1,4 +1,4 @@
-//! Whatever the text of a model can say, calls can.
+//! Calls can build whatever the text of a model can say.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -65,7 +65,7 @@ fn turns(model: &Model, body: &str, axes: &str, angles: &[&str]) -> Result<(), R
     })
 }
 
-/// Joins two bodies at six components of places.
+/// Joins two bodies in a loop, at points with six components.
 fn closed(
     model: &Model,
     name: &str,
@@ -83,7 +83,8 @@ fn closed(
     })
 }
 
-/// The keys that the reader knows where `before` stands before one that it does not: its refusal names them.
+/// The keys that the reader knows after the text `before`: its refusal of an unknown key lists
+/// them.
 fn keys(before: &str) -> BTreeSet<String> {
     let refusal = Model::text(&format!("{before}zzzzzz = 1\n")).err().unwrap();
     let help = refusal.message.split_once("help: ").unwrap().1;
@@ -91,7 +92,7 @@ fn keys(before: &str) -> BTreeSet<String> {
     list.split(", ").map(|key| key.trim().to_owned()).collect()
 }
 
-/// Every call that writes something, of a model that makes no sense as a whole.
+/// A model made by every call that writes an entry; as a whole it makes no sense.
 fn everything() -> Model {
     let model = empty("All of it");
     say!(model, pc_model_set_description, "what").unwrap();
@@ -177,7 +178,7 @@ fn everything() -> Model {
     model
 }
 
-/// The keys under a header of the text, of the table of that name in it if there is one.
+/// The keys under a header of the text, or of the table of this name under it.
 fn written(text: &str, header: &str, table: Option<&str>) -> BTreeSet<String> {
     let section = text.split_once(&format!("[{header}]\n")).unwrap().1;
     let lines = section.lines().take_while(|line| !line.is_empty());
@@ -223,7 +224,8 @@ fn there_is_a_call_for_every_key_of_the_text() {
         of_joint.map(|rest| rest.split_once('"').unwrap().0.to_owned()).collect();
     assert_eq!(of_joint, keys("[bodies.b.joint]\n"), "{text}");
     let mut simulation = keys("[simulation]\n");
-    // pc_model_keep, pc_model_give_quasi_velocity and pc_model_add_independent are settings beside the text.
+    // pc_model_keep, pc_model_give_quasi_velocity and pc_model_add_independent are settings outside
+    // the text.
     assert!(["project", "hamel", "independent"].iter().all(|key| simulation.remove(*key)));
     assert_eq!(written(&text, "simulation", None), simulation, "{text}");
     let algebra: BTreeSet<String> = ["brackets", "name"].map(str::to_owned).into();
@@ -231,7 +233,7 @@ fn there_is_a_call_for_every_key_of_the_text() {
     assert!(text.contains("[algebra]\n\"name\" = \"so3\"\n") && text.contains("[algebra.brackets]\n"));
 }
 
-/// The pendulum on a cart of bodies is that of the text.
+/// The pendulum on a cart, built from bodies by calls, is the same as that of a text.
 #[test]
 fn bodies_reach_the_text() {
     let by_calls = empty("A pendulum on a cart");
@@ -256,9 +258,9 @@ fn bodies_reach_the_text() {
     let expected = [y[2], y[3], (m22 * r1 - m12 * r2) / det, (m11 * r2 - m12 * r1) / det];
     let rates = system.at(pc_system_rhs, 0.0, &y, 4).unwrap();
     for (rate, expected) in rates.iter().zip(expected) {
-        assert!((rate - expected).abs() < 1e-13, "{rates:?}"); // some dozen roundings
+        assert!((rate - expected).abs() < 1e-13, "{rates:?}"); // a few dozen roundings
     }
-    // An inertia needs a way to turn, and a matrix has nine entries.
+    // An inertia needs an angular velocity or rotation, and a matrix has nine entries.
     let at_rest =
         Model::text(&text(&by_calls).replace("\"bob\".\"angular_velocity\" = [\"0\", \"φ'\", \"0\"]\n", ""))
             .err();
@@ -268,9 +270,9 @@ fn bodies_reach_the_text() {
     assert!(refusal.message.contains("rotation"), "{}", refusal.message);
 }
 
-/// A double pendulum and a crank of calls are those of the text.
+/// A double pendulum and a crank, built by calls, are the same as those of a text.
 #[test]
-fn joints_arrive() {
+fn joints_reach_the_text() {
     let model = empty("A double pendulum");
     say!(model, pc_model_add_parameter, "l"; 0.5).unwrap();
     say!(model, pc_model_set_gravity, "0", "0", "-9.81").unwrap();
@@ -293,9 +295,9 @@ fn joints_arrive() {
     let (first, second) = ((r1 - c * r2) / det, (2.0 * r2 - c * r1) / det);
     let rates = system.at(pc_system_rhs, 0.0, &y, 4).unwrap();
     for (rate, expected) in rates.iter().zip([0.0, 0.0, first, second - first]) {
-        assert!((rate - expected).abs() < 1e-12, "{rates:?}"); // some dozen roundings of numbers of some tens
+        assert!((rate - expected).abs() < 1e-12, "{rates:?}"); // some roundings of numbers below 100
     }
-    // A loop that fixes the tip leaves nothing to move but the knee.
+    // With its tip held by a loop, only the knee of the arm can move.
     closed(&model, "tip", "rod", ["lower", "world"], &["0", "0", "-l", "0", "0", "0"]).unwrap();
     say!(model, pc_model_set_loop_length, "tip", "0.8").unwrap();
     assert!(text(&model).contains("[loops]\n\"tip\".\"kind\" = \"rod\"\n"));
@@ -331,7 +333,7 @@ fn starts_are_set_as_numbers_and_expressions() {
         (PC_NOT_FOUND, "`z'` has no start value in this model; x, y, y' have")
     );
 
-    // A quasi-velocity with its definition, and a model of a text.
+    // A quasi-velocity with a definition, in a model read from a text.
     let sleigh = Model::named("chaplygin-sleigh");
     say!(sleigh, pc_model_set_start, "ω"; 2.0).unwrap();
     assert_eq!(start(&sleigh)[4], 2.0);
@@ -351,7 +353,7 @@ fn starts_are_set_as_numbers_and_expressions() {
     assert_eq!(start(&turning), [0.0, 3.0]);
 }
 
-/// x'^2 + z'^2 = 1 is kept by Chetaev's condition only where it is said to be nonlinear.
+/// x'^2 + z'^2 = 1 is held by Chetaev's condition only if its kind is set to nonlinear.
 #[test]
 fn kinds_of_constraints_reach_the_text() {
     let particle = empty("A particle of given speed");
@@ -370,7 +372,7 @@ fn kinds_of_constraints_reach_the_text() {
     assert!(particle.system(PC_POINCARE).is_err());
     say!(particle, pc_model_set_constraint_kind, "speed", "nonlinear").unwrap();
     let system = particle.system(PC_POINCARE).unwrap();
-    // The reaction is along the velocity: of gravity the part across it is left.
+    // The reaction is along the velocity, so only the component of gravity across it accelerates.
     let rates = system.at(pc_system_rhs, 0.0, &[0.0, 0.0, 0.6, 0.8], 4).unwrap();
     for (rate, expected) in rates.iter().zip([0.6, 0.8, 10.0 * 0.8 * 0.6, -10.0 * 0.6 * 0.6]) {
         assert!((rate - expected).abs() < 1e-14, "{rates:?}");

@@ -1,4 +1,4 @@
-//! Motions as functions of time, and motions that are taken up again.
+//! Motions as functions of time, and motions that continue from a checkpoint.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -32,11 +32,11 @@ fn dense_output_agrees_with_a_run_at_its_times() {
             let t = 0.05 * f64::from(i);
             let (outcome, y) = other.advance(t);
             outcome.unwrap();
-            // The same polynomials written about other points: rounding, grown by the degree up to 13. (No time is that of
-            // a bounce, which the function locates to 1e-15.)
+            // The same polynomials written about other points: rounding, amplified by the degree up
+            // to 13. (No time coincides with a bounce, which the function locates to 1e-15.)
             assert_near(&motion.at(t).unwrap(), &y, 1e-10);
             if name == "heavy-top-lagrange" {
-                // The rate of the polynomial is of one order less than the states.
+                // The derivative of the polynomial is one order less accurate than the states.
                 let rate = system.at(pc_system_rhs, t, &y, y.len()).unwrap();
                 assert_near(&motion.rate(t).unwrap(), &rate, 1e-7);
             }
@@ -45,7 +45,7 @@ fn dense_output_agrees_with_a_run_at_its_times() {
             assert_eq!(motion.at(t).unwrap_err().status, PC_INVALID_ARGUMENT);
         }
     }
-    // At an event it is the state after it.
+    // At an event the function gives the state after it.
     let solver = Solver::of(&System::of("bouncing-ball"), &sharp());
     let (_, motion) = solver.run_dense(0.6);
     let (t, _, after) = solver.last(0).unwrap();
@@ -68,7 +68,7 @@ fn states_inside_the_last_step_are_interpolated() {
     }
     assert_near(&solver.interpolate(t, 0).unwrap(), &y, 1e-15); // the end itself
     let rate = system.at(pc_system_rhs, t, &y, y.len()).unwrap();
-    assert_near(&solver.interpolate(t, 1).unwrap(), &rate, 1e-9); // the corrector meets f to its tolerance
+    assert_near(&solver.interpolate(t, 1).unwrap(), &rate, 1e-9); // the corrector has ẏ = f to its tolerance
     let other = Solver::of(&system, &sharp());
     let middle = 0.5 * (begin + t);
     assert_near(&solver.interpolate(middle, 0).unwrap(), &other.advance(middle).1, 1e-10);
@@ -76,7 +76,7 @@ fn states_inside_the_last_step_are_interpolated() {
         let refusal = solver.interpolate(t, order).unwrap_err();
         assert_eq!(refusal.status, PC_INVALID_ARGUMENT, "{t} {order} {}", refusal.message);
     }
-    assert_eq!(solver.time(), t); // which none of this has moved
+    assert_eq!(solver.time(), t); // interpolation has not moved it
 }
 
 /// The bytes of a checkpoint, and its label.
@@ -136,7 +136,7 @@ fn a_resumed_motion_is_the_same_to_the_last_bit() {
             assert_eq!((other.time(), steps(&other)), (start + 1.3, 0));
             assert_eq!(other.advance(start + 3.0), (Ok(()), y), "{name}");
             assert_eq!(before + steps(&other), steps(&solver));
-            // From there again.
+            // A checkpoint of the restored solver.
             let bytes = checkpoint(&other, ptr::null()).unwrap();
             assert_eq!(label(&bytes).as_deref(), Ok(""));
             let third = Solver::restored(&system, &options, &bytes).unwrap();
@@ -263,12 +263,12 @@ fn a_checkpoint_of_another_model_is_refused() {
     }
     let canonical = Model::text(text).unwrap().system(pc_form::PC_CANONICAL).unwrap();
     assert_eq!(Solver::restored(&canonical, &sharp(), &bytes).err().unwrap().message, said);
-    // With other values it is the same model: x = cos 2t goes on as that with k = 9.
+    // Other parameter values make the same model: x = cos 2t continues as the motion with k = 9.
     let stiffer = oscillator(&text.replace("4.0", "9.0"));
     let other = Solver::restored(&stiffer, &sharp(), &bytes).unwrap();
     let (x, v) = (2.0f64.cos(), -2.0 * 2.0f64.sin());
     let expected = [x * 3.0f64.cos() + v / 3.0 * 3.0f64.sin(), v * 3.0f64.cos() - 3.0 * x * 3.0f64.sin()];
-    assert_near(&other.advance(2.0).1, &expected, 1e-9); // some hundred steps of 1e-13
+    assert_near(&other.advance(2.0).1, &expected, 1e-9); // a few hundred steps with errors of 1e-13
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Ensembles: each member as a solver of its own would integrate it.
+//! Ensembles: each member is integrated as by a single solver.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -12,7 +12,7 @@ use common::{Model, Refusal, System, call, stopped};
 use pc::pc_status::*;
 use pc::*;
 
-/// What was told of a member.
+/// What the observer received of a member.
 #[derive(Clone, Debug, PartialEq)]
 struct Seen {
     status: pc_status,
@@ -42,7 +42,7 @@ extern "C" fn watch(member: *const pc_member, user: *mut c_void) -> c_int {
         let times = numbers(member.times, member.rows);
         let states = numbers(member.states, member.rows * member.dim);
         watch.seen.push(Seen { status: member.status, message, times, states });
-        // The system is not in use.
+        // The system can be used meanwhile.
         let mut values = vec![0.0; pc_system_parameter_count(watch.system.as_ref())];
         let (data, length) = (values.as_mut_ptr(), values.len());
         assert_eq!(pc_system_parameters(watch.system, data, length, ptr::null_mut()), PC_OK);
@@ -50,7 +50,7 @@ extern "C" fn watch(member: *const pc_member, user: *mut c_void) -> c_int {
     }
 }
 
-/// What all members have in common.
+/// What all members share.
 struct Case<'a> {
     system: &'a System,
     options: pc_solver_options,
@@ -92,7 +92,7 @@ impl Case<'_> {
         (outcome, watching.seen)
     }
 
-    /// What a solver of its own gives a member.
+    /// The same member by a single solver.
     fn alone(&self, member: usize) -> Seen {
         let (mut copy, mut solver) = (ptr::null_mut(), ptr::null_mut());
         // SAFETY: live handles and arrays as said; the solver is freed once.
@@ -170,7 +170,7 @@ fn members_are_single_runs_to_the_last_bit_for_any_number_of_threads() {
             for threads in [1, 4, 0] {
                 assert_eq!(case.run(threads, usize::MAX), (Ok(()), expected.clone()), "{name} {threads}");
             }
-            // From the start of the model, with the parameters as they are.
+            // From the start of the model, with its current parameters.
             (case.states, case.parameters) = (None, None);
             let alone = case.alone(0);
             assert_eq!(case.run(2, usize::MAX), (Ok(()), vec![alone; members]));
@@ -178,8 +178,9 @@ fn members_are_single_runs_to_the_last_bit_for_any_number_of_threads() {
     }
 }
 
-/// By DOP853 members without events stand side by side in vectors, within the tolerance of single runs, 1e-9, magnified by the motion
-/// by at most some hundreds. What ends otherwise does so alone.
+/// DOP853 integrates members without events side by side in vectors, within the tolerance of single
+/// runs, 1e-9, which the motion magnifies by at most a few hundred. A member that fails does so
+/// alone.
 #[test]
 fn members_side_by_side_are_single_runs_within_the_tolerance() {
     let options = pc_solver_options { method: pc_method::PC_DOP853 as c_int, ..Default::default() };
@@ -197,7 +198,7 @@ fn members_side_by_side_are_single_runs_within_the_tolerance() {
         let (outcome, seen) = case.run(1, usize::MAX);
         assert_eq!(outcome, Ok(()));
         for threads in [2, 5] {
-            // All but the member that cannot begin has no NaN.
+            // Only the member that cannot begin has NaNs.
             assert_eq!(
                 format!("{:?}", case.run(threads, usize::MAX)),
                 format!("{:?}", (Ok::<(), ()>(()), &seen))
@@ -229,7 +230,7 @@ fn a_failing_member_is_reported_and_the_others_continue() {
     states[3 * dim + 1] = f64::NAN;
     parameters[5 * count] = f64::INFINITY;
     let options = pc_solver_options { max_steps: 200, ..Default::default() };
-    states[6 * dim + 5] = 1e6; // which 200 steps do not follow
+    states[6 * dim + 5] = 1e6; // too fast for 200 steps
     let (states, parameters) = (Some(states), Some(parameters));
     let case = Case { system: &system, options, members, t, states, parameters, times: vec![1.0] };
     let (outcome, seen) = case.run(4, usize::MAX);
@@ -245,7 +246,7 @@ fn a_failing_member_is_reported_and_the_others_continue() {
     assert_eq!(seen[5].message.as_deref(), Some("a parameter is inf, but must be finite"));
     assert_eq!(seen[6], case.alone(6));
     assert_eq!(case.run(1, usize::MAX).1.len(), members);
-    // What is wrong with all, each says.
+    // Each member reports an error that all share.
     let case = Case { times: vec![2.0, 1.0], ..case };
     assert!(case.run(2, usize::MAX).1.iter().all(|seen| seen.status == PC_INVALID_ARGUMENT));
     let case = Case { times: vec![], ..case };
@@ -253,7 +254,7 @@ fn a_failing_member_is_reported_and_the_others_continue() {
 }
 
 #[test]
-fn the_observer_stops_it() {
+fn the_observer_stops_the_ensemble() {
     let system = System::of("heavy-top-lagrange");
     let (t, states, _) = spread(&system, 200);
     let (states, options) = (Some(states), pc_solver_options::default());
@@ -308,7 +309,7 @@ fn wrong_calls_are_refused() {
     refused! { PC_INVALID_ARGUMENT, "parameters: room for 7 numbers, but there are 6";
         pc_ensemble_run(system.0, options, 2, 0.0, none, 0, all, 7, times, 1, 0, Some(watch), user);
     }
-    // So many members that their numbers cannot be counted.
+    // So many members that the length of their states overflows.
     let many = usize::MAX / 2;
     let refused = call(|error| unsafe {
         // SAFETY: the lengths are refused before the arrays are looked at.

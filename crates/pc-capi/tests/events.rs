@@ -12,7 +12,7 @@ use common::{Model, Solver, System, by_event, c, call, sharp, stopped, taken};
 use pc::pc_status::*;
 use pc::*;
 
-/// What an observer was told, and after how many it stops.
+/// The events that an observer received, and the number after which it stops.
 struct Told {
     times: Vec<f64>,
     states: Vec<(Vec<f64>, Vec<f64>)>,
@@ -35,7 +35,7 @@ extern "C" fn tell(
         assert_eq!(CStr::from_ptr(pc_solver_event_name(told.solver.as_ref(), event)), c"bounce");
         let mut now = 0.0;
         assert_eq!(pc_solver_time(told.solver, &raw mut now, ptr::null_mut()), PC_BUSY);
-        pc_solver_free(told.solver); // of no effect
+        pc_solver_free(told.solver); // has no effect
         told.times.push(t);
         told.states.push((state(before), state(after)));
         c_int::from(told.times.len() >= told.stop_after)
@@ -45,7 +45,7 @@ extern "C" fn tell(
 fn observed(solver: &Solver, stop_after: usize) -> Box<Told> {
     let mut told = Box::new(Told { times: vec![], states: vec![], stop_after, solver: solver.0 });
     let user = (&raw mut *told).cast();
-    // SAFETY: a live solver; what is told outlives its use.
+    // SAFETY: a live solver; `told` outlives its use.
     call(|error| unsafe { pc_solver_observe_events(solver.0, Some(tell), user, error) }).unwrap();
     told
 }
@@ -62,7 +62,7 @@ fn a_ball_bounces_at_the_times_of_the_closed_form() {
         solver.advance(3.0).0.unwrap();
         assert_close(&told.times, &expected);
         for (before, after) in &told.states {
-            // One product, m = 1.
+            // A single product, with m = 1.
             assert_eq!((after[0], after[1]), (before[0], -0.8 * before[1]));
         }
         assert_eq!(solver.occurrences(0), expected.len() as u64);
@@ -90,7 +90,7 @@ fn steps_go_from_event_to_event_and_are_those_of_an_advance() {
         assert!(end > t && y.iter().all(|y| y.is_finite()));
         if told.times.last() == Some(&end) {
             let refusal = solver.interpolate(0.5 * (t + end), 0).unwrap_err();
-            assert_eq!(refusal.status, PC_INVALID_ARGUMENT); // the reset has begun anew
+            assert_eq!(refusal.status, PC_INVALID_ARGUMENT); // the reset has restarted the method
         } else {
             let middle = solver.interpolate(0.5 * (t + end), 0).unwrap();
             if end < told.times.first().copied().unwrap_or(f64::INFINITY) {
@@ -101,7 +101,7 @@ fn steps_go_from_event_to_event_and_are_those_of_an_advance() {
         ends.push(end);
         t = end;
     }
-    // The same steps: all have the same time to go to.
+    // The steps are the same, since all go towards the same time.
     assert!(told.times.iter().zip(&expected.times).all(|(a, b)| a == b) && told.times.len() > 3);
     assert!(told.times.iter().all(|t| ends.contains(t)));
     assert_eq!(solver.step(f64::NAN).0.unwrap_err().status, PC_INVALID_ARGUMENT);
@@ -177,7 +177,7 @@ fn events_are_declared_call_by_call() {
         solver.advance(3.0).0.unwrap();
         assert_eq!(solver.occurrences(0), bounces(0.8, 3.0).len() as u64);
 
-        // A wrong expression is shown where it stands.
+        // The error shows a wrong expression at its place.
         call(|error| pc_model_add_event(model.0, name.as_ptr(), name.as_ptr(), 0, 1, error)).unwrap();
         let refusal = model.system(pc_form::PC_POINCARE).err().unwrap();
         assert_eq!(refusal.status, PC_INVALID_MODEL);
@@ -206,7 +206,7 @@ terminal = true
 "#;
 
 #[test]
-fn events_see_the_parameters_as_they_are_and_so_do_copies() {
+fn events_and_their_copies_use_the_current_parameters() {
     for (form, canonical) in [(pc_form::PC_POINCARE, false), (pc_form::PC_CANONICAL, true)] {
         let system = Model::text(KICKED).unwrap().system(form).unwrap();
         let reset = |system: &System, event, y: [f64; 2]| {
@@ -234,7 +234,7 @@ fn events_see_the_parameters_as_they_are_and_so_do_copies() {
             assert_eq!(reset(system, 0, [0.5, -2.0]), Ok([0.5, 4.0 * mass]), "{canonical}");
             assert_eq!(reset(system, 1, [0.5, -2.0]), Ok([0.5, -2.0]));
             assert_eq!(reset(system, 2, [0.5, -2.0]).unwrap_err().status, PC_INVALID_ARGUMENT);
-            // In an integration, too: y' = −1 at t = 1/g.
+            // The same in an integration: y' = −1 at t = 1/g.
             let solver = Solver::of(system, &sharp());
             let (outcome, y) = solver.advance(1.0);
             assert_eq!(outcome, Err(by_event()));

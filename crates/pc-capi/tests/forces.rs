@@ -1,4 +1,5 @@
-//! Forces that functions of the program compute: against the same forces in the text, and functions that fail.
+//! Forces by functions of the program, compared with the same forces in the text, and functions
+//! that fail.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -17,7 +18,7 @@ use pc::*;
 
 type Write = fn(f64, &[f64], &mut [f64], usize) -> c_int;
 
-/// What `user` points to: functions that also get the number of the call, and counts.
+/// The target of `user`: functions that also receive the number of the call, with counts of calls.
 struct Law {
     force: Write,
     slopes: Option<Write>,
@@ -34,7 +35,7 @@ impl Law {
         self.destroyed.load(SeqCst)
     }
 
-    /// Sets it as the force of a system, which frees it as often as it likes: it is counted.
+    /// Sets it as the force of a system; `destroy` only counts its calls.
     fn set(&self, system: &System) -> Result<(), Refusal> {
         let slopes: pc_force_jacobian = self.slopes.map(|_| slopes as _);
         // SAFETY: a live system, and functions that take the law, which lives longer.
@@ -107,7 +108,7 @@ fn declare(model: &Model, on: &[&str]) {
     }
 }
 
-/// The model with reactions among the outputs and forces on these.
+/// The model with reactions among the outputs, and external forces on these quasi-velocities.
 fn forced(name: &str, on: &[&str], form: pc_form) -> System {
     let model = Model::text(&text_of(name)).unwrap();
     // SAFETY: a live model.
@@ -138,12 +139,12 @@ fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     }
 }
 
-/// Some dozen roundings of numbers of order ten.
+/// A few dozen roundings of numbers of order ten.
 const ROUNDING: f64 = 1e-12;
 /// √ε times curvatures of order ten: the error of difference quotients.
 const QUOTIENT: f64 = 1e-6;
 
-/// A model, the form, the forces in the text, the same as a function.
+/// A model, the form, the forces in the text, and the same forces as a function.
 type Case = (&'static str, pc_form, &'static [(&'static str, &'static str)], Write);
 
 fn cases() -> Vec<Case> {
@@ -157,7 +158,7 @@ fn cases() -> Vec<Case> {
             q[0] = t.cos() * y[1] / 4.0 - 3.0 * y[0].sin();
             0
         }),
-        // Constraints that quasi-velocities vanish: X, Y, ψ, θ, φ, ω1, ω2, ω3.
+        // Constraints make quasi-velocities vanish; the state is X, Y, ψ, θ, φ, ω1, ω2, ω3.
         ("tilted-disk", PC_POINCARE, &[("ω3", "θ - ω3/8"), ("ω1", "ω2*sin(t)")], |t, y, q, _| {
             q.copy_from_slice(&[y[3] - y[7] / 8.0, y[6] * t.sin()]);
             0
@@ -166,7 +167,7 @@ fn cases() -> Vec<Case> {
             q.copy_from_slice(&[y[3], y[2].sin()]);
             0
         }),
-        // Multipliers: X, Y, φ, θ, and their velocities.
+        // Multipliers; the state is X, Y, φ, θ and their velocities.
         ("vertical-disk", PC_POINCARE, &[("θ", "cos(φ)"), ("φ", "1 - φ'"), ("X", "Y'")], |_, y, q, _| {
             q.copy_from_slice(&[y[2].cos(), 1.0 - y[6], y[5]]);
             0
@@ -193,7 +194,7 @@ fn pair(&(name, ref form, forces, write): &Case) -> (System, System, Law) {
     (forced(name, &on, form()), written(name, forces, form()), Law::new(write))
 }
 
-/// Reactions, outputs and everything else that has accelerations in it depend on the forces too.
+/// Reactions, outputs and all else that contains accelerations depend on the forces too.
 #[test]
 fn a_force_of_a_function_is_that_of_the_text() {
     for case in &cases() {
@@ -217,7 +218,7 @@ fn a_force_of_a_function_is_that_of_the_text() {
         }
         let jacobian = system.at(pc_system_jacobian, t, &y, n * n).unwrap();
         assert_close(&jacobian, &text.at(pc_system_jacobian, t, &y, n * n).unwrap(), QUOTIENT, &what);
-        // The pattern is full, and the product is that of the columns.
+        // The pattern is full, and the product is the sum of the columns.
         assert_eq!(jacobian, system.at(pc_system_sparse_jacobian, t, &y, n * n).unwrap(), "{what}");
         let (v, mut product) = (vec![1.0; n], vec![0.0; n]);
         call(|error| unsafe {
@@ -289,7 +290,7 @@ fn integrations_agree_and_states_stay_projected() {
                 unsafe { pc_solver_free(solver) };
                 end
             });
-            // Both are as near to the motion as tolerances of 1e-10 in some hundred steps.
+            // Both have the errors of tolerances of 1e-10 in a few hundred steps.
             assert_close(&ends[0], &ends[1], 1e-7, &what);
         }
     }
@@ -318,7 +319,7 @@ fn derivatives_are_those_of_the_function() {
     });
     assert_close(&exact.unwrap(), &expected, 1e-15, "exact");
     let refusal = jacobian(|_, _, dq, _| {
-        dq[0] = 1.0; // and nothing else
+        dq[0] = 1.0; // the other entries stay unwritten
         0
     });
     let refusal = refusal.unwrap_err();
@@ -379,7 +380,7 @@ fn names_and_numbers_of_the_forces_are_known() {
             pc_system_force_name(system.0.as_ref(), 2).is_null() && pc_system_force_name(None, 0).is_null()
         );
         assert_eq!(pc_system_force_count(None), 0);
-        assert_eq!(pc_system_parameter_count(system.0.as_ref()), 4); // the forces are none
+        assert_eq!(pc_system_parameter_count(system.0.as_ref()), 4); // forces are no parameters
     }
     let model = Model::text(&text_of("tilted-disk")).unwrap();
     declare(&model, &["u2"]);
@@ -421,7 +422,7 @@ fn a_recoverable_failure_of_a_force_shortens_the_step() {
 
 #[test]
 fn a_force_that_gives_up_leaves_the_state_reached() {
-    /// Answers after t = 1, no force before.
+    /// Returns `code` after t = 1, and no force before.
     fn after_one(t: f64, q: &mut [f64], code: c_int) -> c_int {
         q[0] = 0.0;
         if t > 1.0 { code } else { 0 }
@@ -445,13 +446,14 @@ fn a_force_that_gives_up_leaves_the_state_reached() {
         let refusal = advance(solver, 3.0, 2).unwrap_err();
         assert_eq!(refusal.status, PC_INTEGRATION, "{said}");
         assert!(refusal.message.contains(said), "{}", refusal.message);
-        // A fatal answer ends it within a step, others only where steps have become as short as can be.
+        // A fatal code ends it within a step; a recoverable one only once steps are as short as
+        // possible.
         let t = reached(solver);
         assert!(t <= 1.0 && t > 0.8, "{said}: {t}");
         // SAFETY: ours, freed once.
         unsafe { pc_solver_free(solver) };
     }
-    // Nothing written is not a number.
+    // A force that is not written is NaN.
     let (system, law) = (forced("pendulum", &["θ"], PC_POINCARE), Law::new(|_, _, _, _| 0));
     law.set(&system).unwrap();
     let refusal = system.at(pc_system_rhs, 0.0, &[0.1, 0.2], 2).unwrap_err();
@@ -536,7 +538,7 @@ fn user_data_of_a_refused_force_is_freed_too() {
     system.at(pc_system_rhs, 0.0, &[0.0, 0.0], 2).unwrap();
 }
 
-/// What a function may do with its own system, and with a copy.
+/// Data of a function that uses its own system and a copy.
 struct Inside {
     own: *mut pc_system,
     copy: *mut pc_system,
@@ -568,7 +570,7 @@ unsafe extern "C" fn look(
             ),
             pc_system_energy(inside.copy, t, y, n, &raw mut energy, ptr::null_mut()),
         ];
-        pc_system_free(inside.own); // it is in use, so nothing happens
+        pc_system_free(inside.own); // has no effect, since the system is in use
         inside.statuses.lock().unwrap().extend(statuses);
         q.write(energy);
     }
@@ -585,7 +587,7 @@ fn a_function_may_use_other_handles() {
     // SAFETY: live systems, functions that take what they are given.
     unsafe {
         call(|error| pc_system_set_force(system.0, Some(look), None, user, None, error)).unwrap();
-        // The copy has the same function, which its energy does not call.
+        // The copy has the same function, but its energy does not call it.
         call(|error| pc_system_clone(system.0, &raw mut copy, error)).unwrap();
         (*user.cast::<Inside>()).copy = copy;
     }
@@ -642,7 +644,7 @@ area = \"x*y' - y*x'\"
 along = \"x'*x' + x*x\"
 ";
 
-/// The springs with an integral that is kept and a force.
+/// The springs with a kept integral and a force.
 fn keeping(integral: &str, on: &str) -> Result<System, Refusal> {
     let (model, name) = (Model::text(TWO_SPRINGS).unwrap(), c(integral));
     declare(&model, &[on]);
@@ -659,7 +661,7 @@ fn only_integrals_that_forces_do_not_change_are_kept() {
     }
     let (system, law) = (keeping("along", "y").unwrap(), Law::new(constant));
     law.set(&system).unwrap();
-    // From another start it is the value there that is kept: to rounding, far better than the tolerance.
+    // From another start, the value there is kept to rounding, far better than the tolerance.
     let (mut solver, y, mut options) =
         (ptr::null_mut(), [0.3, 0.0, 0.4, 0.0], std::mem::MaybeUninit::uninit());
     call(|error| unsafe {
@@ -671,7 +673,8 @@ fn only_integrals_that_forces_do_not_change_are_kept() {
     .unwrap();
     let end = advance(solver, 20.0, 4).unwrap();
     let along = system.at(pc_system_observe, 20.0, &end, 3).unwrap()[1];
-    // Interpolation between steps, on which it is kept, has the error of a step.
+    // The integral is kept at the ends of steps; interpolation between them has the error of a
+    // step.
     assert!((along - 0.25).abs() < 1e-5, "{along}");
     // SAFETY: ours, freed once.
     unsafe { pc_solver_free(solver) };

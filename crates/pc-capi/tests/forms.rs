@@ -1,4 +1,5 @@
-//! Systems in all forms of their equations: the same motion, what is derived of each fitting its state.
+//! Systems in all forms of their equations have the same motion, and derived quantities that fit
+//! their state.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -33,7 +34,7 @@ fn energy(system: &System) -> f64 {
     energy
 }
 
-/// M y' − r at the rates of the system is nothing.
+/// The residual M y' − r at the rates of the system, which should vanish.
 fn residual(system: &System) -> f64 {
     let (t, y) = system.start();
     let rates = system.at(pc_system_rhs, t, &y, y.len()).unwrap();

@@ -1,4 +1,4 @@
-//! The header is that of the sources, and the library shows what it declares and nothing else.
+//! The header is that of the sources, and the library exports what it declares and nothing else.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 

@@ -1,4 +1,4 @@
-//! A start that is moved to the constraints keeps what it is told to.
+//! A start that is moved onto the constraints keeps the components that are held.
 
 #![expect(unsafe_code, reason = "a C interface")]
 #![expect(clippy::unwrap_used, reason = "tests")]
@@ -9,7 +9,7 @@ use common::{Model, Refusal, c, call};
 use pc::pc_status::PC_NOT_FOUND;
 use pc::*;
 
-/// On the circle of radius 1, started off it.
+/// A particle on the circle of radius 1, started off it.
 const CIRCLE: &str = r#"
 [coordinates]
 x = 0.6
@@ -20,7 +20,7 @@ circle = "x^2 + y^2 - 1"
 kinetic = "(x'^2 + y'^2)/2"
 "#;
 
-/// The start that is moved, x and y, `held` being kept.
+/// The moved start (x, y), with `held` kept.
 fn moved(held: &[&str]) -> Result<Vec<f64>, Refusal> {
     let model = Model::text(CIRCLE)?;
     // SAFETY: a live model.
@@ -45,7 +45,7 @@ fn held_components_are_not_moved() {
 }
 
 #[test]
-fn names_that_are_unknown_are_refused() {
+fn unknown_names_are_refused() {
     let refusal = moved(&["z"]).unwrap_err();
     assert_eq!(refusal.status, PC_NOT_FOUND);
     assert!(refusal.message.contains("`z`") && refusal.message.contains("x, y"), "{refusal:?}");

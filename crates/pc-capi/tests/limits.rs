@@ -1,4 +1,4 @@
-//! What derivations and integrations may take, and ending them from elsewhere.
+//! Limits of derivations and integrations, and their cancellation.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use common::{Model, Refusal, Solver, System, call};
 use pc::*;
 
-/// Coordinates in a frame that is dense: every quasi-velocity is made of all velocities, with a cosine each.
+/// Coordinates in a dense frame: every quasi-velocity contains all velocities, each with a cosine.
 fn dense(n: usize) -> Model {
     let list = |entry: &dyn Fn(usize) -> String| (0..n).map(entry).collect::<Vec<_>>();
     let velocity = |i: usize| {
@@ -46,7 +46,7 @@ fn memory_is_limited_for_each_derivation() {
     let refusal = refused(&model, &options);
     assert_eq!(refusal.status, pc_status::PC_LIMIT);
     assert!(refusal.message.contains("than the limit of 9.8 KiB"), "{}", refusal.message);
-    // As much as one derivation takes is there for each.
+    // Each derivation has the whole limit.
     let options = pc_system_options { memory_limit: 8 << 20, ..Default::default() };
     let system = derive(&model, &options).unwrap();
     let (t, y) = system.start();
@@ -66,9 +66,9 @@ fn time_is_limited() {
     let refusal = refused(&dense(9), &options);
     assert_eq!(refusal.status, pc_status::PC_LIMIT, "{}", refusal.message);
     assert!(refusal.message.contains("than the limit of 0.05 s"), "{}", refusal.message);
-    // Without a limit it takes seconds; on a busy machine some tenths of one may go by.
+    // Without a limit it takes seconds; a busy machine may add a few tenths of a second.
     assert!(begun.elapsed() < Duration::from_secs(1), "{:?}", begun.elapsed());
-    // The time of a derivation is its own.
+    // Each derivation has its own time limit.
     let options = pc_system_options { time_limit: 5.0, ..Default::default() };
     derive(&Model::named("euler-top"), &options).unwrap();
 }
@@ -100,7 +100,7 @@ fn another_thread_cancels() {
     assert!(ended.saturating_duration_since(requested) < Duration::from_secs(1));
     // SAFETY: a live handle.
     assert_eq!(unsafe { pc_cancel_is_requested(cancel.as_ref()) }, 1);
-    // It does not begin again.
+    // A later derivation does not begin.
     assert_eq!(refused(&Model::named("euler-top"), &options).status, pc_status::PC_LIMIT);
     // SAFETY: ours, freed once; null is allowed.
     unsafe {
@@ -124,7 +124,7 @@ fn systems_continue_without_the_cancel_handle() {
     assert_eq!(system.at(pc_system_mass_matrix, t, &y, 9).unwrap().len(), 9);
 }
 
-/// A heavy top to a time that it does not reach before hours.
+/// A heavy top, with a solver that would take hours to reach the time `HOURS`.
 fn endless(options: &pc_system_options) -> (System, Solver) {
     let system = derive(&Model::named("heavy-top-lagrange"), options).unwrap();
     let options = pc_solver_options { max_steps: u64::MAX, ..Default::default() };
@@ -146,7 +146,7 @@ fn time_of_integrations_is_limited_call_by_call() {
     assert_eq!(refusal.status, pc_status::PC_LIMIT);
     let said = "more time would be needed than the limit of 1 s, after reaching t = ";
     assert!(refusal.message.starts_with(said), "{}", refusal.message);
-    // On a busy machine some tenths of a second may go by.
+    // A busy machine may add a few tenths of a second.
     assert!(begun.elapsed() < Duration::from_secs(2), "{:?}", begun.elapsed());
     let mut t = f64::NAN;
     // SAFETY: a live solver and a place for a number.
@@ -193,7 +193,7 @@ fn integrations_are_cancelled() {
 }
 
 #[test]
-fn an_ensemble_ends_with_the_members_that_were_finished() {
+fn a_cancelled_ensemble_has_its_finished_members() {
     let mut cancel = ptr::null_mut();
     // SAFETY: a place for a handle.
     call(|error| unsafe { pc_cancel_new(&raw mut cancel, error) }).unwrap();

@@ -1,4 +1,4 @@
-//! What no program should do, and what comes of it: a refusal.
+//! Misuse of the interface is refused.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -109,7 +109,7 @@ extern "C" fn never(_: *const pc_member, _: *mut c_void) -> c_int {
     unreachable!()
 }
 
-/// What a function of the program does to the system that is being freed.
+/// Data of a `destroy` that uses the system being freed.
 struct Destroyer {
     system: *mut pc_system,
     statuses: Vec<pc_status>,

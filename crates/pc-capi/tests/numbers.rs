@@ -1,4 +1,4 @@
-//! The numbers are those of the layers below.
+//! The numbers are those of the crates below.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -23,7 +23,8 @@ fn motion(name: &str) -> (Motion, f64, Vec<f64>) {
     (motion, assembly.t_start, start)
 }
 
-/// Free, redundant, with vanishing quasi-velocities, with multipliers, rheonomic, not quadratic, bodies on joints, and loops.
+/// Free, with redundant coordinates, with vanishing quasi-velocities, with multipliers, rheonomic,
+/// with L not quadratic, with bodies on joints, and with loops.
 const MODELS: [&str; 11] = [
     "heavy-top-lagrange",
     "euler-top",
@@ -61,7 +62,8 @@ fn rates_and_jacobians_are_those_of_the_motion_to_the_last_bit() {
         .unwrap();
         assert_eq!(energy, observed[motion.conserved_len() - 1]);
 
-        // The same by the pattern, and in a direction: sums of at most dim terms, of a different order.
+        // The same by the pattern, and in a direction: sums of at most dim terms, in a different
+        // order.
         let (mut entries, mut starts, mut rows) = (0, ptr::null(), ptr::null());
         let pattern = call(|error| unsafe {
             // SAFETY: a live system and places for results.
@@ -151,7 +153,7 @@ fn the_integration_is_that_of_the_solver_below() {
     }
 }
 
-/// Times seen, and after how many to stop.
+/// The times that an observer has seen, and the number after which it stops.
 struct Seen {
     times: Vec<f64>,
     stop_after: usize,
@@ -207,7 +209,7 @@ fn momenta_and_quasi_velocities_are_converted_both_ways() {
         assert_eq!(there[3..], [y[3], y[4], y[5] / 2.0]);
         assert_eq!(system.at(pc_system_to_quasi_velocities, t, &p, p.len()), Ok(y.clone()));
     }
-    // A parameter that is set is set in the transform, too.
+    // Setting a parameter also sets it in the transform.
     // SAFETY: a live system, and places for results as said.
     call(|error| unsafe { pc_system_set_parameter(forms[1].0, 2, 2.0, error) }).unwrap();
     assert_eq!(forms[1].at(pc_system_to_momenta, t, &y, y.len()).unwrap()[5], 2.0 * y[5]);
@@ -249,7 +251,7 @@ fn the_residual_vanishes_on_the_rates_and_grows_by_the_mass_matrix() {
             r
         };
         let mut rates = system.at(pc_system_rhs, t, &y, dim).unwrap();
-        // Rounding of M M⁻¹ r, of sums of a few terms of order 1 to 100.
+        // Rounding of M M⁻¹ r: sums of a few terms of order 1 to 100.
         assert!(residual(&rates).iter().all(|r| r.abs() < 1e-13), "{name}: {:?}", residual(&rates));
         rates[n] += 1.0;
         let mass = system.at(pc_system_mass_matrix, t, &y, k * k).unwrap();
@@ -260,7 +262,7 @@ fn the_residual_vanishes_on_the_rates_and_grows_by_the_mass_matrix() {
 }
 
 #[test]
-fn reactions_are_observed_where_asked() {
+fn reactions_are_observed_on_request() {
     let model = Model::named("chaplygin-sleigh");
     let silent = model.system(pc_form::PC_POINCARE).unwrap();
     // SAFETY: live handles.
@@ -286,7 +288,7 @@ fn reactions_are_observed_where_asked() {
 }
 
 #[test]
-fn projection_brings_a_state_to_the_constraints() {
+fn projection_moves_a_state_onto_the_constraints() {
     let system = System::of("rod");
     let (t, mut y) = system.start();
     // SAFETY: a live system and arrays as said.
@@ -320,7 +322,7 @@ fn integrals_are_kept_at_their_values_for_the_current_parameters() {
         }
         call(|error| pc_system_project(system.0, t, y.as_mut_ptr(), y.len(), error)).unwrap();
     }
-    assert_eq!(y, start); // where the energy of these parameters is what it is at the start
+    assert_eq!(y, start); // the start has the kept energy for these parameters
 }
 
 #[test]
@@ -342,7 +344,7 @@ fn integrals_are_kept_at_their_values_at_a_given_state() {
     unsafe {
         call(|error| pc_system_keep_from(system.0, t, there.as_ptr(), there.len(), error)).unwrap();
         assert_eq!(projected(&there), there);
-        // It stays there where parameters change.
+        // The kept state stays the same when parameters change.
         call(|error| pc_system_set_parameter(system.0, 0, 1.5, error)).unwrap();
         assert_eq!(projected(&there), there);
         assert_ne!(projected(&start), start);

@@ -13,7 +13,7 @@ use common::{Model, Refusal, Solver, System, by_event, c, call, sharp};
 use pc::pc_status::*;
 use pc::*;
 
-/// Of no meaning.
+/// An observer that does nothing.
 extern "C" fn tell(
     _event: usize,
     _t: f64,
@@ -25,7 +25,7 @@ extern "C" fn tell(
     0
 }
 
-/// An event of the tests: y[0] − level, with what its functions are to return.
+/// An event of the tests: y[0] − level, with the codes that its functions return.
 #[derive(Default)]
 struct Own {
     level: f64,
@@ -110,7 +110,7 @@ fn functions_of_the_program_are_in_no_checkpoint() {
         refusal.message,
         "a checkpoint is not available for this system: there are events of the program's own"
     );
-    drop(solver); // while there is what its function is given
+    drop(solver); // before the argument of its function
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn no_event_is_added_after_the_first_step() {
             .unwrap();
         pc_bytes_free(data);
     }
-    // Also where it has begun anew, at a checkpoint.
+    // The same after a restart at a checkpoint.
     let refusal = add(&solver, &mut own, false, false).unwrap_err();
     assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
     assert_eq!(refusal.message, "an event must come before the first step, and one has been taken");
@@ -143,7 +143,7 @@ fn a_reset_of_the_program_makes_the_same_ball() {
     assert_eq!((&reached.0, solver.occurrences(0)), (&Ok(()), other.occurrences(0)));
     assert_close(&reached.1, &expected.1);
     assert_close(&[solver.last(0).unwrap().0], &bounces(0.8, 3.0)[bounces(0.8, 3.0).len() - 1..]);
-    drop(system); // a solver does not need it
+    drop(system); // the solver does not need it
     assert_eq!(own.destroyed, 0);
     drop(solver);
     assert_eq!(own.destroyed, 1);
@@ -156,7 +156,7 @@ extern "C" fn count(_t: f64, _y: *const f64, _y_length: usize, user: *mut c_void
 }
 
 #[test]
-fn a_terminal_event_ends_each_kind_of_call_and_the_next_goes_on() {
+fn a_terminal_event_ends_each_kind_of_call_and_the_next_continues() {
     let mut own = Own { level: 0.5, ..Own::default() };
     let at = (2.0 * 0.5 / G).sqrt();
     let system = System::of("bouncing-ball");
@@ -180,7 +180,7 @@ fn a_terminal_event_ends_each_kind_of_call_and_the_next_goes_on() {
     solver.advance(0.4).0.unwrap();
     assert_eq!(terminal(&solver).unwrap_err().status, PC_NOT_FOUND);
 
-    // As one of the outputs, and the last.
+    // In a run, the event is the last output.
     let solver = with_event();
     let (mut outputs, times) = (0_usize, [0.1, 0.2, 0.3, 0.4, 0.5]);
     let user = (&raw mut outputs).cast();
@@ -210,7 +210,7 @@ fn failures_of_functions_are_reported() {
         let refusal = solver.advance(1.0).0.unwrap_err();
         assert_eq!(refusal.status, PC_INTEGRATION);
         assert!(solver.time() >= 0.0 && solver.time() <= 1.0);
-        // It stands where it last could.
+        // It stays at the last state that could be computed.
         assert!(solver.state().iter().all(|y| y.is_finite()));
         (solver.time(), refusal.message)
     };
@@ -225,7 +225,7 @@ fn failures_of_functions_are_reported() {
     let (_, message) = refused(&mut Own { restitution: f64::NAN, ..own() }, true);
     assert!(message.contains("the event mine sets y' to NaN"), "{message}");
 
-    // At the start already: nothing is added.
+    // An event that fails at the start is not added.
     let solver = Solver::of(&system, &sharp());
     let mut wrong = Own { fails: Some((0.0, 7)), ..Own::default() };
     let refusal = add(&solver, &mut wrong, false, false).unwrap_err();

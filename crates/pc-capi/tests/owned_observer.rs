@@ -11,7 +11,7 @@ use std::ptr;
 use common::{Refusal, Solver, System, call};
 use pc::*;
 
-/// How often it was told and destroyed.
+/// How often the observer was called and destroyed.
 #[derive(Default)]
 struct Count {
     told: Cell<u32>,
@@ -55,12 +55,12 @@ fn user_data_of_an_observer_is_destroyed_once() {
     let bounces = first.told.get();
     assert!(bounces > 0 && u64::from(bounces) == solver.occurrences(0));
     assert_eq!(destroyed(), [0, 0, 0]);
-    // Another one takes its place.
+    // Another observer replaces it.
     set(solver.0, Some(tell), &second).unwrap();
     assert_eq!(destroyed(), [1, 0, 0]);
     solver.advance(2.0).0.unwrap();
     assert!(second.told.get() > 0 && first.told.get() == bounces);
-    // A call that fails, and one without an observer, which removes the one before.
+    // A call that fails, and one without an observer, which removes the former one.
     assert_eq!(set(ptr::null_mut(), Some(tell), &third).unwrap_err().status, pc_status::PC_INVALID_ARGUMENT);
     assert_eq!(destroyed(), [1, 0, 1]);
     set(solver.0, None, &third).unwrap();

@@ -66,7 +66,7 @@ fn the_right_hand_side_and_its_derivatives() {
     let model = Model::text(DRIVEN).unwrap();
     let plain = model.system(pc_form::PC_POINCARE).unwrap();
     let right = plain.at(pc_system_right_hand_side, t, &y, 2).unwrap();
-    // A rounding of each.
+    // One rounding each.
     assert!((right[0] + k * y[0]).abs() < 1e-15 && (right[1] - (t * c).cos()).abs() < 1e-15, "{right:?}");
     let refusal = plain.at(pc_system_parameter_jacobian, t, &y, 8).unwrap_err();
     assert_eq!(refusal.status, PC_UNSUPPORTED);
@@ -82,7 +82,7 @@ fn the_right_hand_side_and_its_derivatives() {
     let expected = [0.0, 0.0, by_k[0], by_k[1], 0.0, 0.0, by_c[0], by_c[1]];
     // A few roundings of numbers about 1.
     assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?} {expected:?}");
-    // In momenta r is that of the velocities they stand for.
+    // In momenta, r is that of the corresponding velocities.
     let canonical = model.system(pc_form::PC_CANONICAL).unwrap();
     let momenta = plain.at(pc_system_to_momenta, t, &y, 4).unwrap();
     let of_momenta = canonical.at(pc_system_right_hand_side, t, &momenta, 2).unwrap();
@@ -95,7 +95,8 @@ fn the_right_hand_side_and_its_derivatives() {
     }
 }
 
-/// M = ((2, ½), (½, 1)), and with forces by time alone ∂f/∂t = M⁻¹ (0, −c sin(c t)); in momenta nothing is divided by M.
+/// M = ((2, ½), (½, 1)) and a force that depends on time: ∂f/∂t = M⁻¹ (0, −c sin(c t)), in momenta
+/// without M⁻¹.
 #[test]
 fn derivatives_by_time_and_the_inverse_of_the_mass_matrix() {
     let (t, y, c) = (0.7, [0.9, 0.1, -0.3, 0.4], 0.5_f64);
@@ -129,7 +130,7 @@ fn derivatives_by_time_and_the_inverse_of_the_mass_matrix() {
         pc_system_solve_mass_matrix(system.0, t, y.as_ptr(), 4, w, 2, w, 2, e)
     });
     assert_eq!(shared.unwrap_err().message, "v and w share memory");
-    // Where nothing contains t there is nothing to derive.
+    // Without explicit time nothing is derived.
     let top = System::of("euler-top");
     let (t, y) = top.start();
     assert_eq!(top.at(pc_system_time_derivative, t, &y, y.len()), Ok(vec![0.0; y.len()]));
@@ -141,8 +142,8 @@ fn derivatives_by_time_and_the_inverse_of_the_mass_matrix() {
     assert_eq!(forced.at(pc_system_time_derivative, 0.7, &[0.0; 4], 4).unwrap_err().status, PC_UNSUPPORTED);
 }
 
-/// Of models that depend on time, in both forms and with multipliers, against quotients: h² is 1e-8 of the third derivative,
-/// and rounding 1e-16 over h.
+/// Models that depend on time, in both forms and with multipliers, compared with difference
+/// quotients: the error is h² = 1e-8 times the third derivative, and rounding 1e-16 over h.
 #[test]
 fn derivatives_by_time_are_limits_of_quotients() {
     const HELD: &str = "[coordinates]\nx = 1.0\ny = 0.0\n[quasi_velocities]\n\"x'\" = 0.0\n\"y'\" = 0.3\n\
@@ -189,7 +190,7 @@ fn a_kernel_evaluates_many_states() {
         assert_eq!(pc_kernel_rhs_many(0.0, states.as_ptr(), 3, rates.as_mut_ptr(), context), 1);
         assert!(rates[2].is_nan() && rates[3].is_nan());
         assert_eq!((rates[1], rates[5]), (1.5, 4.5));
-        // None; no arrays; one array for both; more than there can be; no kernel.
+        // No states; no arrays; one array for both; more states than memory can hold; no kernel.
         assert_eq!(pc_kernel_rhs_many(0.0, ptr::null(), 0, ptr::null_mut(), context), 0);
         assert_eq!(pc_kernel_rhs_many(0.0, ptr::null(), 1, rates.as_mut_ptr(), context), -1);
         assert_eq!(pc_kernel_rhs_many(0.0, rates.as_ptr(), 3, rates.as_mut_ptr(), context), -1);

@@ -31,7 +31,7 @@ fn nulls_are_refused_everywhere() {
     type Call<'a> = (&'a str, Box<dyn FnOnce(*mut *mut pc_error) -> pc_status + 'a>);
     macro_rules! calls {
         ($($function:ident($($argument:expr),*);)*) => {
-            // SAFETY: null, or pointers to live objects; that the nulls do no harm is what is tested.
+            // SAFETY: null, or pointers to live objects; the test is that nulls do no harm.
             vec![$((stringify!($function), Box::new(|error| unsafe { $function($($argument,)* error) }))),*]
         };
     }
@@ -130,7 +130,7 @@ fn nulls_are_refused_everywhere() {
         assert!(pc_system_name(None, 0).is_null() && pc_system_name(of.0.as_ref(), 99).is_null());
         assert!(pc_system_reaction_name(of.0.as_ref(), 0).is_null() && pc_builtin_name(usize::MAX).is_null());
         assert_eq!(CStr::from_ptr(pc_error_message(None)), c"");
-        // Without a place for the error there is the status alone.
+        // Without a place for the error, only the status is returned.
         assert_eq!(pc_model_check(ptr::null(), ptr::null_mut()), PC_INVALID_ARGUMENT);
     }
 }
@@ -168,7 +168,7 @@ fn arrays_of_wrong_lengths_are_refused() {
         }
         assert_eq!(status(system.at(function, t, &y[1..], length)), PC_INVALID_ARGUMENT);
     }
-    // A length that no memory has.
+    // A length that exceeds any memory.
     let mut ydot = vec![0.0; dim];
     let refused = call(|error| unsafe {
         // SAFETY: the lengths are refused before the arrays are looked at.
@@ -178,7 +178,7 @@ fn arrays_of_wrong_lengths_are_refused() {
     // SAFETY: a live system, and places for results as said.
     let refused = call(|error| unsafe {
         let shared = ydot.as_mut_ptr();
-        // SAFETY: a live system; that the arrays are one is what is refused.
+        // SAFETY: a live system; the shared array is refused.
         pc_system_rhs(system.0, t, shared, dim, shared, dim, error)
     });
     assert_eq!(refused.unwrap_err().message, "y and ydot share memory");

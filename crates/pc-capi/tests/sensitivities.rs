@@ -39,8 +39,9 @@ fn start_by(system: &System, parameter: usize) -> Result<Vec<f64>, Refusal> {
         .map(|()| column)
 }
 
-/// The built-in ball, with m, g, e, h: after n bounces of height 1, at a time s after the last, y = eⁿ w s − g s²/2 where
-/// w = √(2gh), and by h all times move by t/2h, all speeds by w/2h.
+/// The built-in ball, with m, g, e, h: after n bounces from height h, at a time s after the last, y
+/// = eⁿ w s − g s²/2 with w = √(2gh). The derivative by h of a time t is t/2h, that of the speed w
+/// is w/2h.
 #[test]
 fn a_bouncing_ball_by_its_height() {
     for form in [pc_form::PC_POINCARE, pc_form::PC_CANONICAL] {
@@ -61,7 +62,7 @@ fn a_bouncing_ball_by_its_height() {
         let expected = [by_speed * s + speed * by_s - G * s * by_s, by_speed - G * by_s];
         let found = column(&solver, 1, 2).unwrap();
         for (found, expected) in found.iter().zip(expected) {
-            // ∂y₀/∂h is a quotient, good for ten digits, and grows by 1/e at each bounce.
+            // The error of ∂y₀/∂h, a quotient with ten correct digits, grows by 1/e at each bounce.
             assert!((found - expected).abs() < 1e-7 * expected.abs().max(1.0), "{found} is not {expected}");
         }
         let by_mass = column(&solver, 0, 2).unwrap();
@@ -83,7 +84,7 @@ fn sensitivities_that_do_not_exist_are_refused() {
     assert_eq!(add(&solver, 4, &[]).unwrap_err().status, PC_INVALID_ARGUMENT);
     assert_eq!(add(&solver, 1, &[0.0]).unwrap_err().status, PC_INVALID_ARGUMENT);
     assert_eq!(start_by(&system, 4).unwrap_err().status, PC_INVALID_ARGUMENT);
-    // What was refused has left nothing.
+    // The refused calls have changed nothing.
     add(&solver, 1, &[]).unwrap();
     column(&solver, 0, 2).unwrap();
     assert!(column(&solver, 1, 2).is_err());
@@ -109,7 +110,8 @@ fn sensitivities_that_do_not_exist_are_refused() {
     assert_eq!((refusal.status, refusal.line), (PC_INCONSISTENT_MODEL, 2));
 }
 
-/// A pulse on a body at rest: the counts tell that steps were shortened for it, to programs that know the place for it.
+/// A pulse on a body at rest: the counts show that steps were shortened for it, if the caller's
+/// structure has the member.
 #[test]
 fn statistics_tell_what_shortened_the_steps() {
     let model = Model::text(

@@ -10,10 +10,11 @@ use std::thread;
 use common::{Model, call, taken};
 use pc::*;
 
-/// What the header asks of a thread.
+/// The stack that the header demands of a thread.
 const STACK: usize = 128 << 10;
 
-/// All that derives, in so many of the formats; only with all of them the second derivation, which would take long of what is.
+/// Makes all calls that derive, printing in the first `formats` formats. With fewer than three it
+/// omits the second derivation, which takes long for long expressions.
 fn on_small_stack(potential: &str, formats: i32) {
     let text = format!(
         "[coordinates]\nx = 0.3\n[lagrangian]\nkinetic = \"(1 + t^2)*x'^2/2\"\npotential = \"{potential}\"\n"

@@ -8,7 +8,7 @@ use common::{Model, Solver, System, call, sharp};
 use pc::pc_form::{PC_CANONICAL, PC_POINCARE};
 use pc::*;
 
-/// A cart with a drive, F' = u − F, and an event when it has gone as far as that.
+/// A cart with a drive, F' = u − F.
 const CART: &str = "[parameters]\nm = 2\nM = \"2*m\"\n[inputs]\nu = 3\n[coordinates]\nx = 0\n[states]\n\
                     F = { start = 1, rate = \"u - F\" }\n[lagrangian]\nkinetic = \"M*x'^2/2\"\n[forces]\nx = \"F\"\n";
 

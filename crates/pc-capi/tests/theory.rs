@@ -1,4 +1,4 @@
-//! What can be said of motions, for C.
+//! The analysis of motions, for C.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -49,7 +49,7 @@ fn integrals_are_found_with_the_functions_that_are_given() {
     }
 }
 
-/// It is what the crate prints.
+/// The library prints what `pc_print` prints.
 #[test]
 fn formats_are_those_of_the_equations() {
     let system = System::of("euler-top");
@@ -94,7 +94,6 @@ fn senseless_requests_are_refused() {
     }
 }
 
-/// Within the limits of the system.
 #[test]
 fn the_theory_stays_within_the_limits() {
     let options = pc_system_options { memory_limit: 1 << 20, ..Default::default() };

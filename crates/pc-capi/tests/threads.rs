@@ -58,7 +58,8 @@ fn clones_and_kernels_compute_the_same_on_all_threads() {
     });
 }
 
-/// A rotor in metres, kilograms and seconds: pivots of M that change with the state, and are small beside others.
+/// A rotor in metres, kilograms and seconds: pivots of M vary with the state, and differ greatly in
+/// size.
 const MOLECULE: &str = r#"
 [parameters]
 m = 5e-26
@@ -75,7 +76,8 @@ phi = 0
 kinetic = "(m*x'^2 + J*(theta'^2 + sin(theta)^2*phi'^2))/2"
 "#;
 
-/// Of which f is machine code and no more: M is constant, or has pivots that are watched; long equations, too.
+/// Systems whose f is machine code alone: with constant M, with pivots that are checked, and with
+/// long equations.
 fn of_machine_code() -> Vec<System> {
     let molecule = Model::text(MOLECULE).unwrap().system(pc_form::PC_POINCARE).unwrap();
     let named = ["heavy-top-lagrange", "snakeboard", "pendulum-chain"].map(System::of);
@@ -107,8 +109,8 @@ fn many_threads_evaluate_one_system_at_the_same_time() {
     }
 }
 
-/// A point in a potential p_0 (sin x + …) + p_1 (sin 31 x + …) + …: long enough for parameters to be set before all of
-/// them are read.
+/// A point in a potential p_0 (sin x + …) + p_1 (sin 31 x + …) + …: evaluation takes so long that
+/// parameters can be set before all of them are read.
 fn with_many_parameters() -> System {
     let parameters = (0..60).map(|k| format!("p_{k} = 1"));
     let terms = (0..60).map(|k| {

@@ -8,7 +8,7 @@ use std::ptr;
 
 use pc::*;
 
-/// What pc_system_verify says of a built-in model, one of its parameters set.
+/// The report of pc_system_verify on a built-in model with one of its parameters set.
 fn verified(model: &CStr, parameter: Option<(usize, f64)>, states: usize) -> String {
     let (mut handle, mut system, mut text) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut::<c_char>());
     // SAFETY: live handles, each freed once, and a text of the library.

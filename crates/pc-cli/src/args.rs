@@ -1,9 +1,10 @@
 //! The command line, and the model it names.
 //!
-//! In goes a command line, out come the arguments of a command, and a model. Read `options` first, the options of the
-//! commands with the `forms` of equations, with those of a `sweep`, of a page (`report`), of linearizations (`linear`), of a comparison
-//! (`compare`) and of measurements (`bench`), those of what is `drawn`, those for a `checkpoint`, `models` and other `tools` around
-//! models; `command_line` is all of them with their `examples`, and `input` turns MODEL into a model and its equations.
+//! In goes a command line, out come the arguments of a command, and a model. Read `options` first,
+//! the arguments shared by commands, with the `forms` of equations; then those of single commands:
+//! `sweep`, `report`, `linear`, `compare`, `bench`, `drawn` (pictures), `checkpoint`, `models` and
+//! other `tools`. `command_line` is all of them with their `examples`, and `input` turns MODEL into
+//! a model and its equations.
 
 pub mod bench;
 pub mod checkpoint;

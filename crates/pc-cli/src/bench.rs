@@ -1,7 +1,7 @@
-//! How long the derivation of a model takes, and an evaluation of its equations.
+//! How long the derivation of a model and an evaluation of its equations take.
 //!
-//! `derivation` takes the stages from the text to machine code, `kernels` are the ways to evaluate the equations, `measure`
-//! times these in turns, and `page` prints [`Figures`](page::Figures).
+//! `derivation` times the stages from the text to machine code, `kernels` are the ways to evaluate
+//! the equations, `measure` times these in turns, and `page` prints [`Figures`](page::Figures).
 
 pub(crate) mod derivation;
 pub(crate) mod kernels;

@@ -1,10 +1,12 @@
-//! The commands, a file each; sweeps have a room of their own.
+//! The commands, a file each; sweeps have a separate folder.
 //!
-//! Each takes its arguments and gives a result or an error. `new` begins a model, `schema` is the format for editors, `models`
-//! lists the built-in models, `check` checks a model, `derive` prints its equations, `theory` the analysis of its motions,
-//! `linearize` the motions near a state, `equilibria` those states, `run` integrates it, `compare` two of them, `report` makes a
-//! page of all this, `emit` writes its equations as source, or by `fmu` as an FMU, `bench` measures them, and `import` makes
-//! models from files in other formats. `completions`, `man` and `version` are about the program.
+//! Each takes its arguments and gives a result or an error. `new` begins a model, `schema` is the
+//! format for editors, `models` lists the built-in models, `check` checks a model, `derive` prints
+//! its equations, `theory` the analysis of its motions, `linearize` the motions near a state,
+//! `equilibria` the states of rest, `run` integrates a model, `compare` compares two motions,
+//! `report` makes a page of all this, `emit` writes equations as source, or by `fmu` as an FMU,
+//! `bench` measures them, and `import` makes models from files in other formats. `completions`,
+//! `man` and `version` are about the program.
 
 pub mod bench;
 pub mod check;

@@ -1,4 +1,4 @@
-//! What can go wrong, and the exit code that says so.
+//! The errors of the program, with their exit codes.
 
 use std::error::Error;
 use std::io;
@@ -45,7 +45,7 @@ pub enum CliError {
         name: String,
         /// The command with nearly that name.
         nearest: Option<String>,
-        /// All of them.
+        /// All commands.
         known: Vec<String>,
     },
     /// No built-in model has this tag.
@@ -59,7 +59,7 @@ pub enum CliError {
         /// The tag with nearly that name.
         nearest: Option<&'static str>,
     },
-    /// Several files, where there is place for one.
+    /// Several files where only one can be written.
     #[error("-o -: the source is in several files, {}; give a directory", files.join(" and "))]
     SeveralFiles {
         /// Their names.
@@ -82,7 +82,7 @@ pub enum CliError {
     /// `--sensitivities` by something that is not a parameter.
     #[error("--sensitivities: {0}")]
     Sensitivities(UnknownParameter),
-    /// `--sensitivities` by a method that has none.
+    /// `--sensitivities` with a method that has none.
     #[error("--sensitivities: {method} has none; use --method adams or --method bdf")]
     NoSensitivities {
         /// The method.
@@ -91,13 +91,13 @@ pub enum CliError {
     /// `--keep` of something that has no start value.
     #[error("--keep: {0}")]
     UnknownStart(#[from] UnknownStart),
-    /// Quasi-velocities that are given and not asked for.
+    /// Quasi-velocities that are given to a form that does not take them.
     #[error("`{name}` is a definition, which only --form hamel takes; give nothing else after the model")]
     Definitions {
         /// The first of them.
         name: String,
     },
-    /// Two `--set` of one name.
+    /// Two `--set` with the same name.
     #[error("--set: `{name}` is given two values; leave one out")]
     SetTwice {
         /// The parameter or start value.
@@ -120,7 +120,7 @@ pub enum CliError {
         /// Its title.
         model: String,
     },
-    /// A frame is chosen where none is written alone.
+    /// A frame is chosen where no single frame is written.
     #[error("--at chooses a frame, which is written by itself to `-o FILE.svg`, FILE.png or FILE.pdf")]
     NoFrame,
     /// Neither the command line nor the model gives an end time.
@@ -131,7 +131,7 @@ pub enum CliError {
         /// Name of the model file.
         model: String,
     },
-    /// An end that is the start.
+    /// An end time equal to the start time.
     #[error("the end time {t} is the start time: nothing to integrate")]
     EndIsStart {
         /// That time.
@@ -144,7 +144,7 @@ pub enum CliError {
         option: &'static str,
         /// The file.
         path: PathBuf,
-        /// The endings there are.
+        /// The extensions that are accepted.
         expected: &'static str,
     },
     /// A file that cannot be written, found before anything is computed.
@@ -160,12 +160,12 @@ pub enum CliError {
     Write {
         /// The file, or `standard output`.
         path: String,
-        /// Where the result is instead.
+        /// Where the result was kept.
         kept: Kept,
         /// Why.
         source: io::Error,
     },
-    /// More rows than there is memory for.
+    /// More rows than the memory limit allows.
     #[error(
         "{rows} rows of {numbers} numbers would take {} MiB, more than the limit of {} MiB; ask for fewer, give \
          --limit-memory {}M, or for a single motion only -o FILE.csv, whose rows are written as they are computed",
@@ -176,11 +176,11 @@ pub enum CliError {
     Rows {
         /// How many are wanted.
         rows: u64,
-        /// Numbers that are held for each.
+        /// Numbers in memory for each row.
         numbers: u64,
-        /// What they would take.
+        /// Memory that they would take.
         bytes: u64,
-        /// What they may take.
+        /// Memory that they may take.
         limit: u64,
     },
     /// A picture that could not be drawn.
@@ -195,7 +195,8 @@ pub enum CliError {
     /// Something wrong with a robot in URDF.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
-    /// The equations are not those of a second derivation: one of the two is wrong, by a defect of this program.
+    /// The equations disagree with a second derivation: one of the two is wrong, by a defect of
+    /// this program.
     #[error("{0}; no result is returned, because one of them is wrong through a defect of this program")]
     Verify(Box<VerifyError>),
     /// Something wrong with checkpoints.
@@ -210,7 +211,7 @@ pub enum CliError {
     /// Motions that differ, or cannot be compared.
     #[error(transparent)]
     Compare(#[from] CompareError),
-    /// The integration could not go on.
+    /// The integration could not continue.
     #[error("the integration failed{}", at(.cause, names))]
     Integration {
         /// Why.
@@ -221,7 +222,7 @@ pub enum CliError {
         /// Whether forces jump where the state changes, as dry friction does.
         jumps: bool,
     },
-    /// A limit of time.
+    /// The time limit ended the integration.
     #[error("ended at t = {}: {limit}", short(*t, 17))]
     Ended {
         /// How far the integration was.
@@ -256,12 +257,12 @@ impl From<ReportError> for CliError {
 }
 
 impl CliError {
-    /// That there is nothing else of what could not be written.
+    /// A result that could not be written and is not kept anywhere.
     pub(crate) fn cannot_write(path: &Path, source: io::Error) -> CliError {
         CliError::Write { path: path.display().to_string(), kept: Kept::Nowhere, source }
     }
 
-    /// That a file cannot be written, before there is anything to be written.
+    /// A file that cannot be written, found before anything is computed.
     pub(crate) fn no_place(path: &Path, source: io::Error) -> CliError {
         CliError::Place { path: path.to_owned(), source }
     }
@@ -272,7 +273,7 @@ impl CliError {
     /// Exit code where a result could not be written.
     pub const UNWRITTEN: u8 = exit_code::UNWRITTEN;
 
-    /// Whether it is what happens to any program whose reader has read enough (`pc run … | head`).
+    /// Whether the reader of standard output has read enough and gone (`pc run … | head`).
     pub fn is_reader_gone(&self) -> bool {
         matches!(self, CliError::Write { path, source, .. }
             if path == STANDARD_OUTPUT && source.kind() == io::ErrorKind::BrokenPipe)
@@ -324,7 +325,7 @@ impl CliError {
         let mut source = self.source();
         while let Some(error) = source {
             let message = error.to_string();
-            // Some say what their source says, behind a word of their own.
+            // The message of some errors ends with that of their source.
             if !last.ends_with(&message) {
                 report += &format!("\n  because: {message}");
             }
@@ -341,10 +342,10 @@ impl CliError {
     }
 }
 
-/// How standard output is called.
+/// The name of standard output in messages.
 pub(crate) const STANDARD_OUTPUT: &str = "standard output";
 
-/// Where the integration stood, with the names of the state.
+/// The time and state of the integration, with the names of the state.
 fn at(cause: &SolveError, names: &[String]) -> String {
     let Some((t, state)) = cause.reached() else { return String::new() };
     let state: String =

@@ -6,10 +6,10 @@ pub(crate) const DIFFERENT: u8 = 1;
 /// A wrong command line.
 pub(crate) const USAGE: u8 = 2;
 
-/// What was asked for is not defined for this model.
+/// The request is not defined for this model.
 pub(crate) const INCONSISTENT: u8 = 4;
 
-/// A method of approximation did not reach its end.
+/// A numerical method did not converge or did not reach its end.
 pub(crate) const FAILED: u8 = 5;
 
 /// A result that could not be written.

@@ -1,7 +1,7 @@
 //! Models in other formats, as text models.
 //!
-//! In goes a robot in URDF, out comes the text of a model. Read `robot` first, what such a file says; `urdf` reads it, with an
-//! `error` that shows the place, and `text` writes the model.
+//! In goes a robot in URDF, out comes the text of a model. Read `robot` first, the contents of such
+//! a file; `urdf` reads it, with an `error` that shows the place, and `text` writes the model.
 
 pub(crate) mod error;
 pub(crate) mod robot;

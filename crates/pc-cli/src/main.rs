@@ -19,7 +19,7 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => {
             if error.use_stderr() {
-                let _ = error.print(); // nothing can be said where nothing can be printed
+                let _ = error.print(); // a failure to print cannot be reported
                 return ExitCode::from(CliError::USAGE);
             }
             let printed = error.print().and_then(|()| io::stdout().flush());

@@ -1,8 +1,10 @@
 //! The computation of a motion, from a plan to a finished run.
 //!
-//! In go a model and a command line, out comes a [`Run`](run::Run). Read `plan` first, what was asked for, and
-//! `memory`, whether its rows have room; `given` integrates it where its rows are written at once, with a `progress` bar, an `interrupt`, and a `checkpoint` now
-//! and then, which is known by its `identity` and has a `checkpoint_error`; `fine` is what a picture shows between its rows; `table` and `run` are what comes out.
+//! In go a model and a command line, out comes a [`Run`](run::Run). Read `plan` first, the request,
+//! and `memory`, whether its rows fit. A `checkpoint`, with its `identity` and `checkpoint_error`,
+//! continues an interrupted run; `sensitivities` are derivatives by parameters; `given` integrates
+//! a motion whose rows are written at once. `progress` and `interrupt` are the bar and Ctrl-C.
+//! `fine` is the motion between its rows, for pictures; `table` and `run` are the results.
 
 pub mod checkpoint;
 pub mod checkpoint_error;

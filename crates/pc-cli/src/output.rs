@@ -1,9 +1,10 @@
 //! Destinations of results: standard output, or a file that is written whole or not at all.
 //!
-//! A finished run or its picture becomes bytes at a destination. A `place` is examined before anything is computed;
-//! `atomic` writes there, by a `partial` file that replaces the old one whole, and `standard_output` where there is
-//! none. `rescue` saves a result that cannot be written, and `kept` says where it is. A `stream` is written while rows
-//! are still computed. `csv`, `json` and `npz` are the formats, and `destination` chooses among all these.
+//! A finished run or its picture becomes bytes at a destination. A `place` is examined before
+//! anything is computed; `atomic` writes there, by a `partial` file that replaces the old one
+//! whole; without a place, `standard_output` writes. `rescue` saves a result that cannot be
+//! written, and `kept` says where it is. A `stream` takes rows as they are computed. `csv`, `json`
+//! and `npz` are the formats, and `destination` chooses among all these.
 
 pub(crate) mod atomic;
 pub(crate) mod csv;

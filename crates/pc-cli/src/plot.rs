@@ -1,7 +1,7 @@
 //! Pictures as files.
 //!
-//! A drawing of `pc-report` becomes a bitmap or a page: `glyphs` are the outlines of the built-in font, `png`, `gif` and `pdf` write,
-//! and `error` lists what can go wrong. As SVG it writes itself.
+//! A drawing of `pc-report` becomes a bitmap or a page: `glyphs` are the outlines of the built-in
+//! font, `png`, `gif` and `pdf` write, and `error` lists the errors. SVG is written by `pc-report`.
 
 pub mod error;
 pub(crate) mod gif;

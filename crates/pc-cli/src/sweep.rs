@@ -1,9 +1,10 @@
 //! `pc sweep`: many motions of one model, over parameters and starts, in one table.
 //!
-//! A model and the values to vary become a file. Read `design` first, the values of the members; `member` is the
-//! motion of one, `record` its result, kept in a `journal` on disk until the `output` is made, row by row of a
-//! `sheet`, and the `plot`, which has a `plot_error`. `command` is the whole, with its `progress`, or a `shard` of it; `shards` are all of these, which
-//! `merge` puts together. `error` lists the errors.
+//! A model and the values to vary become a file. Read `design` first, the values of the members;
+//! `member` is the motion of one, `record` its result, kept in a `journal` on disk until the
+//! `output` is made, row by row of a `sheet`, and the `plot` with its `plot_error`. `command` is
+//! the whole sweep, with its `progress`, or a `shard` of it; `merge` puts all `shards` together.
+//! `error` lists the errors.
 
 pub mod command;
 pub(crate) mod design;

@@ -1,4 +1,4 @@
-//! `pc bench`: what is measured is there. How long it takes is not looked at.
+//! `pc bench`: all measurements are present; the times themselves are not tested.
 
 use std::process::{Command, Output};
 
@@ -47,7 +47,8 @@ fn every_kernel_and_stage_is_measured() {
     assert_eq!(figures["state"], 6);
 }
 
-/// Numbers in place of parameters save operations, and the interpreter runs the same program as machine code.
+/// Numbers in place of parameters save operations; the interpreter and the machine code run the
+/// same program.
 #[test]
 fn operations_are_those_of_the_programs() {
     let figures = measured("heavy-top-euler", &[]);
@@ -65,7 +66,7 @@ fn operations_are_those_of_the_programs() {
 
 /// Multipliers have no bound form, nor have inputs that change with time.
 #[test]
-fn what_there_is_not_is_left_out() {
+fn missing_kernels_are_left_out() {
     assert_eq!(
         kernels(&measured("pendulum-chain-cartesian", &[])),
         [INTERPRETED, COMPILED, BOUND, JACOBIAN, OBSERVED]

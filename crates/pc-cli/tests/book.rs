@@ -1,4 +1,5 @@
-//! The book in `docs` and the README: models are sound, commands succeed and print what is shown, links lead somewhere.
+//! The book in `docs` and the README: models are sound, commands succeed and print what is shown,
+//! links have targets.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -59,7 +60,7 @@ impl Desk {
         Desk { directory: tempfile::tempdir().expect("a directory"), path }
     }
 
-    /// What a command says, on both streams as on a terminal, and whether it succeeds.
+    /// The output of a command, both streams together as on a terminal, and whether it succeeds.
     fn run(&self, command: &str) -> (String, bool) {
         let mut shell = Command::new("sh");
         let shell = shell.args(["-c", &format!("exec 2>&1; {command}")]).current_dir(&self.directory);
@@ -85,7 +86,8 @@ fn commands(block: &str) -> Vec<(String, String)> {
     commands
 }
 
-/// Lines `...` stand for any lines, `[..]` for any part of one.
+/// Tries the examples of a page. In the output shown, `...` stands for any lines and `[..]` for any
+/// part of a line.
 fn try_examples(page: &str) -> usize {
     let desk = Desk::new();
     let mut tried = 0;
@@ -124,7 +126,7 @@ fn models_are_sound_and_commands_print_what_is_shown() {
     assert!(tried > 60, "only {tried} examples were tried");
 }
 
-/// The lines of shell blocks that begin with the program, without the remarks behind them.
+/// The lines of shell blocks that begin with the program, without comments after them.
 fn shell_commands(text: &str) -> Vec<String> {
     let shell = blocks(text).into_iter().filter(|(words, _)| words == "sh");
     let lines: Vec<String> =
@@ -133,7 +135,7 @@ fn shell_commands(text: &str) -> Vec<String> {
     commands.map(|line| line.split(" #").next().unwrap_or_default().trim_end().to_owned()).collect()
 }
 
-/// What fills more than a screen or two is written to a file.
+/// Longer output must go to a file.
 const LONGEST: usize = 150;
 
 #[test]

@@ -1,4 +1,5 @@
-//! Brackets that the frame does not determine, given in `[algebra]`, found, or asked for.
+//! Brackets that the frame does not determine: given in `[algebra]`, found, or requested by an
+//! error.
 
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
@@ -36,7 +37,7 @@ fn end(model: &str, arguments: &[&str]) -> Vec<f64> {
     last.split(',').map(|cell| cell.parse().expect("a number")).collect()
 }
 
-/// What stands under a heading of `pc derive`.
+/// The lines under a heading of `pc derive`.
 #[track_caller]
 fn section(model: &str, arguments: &[&str], heading: &str) -> String {
     let text = stdout(model, &[&["derive", "-"], arguments].concat());
@@ -44,8 +45,8 @@ fn section(model: &str, arguments: &[&str], heading: &str) -> String {
     lines.map(|line| format!("{}\n", line.trim())).collect()
 }
 
-/// Bianchi's type V, its third operator held by a constraint: ω_1' = ω_2², ω_2' = −ω_1 ω_2, so that ω_1 = R tanh(R t + artanh
-/// (1/R)) with R² = 5/4.
+/// Bianchi's type V, with a constraint on the third quasi-velocity: ω_1' = ω_2², ω_2' = −ω_1 ω_2,
+/// so that ω_1 = R tanh(R t + artanh(1/R)) with R² = 5/4.
 const HELD: &str = r#"
 [coordinates]
 q = 0.0
@@ -85,7 +86,7 @@ fn a_given_algebra_holds_in_every_form() {
     assert!(!stdout(HELD, &["check", "-"]).contains("w2  conserved"));
 }
 
-/// Without a single coordinate: the plane of translations is kept by the rotation that a constraint forbids.
+/// A model without coordinates.
 #[test]
 fn a_given_algebra_needs_no_coordinates() {
     let model = HELD.replace("[coordinates]\nq = 0.0\n", "").replace("[kinematics]\nq = \"w1\"\n", "");
@@ -170,7 +171,7 @@ fn brackets_that_the_frame_leaves_open_are_asked_for() {
     }
     let help = "help: give the brackets in [algebra]: `name = \"so3\"` or `brackets = { \"w1,w2\" = \"w3\" }`, or `{}` if";
     assert!(stderr(&pc(DEPENDENT, &["check", "-"])).contains(help));
-    // They may be anything along 2 w1 − w2.
+    // Any multiple of 2 w1 − w2 is possible.
     for (brackets, expected) in
         [("{}", "all operators commute\n"), ("{ \"w1,w2\" = \"2*w1 - w2\" }", "[w1, w2] = 2 w1 - w2\n")]
     {
@@ -185,7 +186,7 @@ fn brackets_that_the_frame_leaves_open_are_asked_for() {
     );
 }
 
-/// A body that turns has angular velocities; without its attitude only the algebra knows Euler's terms.
+/// Without the attitude of a body as coordinates, only the algebra gives Euler's terms.
 #[test]
 fn a_body_without_attitude_needs_its_algebra() {
     let body = r#"
@@ -245,7 +246,7 @@ t_end = 1.0
 }
 
 #[test]
-fn an_algebra_that_cannot_be_is_refused_at_its_name() {
+fn an_impossible_algebra_is_refused_at_its_name() {
     let named = |name: &str| HELD.replace("bianchi5", name);
     refused(
         &named("so17"),
@@ -259,7 +260,7 @@ fn an_algebra_that_cannot_be_is_refused_at_its_name() {
     );
 }
 
-/// Elroy's beanie: no number stands where a parameter should.
+/// Elroy's beanie: its equations contain parameters, not their values.
 #[test]
 fn the_canonical_equations_of_two_coupled_bodies() {
     let model = r#"

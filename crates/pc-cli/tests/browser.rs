@@ -1,5 +1,6 @@
-//! Reports in Chromium: nothing goes wrong, nothing sticks out, formulas are formulas, nothing is asked of any network, and what
-//! moves is where the run says; wide and narrow, light and dark. Skipped, with a word, where there is no Chromium.
+//! Reports in Chromium, wide and narrow, light and dark: there are no errors, nothing overflows,
+//! formulas are laid out, nothing is requested from a network, and what moves is where the run
+//! says. Skipped with a message if there is no Chromium.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +11,7 @@ use serde_json::Value;
 
 /// Widths of the page.
 const WIDTHS: [u32; 2] = [1280, 400];
-/// Frames that are compared, of so many.
+/// Frames that are compared, among SAMPLES.
 const FRAMES: [usize; 3] = [0, 250, 600];
 const SAMPLES: &str = "601";
 /// A page on two slow cores takes a few seconds.
@@ -28,7 +29,7 @@ fn chromium() -> Option<PathBuf> {
     std::env::split_paths(&path).flat_map(all).find(|file| file.is_file())
 }
 
-/// Chromium without a window on a page, in a directory of its own.
+/// Runs headless Chromium on a page, in a separate directory.
 fn browse(chromium: &Path, directory: &Path, more: &[&str], page: &Path) -> Output {
     let mut command = Command::new(chromium);
     command
@@ -56,7 +57,7 @@ fn browse(chromium: &Path, directory: &Path, more: &[&str], page: &Path) -> Outp
     Output { status, stdout: fs::read(out).expect("a file"), stderr: fs::read(err).expect("a file") }
 }
 
-/// The page with what watches it, and a policy by which it may ask for nothing.
+/// The page with the scripts that watch it, and a policy that forbids all requests.
 fn watched(page: &str) -> String {
     let policy = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; \
                   script-src 'unsafe-inline'\"/>";
@@ -67,7 +68,7 @@ fn watched(page: &str) -> String {
     format!("{}<script>{last}</script>{}", &page[..end], &page[end..])
 }
 
-/// Frames of both widths, which say what they look like in this one.
+/// A page with frames of both widths, which report to it.
 fn around() -> String {
     let frames: String = WIDTHS
         .map(|width| {
@@ -81,7 +82,7 @@ fn around() -> String {
     )
 }
 
-/// What the page looks like, by width.
+/// The measurements of the page, by width.
 fn looks(chromium: &Path, page: &str, dark: bool) -> Vec<Value> {
     let directory = tempfile::tempdir().expect("a directory");
     fs::write(directory.path().join("page.html"), watched(page)).expect("written");
@@ -107,7 +108,8 @@ fn pc(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// A model: its text, and what of a frame of the player is what of a run: the place among the numbers, and an expression.
+/// A model: its text, and numbers of a frame of the player with the expressions of the run that
+/// they should equal.
 struct Case<'a> {
     name: &'a str,
     text: String,
@@ -115,7 +117,7 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    /// In Chromium, light and dark.
+    /// Checks the page in Chromium, light and dark.
     fn check(&self, chromium: &Path) {
         let name = self.name;
         let directory = tempfile::tempdir().expect("a directory");
@@ -158,7 +160,7 @@ impl Case<'_> {
                         let column = rows[0].iter().position(|known| *known == format!("shown{i}"));
                         let wanted: f64 = rows[row + 1][column.expect("a column")].parse().expect("a number");
                         let shown = at("frames")[k][i].as_f64().expect("a number");
-                        // Rounded to single precision, and nothing else.
+                        // Equal but for rounding to single precision.
                         assert_eq!(shown as f32, wanted as f32, "frame {row}, number {i}: {context:.200}");
                     }
                 }
@@ -178,7 +180,7 @@ fn builtin(name: &str) -> String {
     pc(&["models", name])
 }
 
-/// The test of a case, or a word where there is no Chromium.
+/// Tests a case, or reports that there is no Chromium.
 fn shown(case: impl FnOnce() -> Case<'static>) {
     match chromium() {
         Some(chromium) => case().check(&chromium),
@@ -210,7 +212,7 @@ fn the_page_of_a_heavy_top() {
 
 #[test]
 fn the_page_of_a_bicycle() {
-    // The hub of the rear wheel, which is the first body.
+    // The hub of the rear wheel, the first body.
     const PLACES: [(usize, &str); 3] = [(0, "Hx"), (1, "Hy"), (2, "Hz")];
     let text = || include_str!("../../../tests/mechanisms/whipple-bicycle.toml").to_owned();
     shown(|| Case { name: "bicycle", text: text(), places: &PLACES });

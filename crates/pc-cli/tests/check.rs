@@ -1,4 +1,4 @@
-//! What `pc check` says of a model.
+//! The report of `pc check`.
 
 use std::process::{Command, Output};
 
@@ -86,7 +86,8 @@ const BRACKETS: &str = "[coordinates]\n[quasi_velocities]\na = 1.0\nb = 0.5\nc =
 const PENDULUM: &str = "[parameters]\ndrag = 0.1\n[coordinates]\nq = 2.0\n[lagrangian]\nkinetic = \"q'^2/2\"\n\
                         potential = \"-cos(q)\"\ndissipation = \"drag*q'^2/2\"\n";
 
-/// A particle on a cylinder x² + y² = const drawn to one side, by a frame of two operators in three coordinates.
+/// A particle on a cylinder x² + y² = const, pulled to one side, in a frame of two operators in
+/// three coordinates.
 const CYLINDER: &str = "[coordinates]\nx = 0.6\ny = 0.8\nz = 0.3\n[quasi_velocities]\nu = 0.7\nw = 0.0\n[kinematics]\n\
                         x = \"-y*u\"\ny = \"x*u\"\nz = \"w\"\n[lagrangian]\n\
                         kinetic = \"(u^2*(x^2 + y^2) + w^2)/2\"\npotential = \"z^2 - x\"\n";
@@ -104,7 +105,7 @@ fn check(model: &str) -> String {
     stdout(&run(&["check", model]))
 }
 
-/// The report on a model of the program, or on the text of one.
+/// The report on a built-in model, or on the text of one.
 fn report(model: &str) -> Value {
     if !model.contains('\n') {
         return serde_json::from_str(&stdout(&run(&["check", model, "--format", "json"]))).expect("JSON");
@@ -128,7 +129,7 @@ fn without_integrals(model: &str) -> String {
     format!("{before}[{after}").replace(project, "")
 }
 
-/// The report but for how closely the derivations agree, which is a matter of the processor.
+/// The report without the digits of the second derivation, which depend on the processor.
 fn without_digits(report: &str) -> String {
     let (before, rest) = report.split_once("second derivation  agrees to ").expect("an agreement");
     let (digits, after) = rest.split_once(' ').expect("more");
@@ -174,7 +175,8 @@ fn integrals_are_found_where_none_are_declared() {
     let euler = report(&without_integrals("euler-top"));
     assert_eq!(integral(&euler, "Casimir 1")["expression"], "I1^2*ω1^2 + I2^2*ω2^2 + I3^2*ω3^2");
 
-    // Neither a momentum of the frame nor a Casimir: the area integral is linear in ω, with products of the q.
+    // The area integral, linear in ω with products of the q, is neither a momentum of the frame nor
+    // a Casimir.
     let quaternion = report(&without_integrals("heavy-top-quaternion"));
     assert_eq!(integral(&quaternion, "Casimir 1")["expression"], "q0^2 + q1^2 + q2^2 + q3^2");
     assert_eq!(integral(&quaternion, "found 1")["how"], "found");
@@ -199,7 +201,7 @@ fn casimirs_are_not_kept_under_forces() {
     assert_eq!(report["steady_motion"]["verdict"], "asymptotically stable, by the first approximation");
 }
 
-/// Through roots in the momenta, and in the accelerations.
+/// The momenta and the accelerations contain roots.
 #[test]
 fn energy_and_momentum_of_a_fast_particle_are_conserved() {
     let report = report("relativistic-particle");
@@ -228,7 +230,7 @@ fn a_frame_is_described() {
         check("damped-oscillator").contains("  holonomic          all, the velocities of the coordinates\n")
     );
     assert!(check("heavy-top-quaternion").contains("  holonomic          none\n"));
-    // A frame of rank 2 does not say what three quasi-velocities are.
+    // A frame of rank 2 does not determine three quasi-velocities.
     assert_eq!(object("heavy-top-lagrange").1, json!([]));
 
     let (constraints, holonomic) = object(CYLINDER);
@@ -261,7 +263,7 @@ fn a_steady_motion_has_the_casimirs_of_the_start() {
     assert!((rate - 10f64.sqrt() / 3.0).abs() < 1e-9, "{rate}");
     assert_eq!(steady["verdict"], "stable, by the second variation of the energy");
 
-    // The speed, a function of the energy, is not asked for: at rest it has no derivative.
+    // The speed, a function of the energy, is left out, since it has no derivative at rest.
     let steady = report("charged-particle")["steady_motion"].clone();
     assert_eq!(steady["same"], json!(["momentum"]));
     assert!(steady["rates"]["φ"].as_f64().expect("a number").abs() < 1e-9);
@@ -272,7 +274,8 @@ fn a_steady_motion_has_the_casimirs_of_the_start() {
     assert!((square("x") + square("y") - 1.0).abs() < 1e-9, "{steady}");
     assert_eq!(steady["second_variation"], "stable");
 
-    // Without weight the particle goes round steadily: x and y are left out, but their rates are not constant.
+    // Without the force the particle circles steadily: the coordinates x and y are left out, but
+    // their rates vary.
     let steady = report(&CYLINDER.replace(" - x", ""))["steady_motion"].clone();
     assert_eq!(steady["rates"], json!({}));
     assert_eq!(steady["state"].as_object().map(serde_json::Map::len), Some(3));
@@ -290,7 +293,7 @@ fn a_pendulum_with_drag_is_steady_upright() {
 #[test]
 fn no_steady_motion_is_reported_where_there_is_none() {
     let none = "  steady motion      none found near the start\n";
-    // Near the vertical Euler's angles are singular, and eigenvalues there mean nothing.
+    // Euler's angles are singular at the vertical, and eigenvalues near it are meaningless.
     assert!(check("heavy-top-euler-symmetric").ends_with(none));
     for model in ["charged-particle-induction", "damped-oscillator"] {
         assert!(!check(model).contains("steady motion"), "{model} is not autonomous");
@@ -298,7 +301,7 @@ fn no_steady_motion_is_reported_where_there_is_none() {
     }
 }
 
-/// What is said of the invariant measure of a model of the program.
+/// The report on the invariant measure of a built-in model.
 #[track_caller]
 fn measure(model: &str) -> String {
     let text = check(model);
@@ -307,7 +310,7 @@ fn measure(model: &str) -> String {
 }
 
 #[test]
-fn the_measure_that_a_motion_keeps_is_written() {
+fn the_invariant_measure_is_reported() {
     for (model, said) in [
         ("heavy-top-euler", "sin(θ) dx dy, and so dx dη, Liouville's"),
         ("relativistic-particle", "ρ dx dy, (ρ/((η1² + η2²)/c² - 1)²) dx dη, Liouville's"),
@@ -320,7 +323,7 @@ fn the_measure_that_a_motion_keeps_is_written() {
         // Constraints, and no potential.
         ("tilted-disk", "sin(θ) dx dy, and so dx dη"),
         ("turntable", "dx dy, and so dx dη"),
-        // Towards the steady motion volume would shrink to nothing, but for the density.
+        // Phase volume shrinks towards the steady motion, which the density compensates.
         ("chaplygin-sleigh", "(1/p_ω) dx dy, (1/ω) dx dη, singular where p_ω = 0"),
         ("suslov", "none found"),
         ("appell-hamel", "not looked for: a constraint is not affine in the velocities"),
@@ -329,7 +332,8 @@ fn the_measure_that_a_motion_keeps_is_written() {
     }
 }
 
-/// With resistance ẍ = −ẋ/10 phase volume shrinks at a rate that no function of the place makes up for.
+/// With the resistance ẍ = −ẋ/10 phase volume shrinks at a rate that no density in the coordinates
+/// compensates.
 #[test]
 fn measures_for_programs() {
     assert_eq!(report(PENDULUM)["invariant_measure"], Value::Null);
@@ -359,7 +363,7 @@ fn measures_for_programs() {
     assert_eq!((&top["density"], &top["liouville"]), (&json!("1"), &json!(true)));
 }
 
-/// What resets change is conserved between them; what they leave as it is, always.
+/// What a reset changes is conserved only between events; what it leaves unchanged, always.
 #[test]
 fn resets_may_change_what_is_conserved() {
     let verdict =
@@ -368,7 +372,7 @@ fn resets_may_change_what_is_conserved() {
     assert_eq!(verdict(&report("bouncing-ball"), "energy"), between);
     assert_eq!(verdict(&report("rocking-disk"), "energy"), between);
     assert!(check("bouncing-ball").contains("energy  conserved between events (proved)\n"));
-    // A ball in the plane: the floor takes of what goes down, and leaves what goes on.
+    // A ball in the plane: the floor damps the vertical velocity and leaves the horizontal one.
     let plane = |reset: &str| {
         format!(
             "[parameters]\ne = 1.0\n[coordinates]\nx = 0.0\ny = 1.0\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n\
@@ -382,7 +386,7 @@ fn resets_may_change_what_is_conserved() {
     let always = "conserved (proved)";
     assert_eq!(of(""), [always, always]);
     assert_eq!(of("terminal = true\n"), [always, always]);
-    // With e = 1 nothing is lost.
+    // With e = 1 the energy is conserved.
     let here = "conserved for these parameters (proved)";
     assert_eq!(of("reset = { \"y'\" = \"-e*y'\" }\n"), [always, here]);
     assert_eq!(of("reset = { \"y'\" = \"-e*y'/2\" }\n"), [always, between]);

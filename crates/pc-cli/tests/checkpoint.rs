@@ -1,4 +1,4 @@
-//! `pc run --checkpoint` and `--resume`: an interrupted run ends as if it had not been.
+//! `pc run --checkpoint` and `--resume`: an interrupted run ends as if it had not been interrupted.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).expect("UTF-8")
 }
 
-/// A run of `model` in a directory of its own.
+/// A run of `model` in a temporary directory.
 struct Run {
     directory: tempfile::TempDir,
     options: Vec<String>,
@@ -32,7 +32,8 @@ impl Run {
         self.directory.path().join(name)
     }
 
-    /// Into the file `output`, `how` (`--checkpoint` or `--resume`) with the file `checkpoint`.
+    /// Arguments for a run into the file `output`, with `how` (`--checkpoint` or `--resume`) for
+    /// the file `checkpoint`.
     fn arguments(&self, output: &str, how: &str, checkpoint: &str, more: &[&str]) -> Vec<String> {
         let mut arguments = self.options.clone();
         for (option, file) in [("-o", output), (how, checkpoint)] {
@@ -42,7 +43,7 @@ impl Run {
         arguments
     }
 
-    /// The file of a run that ends well.
+    /// The file of a run that succeeds.
     #[track_caller]
     fn whole(&self, output: &str, how: &str, checkpoint: &str, more: &[&str]) -> Vec<u8> {
         let output_of = pc(&self.arguments(output, how, checkpoint, more)).output().expect("pc runs");
@@ -63,7 +64,7 @@ impl Run {
     }
 }
 
-/// Signals `child` once `path` has been written after `start`, or ends where the child does.
+/// Signals `child` once `path` differs from `before`, unless the child ends first.
 fn signalled(mut child: Child, signal: &str, path: &Path, before: &[u8]) -> Output {
     let start = Instant::now();
     while fs::read(path).ok().is_none_or(|bytes| bytes == before)
@@ -72,7 +73,7 @@ fn signalled(mut child: Child, signal: &str, path: &Path, before: &[u8]) -> Outp
         assert!(start.elapsed() < Duration::from_secs(60), "nothing happens");
         std::thread::sleep(Duration::from_millis(2));
     }
-    // The child may have ended meanwhile.
+    // The child may have ended in the meantime.
     let _ = Command::new("kill").args([signal, &child.id().to_string()]).stderr(Stdio::null()).status();
     child.wait_with_output().expect("pc ends")
 }
@@ -104,7 +105,8 @@ fn a_run_killed_again_and_again_gives_the_same_bytes() {
     assert!(again == undisturbed);
 }
 
-/// Momenta are solved for velocities by iterations that begin at the last ones; a projection moves the states.
+/// Two risks: momenta are solved for velocities by iterations that begin at the last solution; a
+/// projection moves the states.
 #[cfg(unix)]
 #[test]
 fn a_resumed_run_depends_only_on_the_checkpoint() {
@@ -143,7 +145,7 @@ fn a_resumed_run_depends_only_on_the_checkpoint() {
             "{form} {method}: {}",
             stderr(&first)
         );
-        // The last checkpoint lies in the motion.
+        // The last checkpoint lies inside the motion.
         assert!(run.whole("c.csv", "--resume", "a.check", &[]) == undisturbed, "{form} {method}");
     }
 }
@@ -162,7 +164,7 @@ fn checkpoints_change_a_run_within_its_tolerance() {
     };
     let (saved, plain) = (numbers(&saved), numbers(&plain));
     assert!(saved != plain && saved.len() == plain.len());
-    // Local errors of 1e-9 in a few hundred steps, that grow no faster than the time.
+    // Local errors of 1e-9 in a few hundred steps, which grow no faster than linearly.
     assert!(saved.iter().zip(&plain).all(|(a, b)| (a - b).abs() < 1e-5));
 }
 
@@ -200,12 +202,12 @@ fn foreign_checkpoints_are_refused() {
     let nowhere = Run::new("euler-top", &["--every", "10"]);
     let output = pc(&nowhere.options).output().expect("pc runs");
     assert!(output.status.code() == Some(2) && stderr(&output).contains("--checkpoint FILE"));
-    // --every is known from the file.
+    // The file contains the value of --every.
     assert!(run.whole("b.csv", "--resume", "a.check", &[]) == undisturbed);
 }
 
-/// The checkpoints that a run writes, as they are seen on its way, and what it has written at its end. On a busy machine
-/// one may be over before it is looked at twice: then there is another.
+/// The checkpoints seen while a run writes them, and its output. On a busy machine a run may end
+/// before two are seen, and is then repeated.
 fn seen(run: &Run, output: &str) -> (Vec<Vec<u8>>, Vec<u8>) {
     let mut all: Vec<Vec<u8>> = Vec::new();
     for _ in 0..20 {
@@ -234,7 +236,7 @@ const WITH_EVENTS: [(&str, &[&str]); 4] = [
     ("stick-slip-sleigh", &["--set", "V=0.5", "--t-end", "2500"]),
 ];
 
-/// Tables, times of events and all: bouncing, sticking and rocking go on from wherever they were.
+/// Tables and times of events are the same for bouncing, sticking and rocking from any checkpoint.
 #[test]
 fn a_run_with_events_gives_the_same_bytes_from_each_checkpoint() {
     for (model, options) in WITH_EVENTS {
@@ -288,7 +290,7 @@ fn foreign_checkpoints_of_runs_with_events_are_refused() {
         fs::write(run.at("b.check"), &damaged).expect("written");
         run.refused("b.check", &[], "start afresh without --resume");
     }
-    // That of the version before this one, which knew nothing of jumps.
+    // A checkpoint of an earlier version of the format.
     let old = [b"pc checkpoint 2\n", &bytes[16..]].concat();
     fs::write(run.at("b.check"), old).expect("written");
     run.refused(
@@ -302,7 +304,8 @@ fn foreign_checkpoints_of_runs_with_events_are_refused() {
     assert!(run.whole("b.csv", "--resume", "a.check", &[]) == undisturbed);
 }
 
-/// A run that events bring to an end, good or bad, ends so again.
+/// A run that events end, by a terminal event or by accumulation, ends in the same way when
+/// resumed.
 #[test]
 fn a_resumed_run_that_an_event_ended_ends_in_the_same_way() {
     let fall = "[coordinates]\ny = 1.0\n[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"y\"\n\
@@ -328,7 +331,7 @@ fn a_resumed_run_that_an_event_ended_ends_in_the_same_way() {
     assert!(failed("a.csv", "--checkpoint") == failed("b.csv", "--resume"));
 }
 
-/// A ball with the energy (y'² + x'²)/2 + 9.81 y, and what a bounce does to it.
+/// A ball with the energy (y'² + x'²)/2 + 9.81 y, and this reset at a bounce.
 fn ball(reset: &str) -> tempfile::NamedTempFile {
     let text = format!(
         "[coordinates]\ny = 1.0\nx = 0.0\n[quasi_velocities]\n\"x'\" = 1.0\n[lagrangian]\n\
@@ -349,14 +352,14 @@ fn energies(csv: &[u8]) -> Vec<(f64, f64)> {
     lines.map(|row| [t, energy].map(|i| row[i].parse().expect("a number")).into()).collect()
 }
 
-/// An integral that is kept has another value after each reset, and the legs after it keep that.
+/// A kept integral has a new value after each reset, and the legs after it keep this value.
 #[test]
 fn the_kept_energy_is_that_after_the_last_bounce() {
     let file = ball("{ \"y'\" = \"-0.8*y'\" }");
     let options = ["--t-end", "2", "--samples", "41", "--every", "10", "--project", "energy"];
     let run = Run::new(file.path().to_str().expect("UTF-8"), &options);
     let csv = run.whole("a.csv", "--checkpoint", "a.check", &[]);
-    // It lands after √(2/9.81), and a flight that begins with the speed v takes 2 v/9.81.
+    // The ball lands after √(2/9.81), and a flight that begins with the speed v takes 2 v/9.81.
     let landing = (2.0_f64 / 9.81).sqrt();
     let (mut next, mut part) = (landing, 1.0);
     for (t, energy) in energies(&csv) {
@@ -364,14 +367,14 @@ fn the_kept_energy_is_that_after_the_last_bounce() {
             part *= 0.8;
             next += 2.0 * part * landing;
         }
-        // Errors of 1e-9 in what is taken from x' and y' to keep the energy, in some hundred steps.
+        // Keeping the energy changes x' and y' by errors of 1e-9 in each of a few hundred steps.
         let expected = 9.81 * part * part + 0.5;
         assert!((energy - expected).abs() < 1e-6, "{energy} at {t}, not {expected}");
     }
     assert!(part < 0.6, "it has bounced more than twice");
 }
 
-/// So that it is known in a checkpoint that there has been one: x' is 1 and 2 by turns.
+/// The checkpoint contains the value kept since the last reset: x' alternates between 1 and 2.
 #[test]
 fn a_run_that_keeps_the_energy_gives_the_same_bytes_from_each_checkpoint() {
     let file = ball("{ \"y'\" = \"-y'\", \"x'\" = \"3 - x'\" }");
@@ -386,7 +389,7 @@ fn a_run_that_keeps_the_energy_gives_the_same_bytes_from_each_checkpoint() {
     }
     let (mut slow, mut fast) = (0, 0);
     for (t, energy) in energies(&csv) {
-        // The tolerance of 1e-7 over some ten thousand steps.
+        // The tolerance of 1e-7 over about ten thousand steps.
         if (energy - 10.31).abs() < 0.01 {
             slow += 1;
         } else if (energy - 11.81).abs() < 0.01 {

@@ -24,7 +24,8 @@ fn every_command_has_a_row() {
     }
 }
 
-/// In the order of the page, in one directory: some read what others have written.
+/// The commands run in the order of the page, in one directory, since some read files that others
+/// write.
 #[cfg(unix)]
 #[test]
 fn the_commands_of_the_page_run() {
@@ -72,7 +73,7 @@ fn every_entry_of_the_results_is_named() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let mut result: Value = serde_json::from_slice(&output.stdout).expect("JSON");
         if let Some(kinds) = result.get_mut("operations") {
-            kinds.take(); // by the names of operations
+            kinds.take(); // its keys are names of operations
         }
         let mut all = Vec::new();
         names(&result, &mut all);

@@ -1,4 +1,4 @@
-//! `pc compare`: what is the same motion, what is not, and what cannot be compared.
+//! `pc compare`: equal motions, different ones, and refused comparisons.
 
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
@@ -14,7 +14,7 @@ fn run_on(model: &str, arguments: &[&str]) -> Output {
     command.arg("compare").args(arguments);
     let child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut child = child.expect("pc starts");
-    // Where the command line is refused nobody reads.
+    // A refused command line leaves the input unread.
     let _ = child.stdin.take().expect("a pipe").write_all(model.as_bytes());
     child.wait_with_output().expect("pc ends")
 }
@@ -83,12 +83,12 @@ fn two_forms_of_one_model_have_the_same_motion() {
         );
         assert_eq!((&found["same"], &found["only_first"]), (&true.into(), &Value::Array(Vec::new())));
         let columns = found["columns"].as_array().expect("a list");
-        // They are integrated by other steps: the differences are not those of one table with itself.
+        // The motions have different steps, so some differences are not zero.
         assert!(columns.iter().any(|column| column["largest"].as_f64() > Some(0.0)));
     }
 }
 
-/// Other coordinates, as the description of the model says.
+/// The models have different coordinates, as their descriptions say.
 #[test]
 fn the_top_in_a_quaternion_is_the_top_in_eulers_angles() {
     let output = compare(&["heavy-top-quaternion", "heavy-top-euler", "--t-end", "5", "--format", "json"]);
@@ -111,7 +111,7 @@ fn another_motion_is_exit_1_and_the_columns_are_named() {
     let column = &found["columns"][0];
     let apart = |t: f64| ((2.0 * t).cos() - (2.02 * t).cos()).abs();
     let largest = (0..31).map(|i| apart(f64::from(i) / 10.0)).fold(0.0, f64::max);
-    // To the tolerance of the integration over three units of time.
+    // Up to the tolerance of the integration over three units of time.
     assert!((column["largest"].as_f64().expect("a number") - largest).abs() < 1e-7, "{column}");
     assert_eq!(
         (&column["since"], &column["scale"]),
@@ -127,7 +127,7 @@ fn another_motion_is_exit_1_and_the_columns_are_named() {
 }
 
 #[test]
-fn parameters_are_set_where_they_are() {
+fn parameters_are_set_in_each_model_that_has_them() {
     let other = Written::new(&OSCILLATOR.replace("k = 4.0", "k = 9.0\nspare = 1.0"));
     let set =
         |settings: &[&str]| run_on(OSCILLATOR, &[&["-", &other.name()], settings].concat()).status.code();
@@ -142,7 +142,7 @@ fn parameters_are_set_where_they_are() {
     );
 }
 
-/// The zero of the potential energy is a choice.
+/// The zero of the potential energy is arbitrary.
 #[test]
 fn energies_count_where_they_are_named() {
     let other = Written::new(&OSCILLATOR.replace("k*x^2/2", "k*x^2/2 + 3"));
@@ -156,7 +156,8 @@ fn energies_count_where_they_are_named() {
     assert_eq!((output.status.code(), said(&output)), (Some(1), message));
 }
 
-/// r² = x² + y², φ the angle: the same plane motion in two kinds of coordinates, of which no names agree.
+/// r² = x² + y², φ the angle: the same plane motion in two kinds of coordinates without common
+/// names.
 #[test]
 fn expressions_are_compared() {
     let cartesian = "[parameters]\na = 1.0\n[coordinates]\nx = 1.0\ny = 0.0\n[quasi_velocities]\n\"y'\" = 1.2\n\
@@ -214,7 +215,7 @@ fn expressions_are_compared() {
 }
 
 #[test]
-fn motions_that_end_at_other_times_differ() {
+fn motions_that_end_at_different_times_differ() {
     let event = |height: &str| {
         format!(
             "[coordinates]\nz = {height}\n[lagrangian]\nkinetic = \"z'^2/2\"\npotential = \"z\"\n\
@@ -232,7 +233,7 @@ fn motions_that_end_at_other_times_differ() {
 }
 
 #[test]
-fn what_is_not_two_motions_is_refused() {
+fn anything_but_two_motions_is_refused() {
     refuses(
         "",
         &["euler-top"],

@@ -1,4 +1,4 @@
-//! What `pc derive` and `pc check` print.
+//! The output of `pc derive` and `pc check`.
 
 use std::process::Command;
 

@@ -1,4 +1,5 @@
-//! `pc run` with events: times in closed form, in both forms of the equations, and what is said and kept of them.
+//! `pc run` with events: times compared with closed forms, in both forms of the equations, and
+//! reports of events.
 
 use std::f64::consts::TAU;
 use std::io::{Read, Write};
@@ -15,7 +16,7 @@ fn pc(model: &str, arguments: &[&str]) -> Output {
         .stderr(Stdio::piped())
         .spawn()
         .expect("pc starts");
-    // One that refuses its arguments reads nothing.
+    // If the arguments are refused, the input stays unread.
     let _ = child.stdin.take().expect("a pipe").write_all(model.as_bytes());
     child.wait_with_output().expect("pc ends")
 }
@@ -26,7 +27,7 @@ fn said(output: &Output) -> String {
     text
 }
 
-/// What `-o FILE.json` keeps of a run that ends well.
+/// The contents of `-o FILE.json` after a run that succeeds.
 fn kept(model: &str, name: &str, arguments: &[&str]) -> Value {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("run.json").display().to_string();
@@ -40,7 +41,8 @@ fn times(run: &Value, event: &str) -> Vec<f64> {
     events.filter(|e| e["name"] == event).map(|e| e["time"].as_f64().expect("a number")).collect()
 }
 
-/// In both forms and by all methods, Taylor's in quasi-velocities, at tolerances whose error over the run is below the 1e-10 asked for.
+/// Runs in both forms and by all methods (Taylor's in quasi-velocities only), with an error over
+/// the run below 1e-10.
 fn sharply(name: &str, check: impl Fn(&Value)) {
     let run = |form: &str, method: &str| {
         let sharp = ["--rtol", "1e-13", "--atol", "1e-15", "--form", form, "--method", method];
@@ -62,7 +64,7 @@ fn assert_close(found: &[f64], expected: &[f64]) {
     }
 }
 
-/// t₀ = √(2h/g), then flights of 2 t₀ eⁿ.
+/// The first bounce is at t₀ = √(2h/g); then flights take 2 t₀ eⁿ.
 #[test]
 fn the_ball_bounces() {
     sharply("bouncing-ball", |run| {
@@ -78,7 +80,8 @@ fn the_ball_bounces() {
     });
 }
 
-/// sin 1000 t passes through zero 3183 times in ten units of time, far faster than the state moves.
+/// sin 1000 t passes through zero 3183 times in ten units of time, much faster than the state
+/// changes.
 #[test]
 fn events_faster_than_the_motion_are_found() {
     let model = |simulation: &str| {
@@ -96,7 +99,7 @@ fn events_faster_than_the_motion_are_found() {
         assert_close(&times(&run, "beat"), &expected);
         assert_eq!(run["summary"]["max_step"], 1e-3);
     }
-    // Their roots are separated along steps of any length.
+    // The roots are separated in steps of any length.
     for method in ["adams", "bdf", "dop853", "taylor", "auto"] {
         let free = kept(&model(""), "-", &["--method", method]);
         assert_close(&times(&free, "beat"), &expected);
@@ -115,14 +118,15 @@ fn the_block_sticks_and_slips() {
         let period = slip + 2.0;
         assert_close(&times(run, "stick"), &[slip, slip + period, slip + 2.0 * period]);
         assert_close(&times(run, "slip"), &[period, 2.0 * period]);
-        // Stuck where the spring pulls with 2 F_k − F_s = 0, and at rest, exactly.
+        // The block sticks where the spring pulls with 2 F_k − F_s = 0, exactly at rest.
         let last = run["rows"].as_array().and_then(|rows| rows.last()).expect("rows");
         assert_eq!((last[2].as_f64(), last[3].as_f64()), (Some(0.0), Some(0.0)));
         assert!((last[1].as_f64().expect("x") - (slip + 2.0 * period) / 2.0).abs() < 1e-10);
     });
 }
 
-/// Upright after arcosh 1/(1 − φ_n/α) from rest at φ_n; 1 − (1 − φ_(n+1)/α)² = r² (1 − (1 − φ_n/α)²).
+/// The block is upright arcosh 1/(1 − φ_n/α) after rest at φ_n; 1 − (1 − φ_(n+1)/α)² = r² (1 − (1 −
+/// φ_n/α)²).
 #[test]
 fn the_block_rocks() {
     sharply("rocking-block", |run| {
@@ -139,7 +143,8 @@ fn the_block_rocks() {
     });
 }
 
-/// The bead of a pendulum held by a multiplier, of length 1, that hits a wall below its point of suspension.
+/// The bead of a pendulum of length 1, held by a multiplier, hits a wall below its point of
+/// suspension.
 const BEAD: &str = r#"
 [parameters]
 w = 0.0
@@ -159,7 +164,8 @@ reset = { "x'" = "-x'", "y'" = "3" }
 t_end = 12.0
 "#;
 
-/// The velocity after the reset is moved to where the constraint allows it, by the shortest way: y' goes.
+/// The velocity after the reset is projected onto the constraint by the shortest way, which makes
+/// y' vanish.
 #[test]
 fn resets_under_constraints_end_on_them() {
     let sharp = ["--rtol", "1e-11", "--atol", "1e-13"];
@@ -173,7 +179,7 @@ fn resets_under_constraints_end_on_them() {
     assert_eq!(found.len(), 3);
     assert!(run["summary"]["constraints"]["circle"].as_f64().expect("a number") < 1e-12);
 
-    // In momenta of y' alone, which fails at x = 0: with the wall before it.
+    // Momenta of y' alone fail at x = 0, so the wall comes before it.
     let aside = |form| {
         let run =
             kept(BEAD, "-", &[&sharp[..], &["--set", "w=0.5", "--t-end", "4", "--form", form]].concat());

@@ -1,4 +1,5 @@
-//! What becomes of files: what is replaced, what is refused, and what is kept of a result that cannot be written.
+//! Files: which are replaced, which are refused, and what is kept of a result that cannot be
+//! written.
 
 #![cfg(unix)]
 
@@ -33,7 +34,7 @@ impl Place {
         command
     }
 
-    /// The same by a shell that has said something before.
+    /// The same in a shell, after the commands `before`.
     fn shell(&self, before: &str, arguments: &[&str]) -> Output {
         let mut command = Command::new("sh");
         command
@@ -43,12 +44,12 @@ impl Place {
         command.output().expect("a shell")
     }
 
-    /// Whether there is a file of this name that is not empty.
+    /// Whether there is a non-empty file of this name.
     fn has_bytes(&self, name: &str) -> bool {
         fs::metadata(self.at(name)).is_ok_and(|found| found.len() > 0)
     }
 
-    /// The names of what is there, and of what is among the temporary files.
+    /// The names of the files in the directory, and of the temporary files.
     fn entries(&self) -> (Vec<String>, Vec<String>) {
         (entries(self.0.path()), entries(self.1.path()))
     }
@@ -72,7 +73,7 @@ fn ends(command: &mut Command, code: i32, message: &str) {
     assert_eq!((output.status.code(), said(&output).as_str()), (Some(code), message));
 }
 
-/// The table of a run, as it is on standard output.
+/// The table of a run on standard output.
 fn table(place: &Place, arguments: &[&str]) -> Vec<u8> {
     let output = place.pc(&[&["run", "euler-top"], arguments].concat()).output().expect("pc starts");
     assert!(output.status.success(), "{}", said(&output));
@@ -96,7 +97,7 @@ fn only_regular_files_are_replaced() {
     refuses(&run("-o", "socket.csv"), "socket.csv", neither);
     refuses(&run("-o", "directory.csv"), "directory.csv", "it is a directory");
     refuses(&run("-o", "circle.csv"), "circle.csv", "Too many levels of symbolic links (os error 40)");
-    // These are written again and again, or beside which there is more.
+    // A checkpoint is written repeatedly, and a sweep writes a journal beside its table.
     for file in ["fifo", "null.csv"] {
         refuses(&run("--checkpoint", file), file, "it is not a regular file");
     }
@@ -115,7 +116,7 @@ fn only_regular_files_are_replaced() {
 }
 
 #[test]
-fn a_fifo_is_written_through() {
+fn a_fifo_is_written_directly() {
     let place = Place::new();
     assert!(Command::new("mkfifo").arg(place.at("a.csv")).status().expect("mkfifo").success());
     let mut child = place.pc(&["run", "euler-top", "-o", "a.csv"]).stderr(Stdio::null()).spawn().expect("pc");
@@ -144,7 +145,7 @@ fn the_mode_and_the_owner_of_a_replaced_file_are_kept() {
     let file = place.at("a.csv");
     for mode in [0o600, 0o666, 0o640] {
         fs::write(&file, "old").expect("written");
-        // Nobody but root may give files away; for others the owner is their own.
+        // Only root may change the owner of a file; for other users it stays the same.
         let _ = chown(&file, Some(12345), Some(54321));
         fs::set_permissions(&file, Permissions::from_mode(mode)).expect("its own");
         let before = fs::metadata(&file).expect("a file");
@@ -179,18 +180,18 @@ fn rows_that_fit_on_a_full_disk_are_kept_beside_the_file() {
     assert!(whole.starts_with(&part) && part.ends_with(b"\n"));
     assert_eq!(fs::read(place.at("a.csv")).expect("the old one"), b"old");
     assert_eq!(place.entries(), (vec!["a.csv".into(), "a.csv.partial".into()], Vec::new()), "nothing else");
-    // Nor is what is kept ever overwritten.
+    // A kept part is never overwritten.
     let again = place.shell(FULL, &["run", "euler-top", "--samples", "999", "-o", "a.csv"]);
     assert_eq!(again.status.code(), Some(6));
     assert!(fs::read(place.at("a.csv.partial")).expect("a part") == part);
-    // Of a picture, half is nothing.
+    // Part of a picture is of no use, and is not kept.
     let output = place.shell(FULL, &["run", "euler-top", "--plot", "a.png"]);
     let message = "pc: cannot write a.png\n  because: File too large (os error 27)\n";
     assert!(output.status.code() == Some(6) && said(&output).ends_with(message), "{}", said(&output));
 }
 
 #[test]
-fn a_result_that_cannot_be_written_through_is_kept_elsewhere() {
+fn a_result_that_a_device_refuses_is_kept_elsewhere() {
     let place = Place::new();
     symlink("/dev/full", place.at("a.csv")).expect("a link");
     let output = place.pc(&["run", "euler-top", "-o", "a.csv"]).output().expect("pc starts");
@@ -205,7 +206,7 @@ fn a_result_that_cannot_be_written_through_is_kept_elsewhere() {
     assert!(fs::read(&file).expect("a table") == table(&place, &[]));
 }
 
-/// As after a directory was removed, or mounted elsewhere, while a motion was integrated.
+/// The directory is removed while the program runs.
 #[test]
 fn a_result_whose_directory_has_gone_is_kept_elsewhere() {
     let place = Place::new();
@@ -214,7 +215,7 @@ fn a_result_whose_directory_has_gone_is_kept_elsewhere() {
     let model = place.name("model");
     let child =
         place.pc(&["run", &model, "-o", "gone/a.json"]).stderr(Stdio::piped()).spawn().expect("pc starts");
-    // Opened once pc reads it, which is after it has looked at where the result is to be.
+    // This opens once pc reads the FIFO, after it has examined the place of the result.
     let mut fifo = File::create(&model).expect("a FIFO");
     fs::remove_dir_all(place.at("gone")).expect("removed");
     let text = "[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n[simulation]\nt_end = 1.0\n";
@@ -232,7 +233,7 @@ fn a_result_whose_directory_has_gone_is_kept_elsewhere() {
 }
 
 #[test]
-fn a_sweep_on_a_full_disk_goes_on_later() {
+fn a_sweep_on_a_full_disk_continues_later() {
     let place = Place::new();
     let sweep =
         ["sweep", "euler-top", "--vary", "I1=1:2:200", "--t-end", "1", "--threads", "1", "-o", "a.csv"];
@@ -263,11 +264,11 @@ fn files_of_a_killed_run_are_removed_by_the_next_one() {
         fs::write(place.at(name), "t,").expect("written");
     }
     let other = File::open(place.at(in_use)).expect("a file");
-    other.lock().expect("as a run does that goes on");
+    other.lock().expect("the lock of a live run");
     assert!(place.pc(&["run", "euler-top", "-o", "a.csv"]).status().expect("pc").success());
     assert_eq!(place.entries().0, [in_use, of_somebody, of_another, "a.csv"]);
     drop(other);
-    // A name as long as names can be.
+    // A name of the greatest length.
     let long = format!("{}.csv", "x".repeat(251));
     assert!(place.pc(&["run", "euler-top", "-o", &long]).status().expect("pc").success());
     assert!(place.pc(&["run", "euler-top", "-o", "a.csv"]).status().expect("pc").success());
@@ -317,7 +318,7 @@ fn endless_input_is_not_read_to_the_end() {
 }
 
 #[test]
-fn more_rows_than_there_is_memory_for_are_refused_in_advance() {
+fn rows_beyond_the_memory_limit_are_refused_in_advance() {
     let place = Place::new();
     let message = "pc: 10000000 rows of 11 numbers would take 840 MiB, more than the limit of 512 MiB; ask for fewer, give \
                    --limit-memory 840M, or for a single motion only -o FILE.csv, whose rows are written as they are computed\n";
@@ -331,7 +332,7 @@ fn more_rows_than_there_is_memory_for_are_refused_in_advance() {
     assert!(place.entries().0.is_empty());
 }
 
-/// Many rows, and less memory than they take.
+/// Many rows, with a memory limit below their size.
 const MANY: [&str; 6] = ["run", "euler-top", "--samples", "200000", "--limit-memory", "16M"];
 
 #[test]
@@ -350,7 +351,7 @@ fn rows_beyond_the_memory_limit_are_written_during_the_run() {
     assert_eq!(without_work(&given), without_work(&held));
 }
 
-/// The ending and the last row of one that an event ends, and of one that fails.
+/// The ending and the last row of a motion that an event ends, and of one that fails.
 #[test]
 fn rows_written_during_the_run_end_with_the_motion() {
     let place = Place::new();
@@ -382,7 +383,7 @@ fn rows_written_during_the_run_are_kept_on_a_full_disk() {
 }
 
 #[test]
-fn a_run_killed_while_it_writes_leaves_nothing_after_the_next_one() {
+fn leftovers_of_a_run_killed_while_writing_are_removed_by_the_next_one() {
     let place = Place::new();
     let run = ["run", "euler-top", "--samples", "9000000", "-o", "a.csv"];
     fs::write(place.at("a.csv"), "old").expect("written");
@@ -390,7 +391,7 @@ fn a_run_killed_while_it_writes_leaves_nothing_after_the_next_one() {
     for _ in 0..5 {
         let mut child = place.pc(&run).stderr(Stdio::null()).spawn().expect("pc starts");
         let start = std::time::Instant::now();
-        // The one before has been removed, and there is another one with rows in it: an empty one only tries the directory.
+        // Wait until a new file contains rows: an empty one only tries the directory.
         while !place.entries().0.iter().any(|name| !before.contains(name) && place.has_bytes(name)) {
             assert!(start.elapsed().as_secs() < 60, "nothing happens");
             std::thread::sleep(std::time::Duration::from_millis(2));

@@ -1,4 +1,4 @@
-//! The forms of the equations from the command line: what is asked for, shown, written, and refused.
+//! The forms of the equations on the command line: printed, run, written as source, and refused.
 
 #![expect(clippy::expect_used, reason = "tests")]
 
@@ -49,8 +49,8 @@ fn forms_are_printed_under_their_names() {
     }
 }
 
-/// The columns are the model's whatever the form, but for what a reduced form is without; and each run is compared with a second
-/// derivation.
+/// All forms have the columns of the model, except the coordinates that a reduced form lacks; each
+/// run is compared with a second derivation.
 #[test]
 fn runs_show_the_columns_of_the_model() {
     let sleigh = ["run", "chaplygin-sleigh", "--samples", "3"];
@@ -77,7 +77,7 @@ fn runs_show_the_columns_of_the_model() {
         assert_eq!(own[1], first, "{own:?}");
         for (name, value) in own.iter().zip(last) {
             let expected = if name == "p" { of("v") + 2.0 * of("ω") } else { of(name) };
-            // Errors of some 1e-9 a step.
+            // Errors of about 1e-9 per step.
             assert!((value - expected).abs() < 1e-6, "{more:?}: {name} is {value}, not {expected}");
         }
     }
@@ -128,7 +128,7 @@ fn senseless_requests_are_refused() {
     refused(&["derive", "relativistic-particle", "--form", "orthonormal"], 4, "L is not quadratic");
 }
 
-/// A planet whose file asks for its velocities along and across the radius.
+/// A planet whose file gives the velocities along and across the radius as quasi-velocities.
 const PLANET: &str = "[coordinates]\nr = 1.0\n\"φ\" = 0.0\n[quasi_velocities]\n\"φ'\" = 1.1\n[lagrangian]\n\
                       kinetic = \"(r'^2 + r^2*φ'^2)/2\"\npotential = \"-1/r\"\n[simulation]\nt_end = 1.0\nsamples = 2\n";
 
@@ -138,7 +138,7 @@ fn file(directory: &tempfile::TempDir, text: &str) -> String {
     path.display().to_string()
 }
 
-/// `form` and `hamel` of a file are those of `derive` and `run`; the command line goes first.
+/// `derive` and `run` take `form` and `hamel` of a file; the command line has precedence.
 #[test]
 fn a_file_says_its_form() {
     let directory = tempfile::tempdir().expect("a directory");
@@ -168,7 +168,7 @@ fn a_file_says_its_form() {
     }
 }
 
-/// `independent` of a file is `--independent`, which goes first.
+/// `independent` of a file has the effect of `--independent`, which has precedence.
 #[test]
 fn a_file_says_its_independent_velocities() {
     let text = include_str!("../../pc-model/models/carriage.toml");

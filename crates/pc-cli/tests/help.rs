@@ -1,4 +1,4 @@
-//! Help, completions, manual pages, the version: what the program says of itself.
+//! Help, completions, manual pages and the version.
 
 use std::fs;
 use std::process::{Command, Output, Stdio};
@@ -27,7 +27,7 @@ fn commands() -> Vec<String> {
     names.get_subcommands().map(|command| command.get_name().to_owned()).collect()
 }
 
-/// The words of a command of a shell: quotes group, `|`, `>` and `#` end it.
+/// The words of a shell command: quotes group; `|`, `>` and `#` end it.
 fn words(line: &str) -> Vec<String> {
     let (mut words, mut word, mut quoted) = (Vec::new(), String::new(), false);
     for c in line.chars() {
@@ -61,7 +61,7 @@ fn the_help_of_each_command_has_examples_that_are_understood() {
     }
 }
 
-/// In a directory with the files that they read, those examples that no other program takes part in do what they say.
+/// The examples without other programs succeed in a directory with the files that they read.
 #[cfg(unix)]
 #[test]
 fn the_examples_run() {
@@ -93,9 +93,8 @@ fn the_examples_run() {
     assert!(count > 30, "{count} examples");
 }
 
-/// Nothing but a terminal gets colours.
 #[test]
-fn what_is_not_a_terminal_gets_no_colours() {
+fn only_terminals_get_colours() {
     for arguments in [&["--help"][..], &["run", "--help"], &["run"], &["nonsense"], &["check", "euler-top"]] {
         let output = pc(arguments);
         assert!(!output.stdout.contains(&0x1b) && !output.stderr.contains(&0x1b), "{arguments:?}");
@@ -115,7 +114,7 @@ fn completions_know_every_command() {
     assert_eq!(pc(&["completions", "tcsh"]).status.code(), Some(2));
 }
 
-/// The shell itself reads the script, and completes by it.
+/// Bash reads the script and completes by it.
 #[cfg(unix)]
 #[test]
 fn bash_completes() {

@@ -1,4 +1,5 @@
-//! Zeros that are hard to see: no pivot, no bracket and no branch may be made of what rounding leaves of them.
+//! Expressions that vanish identically but not visibly: their rounding errors must not become
+//! pivots, brackets or branches.
 
 use std::process::{Command, Output};
 
@@ -11,7 +12,7 @@ fn pc(command: &str, model: &str, options: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_pc")).arg(command).arg(&path).args(options).output().expect("pc runs")
 }
 
-/// The columns of a run that ends well, and its last row.
+/// The columns of a run that succeeds, with its last row.
 fn end(model: &str, options: &[&str]) -> Vec<(String, f64)> {
     let directory = tempfile::tempdir().expect("a directory");
     let kept = directory.path().join("run.json");
@@ -28,7 +29,8 @@ fn at(row: &[(String, f64)], name: &str) -> f64 {
     row.iter().find(|(known, _)| known == name).unwrap_or_else(|| panic!("no {name} in {row:?}")).1
 }
 
-/// Operators ∂_q and r(q) ∂_q + p ∂_h, with another coordinate z = f(q) carried along or not.
+/// Operators ∂_q and r(q) ∂_q + p ∂_h, with or without a further coordinate z = f(q) that follows
+/// q.
 fn carried(r: &str, z: Option<(&str, &str)>) -> String {
     let (start, rate) = z.map_or((String::new(), String::new()), |(start, slope)| {
         (format!("z = \"{start}\""), format!("z = \"({slope})*(w1 + {r}*w2)\""))
@@ -40,7 +42,8 @@ fn carried(r: &str, z: Option<(&str, &str)>) -> String {
     )
 }
 
-/// [X_1, X_2] = r'(q) X_1, whatever is carried along with q: minors that vanish with roots, sizes and powers of q in them.
+/// [X_1, X_2] = r'(q) X_1, whatever coordinate follows q: the minors that vanish contain roots,
+/// absolute values and powers of q.
 #[test]
 fn a_coordinate_that_follows_changes_no_bracket() {
     for (r, start, slope) in [
@@ -54,7 +57,7 @@ fn a_coordinate_that_follows_changes_no_bracket() {
         let (with, without) = (end(&carried(r, Some((start, slope))), &[]), end(&carried(r, None), &[]));
         for name in ["q", "h", "w1", "w2"] {
             let (found, expected) = (at(&with, name), at(&without, name));
-            // a hundred times the tolerance, for some hundred steps
+            // a hundred times the tolerance, for a few hundred steps
             assert!((found - expected).abs() < 1e-10, "{r}, {slope}: {name} = {found}, not {expected}");
         }
     }
@@ -63,7 +66,8 @@ fn a_coordinate_that_follows_changes_no_bracket() {
     assert!(printed.contains("[w1, w2] = (1/(2 sqrt(q))) w1\n"), "{printed}");
 }
 
-/// The reaction of h' = 0 is that of the system without the coordinate z = 1.08… cos q, which is carried along.
+/// The reaction of h' = 0 is the same with and without the coordinate z = 1.08… cos q, which
+/// follows q.
 #[test]
 fn a_coordinate_that_follows_changes_no_reaction() {
     let model = |start: &str, rate: &str| {
@@ -86,8 +90,8 @@ fn a_coordinate_that_follows_changes_no_reaction() {
     assert!((at(&with, "λ_k") + 0.02606198).abs() < 1e-8, "{with:?}"); // the digits given
 }
 
-/// A diagonally dominant frame of the order n, its coordinates named in the order given; many minors of it vanish at the start
-/// and on the way, the matrix nowhere.
+/// A diagonally dominant frame of order n, with coordinates in the order given; many of its minors
+/// vanish at the start and along the motion, but the matrix is regular everywhere.
 fn dominant(n: usize, order: &[usize]) -> String {
     let mut model = "[coordinates]\n".to_owned();
     order.iter().for_each(|i| model += &format!("x{i} = {}\n", 0.1 * (i % 3) as f64));
@@ -108,7 +112,7 @@ fn dominant(n: usize, order: &[usize]) -> String {
 }
 
 #[test]
-fn a_frame_is_regular_where_its_matrix_is_on_every_surface_that_is_crossed() {
+fn a_frame_is_regular_where_its_minors_vanish() {
     for n in [5, 6] {
         let there: Vec<usize> = (0..n).collect();
         let back: Vec<usize> = (0..n).rev().collect();
@@ -116,7 +120,7 @@ fn a_frame_is_regular_where_its_matrix_is_on_every_surface_that_is_crossed() {
         for i in 0..n {
             for name in [format!("x{i}"), format!("w{i}")] {
                 let (found, expected) = (at(&there, &name), at(&back, &name));
-                // local errors of 1e-12 in some hundred steps, of a motion through several turns
+                // local errors of 1e-12 in a few hundred steps, over several turns
                 assert!((found - expected).abs() < 1e-8, "{name} = {found}, not {expected}");
             }
         }
@@ -125,7 +129,7 @@ fn a_frame_is_regular_where_its_matrix_is_on_every_surface_that_is_crossed() {
     }
 }
 
-/// A crank with an axle tilted by an angle that is written as a number.
+/// A crank whose axle is tilted by an angle written as a number.
 fn crank(sign: &str) -> String {
     format!(
         "[coordinates]\nphi = 0.0\n[quasi_velocities]\n\"phi'\" = 1.0\n[bodies.crank]\nmass = 1.0\n\
@@ -155,7 +159,7 @@ fn a_rotation_may_have_an_angle_that_is_a_number() {
     assert!(refused.status.code() == Some(4) && text.contains("is a reflection"), "{text}");
 }
 
-/// A ball that falls on an elastic ground, F = 1000 (−y)^{3/2} below 0.
+/// A ball that falls on elastic ground, F = 1000 (−y)^{3/2} below 0.
 fn ball(written: &str) -> String {
     format!(
         "[coordinates]\ny = 1.0\n[definitions]\ndepth = \"(-y)^1.5\"\n[lagrangian]\nkinetic = \"y'^2/2\"\n{written}\n\
@@ -163,7 +167,7 @@ fn ball(written: &str) -> String {
     )
 }
 
-/// v² = 2 (E − g y) where it rises, and no branch that is not taken is asked.
+/// While the ball rises, v² = 2 (E − g y); branches that are not taken are not evaluated.
 #[test]
 fn a_guarded_force_is_evaluated_below_the_ground_only() {
     let force = |y: &str| format!("potential = \"9.81*y\"\n[forces]\ny = \"{y}\"");

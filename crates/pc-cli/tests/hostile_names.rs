@@ -1,4 +1,4 @@
-//! Titles and labels that would be something else where they are printed, if they could.
+//! Titles and labels with characters that have a meaning in the output formats.
 
 use std::fs;
 use std::path::Path;
@@ -6,15 +6,16 @@ use std::process::{Command, Output};
 
 use pc_model::document::is_hidden;
 
-/// Ends comments, lines and tags, moves the cursor, and turns the direction of writing.
+/// A title that would end comments, lines and tags, move the cursor, and reverse the direction of
+/// writing.
 const TITLE: &str =
     r#"a\n\\input{secret}\r\n%*/ </text><script>&amp;\" ??/\n#error\\\u001b[31m\u009b2J\u202e"#;
 
-/// The same as it is.
+/// The title as the reader sees it, without the escapes of TOML.
 const PLAIN: &str =
     "a\n\\input{secret}\r\n%*/ </text><script>&amp;\" ??/\n#error\\\u{1b}[31m\u{9b}2J\u{202e}";
 
-/// What vanishes has a label with what separates columns, ends groups and leads to other directories.
+/// A label of a constraint that would separate columns, end groups and lead to other directories.
 const LABEL: &str = r#"rod,\"=}$\\input{x}%&#^~</text>/../../x"#;
 
 fn model(title: &str, label: &str) -> String {
@@ -28,7 +29,7 @@ fn pc(directory: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_pc")).args(arguments).current_dir(directory).output().expect("pc starts")
 }
 
-/// What is printed, on standard output and standard error.
+/// The text on standard output and on standard error.
 #[track_caller]
 fn printed(directory: &Path, arguments: &[&str]) -> (String, String) {
     let output = pc(directory, arguments);
@@ -59,7 +60,7 @@ fn a_title_is_printed_on_one_line() {
     }
     let (_, said) = printed(directory.path(), &["sweep", "m.toml", "--vary", "y'=0:0:1", "-o", "a.csv"]);
     assert!(said.starts_with(SHOWN), "{said}");
-    // A message shows the text that is wrong.
+    // An error message shows the wrong text.
     let wrong = model(TITLE, LABEL).replace("potential = \"y\"", "potential = \"\u{9b}2J\"");
     fs::write(directory.path().join("wrong.toml"), wrong).expect("written");
     let output = pc(directory.path(), &["check", "wrong.toml"]);
@@ -91,7 +92,7 @@ fn latex_inputs_nothing() {
         let live: Vec<&str> = page.lines().filter(|line| !line.starts_with('%')).collect();
         let live = live.join("\n");
         assert!(!live.contains("\\input") && !live.contains("<script>"), "{live}");
-        // In what is set each group is closed, and no character is one of another kind.
+        // Each group is closed, and special characters are escaped.
         let (mut depth, mut escaped) = (0i32, false);
         for c in live.chars() {
             match c {

@@ -1,4 +1,5 @@
-//! `pc import`: robots in URDF move as the same written by hand, and what is wrong is shown with its place.
+//! `pc import`: robots in URDF move like the same models written by hand, and errors are shown with
+//! their place.
 
 #![expect(clippy::unwrap_used, reason = "tests")]
 
@@ -36,7 +37,7 @@ fn rates(flow: &mut Flow, state: &[f64]) -> Vec<f64> {
 fn alike(one: &[f64], two: &[f64]) {
     assert_eq!(one.len(), two.len());
     let apart = one.iter().zip(two).map(|(a, b)| (a - b).abs() / a.abs().max(1.0)).fold(0.0, f64::max);
-    // Rounding of some hundred operations, of a mass matrix with a condition number of 1e4.
+    // Rounding of a few hundred operations, with a mass matrix of condition number 1e4.
     assert!(apart < 1e-10, "{apart}\n{one:?}\n{two:?}");
 }
 
@@ -70,7 +71,8 @@ fn body(name: &str, mass: f64, position: &[String; 3], inertia: &str, r: &Matrix
     )
 }
 
-/// The arm by positions: its inertias along their own axes, its elbow by Rodrigues' formula, its rotation by roll, pitch and yaw.
+/// The arm by positions: inertias along their principal axes, the elbow by Rodrigues' formula,
+/// rotations by roll, pitch and yaw.
 fn arm_by_hand() -> String {
     let a = matrix([["cos(a)", "-sin(a)", "0"], ["sin(a)", "cos(a)", "0"], ["0", "0", "1"]]);
     let yaw = matrix([["cos(0.2)", "sin(0.2)", "0"], ["-sin(0.2)", "cos(0.2)", "0"], ["0", "0", "1"]]);
@@ -148,13 +150,13 @@ fn a_rover_moves_as_by_hand() {
     assert_eq!(urdf.start, hand.start);
     let mut state = urdf.start.clone();
     for (i, component) in state.iter_mut().enumerate() {
-        // Quaternions stay what they are: components 3 to 6 and 11 to 14.
+        // The components of quaternions, 3 to 6 and 11 to 14, stay unchanged.
         if !(3..7).contains(&i) && !(11..15).contains(&i) {
             *component += (i as f64 + 1.0).sin();
         }
     }
     alike(&rates(&mut urdf, &state), &rates(&mut hand, &state));
-    // Standing still, the hull has no coordinates.
+    // A fixed hull has no coordinates.
     assert_eq!(flow(&imported("rover", false).0).start.len(), urdf.start.len() - 13);
 }
 
@@ -177,7 +179,7 @@ fn the_program_writes_what_the_library_makes() {
 
 const LINK: &str = "<link name=\"a\"><inertial><mass value=\"1\"/>\n<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>\n";
 
-/// What stands in the robot, and the message.
+/// A text that occurs in the robot, and the message.
 const REFUSED: &[(&str, &str)] = &[
     (
         "<robot><link name='a'></robot>",

@@ -1,4 +1,4 @@
-//! Motions that stay on their constraints, whatever rounding leaves of these.
+//! Motions that stay on their constraints in spite of rounding errors of different sizes.
 
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
@@ -15,7 +15,7 @@ fn run(model: &str, arguments: &[&str]) -> Output {
     child.wait_with_output().expect("pc ends")
 }
 
-/// The columns and rows of a run that comes to its end.
+/// The columns and rows of a run that succeeds.
 #[track_caller]
 fn table(model: &str, arguments: &[&str]) -> (Vec<String>, Vec<Vec<f64>>) {
     let output = run(model, arguments);
@@ -45,8 +45,8 @@ fn a_bicycle_rides_at_every_speed() {
     let directory = tempfile::tempdir().expect("a directory");
     let [model, table] = ["bicycle.toml", "speeds.csv"].map(|name| directory.path().join(name));
     std::fs::write(&model, BICYCLE).expect("written");
-    // The error of the integration in some hundred steps: it scatters from speed to speed by ten times and more, and falls
-    // with the tolerance, as what a projection lost would not.
+    // The error of the integration in a few hundred steps: it varies with the speed by a factor of
+    // ten and more, and decreases with the tolerance, which an error of the projection would not.
     for (tolerance, bound) in [("1e-9", 1e-8), ("1e-11", 1e-10)] {
         let mut sweep = Command::new(env!("CARGO_BIN_EXE_pc"));
         sweep.arg("sweep").arg(&model).args(["--vary", "v0=4:6:41", "--rtol", tolerance, "-o"]).arg(&table);
@@ -65,7 +65,8 @@ fn a_bicycle_rides_at_every_speed() {
     }
 }
 
-/// 5e-324 is no multiple of itself: 0.56 x' cannot be made zero by a step of Newton's method.
+/// At 5e-324, the smallest number, products are rounded so coarsely that no step of Newton's method
+/// makes 0.56 x' vanish.
 #[test]
 fn the_smallest_number_counts_as_rounding() {
     let model = |c: &str, start: &str, other: &str| {
@@ -82,12 +83,12 @@ fn the_smallest_number_counts_as_rounding() {
         ("3", "2e-310", "5e-324"),
     ] {
         let (_, rows) = table(&model(c, start, other), &[]);
-        let way = (rows[1][2] - rows[0][4]).abs(); // of a few steps, each rounded once
+        let way = (rows[1][2] - rows[0][4]).abs(); // a few steps, each with one rounding
         assert!(rows[1][1].abs() < 1e-300 && way <= 1e-14 * rows[0][4], "{c}, {start}: {rows:?}");
     }
 }
 
-/// Where nothing moves, what the equations leave of accelerations is rounding, and the energy can be kept.
+/// At rest, the computed accelerations are only rounding, and the energy can be kept.
 #[test]
 fn energy_is_kept_where_its_rate_is_only_rounding() {
     let still = "[quasi_velocities]\nw1 = 0.0\nw2 = 0.19879861614865244\nw3 = 0.22336923162769937\n[algebra]\n\
@@ -99,23 +100,23 @@ fn energy_is_kept_where_its_rate_is_only_rounding() {
             assert!((value - start).abs() < 1e-15, "{row:?}"); // a few roundings
         }
     }
-    // A rate of that size that is no rounding is one.
+    // A true rate of that size counts.
     let slow = "[coordinates]\nx = 1.0\n[quasi_velocities]\n\"x'\" = 7e-19\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
                 [integrals]\nplace = \"x\"\n[simulation]\nt_end = 1.0\n";
     assert_eq!(run(slow, &["--project", "place"]).status.code(), Some(4));
 }
 
-/// A bead on a circle that is slowed down where it passes a place.
+/// A bead on a circle that is slowed down where it passes `place`.
 const BRAKED: &str = "[parameters]\nplace = 0.3\n[coordinates]\nx = 0.6\ny = -0.8\n[constraints]\ncircle = \"x^2 + y^2 - 1\"\n\
                       [lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential = \"y\"\n[events.brake]\nwhen = \"x - place\"\n\
                       reset = { \"x'\" = \"0.5*x'\" }\n[simulation]\nt_end = 2.0\nsamples = 2\n";
 
-/// The projection that a reset ends with leaves the bead at the place, on the side where it is: no form and no place makes it
-/// pass twice.
+/// The projection after a reset leaves the bead on its side of the place, so that it passes only
+/// once, in all forms and for all places.
 #[test]
 fn a_reset_under_constraints_occurs_once() {
     let (_, rows) = table(BRAKED, &["--form", "canonical"]);
-    // x and x' by an integration in the angle.
+    // The expected x and x' are from an integration in the angle.
     assert!((rows[1][1] + 0.042_565_8).abs() < 1e-7 && (rows[1][3] + 0.425_942_7).abs() < 1e-7, "{rows:?}");
     for i in 0..49 {
         let place = format!("place={}", 0.05 + 0.01 * f64::from(i));
@@ -135,8 +136,9 @@ const SPHERE: &str = "[parameters]\ng = 1.0\n[coordinates]\nx = 0.0\ny = 0.6\nz 
                       \"y'\" = 2.4\n\"z'\" = -1.8\n[constraints]\nsphere = \"x^2 + y^2 + z^2 - 1\"\n[lagrangian]\n\
                       kinetic = \"(x'^2 + y'^2 + z'^2)/2\"\npotential = \"g*z\"\n[simulation]\nt_end = 12.0\nsamples = 49\n";
 
-/// No two of the three velocities are independent everywhere on a sphere, and a motion crosses all three great circles; in
-/// momenta it is the same motion, by each method and with any of the integrals kept.
+/// No two of the three velocities are independent everywhere on a sphere, and the motion crosses
+/// all three great circles where a choice fails; in momenta it is the same motion, by each method
+/// and with any integral kept.
 #[test]
 fn momenta_cross_where_any_choice_of_velocities_fails() {
     for arguments in [&["--rtol", "1e-12"][..], &["--rtol", "1e-12", "--set", "g=0"]] {
@@ -148,7 +150,8 @@ fn momenta_cross_where_any_choice_of_velocities_fails() {
         for more in [&["--form", "canonical"][..], &["--form", "canonical", "--project", "energy"]] {
             let momenta = table(SPHERE, &[arguments, more].concat());
             assert_eq!(usual.0, momenta.0);
-            // After several turns past the poles the errors of either are 1e4 times the tolerances, and fall with them.
+            // After several turns past the poles the errors of both are 1e4 times the tolerances,
+            // and decrease with them.
             agree(&usual.1, &momenta.1, 1e-7);
             for row in &momenta.1 {
                 let radius = row[1].hypot(row[2]).hypot(row[3]);

@@ -1,4 +1,4 @@
-//! Models of thousands of coordinates that have little to do with each other.
+//! Models with thousands of weakly coupled coordinates.
 
 #![cfg(target_os = "linux")]
 
@@ -19,7 +19,8 @@ fn oscillators(n: usize, coupled: bool) -> String {
     )
 }
 
-/// With n × n matrices of expressions, of which there are several, 2000 coordinates take more than a gigabyte.
+/// Several dense n × n matrices of expressions would take more than a gigabyte for 2000
+/// coordinates.
 #[test]
 fn memory_is_that_of_what_is_not_zero() {
     let place = tempfile::tempdir().expect("a directory");

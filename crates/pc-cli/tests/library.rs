@@ -1,4 +1,4 @@
-//! What the C library prints is what `pc derive` prints.
+//! The C library prints the same equations as `pc derive`.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -38,7 +38,7 @@ fn printed(model: &str, form: pc_form, format: pc_format) -> Option<String> {
     }
 }
 
-/// Free, under constraints of every kind, with bodies, not quadratic.
+/// Models that are free, under constraints of every kind, with bodies, or with L not quadratic.
 #[test]
 fn the_library_prints_what_the_program_prints() {
     let models = [

@@ -11,7 +11,7 @@ fn run(arguments: &[&str], directory: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_pc")).args(arguments).current_dir(directory).output().expect("pc starts")
 }
 
-/// What is said of the text of a model, with the exit code.
+/// The exit code and output for a model text.
 fn said_of(model: &str, command: &str, arguments: &[&str]) -> (i32, String) {
     let directory = tempfile::tempdir().expect("a directory");
     fs::write(directory.path().join("model.toml"), model).expect("written");
@@ -88,7 +88,7 @@ fn a_pole_on_a_cart() {
 #[test]
 fn a_pole_on_a_cart_for_programs() {
     let text = said(CART_POLE, "linearize", &["--hold", "x'", "--cyclic", "drop", "--format", "json"]);
-    // The last digits are those of a processor.
+    // The last digits depend on the processor.
     let object = rounded(serde_json::from_str(&text).expect("JSON"));
     insta::assert_snapshot!(object);
 }
@@ -146,7 +146,7 @@ fn the_equilibria_of_a_bead_for_programs() {
     assert_eq!(table.lines().count(), 5);
 }
 
-/// The examples of the page, by the program itself.
+/// The examples of the page show what the program prints.
 #[test]
 fn the_page_shows_the_output_of_the_program() {
     let page = include_str!("../../../docs/linearization.md");
@@ -171,7 +171,8 @@ fn the_page_shows_the_output_of_the_program() {
     assert_eq!(examples, 2);
 }
 
-/// At Ω² = g the bottom loses its stability: λ² = Ω² − g there, beside it −(Ω² − g²/Ω²).
+/// At Ω² = g the bottom loses its stability: λ² = Ω² − g at the bottom, λ² = −(Ω² − g²/Ω²) at the
+/// tilted equilibrium.
 #[test]
 fn a_pitchfork_over_the_rate_of_the_hoop() {
     let text = said(BEAD, "linearize", &["--set", "θ=0", "--vary", "Ω=0:2:5", "--format", "csv"]);
@@ -190,7 +191,7 @@ fn a_pitchfork_over_the_rate_of_the_hoop() {
     assert!((frequency - 3.75f64.sqrt()).abs() < 1e-13, "{frequency}");
 }
 
-/// A part without an equilibrium is a gap, and is said.
+/// Values without an equilibrium are gaps, and are reported.
 #[test]
 fn values_without_an_equilibrium_are_gaps() {
     let pulled = BEAD
@@ -222,7 +223,7 @@ fn files_contain_the_same_numbers() {
     let json: Value = serde_json::from_slice(&write("a.json")).expect("JSON");
     assert_eq!(json["A"][3][1].as_f64().map(|a| (a * 1e9).round()), Some(15.625e9));
     assert!(String::from_utf8(write("a.csv")).expect("UTF-8").contains("A,θ',θ,1.562"));
-    // The number stands in both archives, by rows and by columns.
+    // Both archives contain the number, by rows and by columns.
     let number = json["A"][3][1].as_f64().expect("a number").to_le_bytes();
     for file in ["a.npz", "a.mat"] {
         let bytes = write(file);
@@ -286,7 +287,8 @@ fn what_is_not_defined_is_refused_with_a_cure() {
     assert!(missing.contains("--vary"), "{missing}");
 }
 
-/// A pendulum in Cartesian coordinates hangs with −x g/l for its acceleration, whatever holds it.
+/// A pendulum in Cartesian coordinates has the acceleration −x g/l near the bottom, however it is
+/// held.
 #[test]
 fn constraints_reduce_the_state() {
     let pendulum = r#"

@@ -1,4 +1,4 @@
-//! Equations of mechanisms in print: nothing left out, lines that fit, names before their use.
+//! Printed equations of mechanisms: complete, in lines that fit, with names before their use.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -27,13 +27,13 @@ fn mechanisms() -> impl Iterator<Item = PathBuf> {
         .map(mechanism)
 }
 
-/// What stands under a heading, without indentation.
+/// The lines under a heading, without indentation.
 fn section(text: &str, heading: &str) -> String {
     let lines = text.lines().skip_while(|&line| line != heading).skip(1).take_while(|line| !line.is_empty());
     lines.map(|line| format!("{}\n", line.trim())).collect()
 }
 
-/// z and a number.
+/// Whether a word is z and a number.
 fn is_named(word: &str) -> bool {
     word.strip_prefix('z').is_some_and(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit()))
 }
@@ -70,7 +70,7 @@ fn lines_fit_and_names_stand_before_their_use() {
 }
 
 #[test]
-fn lines_are_as_wide_as_asked() {
+fn lines_have_the_requested_width() {
     let text = derived(&mechanism("squeezer"), &["--width", "72"]).expect("equations");
     let widest = text.lines().skip(2).map(|line| line.chars().count()).max();
     assert!(widest <= Some(72), "{widest:?}");
@@ -88,7 +88,8 @@ fn the_rates_of_a_four_bar_linkage() {
     );
 }
 
-/// Those of the joints of an arm, by the same law, from the velocity of its tool along a wall and the turn of its last link.
+/// The rates of the joints of an arm, by the same law, from the velocity of its tool along a wall
+/// and the rotation of its last link.
 #[test]
 fn the_rates_of_an_arm_with_its_tool_on_a_wall() {
     let text = derived(&mechanism("arm-on-wall"), &[]).expect("equations");
@@ -117,7 +118,7 @@ fn definitions_keep_their_names_unless_written_out() {
     assert!(!inline.contains("γ3") && inline.contains("r2 mg cos(θ)"), "{inline}");
 }
 
-/// Where LaTeX is installed.
+/// Tested where LaTeX is installed.
 #[test]
 fn latex_takes_all_pages() {
     if Command::new("pdflatex").arg("--version").output().is_err() {

@@ -1,4 +1,4 @@
-//! `--method` of `pc run` and `pc sweep`: what ran, and why.
+//! `--method` of `pc run` and `pc sweep`.
 
 use std::fs;
 use std::process::{Command, Output};
@@ -7,7 +7,7 @@ fn pc(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_pc")).args(arguments).output().expect("pc starts")
 }
 
-/// What is said on standard error of a command that ends with this code.
+/// Standard error of a command that ends with this code.
 fn said(output: &Output, code: i32) -> String {
     let text = String::from_utf8(output.stderr.clone()).expect("UTF-8");
     assert_eq!(output.status.code(), Some(code), "{text}");
@@ -54,7 +54,7 @@ fn all_methods_come_to_the_same_end() {
     let adams = end("adams");
     for method in ["bdf", "dop853", "taylor", "auto"] {
         for (found, expected) in end(method).iter().zip(&adams) {
-            // Some hundred steps of 1e-9, and of BDF a thousand.
+            // A few hundred steps with errors of 1e-9, a thousand by BDF.
             assert!((found - expected).abs() < 1e-5, "{method}: {found}, not {expected}");
         }
     }

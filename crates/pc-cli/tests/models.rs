@@ -22,7 +22,7 @@ fn names(text: &str) -> Vec<&str> {
 }
 
 #[test]
-fn models_are_chosen_by_tags_all_of_which_they_have() {
+fn models_are_chosen_that_have_all_tags() {
     for tag in TAGS {
         let listed = printed(&["models", "--tag", tag.name]);
         let wanted: Vec<&str> =
@@ -56,7 +56,7 @@ fn tags_are_listed_with_the_number_of_their_models() {
     assert_eq!(listed.lines().count(), TAGS.len());
 }
 
-/// Every model says what it is, and where it is from.
+/// Every model has a title, a description and a reference.
 #[test]
 fn the_list_for_programs_is_complete() {
     let listed: Value = serde_json::from_str(&printed(&["models", "--format", "json"])).expect("JSON");

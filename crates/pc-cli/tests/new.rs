@@ -50,7 +50,7 @@ fn each_text_is_checked_derived_and_run() {
     }
 }
 
-/// Not only without disagreement, but with states at which there was something to compare.
+/// There is no disagreement, and there were states to compare at.
 #[test]
 fn each_text_agrees_with_its_second_derivation() {
     for (kind, name) in kinds() {
@@ -62,7 +62,8 @@ fn each_text_agrees_with_its_second_derivation() {
     }
 }
 
-/// What a text claims to be conserved is: to 1e-6 of its size, a thousand times the tolerance of a step.
+/// Declared integrals are conserved to 1e-6 of their size, a thousand times the tolerance of a
+/// step.
 #[test]
 fn integrals_of_the_texts_are_integrals() {
     let directory = tempfile::tempdir().expect("a directory");
@@ -112,7 +113,7 @@ fn nothing_is_replaced() {
     assert_eq!(left, [here.join("mine.toml")], "nothing else is left");
 }
 
-/// Its name in the first line is that of the file beside it.
+/// The first line of the model names the file beside it.
 #[test]
 fn the_schema_is_written_beside_the_model_and_kept() {
     let directory = tempfile::tempdir().expect("a directory");
@@ -134,7 +135,7 @@ fn the_schema_is_written_beside_the_model_and_kept() {
 }
 
 #[test]
-fn an_unknown_kind_is_refused_with_those_there_are() {
+fn an_unknown_kind_is_refused_with_the_existing_ones() {
     let output = pc(Path::new("."), &["new", "rigidbody"]);
     assert_eq!(output.status.code(), Some(2));
     let all = "[possible values: coordinates, rigid-body, nonholonomic, joints, control]";

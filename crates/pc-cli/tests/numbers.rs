@@ -1,8 +1,8 @@
-//! The C library goes through the numbers of `pc run`.
+//! The C library gives the numbers of `pc run`.
 //!
-//! Both derive the same equations, compile them in the same way, and integrate them with the same calls of CVODE: the same
-//! operations in the same order. So states, observables, times of events and counts of the work are equal to the last bit,
-//! and that is what is demanded.
+//! Both derive the same equations, compile them in the same way, and integrate them with the same
+//! calls of CVODE: the same operations in the same order. So states, observables, times of events
+//! and counts of the work must be equal to the last bit.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -22,9 +22,10 @@ fn place(program: &[String], library: &[String], j: usize) -> Option<usize> {
     (coordinates..program.len()).find(|&k| program[k].trim_end_matches('\'') == eta)
 }
 
-/// Follows a motion in both ways and compares all there is. What the program has beside are velocities that follow from
-/// those of the state; what the library has beside, where multipliers hold constraints of positions, are velocities of the
-/// state that the text does not declare.
+/// Follows a motion in both ways and compares all common columns. The program has additional
+/// columns for velocities that follow from those of the state; where multipliers hold constraints
+/// on positions, the library has additional ones for velocities of the state that the text does not
+/// declare.
 fn compare(model: &str, asked: &Asked<'_>, further: &[&str]) -> Motion {
     let (program, settings) = by_program(model, asked, further);
     let (library, observables) = by_library(model, asked, &settings);
@@ -49,8 +50,8 @@ fn compare(model: &str, asked: &Asked<'_>, further: &[&str]) -> Motion {
     program
 }
 
-/// Models of bodies on joints: their equations are made of steps that are computed once, and which these are depends on what
-/// has been derived before, so that the last digits of the two ways differ.
+/// Models of bodies on joints: their equations consist of shared steps, whose choice depends on
+/// earlier derivations, so the last digits of the two ways differ.
 fn is_a_tree(model: &str) -> bool {
     pc_model::TREES.iter().any(|tree| tree.name == model)
 }
@@ -76,7 +77,7 @@ fn trees_of_bodies_move_alike() {
             .collect();
         assert_eq!(places.len(), library.columns.len(), "{}", tree.name);
         for (found, expected) in library.rows.iter().zip(&program.rows) {
-            // Forces of reactions are large, and as good as the largest number of a row.
+            // Reaction forces are large, and as accurate as the largest number of a row.
             let size = expected.iter().fold(1.0f64, |size, x| size.max(x.abs()));
             for &(j, k) in &places {
                 let name = &library.columns[j];
@@ -106,7 +107,7 @@ fn the_models_are_those_of_the_program() {
     assert_eq!(builtin_models(), listed);
 }
 
-/// Parameters, also in the start; what is kept; method and tolerances; backwards in time.
+/// Parameters, also in the start; kept integrals; method and tolerances; backwards in time.
 #[test]
 fn settings_mean_the_same() {
     for canonical in [false, true] {
@@ -121,7 +122,7 @@ fn settings_mean_the_same() {
     }
 }
 
-/// A start beside the constraint, not at zero, and an end by an event.
+/// A start off the constraint, at a time other than zero, and an end by an event.
 const ROD: &str = r#"
 [coordinates]
 x = 0.61

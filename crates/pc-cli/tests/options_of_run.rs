@@ -11,7 +11,7 @@ fn pc(model: &str, arguments: &[&str]) -> Output {
         .stderr(Stdio::piped())
         .spawn()
         .expect("pc starts");
-    // A wrong command line is refused before anything is read.
+    // A refused command line leaves the input unread.
     let _ = child.stdin.take().expect("a pipe").write_all(model.as_bytes());
     child.wait_with_output().expect("pc ends")
 }
@@ -43,7 +43,7 @@ t_end = 0.1
 samples = 2
 "#;
 
-/// A mass on a spring beside a first-order state, all of whose starts are of one kind for `--set`.
+/// A mass on a spring with a first-order state; `--set` treats all starts alike.
 const SPRING: &str = r#"
 [parameters]
 k = 4.0
@@ -69,7 +69,7 @@ fn set_gives_parameters_and_starts_other_values() {
     };
     assert_eq!(set(&[]), [1.0, 0.5, 4.0]);
     assert_eq!(set(&["k=9"]), [1.0, 0.5, 9.0]);
-    // A start that is set no longer follows from the parameters.
+    // A start that is set no longer depends on parameters.
     assert_eq!(set(&["x=3", "x'=-2", "z=7", "k=9"]), [3.0, -2.0, 7.0]);
     // The motion of the text with these numbers is the same, to the last digit.
     let written = SPRING.replace("x = 1.0", "x = 3.0").replace("= 0.5", "= -2.0");
@@ -85,7 +85,7 @@ fn set_gives_parameters_and_starts_other_values() {
 }
 
 #[test]
-fn a_start_that_is_moved_keeps_what_is_named() {
+fn a_moved_start_keeps_the_named_components() {
     // Newton's method ends at roundings of numbers near 1.
     let near = |a: f64, b: f64| (a - b).abs() < 1e-14;
     let kept = start(&pc(CIRCLE, &["--project-start", "--keep", "x"]));
@@ -111,8 +111,8 @@ fn times(summary: &str, event: &str) -> usize {
     rest.split(' ').next().expect("a number").parse().expect("a number")
 }
 
-/// sin 8x vanishes at x = t = kπ/8, 50 times up to 20; steps of a body that nothing moves are long. Roots are separated where the
-/// state is (x, x'), and sampled where it is in momenta.
+/// sin 8x vanishes at x = t = kπ/8, 50 times up to 20, while steps of a free body are long. Roots
+/// are separated if the state is (x, x'), and sampled if it has momenta.
 #[test]
 fn zeros_within_a_step_are_found_where_it_is_sampled_densely() {
     let model = "[coordinates]\nx = 0.0\n[quasi_velocities]\n\"x'\" = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
@@ -127,7 +127,8 @@ fn zeros_within_a_step_are_found_where_it_is_sampled_densely() {
     assert!(none.contains("--samples-per-step"), "{none}");
 }
 
-/// Flight n of a ball lasts eⁿ of the first, e = 0.5: what is left falls below a part p after log p/log e bounces or so.
+/// Flight n of a ball lasts eⁿ times the first, e = 0.5: the time left falls below the fraction p
+/// after about log p/log e bounces.
 #[test]
 fn bounces_are_followed_to_the_requested_fraction() {
     let model = "[coordinates]\ny = 1.0\n[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"9.81*y\"\n[events.bounce]\nwhen = \"y\"\n\
@@ -139,7 +140,7 @@ fn bounces_are_followed_to_the_requested_fraction() {
         times(&text, "bounce") as f64
     };
     let (coarse, fine) = (followed("1e-2"), followed("1e-6"));
-    // 1e4 more closely is log 1e4/log 2 = 13.3 bounces more.
+    // A fraction smaller by 1e4 takes log 1e4/log 2 = 13.3 more bounces.
     assert!((fine - coarse - 13.3).abs() < 1.5, "{coarse} and {fine}");
     let negative = said(&pc(model, &["--accumulation=-1"]), 2);
     assert!(negative.contains("--accumulation"), "{negative}");

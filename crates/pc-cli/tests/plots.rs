@@ -1,4 +1,4 @@
-//! Pictures of `pc run --plot` and `pc sweep --plot`: what is drawn is what moves.
+//! Pictures of `pc run --plot` and `pc sweep --plot` show the motion.
 
 use std::fs;
 use std::path::PathBuf;
@@ -24,7 +24,7 @@ impl Place {
         command.args(arguments).current_dir(self.0.path()).output().expect("pc runs")
     }
 
-    /// The picture a.svg after a command that ends well.
+    /// The picture a.svg after a command that succeeds.
     #[track_caller]
     fn picture(&self, command: &str, arguments: &[&str]) -> String {
         let output = self.pc(&[&[command, "m.toml", "--plot", "a.svg"][..], arguments].concat());
@@ -37,14 +37,14 @@ fn said(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).expect("UTF-8")
 }
 
-/// Texts of a picture, in their order.
+/// Texts of a picture, in order.
 fn texts(svg: &str) -> Vec<String> {
     let xml = Document::parse(svg).expect("XML");
     let texts = xml.descendants().filter(|node| node.has_tag_name("text"));
     texts.map(|node| node.text().unwrap_or_default().to_owned()).collect()
 }
 
-/// The points of each line of a colour; keys of a legend are lines of 18.
+/// The points of each line of a colour, without the keys of a legend, which are lines of length 18.
 fn lines(svg: &str, colour: &str) -> Vec<Vec<[f64; 2]>> {
     let xml = Document::parse(svg).expect("XML");
     let of = |node: &roxmltree::Node<'_, '_>| node.attribute("stroke") == Some(colour);
@@ -71,7 +71,7 @@ fn extent(points: &[[f64; 2]]) -> [f64; 2] {
     })
 }
 
-/// x = cos 2πt, and y slow and small.
+/// x = cos 2πt, while y is slow and small.
 const OSCILLATOR: &str = "\
 [parameters]
 k = 39.47841760435743
@@ -89,13 +89,13 @@ samples = 51
 #[test]
 fn nothing_aliases_between_the_rows() {
     let place = Place::new(OSCILLATOR);
-    // Each row is at the end of a period: all have x = 1.
+    // Each row is at the end of a period, so all have x = 1.
     let plain = place.pc(&["run", "m.toml"]).stdout;
     for method in ["adams", "dop853", "taylor", "bdf"] {
         let svg = place.picture("run", &["--method", method, "--columns", "x"]);
         let curves = lines(&svg, FIRST);
         assert_eq!(curves.len(), 1, "{method}");
-        // Of 180 points, with margins, x takes 10/11.
+        // x takes 10/11 of the 180 points, because of margins.
         let [width, height] = extent(&curves[0]);
         assert!(height > 160.0 && width > 600.0, "{method}: {width} × {height}");
         // cos 2πt vanishes twice in each of 50 periods.
@@ -131,7 +131,8 @@ fn inputs_jump_at_an_instant() {
             let svg = model.picture("run", &["--method", method, "--columns", "drive"]);
             let points = lines(&svg, FIRST).concat();
             let [width, height] = extent(&points);
-            // A rectangle: each line is level or upright, and the upright ones stand at 1/4 and 3/4 of the time.
+            // A rectangle: each line is horizontal or vertical, and the vertical ones are at 1/4
+            // and 3/4 of the time.
             let left = points.iter().map(|p| p[0]).fold(f64::MAX, f64::min);
             let mut jumps = Vec::new();
             for pair in points.windows(2) {
@@ -144,7 +145,7 @@ fn inputs_jump_at_an_instant() {
                 }
             }
             jumps.sort_by(f64::total_cmp);
-            // A hundredth, of a width above 600.
+            // A hundredth of a point, for a width above 600.
             let close = |jump: f64, at: f64| (jump - at).abs() < 1e-4;
             assert!(
                 jumps.len() == 2 && close(jumps[0], 0.25) && close(jumps[1], 0.75),
@@ -187,7 +188,7 @@ fn paths_and_portraits() {
     let svg = place.picture("run", &["--xy", "x,y"]);
     let [width, height] = extent(&lines(&svg, FIRST)[0]);
     assert!((width - height).abs() < 0.01 * width && width > 300.0, "{width} × {height}");
-    // A coordinate and its rate are not of one vector: each fills its axis.
+    // A coordinate and its rate are not components of a vector, so each fills its axis.
     let svg = place.picture("run", &["--xy", "x,x'", "--columns", "x"]);
     let curves = lines(&svg, FIRST);
     let [width, height] = extent(&curves[1]);
@@ -196,7 +197,7 @@ fn paths_and_portraits() {
 }
 
 #[test]
-fn angles_are_wrapped_where_that_is_asked_for() {
+fn angles_are_wrapped_on_request() {
     // φ = 2t turns 3.18 times.
     let place = Place::new(
         "coordinates.\"φ\" = 0.0\nquasi_velocities.\"φ'\" = 2.0\nlagrangian.kinetic = \"φ'^2/2\"\nsimulation.t_end = 10.0\n",
@@ -227,7 +228,7 @@ fn events_are_marked_and_cusps_are_sharp() {
 }
 
 #[test]
-fn of_a_motion_that_fails_what_was_reached_is_drawn() {
+fn a_motion_that_fails_is_drawn_as_far_as_it_was_reached() {
     // ẋ grows without bound before x = 1 is reached, between the first row and the second.
     let place = Place::new(
         "[coordinates]\nx = 0.0\n[quasi_velocities]\n\"x'\" = 3.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
@@ -244,7 +245,7 @@ fn of_a_motion_that_fails_what_was_reached_is_drawn() {
     assert!(extent(&lines(&svg, FIRST)[0])[0] > 600.0, "it is drawn to where it was");
 }
 
-/// Every object is where the table says, and every stream can be unpacked.
+/// Every object of the PDF is where its table says, and every stream can be unpacked.
 #[test]
 fn a_page_for_print_is_whole() {
     use std::io::Read;
@@ -274,15 +275,15 @@ fn a_page_for_print_is_whole() {
             }
         }
     }
-    // The minus and the prime of x' can be found.
+    // The minus sign and the prime of x' can be searched for.
     assert!(meanings.contains("<2212>") && meanings.contains("<0027>"), "{meanings}");
 }
 
 #[test]
-fn sweeps_are_drawn_by_what_is_varied() {
+fn sweeps_are_drawn_by_the_varied_quantities() {
     let place = Place::new(&OSCILLATOR.replace("t_end = 50.0", "t_end = 1.0"));
     let sweep = |options: &[&str]| place.picture("sweep", &[&["-o", "a.csv"], options].concat());
-    // x(1) = cos √k at √k = 1, 2, 4, …: logarithms of k.
+    // x(1) = cos √k at √k = 1, 2, 4, …: the scale of k is logarithmic.
     let svg = sweep(&["--vary", "k=1:256:5:log", "--columns", "x"]);
     let all = texts(&svg);
     assert!(
@@ -290,7 +291,7 @@ fn sweeps_are_drawn_by_what_is_varied() {
         "{all:?}"
     );
     assert!(lines(&svg, FIRST)[0].len() >= 4);
-    // A colour for each pair, beside those of the scale.
+    // A colour for each pair, besides those of the scale.
     let svg = sweep(&["--vary", "k=1:2:4", "--vary", "x=1,2,5", "--columns", "x,y"]);
     assert!(texts(&svg).contains(&"x at the end".to_owned()) && texts(&svg).contains(&"x(start)".to_owned()));
     assert_eq!(svg.matches("<rect").count(), 1 + 2 * (4 * 3 + 64));

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-/// What stands under a heading of `pc derive MODEL`.
+/// The lines under a heading of `pc derive MODEL`.
 fn section(model: &str, heading: &str) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_pc")).args(["derive", model]).output().expect("pc starts");
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
@@ -11,8 +11,8 @@ fn section(model: &str, heading: &str) -> String {
     lines.map(|line| format!("{}\n", line.trim())).collect()
 }
 
-/// From a Lagrangian in the velocities of the contact point and Euler's angles, the heading all over it [Appell 1899;
-/// Korteweg 1899]: A, C, r and m alone are left, and θ.
+/// The Lagrangian in the velocities of the contact point and Euler's angles contains the heading
+/// throughout, but the equations only θ, A, C, r and m [Appell 1899; Korteweg 1899].
 #[test]
 fn the_tilted_disk_rolls_in_three_lines() {
     assert_eq!(
@@ -33,7 +33,8 @@ fn the_tilted_disk_rolls_in_three_lines() {
     );
 }
 
-/// Newton's and Euler's equations, thrusts and torques as any book has them [Mellinger and Kumar 2011, (3), (4)].
+/// Newton's and Euler's equations with thrusts and torques in the usual form [Mellinger and Kumar
+/// 2011, (3), (4)].
 #[test]
 fn a_quadrotor_flies_by_newtons_and_eulers_equations() {
     assert_eq!(
@@ -60,7 +61,8 @@ fn a_gyroscope_in_gimbals_drifts_by_its_equations() {
     );
 }
 
-/// In momenta Ω are not needed: p_ω is the angular momentum of the whole, ṗ_ω = p_ω × ω, and each wheel has its own.
+/// In momenta, Ω does not occur: p_ω is the angular momentum of the whole, ṗ_ω = p_ω × ω, and each
+/// wheel has its own momentum.
 #[test]
 fn the_wheels_of_a_satellite_are_collected() {
     let output = Command::new(env!("CARGO_BIN_EXE_pc"))

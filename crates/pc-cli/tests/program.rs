@@ -1,4 +1,4 @@
-//! The program as it is used: exit codes, what goes where, and what is left behind.
+//! The program in use: exit codes, output streams, and files.
 
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 const HEADER: &str = "t,γ1,γ2,γ3,ω1,ω2,ω3,area,norm,spin,energy";
 
-/// A mass that falls into a centre of attraction, where its speed is infinite.
+/// A mass that falls into a centre of attraction, where its speed becomes infinite.
 const CENTRE: &str = r#"
 [coordinates]
 r = 1.0
@@ -19,7 +19,7 @@ t_end = 2.0
 samples = 21
 "#;
 
-/// A mass that falls to where the root of its height ends.
+/// A mass that falls to where the square root of its height becomes undefined.
 const WALL: &str = r#"
 [coordinates]
 x = 1.0
@@ -275,7 +275,8 @@ fn a_wrong_model_is_exit_3_and_an_inconsistent_one_4() {
     assert_eq!(code(&output), 4, "{}", stderr(&output));
 }
 
-/// The frame has rank 2 and determined brackets all the same; what fails is the energy, and it is not divided by.
+/// The frame has rank 2 and determined brackets; the error is in the kinetic energy, and is found
+/// before M is inverted.
 #[test]
 fn a_degenerate_lagrangian_is_refused() {
     let models = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/malformed");

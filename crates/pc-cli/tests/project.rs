@@ -48,7 +48,7 @@ fn integrals_are_kept_on_request() {
     assert!(drift(&plain) > 1e-6);
     let asked = pc(OSCILLATOR, &["--rtol", "1e-6", "--project", "radius"]);
     said(&asked, 0);
-    assert!(drift(&asked) < 1e-14); // some roundings of numbers below 1
+    assert!(drift(&asked) < 1e-14); // a few roundings of numbers below 1
     let written = pc(&format!("{OSCILLATOR}project = [\"radius\", \"energy\"]\n"), &["--rtol", "1e-6"]);
     said(&written, 0);
     assert!(drift(&written) < 1e-14);

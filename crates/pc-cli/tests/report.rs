@@ -1,4 +1,5 @@
-//! `pc report` and `pc animate`: pages written whole, the same each time; what is drawn is where the run says.
+//! `pc report` and `pc animate`: pages are written whole and are the same each time; drawings agree
+//! with the run.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -52,7 +53,7 @@ fn a_page_of_the_program_is_the_same_in_a_file_and_on_standard_output() {
 }
 
 #[test]
-fn what_cannot_be_shown_is_said() {
+fn missing_parts_of_a_page_are_reported() {
     let directory = tempfile::tempdir().expect("a directory");
     let model = directory.path().join("model.toml");
     let write = |end: &str| {
@@ -101,7 +102,8 @@ fn numbers(text: &str) -> Vec<f32> {
     bytes.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect()
 }
 
-/// The end of the first link of the double pendulum in the frames of the player against columns of the run.
+/// The end of the first link of the double pendulum, in the frames of the player and in columns of
+/// the run.
 #[test]
 fn frames_are_the_numbers_of_the_run() {
     let model = "double-pendulum-cartesian";
@@ -123,7 +125,7 @@ fn frames_are_the_numbers_of_the_run() {
     let column = |name: &str| rows[0].iter().position(|known| *known == name).expect("a column");
     for row in [0, 50, 100] {
         let value = |name: &str| rows[row + 1][column(name)].parse::<f64>().expect("a number") as f32;
-        // Rounded to single precision, and nothing else.
+        // Equal but for rounding to single precision.
         assert_eq!(times[row], value("t"));
         assert_eq!(
             frames[row * width + 3..row * width + 5],
@@ -134,7 +136,7 @@ fn frames_are_the_numbers_of_the_run() {
     }
 }
 
-/// The middles of the filled circles of a picture, in order.
+/// The centres of the filled circles of a picture, in order.
 fn dots(svg: &str) -> Vec<[f64; 2]> {
     let xml = parsed(svg);
     let filled = xml.descendants().filter(|node| {
@@ -155,7 +157,7 @@ fn dots(svg: &str) -> Vec<[f64; 2]> {
     filled.map(middle).collect()
 }
 
-/// A frame has the shape of the motion: lengths on paper are those of the run, all by one factor.
+/// Lengths in a frame are those of the run times one common factor.
 #[test]
 fn a_frame_is_the_motion_on_paper() {
     let directory = tempfile::tempdir().expect("a directory");
@@ -182,7 +184,7 @@ fn a_frame_is_the_motion_on_paper() {
         }
         before = Some((first, run[0]));
     }
-    // Places are written to hundredths of some hundred points.
+    // Positions up to a few hundred points are written to hundredths.
     assert!(factors.iter().all(|factor| (factor / factors[0] - 1.0).abs() < 1e-3), "{factors:?}");
 }
 
@@ -209,9 +211,9 @@ fn films_and_frames_are_written() {
     assert!(String::from_utf8_lossy(&wrong.stderr).contains("--at chooses a frame"));
 }
 
-/// Reactions are no part of what is drawn, and so nothing is said of them.
+/// Reactions are not drawn, so there is no remark on them.
 #[test]
-fn an_animation_speaks_of_what_it_shows() {
+fn an_animation_has_remarks_only_on_what_it_shows() {
     let bicycle = pc(&["animate", "whipple-bicycle", "--t-end", "0.05"]);
     assert!(bicycle.status.success());
     assert_eq!(String::from_utf8_lossy(&bicycle.stderr), "");

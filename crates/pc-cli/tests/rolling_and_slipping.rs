@@ -1,11 +1,12 @@
-//! Events under nonholonomic and rolling constraints: times in closed form, in both forms of the equations and by both methods.
+//! Events under nonholonomic and rolling constraints: times compared with closed forms, in both
+//! forms and by both methods.
 
 use std::f64::consts::TAU;
 use std::process::Command;
 
 use serde_json::Value;
 
-/// What `-o FILE.json` keeps of a run that ends well.
+/// The contents of `-o FILE.json` after a run that succeeds.
 fn kept(model: &str, options: &[&str]) -> Value {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("run.json");
@@ -16,8 +17,9 @@ fn kept(model: &str, options: &[&str]) -> Value {
     serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON")
 }
 
-/// In both forms and by both methods, and how far times may be off: local errors of 1e-13 in some thousand steps; the method
-/// of order 5 takes some times as many, and its errors are of one sign.
+/// Runs in both forms and by both methods, with a bound on the errors of times: local errors of
+/// 1e-13 in a few thousand steps; the method of order 5 takes several times as many, and its errors
+/// have one sign.
 fn sharply(model: &str, options: &[&str], check: impl Fn(&Value, f64)) {
     for form in ["poincare", "canonical"] {
         for (method, within) in [("adams", 1e-10), ("bdf", 1e-9)] {
@@ -27,7 +29,7 @@ fn sharply(model: &str, options: &[&str], check: impl Fn(&Value, f64)) {
     }
 }
 
-/// Names and times of what occurred, in order.
+/// Names and times of the events that occurred, in order.
 fn events(run: &Value) -> Vec<(&str, f64)> {
     let events = run["events"].as_array().expect("a list").iter();
     events.map(|e| (e["name"].as_str().expect("a name"), e["time"].as_f64().expect("a time"))).collect()
@@ -51,8 +53,8 @@ fn assert_close(run: &Value, expected: &[(&str, f64)], within: f64) {
     }
 }
 
-/// Straight on, drawn by a peg that moves, it is the block: slips of (2π − 2 arctan q)/ω, q = 1, ω = 1, and stops of
-/// 2 (F_s − F_k)/(k V) = 2.
+/// Going straight, pulled by a moving peg, the sleigh is the block: slips last (2π − 2 arctan q)/ω
+/// with q = ω = 1, stops 2 (F_s − F_k)/(k V) = 2.
 #[test]
 fn a_sleigh_going_straight_moves_like_the_block() {
     let straight = ["--set", "ω0=0", "--set", "a=0", "--set", "V=0.5", "--set", "Fk=0.5", "--set", "ξ0=-1"];
@@ -63,7 +65,8 @@ fn a_sleigh_going_straight_moves_like_the_block() {
     sharply("stick-slip-sleigh", &straight, |run, within| assert_close(run, &expected, within));
 }
 
-/// The sleigh that turns at an even rate, m = k = 1, a = V = 0: leg by leg, with the place of the blade along and across it.
+/// The sleigh that turns at a constant rate, m = k = 1, a = V = 0: leg by leg, in coordinates along
+/// and across the blade.
 fn turning_sleigh(
     omega: f64,
     [static_friction, friction]: [f64; 2],
@@ -74,7 +77,7 @@ fn turning_sleigh(
     let mut found = Vec::new();
     loop {
         if mode == 0.0 {
-            // ξ = R cos(ψ − ω τ) is ±F_s first.
+            // The first time at which ξ = R cos(ψ − ω τ) is ±F_s.
             let (radius, angle) = (f64::hypot(along, across), f64::atan2(across, along));
             if radius <= static_friction {
                 return found;
@@ -99,7 +102,7 @@ fn turning_sleigh(
                 let across = across - omega * far;
                 (along, across, rate * (b * cos - a * sin) - omega * across)
             };
-            // From rest the speed leaves zero in the direction of the mode, and is back once.
+            // The speed starts at zero, has the sign of the mode, and returns to zero once.
             let mut until = 1e-3;
             while place(until).2 * mode > 0.0 {
                 until += 1e-3;
@@ -121,7 +124,8 @@ fn turning_sleigh(
     }
 }
 
-/// With the constraint that makes the spring stiffer, (k/m + ω²)^½, and the sleigh turn on the spot while it sticks.
+/// The constraint makes the spring stiffer, with the frequency (k/m + ω²)^½, and the sleigh turns
+/// on the spot while it sticks.
 #[test]
 fn a_sleigh_that_turns_sticks_and_slips() {
     for (omega, friction, x0) in [(2.0, [1.0, 0.8], -3.0), (1.0, [1.0, 0.9], -4.0), (-1.0, [1.5, 1.0], -4.0)]
@@ -136,18 +140,19 @@ fn a_sleigh_that_turns_sticks_and_slips() {
     }
 }
 
-/// y = (X, Y, φ, v, ω), m = J = k = 1, a = 0.1, by Newton's and Euler's equations: what the blade rubs with is `friction`.
+/// The rates of y = (X, Y, φ, v, ω) by Newton's and Euler's equations, m = J = k = 1, a = 0.1, with
+/// this friction of the blade.
 fn sleigh(y: [f64; 5], friction: f64) -> [f64; 5] {
     let ((sin, cos), [v, omega]) = (y[2].sin_cos(), [y[3], y[4]]);
     [v * cos, v * sin, omega, pull(y) - friction, -0.1 * v * omega / 1.01]
 }
 
-/// What drives the sleigh on along the blade: the spring, and its mass centre outwards.
+/// The force along the blade: of the spring, and the centrifugal force of the mass centre.
 fn pull(y: [f64; 5]) -> f64 {
     0.1 * y[4] * y[4] - y[0] * y[2].cos() - y[1] * y[2].sin()
 }
 
-/// A step of the method of Runge and Kutta of order 4.
+/// A step of the Runge–Kutta method of order 4.
 fn step(rates: impl Fn([f64; 5]) -> [f64; 5], y: [f64; 5], h: f64) -> [f64; 5] {
     let ahead = |rate: [f64; 5], h: f64| std::array::from_fn(|i| y[i] + h * rate[i]);
     let a = rates(y);
@@ -157,14 +162,15 @@ fn step(rates: impl Fn([f64; 5]) -> [f64; 5], y: [f64; 5], h: f64) -> [f64; 5] {
     std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]))
 }
 
-/// The model as it comes: its mass centre is ahead of the blade, and what it gains along the blade it loses in turning.
+/// The model with its own parameters: the mass centre is ahead of the blade, and speed along the
+/// blade is gained from turning.
 #[test]
 fn the_mass_centre_ahead_of_the_blade() {
     const H: f64 = 1.0 / 4096.0; // H⁴ is 4e-15
     let (mut y, mut mode, mut t) = ([-3.0, 0.0, 0.0, 0.0, 2.0], 1.0, 0.0);
     let mut expected = Vec::new();
     while t < 20.0 {
-        // What has the sign of the mode while it slips, and is negative while it sticks.
+        // A leg ends when the spring overcomes static friction, or when the speed changes sign.
         let ended = |y: [f64; 5]| if mode == 0.0 { pull(y).abs() > 1.0 } else { y[3] * mode < 0.0 };
         let rates = |y: [f64; 5]| {
             if mode == 0.0 { [0.0, 0.0, y[4], 0.0, 0.0] } else { sleigh(y, 0.8 * mode) }
@@ -203,8 +209,8 @@ fn integral(f: impl Fn(f64) -> f64, b: f64) -> f64 {
     h / 3.0 * (0..=n).map(|i| weight(i) * f(h * f64::from(i))).sum::<f64>()
 }
 
-/// T(E) = ∫₀^α √(I/(2E + 2 m g c cos θ)) dθ to the first impact, twice that from one to the next; at the pegs the kinetic
-/// energy is e²ⁿ times what it was.
+/// T(E) = ∫₀^α √(I/(2E + 2 m g c cos θ)) dθ to the first impact, twice that between impacts; impact
+/// n leaves e²ⁿ of the kinetic energy at the pegs.
 #[test]
 fn the_disk_rocks() {
     let (alpha, weight) = (0.6_f64, 9.81 * 0.5); // m g c
@@ -223,7 +229,7 @@ fn the_disk_rocks() {
     assert!(expected.len() > 5, "{expected:?}");
     sharply("rocking-disk", &[], |run, within| {
         assert_close(run, &expected, within);
-        // It has rolled, X = R θ, and stays between the pegs.
+        // The disk rolls, X = R θ, and stays between the pegs.
         assert!(rows(run).iter().all(|row| (row[1] - row[2]).abs() < within && row[2].abs() < alpha + 1e-12));
     });
 }

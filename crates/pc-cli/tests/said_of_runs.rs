@@ -1,4 +1,5 @@
-//! What `pc` says of motions that stay where a force jumps, of numbers that are not finite, and of what is too large.
+//! Messages on motions that stay where a force jumps, on numbers that are not finite, and on work
+//! that is too large.
 
 use std::io::Write;
 use std::process::{Command, Stdio};
@@ -12,7 +13,7 @@ fn said(arguments: &[&str], model: &str) -> (Option<i32>, String) {
         .stderr(Stdio::piped())
         .spawn()
         .expect("pc starts");
-    // A wrong command line is refused before anything is read.
+    // A refused command line leaves the input unread.
     let _ = child.stdin.take().expect("a pipe").write_all(model.as_bytes());
     let output = child.wait_with_output().expect("pc ends");
     (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))
@@ -26,7 +27,7 @@ fn block(more: &str) -> String {
     )
 }
 
-/// It stops at t = 2, where the sign of v is that of rounding.
+/// The block stops at t = 2, and then rounding determines the sign of v.
 #[test]
 fn dry_friction_chatters() {
     let (code, said) = said(&["run", "-"], &block("[forces]\nv = \"-sign(v)/2\""));
@@ -50,7 +51,8 @@ fn values_that_are_not_finite_are_named() {
     assert_eq!(line, "  values   lg is NaN at t = 2, not finite in 5 of 9 rows", "{said}");
 }
 
-/// The same is said of rows that are written as they come, because the limit has no room for them.
+/// The same message for rows that are written as they are computed, because they exceed the memory
+/// limit.
 #[test]
 fn values_of_rows_that_are_not_held_are_named() {
     let directory = tempfile::tempdir().expect("a directory");
@@ -89,7 +91,7 @@ fn names_have_a_maximum_length() {
     assert!(text.ends_with("help: a name has at most 255 bytes\n"), "{text}");
 }
 
-/// Comments stand behind lines of code of any length.
+/// Comments follow lines of code of any length.
 #[test]
 fn a_long_line_of_code_is_written() {
     let sum = (1..6000).map(|i| format!("sin({i}*x)")).collect::<Vec<_>>().join(" + ");
@@ -100,7 +102,7 @@ fn a_long_line_of_code_is_written() {
     assert_eq!(code, Some(0), "{text}");
 }
 
-/// ṙ = r v says nothing of v where r = 0.
+/// ṙ = r v does not determine v at r = 0.
 #[test]
 fn a_start_where_the_frame_is_singular_is_refused() {
     let model = block("").replace("x = -0.5", "x = 0.0").replace("x = \"v\"", "x = \"x*v\"");

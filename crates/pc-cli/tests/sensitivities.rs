@@ -1,4 +1,5 @@
-//! `pc run --sensitivities`: derivatives over events against closed forms, in both forms of the equations; and refusals.
+//! `pc run --sensitivities`: derivatives over events, compared with closed forms in both forms of
+//! the equations; refusals.
 
 use std::process::{Command, Output};
 
@@ -17,8 +18,8 @@ fn table(output: &Output) -> (Vec<String>, Vec<Vec<f64>>) {
     (names, lines.map(|line| line.split(',').map(number).collect()).collect())
 }
 
-/// A ball from height h lands at t₀ = w/g, w = √(2gh), and for the nth time at t₀ (1 + 2e + … + 2eⁿ⁻¹), from where it flies at
-/// first with eⁿ w.
+/// A ball from height h lands first at t₀ = w/g, w = √(2gh), and for the nth time at t₀ (1 + 2e + …
+/// + 2eⁿ⁻¹), which it leaves with the speed eⁿ w.
 struct Ball {
     g: f64,
     e: f64,
@@ -51,7 +52,7 @@ impl Ball {
         let (w, first) = ((2.0 * g * h).sqrt(), (2.0 * h / g).sqrt());
         let (s, speed) = (t - self.impact(n), e.powi(n) * w);
         let by_e: f64 = (1..n).map(|k| 2.0 * f64::from(k) * e.powi(k - 1)).sum();
-        // Of the speed after the nth impact, of its time, and of g.
+        // From the derivatives of the speed after the nth impact, of its time, and of g.
         let moved = |speed_by: f64, time_by: f64, g_by: f64| {
             let s_by = -time_by;
             [speed_by * s + speed * s_by - g * s * s_by - g_by * s * s / 2.0, speed_by - g * s_by - g_by * s]
@@ -64,7 +65,7 @@ impl Ball {
     }
 }
 
-/// Over seven impacts, each of which takes four columns on by (∂y⁺/∂y⁻) of size 1/e: what is left of the tolerance.
+/// Several impacts, each of which amplifies the errors of the columns by up to 1/e.
 #[test]
 fn a_bouncing_ball() {
     let sharp = ["--rtol", "1e-12", "--atol", "1e-14", "--samples", "31", "--set", "g=9.5", "--no-verify"];
@@ -105,7 +106,8 @@ fn a_name_that_is_not_a_parameter_is_refused() {
     assert_eq!(refused(&["--sensitivities", "g", "--checkpoint", "c"]).0, Some(2));
 }
 
-/// A parameter that others are expressions in moves these with it, which no column does.
+/// The derivative by a parameter that others are expressions in would have to include these, which
+/// columns do not.
 #[test]
 fn a_parameter_that_others_follow_is_refused() {
     let directory = tempfile::tempdir().expect("a directory");

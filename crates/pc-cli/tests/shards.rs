@@ -1,4 +1,5 @@
-//! `pc sweep --shard` and `pc merge`: the bytes of one process, whatever happens to those of the shards.
+//! `pc sweep --shard` and `pc merge`: the same bytes as one process, whatever happens to the
+//! processes of the shards.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -27,7 +28,7 @@ t_end = 3.0
 "#;
 
 const RANDOM: [&str; 6] = ["--samples", "500", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
-/// One member of it is refused: the mass matrix is singular.
+/// Members with m = 0 are refused: the mass matrix is singular.
 const GRID: [&str; 4] = ["--vary", "m=0,1,2", "--vary", "a=0.1:1:7"];
 
 struct Place(tempfile::TempDir);
@@ -117,7 +118,7 @@ fn shards_give_the_bytes_of_one_process() {
 }
 
 #[test]
-fn what_does_not_belong_together_is_named() {
+fn shards_that_do_not_belong_together_are_named() {
     let place = Place::new();
     for shard in ["1/3", "2/3"] {
         place.ends(&Place::sweep("a.csv", &GRID, shard), 0, &[]);
@@ -132,7 +133,8 @@ fn what_does_not_belong_together_is_named() {
     refuses(&[one, two, one], &["the shard 1/3 is there twice", one]);
     refuses(&[one, "model.toml"], &["model.toml was not left by `pc sweep --shard`"]);
     place.ends(&["merge", "-o", "a.csv", "nothing"], 6, &["cannot use nothing"]);
-    // Of other sweeps: another tolerance, another text, another number of shards, a whole one.
+    // Shards of other sweeps: another tolerance, another text, another number of shards, a whole
+    // sweep.
     let other = [&GRID[..], &["--rtol", "1e-6"]].concat();
     place.ends(&Place::sweep("b.csv", &other, "3/3"), 0, &[]);
     refuses(
@@ -144,7 +146,7 @@ fn what_does_not_belong_together_is_named() {
         &[one, two, "c.csv.shard-3-of-4"],
         &["not of the same sweep", "--shard 3/4, where there it is 1/3"],
     );
-    // A shard that is not complete, and goes on.
+    // An incomplete shard, which continues.
     let whole = "a.csv.shard-3-of-3";
     place.ends(&Place::sweep("a.csv", &GRID, "3/3"), 0, &[]);
     let bytes = fs::read(place.at(whole)).expect("a shard");
@@ -152,7 +154,7 @@ fn what_does_not_belong_together_is_named() {
     refuses(&[one, two, whole], &[whole, "the shard 3/3, has 6 of its 7 members", "repeat its command"]);
     place.ends(&Place::sweep("a.csv", &GRID, "3/3"), 0, &["6 were finished before"]);
     assert!(fs::read(place.at(whole)).expect("a shard") == bytes, "the same shard");
-    // One that is being written.
+    // A shard that is being written.
     let held = fs::File::open(place.at(two)).expect("a file");
     held.lock().expect("locked");
     refuses(&[one, two, whole], &["another sweep is writing", two]);
@@ -163,7 +165,8 @@ fn what_does_not_belong_together_is_named() {
     }
 }
 
-/// Kills the process as soon as its journal has grown, if it is not done by then; whether it was.
+/// Kills the process as soon as its journal has `bytes` bytes; returns whether it was killed before
+/// its end.
 fn killed(place: &Place, arguments: &[&str], journal: &Path, bytes: u64) -> bool {
     let length = || fs::metadata(journal).map_or(0, |metadata| metadata.len());
     let before = length();
@@ -181,14 +184,14 @@ fn killed(place: &Place, arguments: &[&str], journal: &Path, bytes: u64) -> bool
 }
 
 #[test]
-fn killed_shards_go_on_where_they_were() {
+fn killed_shards_continue_where_they_were() {
     let place = Place::new();
     let undisturbed = place.swept("whole.csv", &RANDOM);
     let mut kills = 0;
     for shard in ["1/2", "2/2"] {
         let journal = place.at(&format!("a.csv.shard-{}-of-2", &shard[..1]));
         let arguments = Place::sweep("a.csv", &RANDOM, shard);
-        // Each time later than the time before, and never at the same place of a record.
+        // Each time later than before, and at another place of a record.
         for bytes in (0..10).map(|i| 700 + 977 * i) {
             if !killed(&place, &arguments, &journal, bytes) {
                 break;

@@ -1,4 +1,4 @@
-//! `-` is standard input where something is read, and standard output where something is written.
+//! `-` means standard input for a file that is read, and standard output for one that is written.
 
 use std::io::Write;
 use std::process::{Command, Output, Stdio};

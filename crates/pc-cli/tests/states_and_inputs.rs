@@ -17,7 +17,7 @@ fn ok(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// The model in a file of a directory of its own.
+/// The model in a file in a temporary directory.
 fn written(text: &str) -> (tempfile::TempDir, String) {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("model.toml");
@@ -76,7 +76,7 @@ t_end = 5
 method = "bdf"
 "#;
 
-/// As the Radau and the DOP853 of SciPy have it, which agree to 1e-14.
+/// The expected values are from Radau and DOP853 of SciPy, which agree to 1e-14.
 #[test]
 fn a_motor_is_integrated_with_its_pendulum() {
     let (_directory, model) = written(MOTOR);
@@ -87,7 +87,7 @@ fn a_motor_is_integrated_with_its_pendulum() {
                 ok(&["run", &model, "--samples", "2", "--form", form, "--method", method, "--rtol", "1e-11"]);
             let (header, rows) = table(&run);
             assert_eq!(header, ["t", "th", "w", "i", "e", "energy", "heat"]);
-            // Some thousand steps of 1e-11, of values up to 10.
+            // A few thousand steps with errors of 1e-11, for values up to 10.
             assert_close(&rows[1][1..5], &expected, 1e-8);
         }
     }
@@ -121,7 +121,7 @@ fn states_are_printed_and_swept() {
     assert_close(&[column(lines[1], 5), column(lines[1], 7)], &[rows[1][1], rows[1][3]], 1e-12);
 }
 
-/// The constant that a derived parameter stands for follows what is set.
+/// A parameter that is an expression follows the parameters that are set.
 #[test]
 fn parameters_made_of_others_are_set() {
     let (_directory, model) = written(MOTOR);
@@ -134,7 +134,8 @@ fn parameters_made_of_others_are_set() {
     assert_ne!(set, end(&["--set", "m=0.4", "--set", "mgl=0.5886"]));
 }
 
-/// y'' = u: of u = 6 t, t³; of a jump from 0 to 2 at t = 1, (t − 1)²; of a spline through sin t, t − sin t to its h⁴.
+/// y'' = u: u = 6 t gives t³; a jump from 0 to 2 at t = 1 gives (t − 1)²; a spline through sin t
+/// gives t − sin t to order h⁴.
 fn driven(input: &str) -> String {
     format!(
         "[inputs]\nu = {input}\n[coordinates]\ny = 0\n[lagrangian]\nkinetic = \"y'^2/2\"\n[forces]\ny = \"u\"\n\
@@ -156,7 +157,7 @@ fn tables_drive_a_motion() {
     for form in ["poincare", "canonical"] {
         let (_, rows) = table(&ok(&["run", &model, "--samples", "5", "--form", form]));
         let [at_half, at_one, at_end] = [1, 2, 4].map(|i| rows[i].clone());
-        // Nothing has moved before, not to the last bit.
+        // Before the jump nothing moves, to the last bit.
         assert_eq!([&at_half[1..3], &at_one[1..3]], [[0.0; 2], [0.0; 2]]);
         assert_close(&at_end[1..3], &[1.0, 2.0], 1e-10);
         assert_eq!(rows.iter().map(|row| row[4]).collect::<Vec<_>>(), [0.0, 0.0, 2.0, 2.0, 2.0]);
@@ -171,7 +172,7 @@ fn tables_drive_a_motion() {
     assert_close(&rows[1][1..3], &[2.0 - 2f64.sin(), 1.0 - 2f64.cos()], 1e-9);
 }
 
-/// Where its table ends, a motion fails, with what was reached.
+/// A motion fails where its table ends, and is kept as far as it was reached.
 #[test]
 fn a_motion_ends_with_its_table() {
     let (_directory, model) = written(&driven("{ times = [0, 1], values = [0, 6] }"));
@@ -201,7 +202,7 @@ fn constant_inputs_are_set_and_varied_and_tables_are_not() {
     assert!(check.contains("energy") && !check.contains("conserved (proved)"), "{check}");
 }
 
-/// The C of a model with states and inputs says both.
+/// The C source of a model with states and inputs contains both.
 #[test]
 fn source_has_states_and_takes_inputs_as_arguments() {
     let text =

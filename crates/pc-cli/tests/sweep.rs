@@ -1,4 +1,4 @@
-//! `pc sweep`: the same bytes whatever happens on the way.
+//! `pc sweep`: the same bytes, even after interruptions.
 
 #[path = "../../../tests/src/classical/random.rs"]
 mod random;
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use random::SplitMix64;
 
-/// A blade on ice: its constraint says that a quasi-velocity vanishes.
+/// A blade on ice, with a constraint that makes a quasi-velocity vanish.
 const SLEIGH: &str = r#"
 [parameters]
 m = 1.0
@@ -31,7 +31,7 @@ kinetic = "m/2*(x'^2 + y'^2) + m*a*ω*(cos(φ)*y' - sin(φ)*x') + (J + m*a^2)/2*
 t_end = 3.0
 "#;
 
-/// A pendulum held by a multiplier, which starts where its length says.
+/// A pendulum held by a multiplier, whose start depends on its length.
 const HELD: &str = r#"
 [parameters]
 l = 1.0
@@ -50,7 +50,7 @@ twice = "x'^2 + y'^2 + 2*g*y"
 t_end = 3.0
 "#;
 
-/// Two masses on springs; nothing moves where a mass is 0.
+/// Two masses on springs; a mass of 0 makes M singular.
 const MASSES: &str = r#"
 [parameters]
 m = 1.0
@@ -160,7 +160,7 @@ fn each_member_ends_as_its_own_run_does() {
             let motion = 4..4 + run[0].len();
             assert_eq!(table[0][motion.clone()], run[0]);
             assert_eq!(Some(&row[motion.clone()]), run.last().map(Vec::as_slice), "{set:?}");
-            // The last number of the drifts is that of the energy, found in the table of the run.
+            // The last drift is that of the energy, as in the table of the run.
             let column = run[0].iter().position(|name| name == "energy").expect("an energy");
             let energy = |row: &Vec<String>| row[column].parse::<f64>().expect("a number");
             let drift = run[1..].iter().map(|row| (energy(row) - energy(&run[1])).abs()).fold(0.0, f64::max);
@@ -188,7 +188,7 @@ fn starts_are_varied_and_all_rows_can_be_written() {
     for (row, run) in table[6..].iter().zip(&run[1..]) {
         assert_eq!(&row[3..3 + run.len()], run);
     }
-    // A start off the constraint is refused, and projected where that is asked for.
+    // A start off the constraint is refused, or projected on request.
     let place = Place::new(HELD);
     let table =
         lines(&place.swept("a.csv", &["--vary", "x=0.6:0.8:2", "--set", "l=1", "--vary", "y=-0.6:-0.6:1"]));
@@ -214,7 +214,8 @@ fn the_bytes_do_not_depend_on_the_number_of_threads() {
     }
 }
 
-/// By DOP853 members stand side by side in vectors: the same bytes for any number of threads, and the numbers of single runs.
+/// DOP853 integrates members side by side in vectors: the same bytes for any number of threads, and
+/// the numbers of single runs.
 #[test]
 fn members_side_by_side_are_single_runs() {
     let place = Place::new(MASSES);
@@ -233,7 +234,7 @@ fn members_side_by_side_are_single_runs() {
         let run = lines(&fs::read(place.at("run.csv")).expect("a table"));
         let end = &run[run.len() - 1][run[0].iter().position(|column| column == "x").expect("a column")];
         let [a, b] = [&row[x], end].map(|number| number.parse::<f64>().expect("a number"));
-        // A hundred tolerances of a step.
+        // A hundred times the tolerance of a step.
         assert!((a - b).abs() < 1e-7, "{a} {b}");
     }
     // The summary says what ran.
@@ -260,7 +261,8 @@ fn random_members_depend_on_the_seed_and_their_number_alone() {
     assert_eq!(many[0][..5], ["member", "m", "x(start)", "y(start)", "status"]);
     let column = |j: usize| many[1..].iter().map(move |row| row[j].parse::<f64>().expect("a number"));
     let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / 2000.0;
-    // Five standard deviations of a mean of 2000: σ/√2000, that of a uniform number being its range/√12.
+    // Five standard deviations σ/√2000 of a mean of 2000 numbers; σ of a uniform one is its
+    // range/√12.
     let near = |found: f64, expected: f64, deviation: f64| {
         assert!((found - expected).abs() < 5.0 * deviation / 2000.0_f64.sqrt(), "{found} for {expected}");
     };
@@ -276,7 +278,7 @@ fn random_members_depend_on_the_seed_and_their_number_alone() {
 fn a_member_that_fails_is_reported_and_the_others_finish() {
     let place = Place::new(MASSES);
     let arguments = place.sweep("a.csv", &["--vary", "m=-1:1:3"]);
-    // m = −1 makes an energy without lower bound, which is no error.
+    // m = −1 makes an energy without lower bound, which is not an error.
     ends(
         &strs(&arguments),
         0,
@@ -291,7 +293,7 @@ fn a_member_that_fails_is_reported_and_the_others_finish() {
     ends(&strs(&arguments), 5, &["none of the 2 members", "the mass matrix is singular"]);
     assert_eq!(lines(&fs::read(place.at("a.csv")).expect("a table")).len(), 3, "the table is written");
 
-    // ẍ = 1/(1 − x), x(0) = s: singular at x = 1, which only the one with a velocity towards it reaches.
+    // ẍ is singular at x = 1, which only one of the members reaches.
     let place = Place::new(
         "[coordinates]\nx = 0.0\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"x + sqrt(1 - x)/1000\"\n\
          [simulation]\nt_end = 3.0\n",
@@ -304,9 +306,9 @@ fn a_member_that_fails_is_reported_and_the_others_finish() {
     assert!(!table[2][at("message")].is_empty());
 }
 
-/// ÿ = −1 from height h: the floor is reached at √(2h), if that is not beyond 3.
+/// ÿ = −1 from height h: the floor is reached at √(2h), if this is at most 3.
 #[test]
-fn a_member_that_an_event_ends_says_which() {
+fn a_member_that_an_event_ends_names_the_event() {
     let place = Place::new(
         "[parameters]\nh = 1.0\n[coordinates]\ny = \"h\"\n[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"y\"\n\
          [events.floor]\nwhen = \"y\"\nterminal = true\n[simulation]\nt_end = 3.0\n",
@@ -323,7 +325,7 @@ fn a_member_that_an_event_ends_says_which() {
     assert!((t[0] - 2.0).abs() < 1e-8 && t[1..] == [3.0, 3.0], "{t:?}");
     let json = String::from_utf8(place.swept("a.json", &["--vary", "h=2:8:3"])).expect("UTF-8");
     assert_eq!(json.matches("\"event\"").count(), 1, "{json}");
-    // None fails, though none is completed.
+    // No member fails, though none is completed.
     let arguments = place.sweep("a.csv", &["--vary", "h=1:2:2"]);
     ends(&strs(&arguments), 0, &["  members  2, 0 completed, 2 ended by an event\n"]);
 }
@@ -364,10 +366,11 @@ fn wrong_usage_suggests_a_correction() {
     assert_eq!(fs::read_dir(place.0.path()).expect("a directory").count(), 1, "nothing is left");
 }
 
-/// So many members that a moment of the sweep can be hit.
+/// So many members that the sweep lasts long enough to be killed.
 const MANY: [&str; 6] = ["--samples", "600", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
 
-/// Kills the sweep as soon as its journal has grown by `bytes`, or after `patience`; whether it was still at work.
+/// Kills the sweep as soon as its journal has grown by `bytes`, or after `patience`; returns
+/// whether it was still at work.
 fn killed(place: &Place, name: &str, bytes: u64, patience: Duration) -> bool {
     let length = |path: &Path| fs::metadata(path).map_or(0, |metadata| metadata.len());
     let before = length(&place.journal(name));
@@ -389,7 +392,7 @@ fn a_sweep_killed_again_and_again_gives_the_same_bytes() {
     let place = Place::new(SLEIGH);
     let undisturbed = place.swept("whole.csv", &MANY);
     let mut kills = 0;
-    // Moments of a fixed seed, some before the journal is begun.
+    // Random moments with a fixed seed, some before the journal is begun.
     let mut random = SplitMix64::new(12_345);
     for _ in 0..12 {
         let patience = Duration::from_millis(20 + random.next_bits() % 60);
@@ -403,7 +406,7 @@ fn a_sweep_killed_again_and_again_gives_the_same_bytes() {
     assert_eq!(table.len(), 601);
 }
 
-/// The journal of a sweep that was killed on its way.
+/// The journal of a sweep that was killed.
 fn torn(place: &Place) -> Vec<u8> {
     assert!(killed(place, "a.csv", 20_000, Duration::from_secs(30)), "still at work");
     fs::read(place.journal("a.csv")).expect("a journal")
@@ -419,7 +422,7 @@ fn a_damaged_journal_is_repaired() {
         let cut = header + (journal.len() - header) * k / 12;
         let mut damaged = journal[..cut].to_vec();
         if k % 3 == 1 {
-            // Not only cut, but changed in one bit.
+            // Cut, and also changed in one bit.
             let place = header + (cut - header) / 2;
             damaged[place] ^= 1 << (k % 8);
         }

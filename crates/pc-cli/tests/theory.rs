@@ -1,4 +1,4 @@
-//! What `pc theory` says of models.
+//! The output of `pc theory`.
 
 use std::fs;
 use std::path::Path;
@@ -23,7 +23,7 @@ fn said(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// What is said of the text of a model, with the exit code.
+/// The exit code and output for a model text.
 fn said_of(model: &str, arguments: &[&str]) -> (i32, String) {
     let directory = tempfile::tempdir().expect("a directory");
     fs::write(directory.path().join("model.toml"), model).expect("written");
@@ -66,7 +66,8 @@ fn a_free_body_for_programs() {
     insta::assert_snapshot!(said(&["euler-top", "--format", "json"]));
 }
 
-/// The formulas of JSON are expressions that are read back, braces of LaTeX are closed, and of no model anything is left out.
+/// Formulas in JSON can be parsed, braces in LaTeX are closed, and every model has a complete
+/// theory.
 #[test]
 fn all_models_have_a_theory() {
     for builtin in BUILTIN {
@@ -89,7 +90,7 @@ fn all_models_have_a_theory() {
         let count = |c: char| latex.chars().filter(|&other| other == c).count();
         assert_eq!(count('{'), count('}'), "{}", builtin.name);
         let text = said(&[builtin.name]);
-        // Formulas are as long as they are; sums are broken.
+        // Sums are broken into lines; other formulas are not.
         assert!(text.lines().all(|line| line.chars().count() < 400), "{}", builtin.name);
     }
 }
@@ -100,7 +101,8 @@ fn section<'a>(text: &'a str, title: &str) -> &'a str {
     text.split("\n\n").next().unwrap_or_default()
 }
 
-/// Numbers at the start, or beside it where all states are possible, disprove what changes.
+/// Values at the start, or near it where all states are possible, disprove that a function is
+/// conserved.
 #[test]
 fn a_changing_function_is_disproved_with_a_margin() {
     for (model, margin) in [("damped-oscillator", 0.0769), ("rotating-oscillator", 0.739)] {
@@ -114,15 +116,15 @@ fn a_changing_function_is_disproved_with_a_margin() {
     }
 }
 
-/// In the coefficients of what is found stand parameters, no numbers in their place.
 #[test]
-fn parameters_stand_in_integrals() {
+fn integrals_contain_parameters_not_their_values() {
     let text = said(&["rotating-oscillator"]);
     let integrals = section(&text, "Integrals");
     assert!(integrals.contains("η1² (k1 - k2)") && !integrals.contains("for these"), "{integrals}");
 }
 
-/// A body of moments A, B, C without forces: of its nine or four or three coordinates nothing depends on any.
+/// A free body with moments A, B, C: nothing depends on its coordinates, be they nine, four or
+/// three.
 #[test]
 fn a_free_body_has_the_bracket_of_lie_and_poisson() {
     let body = "[parameters]\nA = 1.0\nB = 2.0\nC = 3.0\n[coordinates]\n\"ψ\" = 0.1\n\"θ\" = 1.0\n\"φ\" = 0.2\n\
@@ -142,12 +144,13 @@ fn a_free_body_has_the_bracket_of_lie_and_poisson() {
   C1 = p_w1² + p_w2² + p_w3²   (proved)
   rank 2 of 3: 1 independent near almost every point";
     assert_eq!(section(&text, "Reduction by symmetry"), expected);
-    // The three components of its momentum in space belong to rotations that commute with those of the body.
+    // The three components of its momentum in space belong to rotations that commute with those in
+    // body axes.
     let displacements = section(&text, "Cyclic displacements");
     assert_eq!(displacements.matches("commutes with all operators").count(), 3, "{displacements}");
 }
 
-/// In them definitions of the model may stand.
+/// They may contain definitions of the model.
 #[test]
 fn functions_are_those_of_the_model() {
     let model = "[parameters]\nk = 3.0\n[coordinates]\nx = 1.0\ny = 0.2\nz = 0.3\n[definitions]\nr = \"sqrt(x^2 + y^2 + z^2)\"\n\
@@ -184,7 +187,7 @@ fn a_verdict_on_an_action_is_one_of_three() {
     assert!(code == 0 && section(&text, "Hamilton–Jacobi").starts_with("  the action open: "), "{text}");
 }
 
-/// At the place in the file, whatever the command.
+/// Every command shows the place in the file.
 #[test]
 fn a_wrong_action_is_refused() {
     for (section, message) in [
@@ -202,7 +205,7 @@ fn a_wrong_action_is_refused() {
 
 #[test]
 fn limits_hold() {
-    // Its equations need some hundred, its theory some thousand.
+    // The equations need a few hundred KiB, the theory a few thousand.
     for limit in ["100K", "500K", "2M"] {
         let output = run(&["heavy-top-euler", "--limit-memory", limit], Path::new("."));
         assert_eq!(output.status.code(), Some(4), "{limit}");
@@ -214,7 +217,7 @@ fn limits_hold() {
     assert!(code == 4 && text.contains("--limit-memory"), "{text}");
 }
 
-/// z and a number.
+/// Whether a word is z and a number.
 fn is_named(word: &str) -> bool {
     word.strip_prefix('z').is_some_and(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit()))
 }
@@ -223,7 +226,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_alphanumeric() && c != '_')
 }
 
-/// What is long has names, each said once and before its use, in text and for programs.
+/// Long expressions have names, each defined once and before its use, in text and for programs.
 #[test]
 fn theories_of_mechanisms_name_what_is_long() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/mechanisms");
@@ -256,7 +259,8 @@ fn theories_of_mechanisms_name_what_is_long() {
     }
 }
 
-/// Some hundred coordinates are some seconds: where quasi-velocities are velocities, no frames are multiplied.
+/// A few hundred coordinates take seconds: where quasi-velocities are velocities, frames are not
+/// multiplied.
 #[test]
 fn a_theory_of_many_coordinates_ends() {
     let directory = tempfile::tempdir().expect("a directory");

@@ -1,4 +1,4 @@
-//! `--limit-time` holds for all that a command does.
+//! `--limit-time` holds for all work of a command.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -6,7 +6,8 @@ use std::io::Write as _;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// A pendulum of which the program follows some hundred thousand swings a second: to this time for a day.
+/// A pendulum whose motion to `t_end` takes a day, at some hundred thousand swings per second of
+/// computing.
 const PENDULUM: &str = r#"
 [parameters]
 g = 9.81
@@ -20,7 +21,7 @@ t_end = 1e9
 samples = 2001
 "#;
 
-/// What `pc` does with a model on standard input, and how long that takes.
+/// The output of `pc` with a model on standard input, and the time that it takes.
 fn pc(arguments: &[&str], model: &str) -> (Output, Duration) {
     let begun = Instant::now();
     let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
@@ -30,13 +31,13 @@ fn pc(arguments: &[&str], model: &str) -> (Output, Duration) {
     (child.wait_with_output().expect("pc ends"), begun.elapsed())
 }
 
-/// That a command ended by its limit of time, soon after it; with what it said.
+/// Checks that a command was ended by its time limit, soon after it; returns its messages.
 #[track_caller]
 fn limited((output, elapsed): (Output, Duration), limit: f64) -> String {
     let said = String::from_utf8(output.stderr).expect("text");
     assert_eq!(output.status.code(), Some(4), "{said}");
     assert!(said.contains(&format!("more time would be needed than the limit of {limit} s")), "{said}");
-    // What a busy machine may add.
+    // A busy machine may add seconds.
     assert!(elapsed.as_secs_f64() < limit + 3.0, "{elapsed:?}: {said}");
     said
 }
@@ -45,7 +46,7 @@ fn limited((output, elapsed): (Output, Duration), limit: f64) -> String {
 fn a_run_ends_with_the_rows_that_it_reached() {
     let directory = tempfile::tempdir().expect("a directory");
     let table = directory.path().join("rows.csv").display().to_string();
-    // The limit of steps from one row to the next would end it after some seconds.
+    // Without --t-end, the limit of steps between rows would end it after some seconds.
     let said = limited(pc(&["run", "-", "--limit-time", "1", "-o", &table, "--t-end", "1e7"], PENDULUM), 1.0);
     assert!(said.contains("ended by its limit at ") && said.contains("pc: ended at t = "), "{said}");
     let rows = fs::read_to_string(&table).expect("rows").lines().count();
@@ -53,7 +54,7 @@ fn a_run_ends_with_the_rows_that_it_reached() {
 }
 
 #[test]
-fn a_run_with_checkpoints_goes_on_where_a_limit_ended_it() {
+fn a_run_with_checkpoints_continues_where_a_limit_ended_it() {
     let directory = tempfile::tempdir().expect("a directory");
     let at = |name: &str| directory.path().join(name).display().to_string();
     let run = |limit: &str, name: &str, more: &[&str]| {
@@ -70,7 +71,7 @@ fn a_run_with_checkpoints_goes_on_where_a_limit_ended_it() {
 }
 
 #[test]
-fn a_sweep_ends_as_a_whole_and_goes_on() {
+fn a_sweep_ends_as_a_whole_and_continues() {
     let directory = tempfile::tempdir().expect("a directory");
     let at = |name: &str| directory.path().join(name).display().to_string();
     let model = at("model.toml");
@@ -91,7 +92,8 @@ fn a_sweep_ends_as_a_whole_and_goes_on() {
     assert!(fs::read(at("part.csv")).expect("rows") == fs::read(at("whole.csv")).expect("rows"));
 }
 
-/// Coordinates that are all coupled, of which the second derivation has thousands of second derivatives at each state.
+/// The coordinates are all coupled, so the second derivation evaluates thousands of second
+/// derivatives at each state.
 #[test]
 fn a_check_ends_within_the_second_derivation() {
     const N: usize = 120;

@@ -1,4 +1,4 @@
-//! What `pc check` proves by theorems, not by terms that cancel.
+//! Verdicts of `pc check` by theorems rather than by cancellation of terms.
 
 use std::io::Write;
 use std::process::{Command, Stdio};
@@ -17,7 +17,7 @@ fn check(model: &str) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// What is said of the energy.
+/// The verdict on the energy.
 #[track_caller]
 fn energy(model: &str) -> String {
     let text = check(model);
@@ -27,7 +27,7 @@ fn energy(model: &str) -> String {
     words.unwrap_or_else(|| panic!("{text}")).trim().to_owned()
 }
 
-/// A particle whose velocities are bound by ż = α(y) ẋ.
+/// A particle under a constraint such as ż = α(y) ẋ.
 fn bound(constraint: &str, kinetic: &str) -> String {
     format!(
         "[coordinates]\nx = 1.0\ny = 0.0\nz = 0.0\n[quasi_velocities]\n\"x'\" = 1.0\n[constraints]\nc = \"{constraint}\"\n\
@@ -35,8 +35,8 @@ fn bound(constraint: &str, kinetic: &str) -> String {
     )
 }
 
-/// Homogeneous constraints do no work, and what is left of the rate of the energy need not be seen to cancel; roots do not let
-/// it be seen.
+/// Homogeneous constraints do no work, so the rate of the energy need not be seen to cancel, which
+/// roots would prevent.
 #[test]
 fn homogeneous_constraints_keep_the_energy() {
     let kinetic = "(x'^2 + y'^2 + z'^2)/2";
@@ -52,7 +52,7 @@ fn homogeneous_constraints_keep_the_energy() {
     }
 }
 
-/// A pendulum on a cart under its weight, a force on a body.
+/// A pendulum on a cart, with its weight as a force on a body.
 const CART: &str = "[coordinates]\ns = 0.0\nphi = 0.5\n[bodies.cart]\nmass = 2\nposition = [\"s\", 0, 0]\n[bodies.bob]\nmass = 1\n\
                     position = [\"s + sin(phi)/2\", 0, \"-cos(phi)/2\"]\nforce = [0, 0, -9.81]\n";
 
@@ -61,7 +61,7 @@ fn weight_counts_in_the_energy() {
     assert_eq!(energy(CART), "conserved (proved)");
     let text = check(CART);
     assert!(text.contains("                     stable, by the second variation of the energy\n"), "{text}");
-    // A bead on a hoop that turns: Jacobi's integral but for the drag.
+    // A bead on a turning hoop has Jacobi's integral, if there is no drag.
     let hoop = "[parameters]\nW = 3.0\n[coordinates]\nth = 0.05\n[bodies.bead]\nmass = 1\n\
                 position = [\"sin(th)*cos(W*t)\", \"sin(th)*sin(W*t)\", \"-cos(th)\"]\nforce = [0, 0, -9.81]\n";
     assert_eq!(energy(hoop), "conserved (proved)");
@@ -69,13 +69,14 @@ fn weight_counts_in_the_energy() {
     assert_eq!(dragged, "dE/dt = -0.1 th'², 0 at the start");
 }
 
-/// The cart goes on for ever, and its pendulum comes to rest on it.
+/// The cart moves on for ever, while its pendulum comes to rest on it.
 #[test]
 fn damping_leaves_the_direction_of_a_momentum_neutral() {
     let text = check(&format!("{CART}[forces]\nphi = \"-0.2*phi'\"\n"));
     let verdict = "asymptotically stable except for one neutral direction, by the first approximation\n";
     assert!(text.contains(verdict), "{text}");
-    // Without the momentum, as with a force on the cart of higher order, nothing is known of that direction.
+    // Without the integral of momentum, as with a force of higher order on the cart, that direction
+    // is undecided.
     let pushed = check(&format!("{CART}[forces]\nphi = \"-0.2*phi'\"\ns = \"s'^3\"\n"));
     assert!(!pushed.contains("asymptotically"), "{pushed}");
 }
@@ -88,7 +89,7 @@ fn bound_twice(first: &str, second: &str) -> String {
     )
 }
 
-/// What is said of constraints, but for the constraints themselves.
+/// The report on combinations of constraints.
 #[track_caller]
 fn combinations(model: &str) -> Vec<String> {
     let text = check(model);
@@ -112,14 +113,14 @@ fn integrable_combinations_of_constraints_are_written() {
     ] {
         assert_eq!(combinations(&bound_twice(first, second)), [format!("integrable combination  {said}")]);
     }
-    // The n-trailer's chain reaches all places.
+    // The chain of the n-trailer reaches all positions.
     assert!(combinations(&bound_twice("z' - y*x'", "w' - z*x'")).is_empty());
 }
 
-/// Two wheels of radius R on an axle of length 2 b: the difference of their angles is that of their ways, and says where the axle
-/// points.
+/// Two wheels of radius R on an axle of length 2 b: the difference of their angles determines the
+/// direction of the axle.
 #[test]
-fn wheels_on_an_axle_say_where_it_points() {
+fn wheels_on_an_axle_determine_its_direction() {
     let axle = "[parameters]\nR = 0.25\nb = 0.4\n[coordinates]\nx = 0.0\ny = 0.0\npsi = 0.3\nleft = 0.0\nright = 0.0\n\
                 [constraints]\nblade = \"y'*cos(psi) - x'*sin(psi)\"\n\
                 k1 = \"x'*cos(psi) + y'*sin(psi) - b*psi' - R*left'\"\n\
@@ -129,7 +130,7 @@ fn wheels_on_an_axle_say_where_it_points() {
     assert_eq!(said, ["integrable combination  k1 - k2: R right - R left - 2 b psi = const"]);
 }
 
-/// The reach counts them though their integral, of Airy's kind, is no elementary function.
+/// They are counted although their integral, of Airy's kind, is not an elementary function.
 #[test]
 fn integrable_combinations_that_are_not_found_are_counted() {
     let model = bound_twice("z' - y*x'", "w' - y*x' - exp(z^2)*z'");

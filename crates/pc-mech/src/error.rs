@@ -1,8 +1,8 @@
 //! Errors of mechanical systems.
 //!
-//! `mech`: the error of the crate, with its predicates. One file a topic, in the order of a derivation:
-//! `shape`, `frame`, `lagrangian`, `body`, `tree`, `force`, `constraint`, `integral`, `matrix`, `evaluation`.
-//! `lists`: names and states in their messages.
+//! `mech`: the error of the crate, with its predicates. One file per topic, in the order of a
+//! derivation: `shape`, `frame`, `lagrangian`, `body`, `tree`, `force`, `constraint`, `integral`,
+//! `matrix`, `evaluation`. `lists`: names and states in their messages.
 
 pub(crate) mod body;
 pub(crate) mod constraint;

@@ -27,8 +27,8 @@ pub unsafe extern "C" fn pc_model_set_action(
     unsafe { draft(model, error, "pc_model_set_action", write) }
 }
 
-/// Adds a constant of the action, with a value near which the action is defined: where there
-/// is no proof that it solves the equation, it is tested numerically there.
+/// Adds a constant of the action, with a value near which the action is defined: without a
+/// proof that the action solves the equation, it is tested numerically near these values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_action_constant(
     model: *mut pc_model,

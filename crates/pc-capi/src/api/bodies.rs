@@ -12,7 +12,7 @@ use crate::machinery::draft::{Draft, Section, list, quoted};
 
 /// Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of
 /// its mass centre or of a point of the body that is at rest, as expressions in the
-/// coordinates. Energy and forces follow from the bodies; no Lagrangian is needed as well.
+/// coordinates. Energy and forces follow from the bodies, so the model needs no Lagrangian.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_body(
     model: *mut pc_model,
@@ -36,7 +36,7 @@ pub unsafe extern "C" fn pc_model_add_body(
     unsafe { draft(model, error, "pc_model_add_body", write) }
 }
 
-/// Sets the force on a body, which acts at its position, in axes of space.
+/// Sets the force on a body, which acts at the position of the body, in axes fixed in space.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_force(
     model: *mut pc_model,
@@ -112,7 +112,7 @@ pub unsafe extern "C" fn pc_model_set_body_inertia(
 }
 
 /// Sets the rotation of a rigid body: the 9 entries of the matrix R from axes of the body to
-/// axes in space, row by row.
+/// axes fixed in space, row by row.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_rotation(
     model: *mut pc_model,

@@ -48,7 +48,7 @@ pub unsafe extern "C" fn pc_system_bracket(
     unsafe { inside(system, error, compute) }
 }
 
-/// (f, g) as a function of t and (x, η), η those of the state.
+/// (f, g) as a function of t and (x, η), with the η of the state.
 fn derived(inventory: &Inventory, model: &Model, f: &str, g: &str) -> Result<Evaluator, CallError> {
     if !inventory.variables.are_own() {
         let why = "the system is in other coordinates and quasi-velocities than those of the model";

@@ -10,7 +10,7 @@ use crate::ffi::pointer::{clear, finite, text, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, number, quoted};
 
-/// An empty model, to be built by the calls below. Kinds of entries may come in any order;
+/// Makes an empty model, to be built by the calls below. Kinds of entries may come in any order;
 /// coordinates, quasi-velocities, parameters and so on keep the order of their calls.
 /// Expressions are those of the text model, where `x'` is the velocity of the coordinate x and
 /// `t` the time. The model is read as a whole by pc_model_check and pc_system_new, whose
@@ -34,8 +34,8 @@ pub unsafe extern "C" fn pc_model_new(
 }
 
 /// Reads the model as a whole: PC_OK if all names are known, all expressions are well formed,
-/// and the frame and the start are valid. Whether equations can be derived is found by
-/// pc_system_new.
+/// and the frame and the start are valid. Only pc_system_new shows whether equations can be
+/// derived.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_check(model: *const pc_model, error: *mut *mut pc_error) -> pc_status {
     let check = |contents: &mut Contents| {
@@ -181,9 +181,9 @@ pub unsafe extern "C" fn pc_model_add_coordinate(
 }
 
 /// Adds a quasi-velocity with its value at the start. Its `definition` is an expression affine in
-/// the velocities x', or NULL where the kinematics are given the other way round, by
-/// pc_model_set_kinematics. Without any quasi-velocities they are the velocities themselves;
-/// `name` may then be `x'`, to give one its value at the start.
+/// the velocities x', or NULL where pc_model_set_kinematics gives the velocities in terms of
+/// quasi-velocities. A model without quasi-velocities uses the velocities themselves; `name` may
+/// then be `x'`, which sets the start value of this velocity.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_quasi_velocity(
     model: *mut pc_model,
@@ -249,7 +249,7 @@ pub unsafe extern "C" fn pc_model_set_algebra(
 }
 
 /// Sets the bracket [X_left, X_right], (5), as a linear combination of quasi-velocities, such as
-/// "w3"; brackets that are not set are zero. `left` may be "t", for X_0. Instead of
+/// "w3"; brackets that are not set are zero. `left` may be "t", for X_0. An alternative to
 /// pc_model_set_algebra.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_bracket(
@@ -270,8 +270,8 @@ pub unsafe extern "C" fn pc_model_set_bracket(
     unsafe { draft(model, error, "pc_model_set_bracket", write) }
 }
 
-/// Adds a constraint: the expression, of coordinates or of velocities, vanishes. One that is
-/// not affine in the velocities is declared so by pc_model_set_constraint_kind.
+/// Adds a constraint: the expression, of coordinates or of velocities, vanishes. If it is not
+/// affine in the velocities, declare this by pc_model_set_constraint_kind.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_constraint(
     model: *mut pc_model,

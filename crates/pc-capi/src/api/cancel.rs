@@ -9,14 +9,14 @@ use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{clear, free, write};
 use crate::ffi::status::pc_status;
 
-/// Ends the derivations of systems whose pc_system_options have this handle, and integrations
-/// of these systems. Any number of threads may use it at the same time. Free it with
-/// pc_cancel_free.
+/// A handle that ends the derivations of systems whose pc_system_options contain it, and
+/// integrations of these systems. Any number of threads may use it at the same time. Free it
+/// with pc_cancel_free.
 pub struct pc_cancel {
     pub(crate) cancel: Cancel,
 }
 
-/// A handle by which derivations and integrations are ended.
+/// Makes a handle that can end derivations and integrations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_cancel_new(cancel: *mut *mut pc_cancel, error: *mut *mut pc_error) -> pc_status {
     let new = || {
@@ -30,8 +30,8 @@ pub unsafe extern "C" fn pc_cancel_new(cancel: *mut *mut pc_cancel, error: *mut 
     unsafe { entry(error, new) }
 }
 
-/// Ends the derivations and integrations under way with PC_LIMIT, soon, and those that begin later
-/// at once. It takes no lock and allocates nothing: it is the one function that a signal
+/// Ends derivations and integrations with PC_LIMIT: those under way soon, later ones as soon as
+/// they begin. It takes no lock and allocates nothing: it is the one function that a signal
 /// handler may call. NULL is allowed.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_cancel_request(cancel: Option<&pc_cancel>) {
@@ -46,7 +46,7 @@ pub extern "C" fn pc_cancel_is_requested(cancel: Option<&pc_cancel>) -> c_int {
     cancel.map_or(0, |handle| handle.cancel.is_cancelled().into())
 }
 
-/// Frees a handle; systems that have it continue without. NULL is allowed.
+/// Frees a handle; systems that have it continue without it. NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_cancel_free(cancel: *mut pc_cancel) {
     // SAFETY: null or a handle of ours that nobody uses any more.

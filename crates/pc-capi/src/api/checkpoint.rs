@@ -1,4 +1,4 @@
-//! Integrations that are taken up again.
+//! Integrations that continue from a checkpoint.
 
 use std::ffi::{c_char, c_void};
 
@@ -17,12 +17,13 @@ use crate::machinery::event_set::Followed;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes time and state of a solver as bytes, to be freed with pc_bytes_free and read by
-/// pc_solver_restore, possibly in another run of the program. `label` says what it is a
-/// checkpoint of; NULL for the empty text.
+/// pc_solver_restore, possibly in another run of the program. `label` says what the checkpoint
+/// is of; NULL means the empty text.
 ///
 /// A multistep method depends on earlier steps, so this solver restarts here too, at order 1:
-/// from a checkpoint on, it and the restored ones go through the same numbers to the last bit.
-/// Events of the model are part of it; PC_UNSUPPORTED with those of pc_solver_add_event.
+/// from here on, it and the solvers restored from the checkpoint give the same numbers to the
+/// last bit. Events of the model are part of it; PC_UNSUPPORTED with those of
+/// pc_solver_add_event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_checkpoint(
     solver: *mut pc_solver,
@@ -54,8 +55,8 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
     }
 }
 
-/// An integration from a checkpoint, with the parameters of the system as they are now. It
-/// continues as the checkpointed one did if system, parameters and options are the same.
+/// Makes a solver that continues from a checkpoint, with the current parameters of the system.
+/// It continues as the checkpointed one did if system, parameters and options are the same.
 /// `options` may be NULL. PC_INVALID_CHECKPOINT unless the bytes are exactly what
 /// pc_solver_checkpoint wrote, for a model with the same names and equations; values of
 /// parameters may differ. Statistics of the solver count from here.
@@ -117,22 +118,22 @@ pub unsafe extern "C" fn pc_checkpoint_label(
     unsafe { entry(error, read) }
 }
 
-/// What begins the label of a checkpoint that says of which model it is.
+/// The beginning of a label that contains the digest of the model.
 const MARK: &str = "model ";
 
-/// The label with the number of the model before it, which is guarded by what guards the label.
+/// The label after the digest of the model: the checksum of a checkpoint covers both.
 fn marked(digest: u64, label: &str) -> String {
     format!("{MARK}{digest:016x}\n{label}")
 }
 
-/// The number of the model, if it is there, and the label.
+/// The digest of the model, if there is one, and the label.
 fn unmarked(label: &str) -> (Option<u64>, &str) {
     let parts = label.strip_prefix(MARK).and_then(|rest| rest.split_once('\n'));
     let read = parts.and_then(|(digest, label)| Some((Some(u64::from_str_radix(digest, 16).ok()?), label)));
     read.unwrap_or((None, label))
 }
 
-/// Bytes before those handed out, in which their number stands.
+/// The number of bytes before those handed out, which hold their length.
 const HEAD: usize = size_of::<usize>();
 
 /// A copy for C.
@@ -148,7 +149,8 @@ pub unsafe extern "C" fn pc_bytes_free(data: *mut c_void) {
     if data.is_null() {
         return;
     }
-    // SAFETY: made by `handed_out`, and nobody uses them any more: so the head and as many bytes as it says.
+    // SAFETY: made by `handed_out`, so it has a head and as many bytes as that says; nobody uses
+    // them any more.
     drop(unsafe {
         let whole = data.cast::<u8>().sub(HEAD);
         let length = usize::from_ne_bytes(whole.cast::<[u8; HEAD]>().read());

@@ -72,10 +72,10 @@ pub unsafe extern "C" fn pc_solver_run_dense(
     }
 }
 
-/// What a function of time gives.
+/// A value of the motion at a time: the state, or its rate.
 type Value = fn(&DenseOutput, f64) -> Result<Vec<f64>, InputError>;
 
-/// Writes what `value` gives at t.
+/// Writes this value at t.
 ///
 /// # Safety
 /// `dense` is null or a live handle, `y` null or room for `y_length` numbers, `error` null or a
@@ -150,7 +150,7 @@ fn span(dense: Option<&pc_dense>) -> (f64, f64) {
     dense.and_then(|dense| dense.motion.span()).unwrap_or((f64::NAN, f64::NAN))
 }
 
-/// Frees a motion. Null is allowed.
+/// Frees a motion. NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_dense_free(dense: *mut pc_dense) {
     // SAFETY: null or a handle of ours that nobody uses any more.

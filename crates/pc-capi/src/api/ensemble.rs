@@ -51,11 +51,11 @@ pub struct pc_member {
 pub type pc_member_observer =
     Option<unsafe extern "C" fn(member: *const pc_member, user: *mut c_void) -> c_int>;
 
-/// What all members have in common, and where each has its own.
+/// What all members share, and the states and parameters in which they differ.
 struct Plan<'a> {
     prototype: Mutex<(MotionField, FlowEvents)>,
     t: f64,
-    /// Of the model.
+    /// The start of the model.
     start: &'a [f64],
     /// One state after the other, or none.
     states: Option<&'a [f64]>,
@@ -64,7 +64,7 @@ struct Plan<'a> {
     options: Options,
 }
 
-/// What comes of a member.
+/// The result of a member.
 struct Outcome {
     status: pc_status,
     message: Option<CString>,
@@ -92,10 +92,10 @@ impl Outcome {
         (self.status, self.message) = (status, Some(message));
     }
 
-    /// Tells the observer, and what that says.
+    /// Passes the member to the observer, and returns whether to continue.
     ///
     /// # Safety
-    /// It is a function of that type.
+    /// The observer is a function of that type.
     unsafe fn tell(
         &self,
         number: usize,
@@ -121,7 +121,7 @@ impl Outcome {
 }
 
 impl Plan<'_> {
-    /// The motion of a member, as a solver of its own would give it.
+    /// The motion of a member, as a single solver would give it.
     fn follow(&self, member: usize, stop: &Stop<'_>) -> Outcome {
         let mut outcome = Outcome::new();
         let ended = self.engine(member).and_then(|mut engine| {
@@ -144,7 +144,7 @@ impl Plan<'_> {
         outcome
     }
 
-    /// What it takes to integrate a member beside others, if that can be.
+    /// The field and start of a member, if it can be integrated beside others in vectors.
     fn lane(&self, member: usize) -> Option<(LaneField, Vec<f64>)> {
         let mut prototype = self.prototype.lock().unwrap_or_else(PoisonError::into_inner);
         let (field, events) = &mut *prototype;
@@ -187,14 +187,14 @@ fn row(all: &[f64], member: usize, length: usize) -> &[f64] {
 }
 
 /// Integrates many members through the times, each from its own state, with its own parameters,
-/// as a solver of its own would: the numbers are the same for any number of threads. The events
+/// as a single solver would: the numbers are the same for any number of threads. The events
 /// of the model are followed. By PC_DOP853, members of a model without events, projection,
 /// tables and explicit dependence on time are integrated side by side in vectors: their last
 /// digits may differ from those of a solver, within the tolerances.
 ///
 /// `states` has members × dim numbers, member by member, at the time t; NULL for the start of
 /// the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
-/// numbers; NULL for those of the system as they are now. The length that goes with NULL is 0.
+/// numbers; NULL for the current ones of the system. The length that goes with NULL is 0.
 /// `options` may be NULL. `threads` is the number of threads, 0 for one on each core; they
 /// have ended when this returns. A member that fails is passed to the observer like any other,
 /// with what it reached, and the others continue. An error that all share, such as one in the
@@ -246,7 +246,8 @@ pub unsafe extern "C" fn pc_ensemble_run(
         let observer = observer.ok_or(CallError::Null { what: "observer" })?;
         let t = if states.is_none() { t_start } else { t };
         if let Some(&end) = times.last() {
-            // A step of one member compiles the derivatives that all need. What goes wrong, each will hear of.
+            // One step of one member compiles the derivatives that all need. Each member reports
+            // its own errors.
             let first = states.and_then(|all| all.get(..start.len())).unwrap_or(start);
             let _ = Chosen::new(&mut field, t, first, &options)
                 .and_then(|mut method| Stepper::step(&mut method, end));
@@ -265,7 +266,7 @@ pub unsafe extern "C" fn pc_ensemble_run(
         let consume = |member: u64, outcome: Result<Outcome, Panicked>| {
             let outcome =
                 outcome.unwrap_or_else(|Panicked { message }| Outcome::of(&CallError::Panic { message }));
-            // What the limit has ended is none of the members' matter.
+            // A limit ends the ensemble; it is no failure of a member.
             if outcome.status == pc_status::PC_LIMIT {
                 ended = deadline.passed();
                 return ControlFlow::Break(());

@@ -1,4 +1,4 @@
-//! Entries of a model that is put together call by call.
+//! Entries of a model that is built call by call.
 
 use std::ffi::c_char;
 
@@ -6,7 +6,7 @@ use crate::ffi::call_error::CallError;
 use crate::ffi::pointer::{numbers, text};
 use crate::machinery::draft::{Draft, Section, list, numbers as written};
 
-/// Writes an entry of what has a name, such as a body; the name comes with what the function calls it.
+/// Writes an entry of something named, such as a body; `what` is the argument that holds the name.
 pub(crate) fn put(
     draft: &mut Draft,
     (name, what): (*const c_char, &'static str),

@@ -1,4 +1,4 @@
-//! Events of a model: declared call by call, and evaluated for an integrator of the program's own.
+//! Events of a model: declared call by call, and evaluated for an integrator of the program.
 
 use std::ffi::{c_char, c_int};
 
@@ -25,7 +25,7 @@ pub enum pc_direction {
     PC_RISING = 1,
 }
 
-/// The direction of that number, and its name in the text.
+/// The direction that a number stands for, and its name in the text.
 pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), CallError> {
     match value {
         -1 => Ok((Direction::Falling, "falling")),
@@ -116,14 +116,14 @@ pub extern "C" fn pc_system_event_resets(system: Option<&pc_system>, index: usiz
     of_event(system, index, |event| event.resets().into())
 }
 
-/// What is known of an event; 0 of null, and beyond the last.
+/// A property of an event; 0 for null, and beyond the last.
 fn of_event(system: Option<&pc_system>, index: usize, known: impl FnOnce(&Event) -> c_int) -> c_int {
     system.and_then(|system| system.inventory.events.get(index)).map_or(0, known)
 }
 
 /// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event
-/// occurs where its function passes through zero. A function without a value here is not
-/// finite.
+/// occurs where its function passes through zero. Where a function has no value, the number is
+/// not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_events(
     system: *const pc_system,
@@ -145,8 +145,8 @@ pub unsafe extern "C" fn pc_system_events(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Turns the state y before an event, number `event` from 0, into the state after it. One that
-/// resets nothing leaves it as it is.
+/// Turns the state y before an event, number `event` from 0, into the state after it. An event
+/// without resets leaves y unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_event_reset(
     system: *const pc_system,

@@ -110,7 +110,7 @@ pub unsafe extern "C" fn pc_system_set_force(
     };
     // SAFETY: as the preamble demands.
     let status = unsafe { inside(system, error, set) };
-    // What was there before goes when the system is no longer in use: `destroy` may call functions on it.
+    // Dropped once the system is no longer in use: `destroy` may call functions on it.
     drop(unused);
     status
 }

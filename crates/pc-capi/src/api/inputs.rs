@@ -12,7 +12,7 @@ use crate::machinery::draft::{Draft, Section, number, numbers as list_of, quoted
 
 /// Adds an input: a value that is constant until it is set, as a parameter is. Inputs come
 /// after all parameters. Forces, rates of states, events, integrals and outputs may contain
-/// it, but nothing that velocities or momenta depend on.
+/// it; velocities, momenta, constraints and positions of bodies may not.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input(
     model: *mut pc_model,
@@ -32,7 +32,7 @@ pub unsafe extern "C" fn pc_model_add_input(
 
 /// Adds an input that is a function of time: `length` values at increasing times, interpolated
 /// by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the
-/// times. Its values cannot be set in any other way.
+/// times. Only the table determines its values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input_table(
     model: *mut pc_model,

@@ -100,8 +100,8 @@ pub unsafe extern "C" fn pc_model_set_joint_axis(
     unsafe { draft(model, error, "pc_model_set_joint_axis", write) }
 }
 
-/// Sets the two axes of a universal joint, of 3 numbers each: the first stands still in the
-/// parent, the second in the body.
+/// Sets the two axes of a universal joint, of 3 numbers each: the first is fixed in the parent,
+/// the second in the body.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_axes(
     model: *mut pc_model,
@@ -116,7 +116,7 @@ pub unsafe extern "C" fn pc_model_set_joint_axes(
     unsafe { draft(model, error, "pc_model_set_joint_axes", write) }
 }
 
-/// Sets the advance of a screw, a length a radian.
+/// Sets the pitch of a screw joint, a length per radian.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_pitch(
     model: *mut pc_model,
@@ -131,8 +131,8 @@ pub unsafe extern "C" fn pc_model_set_joint_pitch(
     unsafe { draft(model, error, "pc_model_set_joint_pitch", write) }
 }
 
-/// Sets how the axes of a joint stand in those of the parent: the 9 entries of the matrix from
-/// the former to the latter, row by row. Excludes pc_model_set_joint_turns.
+/// Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
+/// matrix, row by row. Excludes pc_model_set_joint_turns.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_rotation(
     model: *mut pc_model,
@@ -149,8 +149,8 @@ pub unsafe extern "C" fn pc_model_set_joint_rotation(
     unsafe { draft(model, error, "pc_model_set_joint_rotation", write) }
 }
 
-/// Sets the same by turns about axes: `axes` has a letter x, y or z for each of the `length`
-/// angles, every turn being about an axis as turned by those before it.
+/// Sets the same rotation by turns about axes: `axes` has a letter x, y or z for each of the
+/// `length` angles; each turn is about an axis that the turns before it have moved.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_turns(
     model: *mut pc_model,
@@ -209,8 +209,8 @@ pub unsafe extern "C" fn pc_model_name_joint_quasi_velocities(
     unsafe { draft(model, error, "pc_model_name_joint_quasi_velocities", write) }
 }
 
-/// Adds a point of a body that hangs by a joint, in axes of the body from its origin. Expressions
-/// know its place as `NAME_x`, `NAME_y`, `NAME_z`.
+/// Adds a point of a body that hangs by a joint, in axes of the body from its origin. In
+/// expressions its coordinates are `NAME_x`, `NAME_y`, `NAME_z`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_point(
     model: *mut pc_model,
@@ -232,8 +232,8 @@ pub unsafe extern "C" fn pc_model_add_point(
     unsafe { draft(model, error, "pc_model_add_point", write) }
 }
 
-/// Joins two bodies that hang by joints already: kind point, revolute or rod. `places` has 6
-/// expressions: the point of the first in its axes, then that of the second.
+/// Closes a loop by joining two bodies that hang by joints: kind point, revolute or rod. `places`
+/// has 6 expressions: the point of the first body in its axes, then that of the second.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_loop(
     model: *mut pc_model,
@@ -277,7 +277,7 @@ pub unsafe extern "C" fn pc_model_set_loop_axes(
     unsafe { draft(model, error, "pc_model_set_loop_axes", write) }
 }
 
-/// Sets the distance of the two points of a rod.
+/// Sets the distance between the two points of a rod.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_loop_length(
     model: *mut pc_model,

@@ -23,7 +23,7 @@ use crate::machinery::system::{Inner, holding, pc_system};
 pub struct pc_kernel {
     dim: usize,
     direct: Option<Direct>,
-    /// For `direct` to compute in.
+    /// Scratch of `direct`.
     room: Vec<f64>,
     motion: MotionField,
 }
@@ -36,7 +36,7 @@ impl pc_kernel {
     }
 }
 
-/// A kernel of the system with the parameters as they are now.
+/// Makes a kernel of the system with its current parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_new(
     system: *const pc_system,
@@ -44,7 +44,7 @@ pub unsafe extern "C" fn pc_kernel_new(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let new = |system: &pc_system, inner: &mut Inner| {
-        // What is compiled before is shared.
+        // The clone below shares what is compiled before it.
         system.prepare_direct(inner);
         let made = Box::new(pc_kernel::new(inner.field.clone(), system.inventory.dim()));
         // SAFETY: null or a place for a handle, as the preamble demands.
@@ -62,7 +62,7 @@ pub unsafe extern "C" fn pc_kernel_new(
     }
 }
 
-/// Frees a kernel. Null is allowed.
+/// Frees a kernel. NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_free(kernel: *mut pc_kernel) {
     // SAFETY: null or a handle of ours that nobody uses any more.
@@ -104,7 +104,8 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
 /// takes, with the kernel as `params`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, kernel: *mut c_void) -> c_int {
-    // SAFETY: a kernel, whose motion lives, and arrays of its dimension, as the documentation demands, which are apart.
+    // SAFETY: a kernel, whose motion lives, and disjoint arrays of its dimension, as the
+    // documentation demands.
     unsafe {
         if let Some(pc_kernel { dim, direct: Some(direct), room, .. }) = kernel.cast::<pc_kernel>().as_mut()
             && are_usable((y, *dim), (ydot, *dim))
@@ -154,7 +155,7 @@ pub unsafe extern "C" fn pc_kernel_rhs_many(
     }
     let mut answer = 0;
     for place in (0..len).step_by(dim.max(1)) {
-        // SAFETY: within arrays of that length, as the documentation demands, which are apart.
+        // SAFETY: within disjoint arrays of that length, as the documentation demands.
         unsafe {
             match pc_kernel_rhs(t, states.add(place), rates.add(place), kernel) {
                 0 => {}
@@ -188,7 +189,7 @@ unsafe fn evaluate(
     }
     // SAFETY: not null, aligned, and as promised; they share no memory.
     let (y, target) = unsafe { (slice::from_raw_parts(y, dim), fresh(target, len)) };
-    // Unwind safe: after a panic the room to compute in holds other numbers, which are written before they are read.
+    // Unwind safe: a panic leaves other numbers in the scratch, which is written before it is read.
     match catch_unwind(AssertUnwindSafe(|| function(&mut kernel.motion, y, target))) {
         Ok(Ok(())) => 0,
         Ok(Err(failure)) if failure.is_recoverable() => 1,

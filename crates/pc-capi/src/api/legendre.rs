@@ -9,7 +9,7 @@ use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 impl Inner {
-    /// Derives the transform of the state when it is first asked for.
+    /// Derives the transform of the state on first use.
     pub(crate) fn derive_legendre(&mut self, inventory: &Inventory) -> Result<(), CallError> {
         if self.legendre.is_none() {
             let mut transform = inventory.derive(|model| {

@@ -12,7 +12,7 @@ use crate::machinery::motion_field::MotionField;
 use crate::machinery::system::{Inner, Inventory, Room, inside, pc_system};
 
 impl Inner {
-    /// The parts of the equations, derived when first asked for, with the motion.
+    /// The parts of the equations, derived on first use, with the motion.
     fn mechanics(
         &mut self,
         inventory: &Inventory,
@@ -25,7 +25,7 @@ impl Inner {
         Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field, &mut self.room))
     }
 
-    /// Leaves the state (x, η) of a state in the room for one.
+    /// Writes the state (x, η) of the state y to `room.state`.
     pub(crate) fn read_quasi_velocities(
         &mut self,
         inventory: &Inventory,

@@ -24,14 +24,14 @@ pub struct pc_model {
 pub(crate) struct Contents {
     pub(crate) origin: Origin,
     kept: Vec<String>,
-    /// On what external forces act.
+    /// Quasi-velocities on which external forces act.
     pub(crate) external: Vec<String>,
-    /// Quasi-velocities beside those of the model, with their definitions.
+    /// Quasi-velocities in addition to those of the model, with their definitions.
     pub(crate) given: Vec<(String, String)>,
-    /// Independent velocities that are asked for.
+    /// Velocities chosen as independent.
     pub(crate) independent: Vec<String>,
     projects_start: bool,
-    /// What a start that is moved keeps.
+    /// Variables that keep their values where the start is projected.
     held: Vec<String>,
     pub(crate) observes_reactions: bool,
     differentiates: bool,
@@ -44,7 +44,7 @@ pub(crate) enum Origin {
 }
 
 impl Contents {
-    /// The model, its settings applied.
+    /// The model with its settings applied.
     pub(crate) fn model(&self) -> Result<Model, CallError> {
         let mut model = match &self.origin {
             Origin::Text(model) => Model::clone(model),
@@ -91,8 +91,8 @@ fn of_document(document: Document) -> *mut pc_model {
     boxed(Origin::Text(Box::new(Model::new(document))))
 }
 
-/// Reads a model from `length` bytes of text, which need no zero at the end. `name` is how
-/// messages call it; NULL for "model".
+/// Reads a model from `length` bytes of text, which need no zero at the end. Messages call the
+/// model `name`; NULL means "model".
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_parse(
     text: *const c_char,
@@ -139,7 +139,7 @@ pub unsafe extern "C" fn pc_model_from_file(
     unsafe { entry(error, read) }
 }
 
-/// A model that comes with the library, such as "heavy-top-lagrange".
+/// Reads a model that comes with the library, such as "heavy-top-lagrange".
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_builtin(
     name: *const c_char,
@@ -172,7 +172,7 @@ pub extern "C" fn pc_builtin_name(index: usize) -> *const c_char {
     nth(NAMES.get_or_init(|| Builtin::all().map(|builtin| c_string(builtin.name)).collect()), index)
 }
 
-/// A copy, which can be changed independently.
+/// Copies a model; either can be changed independently.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_clone(
     model: *const pc_model,
@@ -192,7 +192,7 @@ pub unsafe extern "C" fn pc_model_clone(
     unsafe { entry(error, clone) }
 }
 
-/// Frees a model. Null is allowed.
+/// Frees a model. NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_free(model: *mut pc_model) {
     // SAFETY: null or a live handle, as the preamble demands.
@@ -255,7 +255,7 @@ pub unsafe extern "C" fn pc_model_keep(
     unsafe { change(model, error, keep) }
 }
 
-/// Whether the start is moved onto the constraints (otherwise a start off them is refused).
+/// Sets whether the start is moved onto the constraints (otherwise a start off them is refused).
 /// Any value but 0 means yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_project_start(
@@ -271,8 +271,8 @@ pub unsafe extern "C" fn pc_model_project_start(
     unsafe { change(model, error, project) }
 }
 
-/// Holds the start value of this coordinate or quasi-velocity fixed where the start is moved
-/// onto the constraints: the others follow. Without pc_model_project_start it has no effect.
+/// Holds the start value of this coordinate or quasi-velocity fixed while the others move onto
+/// the constraints. Without pc_model_project_start it has no effect.
 /// An unknown name is reported by pc_system_new, with PC_NOT_FOUND.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_hold_start(
@@ -290,8 +290,8 @@ pub unsafe extern "C" fn pc_model_hold_start(
     unsafe { change(model, error, hold) }
 }
 
-/// Whether the reactions of the constraints are observed, each called `λ_` and the name of its
-/// constraint. Any value but 0 means yes.
+/// Sets whether the reactions of the constraints are observed, each called `λ_` and the name of
+/// its constraint. Any value but 0 means yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_observe_reactions(
     model: *mut pc_model,
@@ -306,7 +306,7 @@ pub unsafe extern "C" fn pc_model_observe_reactions(
     unsafe { change(model, error, observe) }
 }
 
-/// Whether systems of the model are derived with their derivatives by parameters, which
+/// Sets whether systems of the model are derived with their derivatives by parameters, which
 /// pc_solver_add_sensitivity needs. Any value but 0 means yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_differentiate(
@@ -322,8 +322,8 @@ pub unsafe extern "C" fn pc_model_differentiate(
     unsafe { change(model, error, differentiate) }
 }
 
-/// The text of the model, to be freed with pc_string_free. For a model built by calls it is
-/// the text that the calls wrote; errors refer to its lines and columns. Settings that the
+/// Gives the text of the model, to be freed with pc_string_free. For a model built by calls it
+/// is the text that the calls wrote; errors refer to its lines and columns. Settings that the
 /// text format does not have are not in it: pc_model_set of parameters, pc_model_set_start of
 /// a model that was read, pc_model_keep, pc_model_project_start, pc_model_hold_start,
 /// pc_model_observe_reactions, pc_model_differentiate, pc_model_add_external_force,

@@ -1,4 +1,4 @@
-//! Places by names.
+//! Indices by names.
 
 use std::ffi::{CString, c_char};
 

@@ -1,4 +1,4 @@
-//! What is observed along a motion.
+//! Observables, reactions and constraint residuals along a motion.
 
 use crate::api::rates::{State, Target, slices};
 use crate::ffi::call_error::CallError;
@@ -9,8 +9,8 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
 /// energy, the outputs.
 ///
-/// An observable without a value here is not finite; nor is one that contains accelerations
-/// where external forces cannot be computed.
+/// Where an observable has no value, the number is not finite; so it is for one that contains
+/// accelerations where external forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
     system: *const pc_system,
@@ -33,7 +33,7 @@ pub unsafe extern "C" fn pc_system_observe(
     unsafe { inside(system, error, observe) }
 }
 
-/// That there are values.
+/// An error unless all values are finite.
 fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
     match values.iter().find(|value| !value.is_finite()) {
         Some(&value) => Err(CallError::NoValue { what, value }),
@@ -83,7 +83,7 @@ pub unsafe extern "C" fn pc_system_energy(
         let (y, energy) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
         let all = inner.room.numbers(inventory.observables.len());
         inner.field.observe_unforced(t, y, all);
-        // The last of those that should stay constant.
+        // The energy is the last of the conserved observables.
         energy[0] = all[inventory.conserved - 1];
         all_finite("the energy", energy)
     };
@@ -91,9 +91,8 @@ pub unsafe extern "C" fn pc_system_energy(
     unsafe { inside(system, error, observe) }
 }
 
-/// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count:
-/// together they add to the force Q_s the sum of each times the derivative of its constraint
-/// by η_s.
+/// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: to
+/// the force Q_s each adds its value times the derivative of its constraint by η_s.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_reactions(
     system: *const pc_system,

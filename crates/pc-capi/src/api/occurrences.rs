@@ -1,4 +1,4 @@
-//! The events that a solver follows: their occurrences, and events of the program's own.
+//! The events that a solver follows: their occurrences, and events defined by the program.
 
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::sync::{MutexGuard, PoisonError};
@@ -88,12 +88,12 @@ unsafe fn observe(
     };
     // SAFETY: as promised.
     let status = unsafe { integrate(solver, error, exchange) };
-    // What is not used any more goes when the solver is not in use: `destroy` may call functions on it.
+    // Dropped once the solver is no longer in use: `destroy` may call functions on it.
     drop(unused);
     status
 }
 
-/// Follows an event of the program's own, after those of the model and those added before:
+/// Follows an event of your program, after those of the model and those added before:
 /// `function` passes through zero in a direction, a pc_direction. There `reset`, unless NULL,
 /// changes the state, which is then projected onto the constraints; if `terminal` is not 0 the
 /// event ends the call with PC_EVENT. Must be called before the first step. `name` is for
@@ -198,7 +198,7 @@ pub unsafe extern "C" fn pc_solver_last_occurrence(
         let Some(last) = last else {
             // SAFETY: a live handle: it has given the integration.
             let name = nth(&names(unsafe { handle(solver, "solver") }?), event);
-            // SAFETY: the name of an event that there is.
+            // SAFETY: the name of an existing event.
             return Err(CallError::NotOccurred { name: unsafe { text(name, "name") }?.to_owned() });
         };
         before.copy_from_slice(&last.state_before[..before.len()]);

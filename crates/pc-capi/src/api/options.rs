@@ -20,8 +20,8 @@ pub enum pc_form {
     /// Chetaev's canonical equations, in momenta.
     PC_CANONICAL = 1,
     /// Poincaré's without the coordinates that nothing depends on, Euler–Poincaré's where none is
-    /// left; the state has fewer coordinates. Where multipliers hold constraints,
-    /// PC_INCONSISTENT_MODEL, as with all that follow, unless pc_model_add_independent says which
+    /// left; the state has fewer coordinates. Where multipliers hold constraints, this form and
+    /// those below are PC_INCONSISTENT_MODEL, unless pc_model_add_independent says which
     /// velocities are independent.
     PC_REDUCED = 2,
     /// The same in momenta: Lie–Poisson equations.
@@ -40,11 +40,11 @@ pub struct pc_system_options {
     pub size: usize,
     /// A pc_form; PC_POINCARE by default.
     pub form: c_int,
-    /// 0: room for a choice to come.
+    /// Reserved; must be 0.
     pub reserved: c_int,
     /// Most bytes that the expressions of a derivation may take, by estimate; 0, the default,
     /// for 4 GiB. Beyond it, PC_LIMIT. It applies to pc_system_new and to each later call that
-    /// derives, each by itself; so do the next two.
+    /// derives, separately; so do the next two.
     pub memory_limit: u64,
     /// Most seconds that a derivation may take, and each call of a solver or an ensemble of the
     /// system, positive; 0, the default, for no limit.
@@ -81,7 +81,7 @@ impl pc_system_options {
         }
     }
 
-    /// What a derivation may take.
+    /// The limits of a derivation.
     ///
     /// # Safety
     /// `cancel` is null or a live handle.
@@ -106,7 +106,7 @@ impl pc_system_options {
     }
 }
 
-/// Refuses a choice that is not known here.
+/// Refuses a reserved field that is not 0.
 fn unreserved(what: &'static str, value: i64) -> Result<(), CallError> {
     if value == 0 { Ok(()) } else { Err(CallError::Reserved { what, value }) }
 }
@@ -190,12 +190,12 @@ pub struct pc_solver_options {
     pub max_step: f64,
     /// A time beyond which the equations are never evaluated; infinity, the default, for none.
     pub stop_time: f64,
-    /// Events whose functions are not expressions of the state alone (those of the program's own,
-    /// and those read through constraints, momenta or tables) are looked for at the ends of so
-    /// many equal parts of each step, at least 1, and closer where the values leave doubt; 4 by
-    /// default. Between two such places an even number of zeros may be missed.
+    /// Number of equal parts of each step, at least 1, at whose ends events are looked for that
+    /// are not expressions of the state alone (those of your program, and those read through
+    /// constraints, momenta or tables), and closer where the values leave doubt; 4 by default.
+    /// Between two such places an even number of zeros may be missed.
     pub samples_per_step: u32,
-    /// 0: room for a choice to come.
+    /// Reserved; must be 0.
     pub reserved: u32,
     /// Events that follow each other ever faster are an error once the time left until they
     /// accumulate is this fraction of their first interval, at least 0 (never) and less than
@@ -227,21 +227,21 @@ impl Default for pc_solver_options {
     }
 }
 
-/// Sets the options to their defaults. `size` is sizeof(pc_system_options). Null is allowed.
+/// Sets the options to their defaults. `size` is sizeof(pc_system_options). NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_options_init(options: *mut pc_system_options, size: usize) {
     // SAFETY: null, or `size` bytes, as the preamble demands.
     unsafe { give(options, pc_system_options { size, ..Default::default() }, size) };
 }
 
-/// Sets the options to their defaults. `size` is sizeof(pc_solver_options). Null is allowed.
+/// Sets the options to their defaults. `size` is sizeof(pc_solver_options). NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_options_init(options: *mut pc_solver_options, size: usize) {
     // SAFETY: null, or `size` bytes, as the preamble demands.
     unsafe { give(options, pc_solver_options { size, ..Default::default() }, size) };
 }
 
-/// Writes as much of `value` as there is room for, and zeros where there is more.
+/// Writes as much of `value` as fits into `size` bytes, and zeros to the rest of them.
 ///
 /// # Safety
 /// `place` is null, or has room for `size` bytes and is aligned as a `T`.
@@ -257,12 +257,12 @@ pub(crate) unsafe fn give<T: Copy>(place: *mut T, value: T, size: usize) {
     }
 }
 
-/// The options at `place`, those that the caller's header does not know at their defaults; all of
-/// them if it is null.
+/// The options at `place`, with defaults for those that the caller's header does not have; all
+/// defaults if `place` is null.
 ///
 /// # Safety
-/// `T` is plain data that any bytes of the caller's are valid for, and begins with a size;
-/// `place` is null or has as many bytes as that size says.
+/// `T` is plain data for which any bytes are valid, and begins with a size; `place` is null or has
+/// as many bytes as that size says.
 pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str) -> Result<T, CallError> {
     let mut options = T::default();
     if place.is_null() {
@@ -282,7 +282,7 @@ pub(crate) unsafe fn take<T: Copy + Default>(place: *const T, what: &'static str
 }
 
 impl pc_solver_options {
-    /// The same for the solver of a state of `dim` components, until the deadline.
+    /// The options of a solver for a state of `dim` components, with the deadline.
     ///
     /// # Safety
     /// The tolerances are null or as many numbers as said.
@@ -324,7 +324,7 @@ impl pc_solver_options {
             let order = u32::try_from(self.max_order);
             options = options.max_order(order.map_err(|_| choice("max_order", self.max_order))?);
         }
-        // Anything but 0 is handed on, to be used or refused there.
+        // 0 means the default; any other value is passed on, to be used or refused.
         if self.initial_step != 0.0 {
             options = options.initial_step(self.initial_step);
         }

@@ -47,7 +47,7 @@ pub(crate) unsafe fn slices<'a>(
     }
 }
 
-/// The same where something does not fit, or one of them has no numbers.
+/// The same where a check fails or an array is empty.
 ///
 /// # Safety
 /// As for [`slices`].
@@ -102,7 +102,7 @@ pub unsafe extern "C" fn pc_system_rhs(
     }
 }
 
-/// Writes ydot by machine code alone; false where there is more to f, or it fails, or the
+/// Writes ydot by machine code alone; false where f is more than that, or fails, or the
 /// parameters change meanwhile.
 ///
 /// # Safety
@@ -242,9 +242,9 @@ pub unsafe extern "C" fn pc_system_jvp(
 }
 
 /// Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their
-/// product: by each parameter with all others fixed, also those that follow it; by the value
-/// of an input with a table. PC_UNSUPPORTED unless pc_model_differentiate was called, and with
-/// external forces.
+/// product: by each parameter with all others fixed, even those that are expressions in it; by
+/// the value of an input with a table. PC_UNSUPPORTED unless pc_model_differentiate was called,
+/// and with external forces.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_parameter_jacobian(
     system: *const pc_system,
@@ -271,9 +271,9 @@ pub unsafe extern "C" fn pc_system_parameter_jacobian(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Writes ∂f/∂t, as long as the state, as Rosenbrock's methods take it. The first call derives, as
-/// pc_system_new does, unless no expression of the model has t. PC_UNSUPPORTED with external
-/// forces, whose ∂/∂t is unknown, and with inputs that have tables.
+/// Writes ∂f/∂t, as long as the state, which Rosenbrock's methods need. The first call derives,
+/// as pc_system_new does, unless f is free of t. PC_UNSUPPORTED with external forces, whose ∂/∂t
+/// is unknown, and with inputs that have tables.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_time_derivative(
     system: *const pc_system,
@@ -308,9 +308,9 @@ pub unsafe extern "C" fn pc_system_time_derivative(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Moves the state, in place, onto the constraints by the shortest way in the kinetic metric,
-/// and the integrals of pc_model_keep to their values at the start of the model, or at the
-/// state of pc_system_keep_from. Without either the state stays as it is.
+/// Projects the state, in place: onto the constraints, along the shortest path in the kinetic
+/// metric, and to the values that the integrals of pc_model_keep have at the start of the model,
+/// or at the state of pc_system_keep_from. Without either the state stays as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_project(
     system: *const pc_system,

@@ -30,7 +30,8 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
             return Err(CallError::Index { what: "parameter", index: parameter, count: values.len() });
         }
         let derived = inventory.derive(|mut model| {
-            // Those that follow others have followed when their turn comes.
+            // A parameter that is an expression in others already has its value when its turn
+            // comes.
             for (place, &value) in values.iter().enumerate() {
                 let known = model.parameters().nth(place).map(|(name, known)| (name.to_owned(), known));
                 let is_table = model.parameter_values().is_table(place);

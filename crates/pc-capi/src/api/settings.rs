@@ -1,4 +1,4 @@
-//! The settings of a model beside its mechanics: description, start, kinds of constraints, how
+//! The settings of a model besides its mechanics: description, start, kinds of constraints, how
 //! it is run.
 
 use std::ffi::c_char;
@@ -56,7 +56,7 @@ pub unsafe extern "C" fn pc_model_set_start(
     unsafe { change(model, error, set) }
 }
 
-/// Changes it to an expression in parameters.
+/// Changes a start value to an expression in parameters; otherwise as pc_model_set_start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_start_expression(
     model: *mut pc_model,
@@ -104,7 +104,7 @@ pub unsafe extern "C" fn pc_model_set_start_time(
 }
 
 /// Sets the time to which the program `pc` runs the model. It is written to the text, as are
-/// the next five; a solver has options of its own.
+/// the next five; solvers take pc_solver_options instead.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_end_time(
     model: *mut pc_model,
@@ -198,7 +198,7 @@ pub unsafe extern "C" fn pc_model_set_form(
     unsafe { put(model, error, "pc_model_set_form", (Section::Simulation, "form"), form) }
 }
 
-/// Writes an entry that is a text, called by its key.
+/// Writes an entry that is a text; errors call it by its key.
 ///
 /// # Safety
 /// As the preamble demands.

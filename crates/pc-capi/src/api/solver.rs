@@ -23,7 +23,7 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 pub struct pc_solver {
     pub(crate) inner: Exclusive<Integration>,
     pub(crate) dim: usize,
-    /// Of the events, which may be read while an observer runs.
+    /// Names of the events, which may be read while an observer runs.
     pub(crate) event_names: Mutex<Vec<CString>>,
 }
 
@@ -41,8 +41,8 @@ impl pc_solver {
 pub type pc_observer =
     Option<unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, user: *mut c_void) -> c_int>;
 
-/// An integration of the system from the state y at the time t, with the parameters as they
-/// are now; from the start of the model if y is NULL, of length 0, and then t is ignored.
+/// Makes a solver that integrates the system from the state y at the time t, with its current
+/// parameters; from the start of the model if y is NULL, of length 0, and then t is ignored.
 /// `options` may be NULL. Projection after each step keeps states on the constraints, and the
 /// integrals of pc_model_keep at their values at this start. The events of the model are
 /// followed: where one occurs, the state is reset as the model says, and a terminal one ends
@@ -86,8 +86,8 @@ pub unsafe extern "C" fn pc_solver_new(
     }
 }
 
-/// Frees a solver. NULL is allowed. Called from the solver's own observers and functions it
-/// does nothing.
+/// Frees a solver. NULL is allowed. It does nothing when called from an observer or function of
+/// this solver.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
     // SAFETY: null or a live handle, as the preamble demands.
@@ -115,8 +115,8 @@ pub(crate) unsafe fn integrate(
     unsafe { entry(error, body) }
 }
 
-/// Makes a solver continue with the parameters and inputs of the system as they are now: it
-/// restarts from where it stands, at order 1. This is how inputs change between two calls of
+/// Makes a solver continue with the current parameters and inputs of the system: it restarts
+/// at its current state, at order 1. This is how inputs change between two calls of
 /// pc_solver_advance. The system is that of the solver, or one of the same model.
 /// PC_UNSUPPORTED with events of pc_solver_add_event.
 #[unsafe(no_mangle)]

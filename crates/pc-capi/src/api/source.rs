@@ -25,11 +25,11 @@ pub enum pc_format {
     PC_JSON = 2,
 }
 
-/// Prints the equations, derived anew, as `pc derive` does: constraints, kinematics, brackets,
+/// Derives and prints the equations, as `pc derive` does: constraints, kinematics, brackets,
 /// equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
-/// right-hand side. Where multipliers hold constraints, those of independent velocities are
-/// shown. `format` is a pc_format. Parameters have the values of the model. Free the text with
-/// pc_string_free.
+/// right-hand side. Where multipliers hold constraints, it shows the equations of independent
+/// velocities. `format` is a pc_format. Parameters have the values of the model. Free the text
+/// with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_print(
     system: *const pc_system,
@@ -74,7 +74,7 @@ fn printed(inventory: &Inventory, model: &Model, page: Page) -> Result<String, C
 /// keyword of C. The source has the right-hand side, its Jacobian, the mass matrix, the
 /// energy, the integrals and the outputs of independent quasi-velocities, those of its momenta
 /// where the system has these, and says at its head how it is used. External forces are
-/// parameters of it, after the others, called `Q_` and the name of their quasi-velocity, and
+/// parameters, after the others, called `Q_` and the name of their quasi-velocity, and
 /// zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
 /// capitals) to a program that integrates from the start of the model to that time. Free both
 /// texts with pc_string_free.
@@ -109,7 +109,7 @@ pub unsafe extern "C" fn pc_system_emit_c(
 fn emitted(inventory: &Inventory, model: &Model, name: &str, t_end: f64) -> Result<[String; 2], CallError> {
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
-    // Source is in quasi-velocities.
+    // Sources are written in quasi-velocities.
     let variables = match inventory.variables {
         Variables::Momenta => Variables::QuasiVelocities,
         Variables::ReducedMomenta => Variables::Reduced,
@@ -126,7 +126,7 @@ fn emitted(inventory: &Inventory, model: &Model, name: &str, t_end: f64) -> Resu
                       functions, like parameters.";
         options = options.remark(remark);
     }
-    // A motion with the inputs of the start would be another.
+    // With its inputs fixed at their start values, the motion would be a different one.
     if t_end.is_finite() && !has_tables {
         options = options.start(assembly.t_start, &assembly.start_in(&form)?, t_end);
     }

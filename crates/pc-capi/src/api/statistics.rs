@@ -42,11 +42,11 @@ pub struct pc_statistics {
     /// Steps shortened to end where the explicit dependence on time shows something that the
     /// motion so far gives no hint of: the beginning of a pulse, a jump.
     pub limited_steps: u64,
-    /// Of the steps of PC_AUTO, those by PC_BDF.
+    /// Steps that PC_AUTO made by PC_BDF.
     pub implicit_steps: u64,
     /// How often PC_AUTO changed its method.
     pub changes: u64,
-    /// When PC_DOP853 or PC_AUTO saw first that the motion is stiff; NaN if it did not.
+    /// Time at which PC_DOP853 or PC_AUTO first found the motion stiff; NaN if never.
     pub stiff_from: f64,
 }
 

@@ -43,9 +43,9 @@ pub unsafe extern "C" fn pc_system_new(
     unsafe { entry(error, new) }
 }
 
-/// A copy for another thread, with the parameters as they are now. It shares the machine code
-/// that exists: that of f, and that of each derivative which the original has evaluated before
-/// (its first evaluation compiles it).
+/// Makes a copy for another thread, with the current parameters. It shares the machine code that
+/// exists: that of f, and that of each derivative which the original has evaluated before (its
+/// first evaluation compiles it).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_clone(
     system: *const pc_system,
@@ -65,8 +65,8 @@ pub unsafe extern "C" fn pc_system_clone(
     unsafe { entry(error, clone) }
 }
 
-/// Frees a system. NULL is allowed. Called from a function that a call of this system runs it
-/// does nothing.
+/// Frees a system. NULL is allowed. It does nothing when called from a function of your program
+/// that a call on this system runs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_free(system: *mut pc_system) {
     // SAFETY: null or a live handle, as the preamble demands.
@@ -157,7 +157,7 @@ pub extern "C" fn pc_system_reaction_name(system: Option<&pc_system>, index: usi
     name(system, place.unwrap_or(usize::MAX), |inventory| &inventory.observables)
 }
 
-/// The time and state from which the model starts. `t` may be NULL.
+/// Writes the time and state from which the model starts. `t` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_start(
     system: *const pc_system,
@@ -178,7 +178,7 @@ pub unsafe extern "C" fn pc_system_start(
     unsafe { entry(error, start) }
 }
 
-/// The values of all parameters.
+/// Writes the values of all parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_parameters(
     system: *const pc_system,
@@ -196,9 +196,9 @@ pub unsafe extern "C" fn pc_system_parameters(
     unsafe { inside(system, error, get) }
 }
 
-/// Sets all parameters; cheap, since nothing is derived again. The start stays, and solvers
-/// and kernels made before keep their values. Inputs come after the parameters; one with a
-/// table follows its table whatever it is set to.
+/// Sets all parameters; cheap, since nothing is derived again. The start stays the same, and
+/// solvers and kernels made before keep their values. Inputs come after the parameters; one with
+/// a table follows its table whatever it is set to.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_parameters(
     system: *mut pc_system,

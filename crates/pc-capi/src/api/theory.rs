@@ -1,4 +1,4 @@
-//! What can be said of the motions without integrating them, in print.
+//! The analysis of motions without integrating them, printed.
 
 use std::ffi::{c_char, c_int};
 

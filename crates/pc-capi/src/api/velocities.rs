@@ -28,11 +28,11 @@ pub unsafe extern "C" fn pc_model_give_quasi_velocity(
     unsafe { change(model, error, give) }
 }
 
-/// Chooses a velocity as one of the independent ones, of which there are as many as the
-/// constraints leave free: where multipliers would hold the constraints, systems then have
-/// equations in which these are eliminated. The name is that of a quasi-velocity, or x' where
-/// there are none. Without a choice, printed equations and source are in the velocities that
-/// make them shortest. A wrong choice is reported by pc_system_new.
+/// Chooses a velocity as independent; there must be as many choices as the constraints leave
+/// velocities free. Where multipliers would hold the constraints, systems then have equations
+/// without multipliers. The name is that of a quasi-velocity, or x' where there are none. Without
+/// a choice, printed equations and source are in the velocities that make them shortest. A wrong
+/// choice is reported by pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_independent(
     model: *mut pc_model,

@@ -1,4 +1,4 @@
-//! The equations against a second derivation.
+//! Comparison of the equations with a second derivation.
 
 use std::ffi::c_char;
 
@@ -45,7 +45,7 @@ fn report(mut model: Model, parameters: &[f64], states: usize) -> Result<String,
     for (name, &value) in names.iter().zip(parameters) {
         model.set(name, value)?;
     }
-    // The start is only where states are looked for.
+    // Random states are looked for near the start, so it may be off the constraints.
     model.project_start(true);
     let usual = Options::default();
     let options = Options { states: if states == 0 { usual.states } else { states }, ..usual };

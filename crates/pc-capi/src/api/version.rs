@@ -45,34 +45,33 @@ pub const PREAMBLE: &str = "\
  * State. y has n coordinates x, then quasi-velocities (or momenta, in the canonical form), then
  * first-order states; ydot is its rate.
  *
- * Errors. A function that can fail returns a pc_status, and takes as last argument a place for a
- * pc_error, or NULL. There it writes NULL if all went well, and otherwise a new error, which you
-  * free; what the place held before does not matter. PC_STOPPED and PC_EVENT are no failures: an
- * observer, or a terminal event, has ended an integration. Results are written unless the call
-  * fails; after a failure a new handle or text is NULL, and arrays for results may
-  * hold anything.
+ * Errors. A function that can fail returns a pc_status; its last argument is a place for a
+ * pc_error, or NULL. On success it writes NULL there, otherwise a new error, which you free; what
+ * the place held before does not matter. PC_STOPPED and PC_EVENT are no failures: an observer, or
+ * a terminal event, has ended an integration. Results are written unless the call fails; after a
+ * failure a new handle or text is NULL, and arrays for results may hold anything.
  *
-  * Ownership. What a function named ..._new, ..._clone, pc_model_parse, pc_model_from_file,
+ * Ownership. What a function named ..._new, ..._clone, pc_model_parse, pc_model_from_file,
  * pc_model_builtin, pc_solver_restore or pc_solver_run_dense gives, you free with the ..._free of
  * its type; `char *` you free with pc_string_free, bytes with pc_bytes_free; `const char *`
  * belongs to the handle it came from and lives as long, or is static. All ..._free allow NULL.
  * Handles are independent: a model can be freed while its system lives, and a system while its
  * solvers and kernels do.
  *
-  * Arrays. Each comes with its length, which must be exact, not merely large enough. They
-  * are `double`, aligned as such, and an array that is written must not overlap another one;
- * this is checked. NULL goes with the length 0. Matrices are dense and column-major,
- * A[i + j*rows], unless the function says otherwise. Text is UTF-8 and zero-terminated.
+ * Arrays. Each comes with its length, which must be exact, not merely large enough. They are
+ * `double`, aligned as such, and an array that is written must not overlap another one; this is
+ * checked. NULL goes with the length 0. Matrices are dense and column-major, A[i + j*rows],
+ * unless the function says otherwise. Text is UTF-8 and zero-terminated.
  *
  * Threads. Nothing is global. A handle may go from thread to thread and is used by one call at a
- * time: a second one at the same time returns PC_BUSY and does nothing; only of pc_system_rhs many
- * may succeed side by side, as it says. (Freeing a handle while another thread uses it is not
-  * safe.) Different handles are independent; to evaluate on many threads, give each its
- * own by pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second
- * call. Names and sizes may be read at any time, by any number of threads, and a pc_cancel used.
-  * A `const` handle says only that the call does not change what the handle computes.
+ * time: a second one at the same time returns PC_BUSY and does nothing. Only pc_system_rhs may
+ * run many times side by side, as it says. (Freeing a handle while another thread uses it is not
+ * safe.) Different handles are independent; to evaluate on many threads, give each its own by
+ * pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second call.
+ * Any number of threads may read names and sizes, and use a pc_cancel, at any time. A `const`
+ * handle says only that the call does not change what the handle computes.
  *
-  * Signal handlers may call pc_cancel_request only. A fault of the library is PC_INTERNAL and
-  * does not end your program; exhausted memory or an exhausted stack does: a thread needs 128 KiB,
-  * whatever the model; deeper work takes a stack of its own, of 8 MiB, while it derives.
+ * Signal handlers may call pc_cancel_request only. A fault of the library is PC_INTERNAL and does
+ * not end your program; exhausted memory or an exhausted stack does. A thread needs a stack of
+ * 128 KiB, whatever the model; deeper derivations run on a separate stack of 8 MiB.
  */";

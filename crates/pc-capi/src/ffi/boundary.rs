@@ -1,4 +1,4 @@
-//! The boundary: what every function does on the way in and out.
+//! The boundary: what every function does at its beginning and end.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,7 +16,7 @@ pub(crate) unsafe fn entry(
     error: *mut *mut pc_error,
     body: impl FnOnce() -> Result<(), CallError>,
 ) -> pc_status {
-    // Unwind safe: what the body may have left half done is held, and not used again after a panic.
+    // Unwind safe: what a panic leaves half done is in an `Exclusive`, which refuses further use.
     let outcome = catch_unwind(AssertUnwindSafe(|| match body() {
         Ok(()) => (pc_status::PC_OK, ptr::null_mut()),
         Err(fault @ (CallError::Stopped | CallError::Terminal)) => (fault.status(), ptr::null_mut()),
@@ -50,14 +50,14 @@ pub(crate) unsafe fn succeeded(error: *mut *mut pc_error) -> pc_status {
     pc_status::PC_OK
 }
 
-/// What a panic says.
+/// The message of a panic.
 fn message_of(panic: Box<dyn Any + Send>) -> String {
     let message = panic
         .downcast_ref::<String>()
         .cloned()
         .or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()))
         .unwrap_or_else(|| "a panic".to_owned());
-    // Ours are texts; one of another kind might panic again where it is dropped.
+    // A payload that is not text might panic again when it is dropped.
     let _ = catch_unwind(AssertUnwindSafe(|| drop(panic)));
     message
 }

@@ -155,14 +155,15 @@ impl CallError {
                 pc_status::PC_INVALID_CHECKPOINT
             }
             CallError::Busy => pc_status::PC_BUSY,
-            // Of the solver: its set-up, which fails for want of memory, as threads do.
+            // The remaining errors of the solver are from its set-up, which fails for want of
+            // memory, as threads do.
             CallError::Broken | CallError::Panic { .. } | CallError::Ensemble(_) | CallError::Solve(_) => {
                 pc_status::PC_INTERNAL
             }
         }
     }
 
-    /// What is said, with the cause where the sentence does not hold it.
+    /// The message, with its causes where it does not contain them.
     fn message(&self) -> String {
         let mut message = self.to_string();
         let mut cause = match self {

@@ -1,4 +1,4 @@
-//! What went wrong, for C.
+//! Errors, for C.
 
 use std::ffi::{CString, c_char, c_int};
 
@@ -51,13 +51,13 @@ impl CallError {
     }
 }
 
-/// Its status, never PC_OK; PC_OK for NULL.
+/// The status of the failed call, never PC_OK; PC_OK for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_status(error: Option<&pc_error>) -> pc_status {
     error.map_or(pc_status::PC_OK, |error| error.status)
 }
 
-/// The message, in UTF-8, never null; it lives as long as the error. For a model it shows the
+/// The message, in UTF-8, never NULL; it lives as long as the error. For a model it shows the
 /// line at fault and what would be right, over several lines of text. Empty for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_message(error: Option<&pc_error>) -> *const c_char {
@@ -95,14 +95,14 @@ pub extern "C" fn pc_error_integrator_code(error: Option<&pc_error>) -> c_int {
     error.map_or(0, |error| error.integrator_code)
 }
 
-/// 1 if the status is PC_EVALUATION and a nearby state may do, so that an integrator should
-/// try a smaller step; else 0, and for NULL.
+/// 1 if the status is PC_EVALUATION and evaluation may succeed at a nearby state, so that an
+/// integrator should try a smaller step; else 0, and for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_is_recoverable(error: Option<&pc_error>) -> c_int {
     error.map_or(0, |error| error.recoverable.into())
 }
 
-/// Frees an error. Null is allowed.
+/// Frees an error. NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_error_free(error: *mut pc_error) {
     // SAFETY: null or an error of ours that nobody uses any more.

@@ -73,7 +73,7 @@ fn check(data: *const f64, found: usize, expected: usize, what: &'static str) ->
     possible(data, expected, what)
 }
 
-/// Whether there can be so many at that place at all.
+/// Refuses an array that cannot exist.
 fn possible<T>(data: *const T, len: usize, what: &'static str) -> Result<(), CallError> {
     if len == 0 {
         return Ok(());
@@ -88,7 +88,7 @@ fn possible<T>(data: *const T, len: usize, what: &'static str) -> Result<(), Cal
     aligned(data, what)
 }
 
-/// Refuses what does not stand where its type does.
+/// Refuses a pointer that is not aligned for its type.
 pub(crate) fn aligned<T>(data: *const T, what: &'static str) -> Result<(), CallError> {
     if data.is_aligned() { Ok(()) } else { Err(CallError::Misaligned { what, alignment: align_of::<T>() }) }
 }
@@ -105,7 +105,7 @@ pub(crate) fn apart(
     }
 }
 
-/// Whether there can be two arrays of numbers at these places, which share no memory.
+/// Whether the pointers can be two arrays of numbers that share no memory.
 #[inline]
 pub(crate) fn are_usable(first: (*const f64, usize), second: (*const f64, usize)) -> bool {
     let there = |data: *const f64| !data.is_null() && data.is_aligned();
@@ -166,8 +166,8 @@ pub(crate) unsafe fn write<T>(place: *mut T, value: T, what: &'static str) -> Re
     Ok(())
 }
 
-/// Refuses a null place for a result before the work is done, and writes null there for the case
-/// that it fails.
+/// Refuses a null place for a result before any work is done, and writes null there in case the
+/// work fails.
 ///
 /// # Safety
 /// Null, or a place for a pointer.

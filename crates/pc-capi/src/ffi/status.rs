@@ -12,9 +12,9 @@ pub enum pc_status {
     /// The call is wrong: a null pointer, a wrong length, a name that is not UTF-8, a number that
     /// is not finite, an unknown choice.
     PC_INVALID_ARGUMENT = 1,
-    /// The text of the model is wrong, or not UTF-8; the error has the place.
+    /// The text of the model is wrong, or not UTF-8; the error says where.
     PC_INVALID_MODEL = 2,
-    /// The model contradicts itself; the error has the place.
+    /// The model contradicts itself; the error says where.
     PC_INCONSISTENT_MODEL = 3,
     /// The request cannot be met, or not for this system.
     PC_UNSUPPORTED = 4,
@@ -24,8 +24,8 @@ pub enum pc_status {
     PC_IO = 6,
     /// The equations cannot be evaluated at this time and state.
     PC_EVALUATION = 7,
-    /// The integration could not begin or go on. Events that accumulate, such as the bounces
-    /// of a ball that comes to rest, end it so.
+    /// The integration could not begin or continue. Events that accumulate, such as the bounces
+    /// of a ball that comes to rest, end it in this way.
     PC_INTEGRATION = 8,
     /// An observer stopped the integration. This is no failure, and there is no pc_error.
     PC_STOPPED = 9,

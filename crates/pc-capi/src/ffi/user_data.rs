@@ -1,4 +1,4 @@
-//! What belongs to the functions of the program.
+//! The argument `user` of the program's functions.
 
 use std::ffi::c_void;
 

@@ -1,4 +1,4 @@
-//! The functions of the program that compute forces, as a force of the mechanics.
+//! The functions of the program that compute forces, as an external force of `pc_mech`.
 
 use std::ffi::{c_int, c_void};
 use std::sync::Arc;
@@ -23,7 +23,7 @@ struct Callback {
     user: Shared,
 }
 
-/// Their argument, freed with the last copy.
+/// The argument of the functions, freed with the last copy.
 struct Shared(User);
 
 // SAFETY: pc_system_set_force demands that its functions take `user` on any thread, on several at the same time.
@@ -43,7 +43,7 @@ enum NoForce {
 }
 
 impl NoForce {
-    /// What the answer of a function means.
+    /// What the return value of a function means.
     fn read(code: c_int, fault: fn(c_int) -> NoForce) -> Result<(), Failure> {
         match code {
             0 => Ok(()),
@@ -54,7 +54,7 @@ impl NoForce {
 }
 
 impl Controller {
-    /// The forces that `function` computes, and `jacobian` derives if there is one.
+    /// Forces by `function`; their derivatives by `jacobian`, or else by difference quotients.
     pub(crate) fn new(function: Function, jacobian: Option<Function>, user: User) -> Controller {
         let callback = Callback { function, jacobian, user: Shared(user) };
         Controller { callback: Some(Arc::new(callback)), room: Vec::new() }
@@ -62,7 +62,7 @@ impl Controller {
 }
 
 impl Callback {
-    /// The answer of one of its functions, which writes `values`.
+    /// Calls one of the functions, which writes `values`.
     fn call(&self, function: Function, t: f64, y: &[f64], values: &mut [f64]) -> c_int {
         // SAFETY: a function of that type, as pc_system_set_force demands; the arrays are as long as said.
         unsafe { function(t, y.as_ptr(), y.len(), values.as_mut_ptr(), values.len(), self.user.0.data) }

@@ -1,4 +1,4 @@
-//! A model put together call by call: it is written as a text, so that there is one meaning.
+//! A model built call by call, as a text: both ways to a model have the same meaning.
 
 use std::fmt::Write;
 
@@ -16,7 +16,7 @@ pub(crate) struct Draft {
 #[derive(Clone, Debug)]
 struct Entry {
     section: Section,
-    /// The key, and those of the tables in it.
+    /// The key, followed by those inside its tables.
     keys: Vec<String>,
     /// As written in the text.
     value: String,
@@ -81,13 +81,13 @@ impl Draft {
         draft
     }
 
-    /// Adds an entry; that a name comes twice is found where the text is read.
+    /// Adds an entry; a name that occurs twice is an error when the text is read.
     pub(crate) fn add(&mut self, section: Section, keys: &[&str], value: String) {
         let keys = keys.iter().map(|&key| key.to_owned()).collect();
         self.entries.push(Entry { section, keys, value });
     }
 
-    /// Adds an entry, or gives the one there is a new value.
+    /// Adds an entry, or changes the value of an existing one.
     pub(crate) fn put(&mut self, section: Section, keys: &[&str], value: String) {
         match self.find(section, keys) {
             Some(entry) => entry.value = value,
@@ -95,7 +95,7 @@ impl Draft {
         }
     }
 
-    /// Gives a parameter, or an input without a table, that has been added a new value.
+    /// Changes the value of a parameter, or of an input without a table.
     pub(crate) fn set(&mut self, name: &str, value: f64) -> Result<(), UnknownParameter> {
         for section in [Section::Parameters, Section::Inputs] {
             if let Some(entry) = self.find(section, &[name]) {
@@ -107,7 +107,8 @@ impl Draft {
         Err(UnknownParameter { name: name.to_owned(), known })
     }
 
-    /// Gives a coordinate, quasi-velocity or first-order state that has been added another start value; velocities `x'` are added.
+    /// Changes the start value of a coordinate, quasi-velocity or first-order state; velocities
+    /// `x'` are added.
     pub(crate) fn set_start(&mut self, name: &str, value: String) -> Result<(), UnknownStart> {
         let places: [(Section, &[&str]); 4] = [
             (Section::States, &[name, "start"]),
@@ -135,7 +136,7 @@ impl Draft {
         Err(UnknownStart { name: name.to_owned(), known })
     }
 
-    /// Adds a reset to an event that has been added.
+    /// Adds a reset to an existing event.
     pub(crate) fn add_reset(&mut self, event: &str, variable: &str, value: String) -> Result<(), CallError> {
         if !self.names(Section::Events).iter().any(|known| known == event) {
             return Err(CallError::NoSuchEvent { name: event.to_owned() });

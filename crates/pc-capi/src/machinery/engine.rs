@@ -1,4 +1,4 @@
-//! An integration, and what is remembered of its events.
+//! An integration, with a record of its events.
 
 use std::ffi::c_void;
 use std::ops::ControlFlow;
@@ -17,7 +17,7 @@ use crate::machinery::motion_field::MotionField;
 /// The integration, with its events.
 pub(crate) type Engine = Box<pc_solve::Integration<Chosen<MotionField>, Followed>>;
 
-/// From a checkpoint, which may be a start. What `field` keeps by projection are its values there.
+/// Begins at a checkpoint, which may be a start; `field` keeps its integrals at their values there.
 pub(crate) fn engine(
     mut field: MotionField,
     from: &Checkpoint,
@@ -25,7 +25,7 @@ pub(crate) fn engine(
     events: Followed,
     sensitivities: &Sensitivities,
 ) -> Result<Engine, SolveError> {
-    // One of another length is refused below.
+    // A state of another length is refused below.
     if from.state().len() == field.dim() {
         field.restart(from.time(), from.state());
     }
@@ -33,19 +33,19 @@ pub(crate) fn engine(
     Ok(Box::new(begun.with_events_of(events, from)?))
 }
 
-/// What a solver remembers of its events: little, however often they occur.
+/// What a solver records of its events: the same amount however often they occur.
 #[derive(Default)]
 pub(crate) struct Record {
     /// How often each has occurred.
     pub(crate) counts: Vec<u64>,
-    /// The last time of each.
+    /// The last occurrence of each.
     pub(crate) last: Vec<Option<Occurrence>>,
     /// The terminal event that ended the last call.
     pub(crate) terminal: Option<usize>,
     pub(crate) observer: Option<Observer>,
 }
 
-/// What is told of each occurrence.
+/// The function that receives each occurrence.
 pub(crate) struct Observer {
     pub(crate) function:
         unsafe extern "C" fn(usize, f64, *const f64, *const f64, usize, *mut c_void) -> std::ffi::c_int,
@@ -71,13 +71,13 @@ impl Record {
     }
 }
 
-/// What a solver is.
+/// The content of a solver.
 pub(crate) struct Integration {
     engine: Engine,
     events: Followed,
     options: Options,
     sensitivities: Sensitivities,
-    /// The work before it began anew at a checkpoint.
+    /// The work before the last restart.
     earlier: Statistics,
     pub(crate) record: Record,
 }
@@ -95,7 +95,7 @@ impl Integration {
         Ok(Integration { engine, events, options, sensitivities, earlier: Statistics::default(), record })
     }
 
-    /// Follows one more event. Where that is refused, nothing has changed.
+    /// Follows one more event; an error changes nothing.
     pub(crate) fn add(&mut self, event: Event, own: Own) -> Result<(), CallError> {
         if self.statistics().steps > 0 {
             return Err(CallError::Begun { what: "an event" });
@@ -107,7 +107,7 @@ impl Integration {
         Ok(())
     }
 
-    /// Integrates one more column of sensitivities. Where that is refused, nothing has changed.
+    /// Integrates one more column of sensitivities; an error changes nothing.
     pub(crate) fn differentiate(&mut self, parameter: usize, start: &[f64]) -> Result<(), CallError> {
         if self.statistics().steps > 0 {
             return Err(CallError::Begun { what: "a sensitivity" });
@@ -121,13 +121,13 @@ impl Integration {
         })
     }
 
-    /// S where it stands, column-major, and the number of columns.
+    /// S at the current time, column-major, and the number of columns.
     pub(crate) fn sensitivities(&mut self) -> Result<(Vec<f64>, usize), SolveError> {
         let matrix = self.engine.stepper().columns()?;
         Ok((matrix, self.sensitivities.len()))
     }
 
-    /// Begins anew with these events.
+    /// Restarts from a checkpoint with these events.
     fn begin(&mut self, from: &Checkpoint, events: Followed) -> Result<(), SolveError> {
         let field = self.engine.field().clone();
         let engine = engine(field, from, &self.options, events.clone(), &self.sensitivities)?;
@@ -136,14 +136,14 @@ impl Integration {
         Ok(())
     }
 
-    /// What the motion can be taken up from. It begins anew there itself.
+    /// A checkpoint of the motion, from which this integration restarts too.
     pub(crate) fn checkpoint(&mut self) -> Result<Checkpoint, CallError> {
         let checkpoint = self.stand("a checkpoint")?;
         self.begin(&checkpoint, self.events.clone())?;
         Ok(checkpoint)
     }
 
-    /// Begins anew where it stands with these values of the parameters.
+    /// Restarts at the current state with these values of the parameters.
     pub(crate) fn set_parameters(&mut self, values: &[f64]) -> Result<(), CallError> {
         let what = "a change of parameters";
         let stand = self.stand(what)?;
@@ -163,7 +163,7 @@ impl Integration {
         Ok(())
     }
 
-    /// A number that tells its equations from others.
+    /// A number that distinguishes its equations from others.
     pub(crate) fn digest(&self) -> u64 {
         self.engine.field().digest()
     }
@@ -175,7 +175,7 @@ impl Integration {
         Ok(self.engine.checkpoint())
     }
 
-    /// A call begins, which may take as long as each.
+    /// Begins a call, which has the full time limit again.
     fn called(&mut self) {
         self.record.terminal = None;
         self.engine.renew_deadline();
@@ -216,7 +216,7 @@ impl Integration {
         self.engine.interpolate(t, order)
     }
 
-    /// What the end of a call means to its caller.
+    /// The result of a call that ends this way.
     pub(crate) fn ended(&mut self, ending: Ending) -> Result<(), CallError> {
         match ending {
             Ending::Completed => Ok(()),

@@ -9,11 +9,12 @@ use pc_expr::{Event, Events, Failure, Program};
 
 use crate::ffi::user_data::User;
 
-/// g(t, y) of an event, for C.
+/// g(t, y) of an event, a function of C.
 pub(crate) type Function = unsafe extern "C" fn(f64, *const f64, usize, *mut f64, *mut c_void) -> c_int;
-/// y⁺ in the place of y⁻, for C.
+/// Overwrites y⁻ by y⁺, a function of C.
 pub(crate) type Reset = unsafe extern "C" fn(f64, *mut f64, usize, *mut c_void) -> c_int;
-/// What happens on the way of an integration. Copies share the functions of the program, and stay with one solver.
+/// The events of an integration. Copies share the functions of the program, and stay with one
+/// solver.
 #[derive(Clone)]
 pub(crate) struct Followed {
     list: Vec<Event>,
@@ -21,7 +22,7 @@ pub(crate) struct Followed {
     own: Vec<Rc<Own>>,
 }
 
-/// The functions of an event of the program's own.
+/// An event that functions of the program compute.
 pub(crate) struct Own {
     pub(crate) name: String,
     pub(crate) function: Function,
@@ -29,7 +30,7 @@ pub(crate) struct Own {
     pub(crate) user: User,
 }
 
-/// A function of the program did not succeed.
+/// A function of the program failed.
 #[derive(Debug, thiserror::Error)]
 #[error("the {what} of the event {event} returned {code}")]
 struct Returned {
@@ -53,7 +54,7 @@ impl Followed {
         Followed { list: model.events().to_vec(), model, own: Vec::new() }
     }
 
-    /// These and one more.
+    /// These events and one more.
     pub(crate) fn with(&self, event: Event, own: Own) -> Followed {
         let mut more = self.clone();
         more.list.push(event);
@@ -61,12 +62,12 @@ impl Followed {
         more
     }
 
-    /// Gives the events of the model other values of the parameters.
+    /// Sets the parameters of the model's events.
     pub(crate) fn set_parameters(&mut self, values: &[f64]) {
         self.model.set_parameters(values);
     }
 
-    /// Whether some are the program's.
+    /// Whether there are events of the program.
     pub(crate) fn has_own(&self) -> bool {
         !self.own.is_empty()
     }
@@ -93,7 +94,7 @@ impl Events for Followed {
         Ok(())
     }
 
-    /// Of the functions of the model, which come first.
+    /// The program of the model's event functions, which come first.
     fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
         self.model.program()
     }
@@ -111,7 +112,7 @@ impl Events for Followed {
         }
     }
 
-    /// Nothing is known of how a reset of the program's own depends on anything.
+    /// The derivatives of a reset by the program are unknown.
     fn has_parameter_derivatives(&self) -> bool {
         self.own.iter().all(|own| own.reset.is_none()) && self.model.has_parameter_derivatives()
     }

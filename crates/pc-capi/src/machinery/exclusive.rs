@@ -1,4 +1,4 @@
-//! What only one call may use at a time.
+//! Values that only one call may use at a time.
 
 use std::cell::UnsafeCell;
 use std::marker::PhantomData;
@@ -13,8 +13,8 @@ const BROKEN: u8 = 2;
 
 /// A value that one call at a time may use, and none after a panic in one.
 ///
-/// As a mutex that nobody waits for; to give it back takes no atomic exchange, which is felt in an evaluation of
-/// some nanoseconds.
+/// Like a mutex for which nobody waits; releasing it takes no atomic exchange, whose cost shows in
+/// an evaluation of a few nanoseconds.
 pub(crate) struct Exclusive<T> {
     state: AtomicU8,
     value: UnsafeCell<T>,
@@ -41,7 +41,8 @@ impl<T> Exclusive<T> {
         }
     }
 
-    /// Lets no call use the value any more, so that it can be dropped; false if one does now.
+    /// Refuses all further use of the value, so that it can be dropped; false if a call uses it
+    /// now.
     pub(crate) fn close(&self) -> bool {
         self.state.swap(IN_USE, Ordering::Acquire) != IN_USE
     }
@@ -66,7 +67,8 @@ impl<T> DerefMut for Use<'_, T> {
 impl<T> Drop for Use<'_, T> {
     #[inline]
     fn drop(&mut self) {
-        // What a panic leaves half done is not used again. A call during another panic would be taken for that too.
+        // What a panic leaves half done is not used again; nor is a value used during another
+        // panic.
         let state = if std::thread::panicking() { BROKEN } else { FREE };
         self.0.state.store(state, Ordering::Release);
     }

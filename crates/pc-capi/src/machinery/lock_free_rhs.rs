@@ -1,4 +1,4 @@
-//! f(t, y) by nothing but machine code.
+//! f(t, y) by machine code alone.
 
 use std::mem::MaybeUninit;
 use std::slice;
@@ -10,24 +10,26 @@ use crate::machinery::motion_field::MotionField;
 
 /// The machine code of f, and the parameters it is for.
 ///
-/// An evaluation changes nothing but its room, so that it needs no lock. It notices when the parameters are published
-/// anew meanwhile, as the reader of a seqlock does.
+/// An evaluation writes only to its own scratch, so it needs no lock. Like the reader of a seqlock,
+/// it notices when new parameters are published meanwhile.
 pub(crate) struct Direct {
     code: MachineCode,
-    /// What is published is complete if this is even, and another one if it is another number.
+    /// Even while the published numbers are complete; changed by every publication.
     version: AtomicU64,
-    /// What is published, f64 all of it; after the parameters what is computed of them.
+    /// The published numbers, all f64: pivots that depend on parameters alone, and the parameters
+    /// of the code.
     fixed_pivots: Box<[AtomicU64]>,
     parameters: Box<[AtomicU64]>,
     room: usize,
 }
 
-/// Most numbers that are taken from the stack; for more, whatever they are, an allocation is not felt.
+/// Largest scratch on the stack, in numbers; beyond it an evaluation is long enough to hide an
+/// allocation.
 const ON_STACK: usize = 4096;
 
 impl Direct {
-    /// With the parameters as they are; none where the field is more than machine code. The code is compiled if it was
-    /// not, and lives as long as the field.
+    /// The code with the current parameters, compiled on first use; none where the field is more
+    /// than machine code. It lives as long as the field.
     pub(crate) fn of(field: &mut MotionField) -> Option<Direct> {
         let code = field.machine_code()?;
         let beside = if code.outputs_len() == code.rates_len() { 0 } else { code.outputs_len() };
@@ -45,12 +47,13 @@ impl Direct {
 
     /// Takes over the parameters of the field; one call at a time.
     pub(crate) fn publish(&self, field: &mut MotionField) {
-        // They are computed now, while nobody has to wait for them, and only read below.
+        // Computed before the version turns odd and readers have to give up; below they are only
+        // read.
         let _ = field.fixed_pivots();
         let _ = field.code_parameters();
         let version = self.version.load(Ordering::Relaxed);
         self.version.store(version + 1, Ordering::Relaxed);
-        // None of the numbers is seen before that.
+        // No reader sees one of the numbers before the odd version.
         fence(Ordering::Release);
         let store = |places: &[AtomicU64], values: &[f64]| {
             for (place, value) in places.iter().zip(values) {
@@ -68,12 +71,12 @@ impl Direct {
         self.code.rates_len()
     }
 
-    /// How many numbers it needs for scratch, and for its outputs where they are not the rates alone.
+    /// Length of its scratch, including its outputs where they are more than the rates.
     pub(crate) fn room(&self) -> usize {
         self.room
     }
 
-    /// Writes ẏ. False where f fails, and where the parameters change meanwhile: ẏ is of no use then.
+    /// Writes ẏ. False where f fails or the parameters change meanwhile; ẏ is then undefined.
     ///
     /// # Safety
     /// `y` and `ydot` have place for [`dim`](Direct::dim) numbers and share no memory; the field lives.
@@ -90,12 +93,12 @@ impl Direct {
         };
         // SAFETY: as promised, and the room is large enough.
         let right = unsafe { self.rates_alone(t, y, ydot, room) };
-        // All that was read was read before this.
+        // All reads above come before the second read of the version.
         fence(Ordering::Acquire);
         right && version.is_multiple_of(2) && self.version.load(Ordering::Relaxed) == version
     }
 
-    /// The same where nobody publishes meanwhile.
+    /// The same where nothing is published meanwhile.
     ///
     /// # Safety
     /// As for [`rates`](Direct::rates), with place for [`room`](Direct::room) numbers at `room`.
@@ -115,8 +118,8 @@ impl Direct {
             }
             run(room, room.add(outputs));
             let (rates, watched) = slice::from_raw_parts(room, outputs).split_at(dim);
-            // One pass with an early end, which keeps it number by number: a copy in wider pieces would wait for the
-            // numbers just written.
+            // The early exit keeps the loop scalar: wider loads would wait for the scalar stores
+            // just made.
             let copied = rates.iter().enumerate().all(|(i, &rate)| {
                 ydot.add(i).write(rate);
                 rate.is_finite()

@@ -14,9 +14,9 @@ pub(crate) struct Mechanics {
     /// c_rs^m, the index m fastest, then s, then r.
     pub(crate) structure: Evaluator,
     pub(crate) operators: usize,
-    /// b η + b_0, then r, then ż, which the external forces are inputs of too.
+    /// b η + b_0, then r, then ż; the external forces are further inputs.
     pub(crate) right: Evaluator,
-    /// Whether M η̇ = r is all there is: no multipliers, no momenta.
+    /// Whether the equations are M η̇ = r, without multipliers and momenta.
     pub(crate) complete: bool,
 }
 
@@ -50,7 +50,7 @@ impl Mechanics {
     }
 }
 
-/// The values at (t, state), if all are numbers.
+/// Writes the values at (t, state); an error says why one is not finite.
 pub(crate) fn evaluate(
     program: &mut Evaluator,
     (t, state, parameters): (f64, &[f64], &[f64]),

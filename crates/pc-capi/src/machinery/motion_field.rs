@@ -1,4 +1,4 @@
-//! What is integrated.
+//! The vector field that is integrated.
 
 use pc_mech::{Failure, ForcedMotion, MachineCode, MechError, Motion, VectorField};
 
@@ -20,7 +20,8 @@ impl MotionField {
         }
     }
 
-    /// Sets the function of the forces. The one before is returned, or the new one where there are no forces.
+    /// Sets the function of the forces and returns the former one; an error returns the new one,
+    /// for want of forces.
     pub(crate) fn set_force(&mut self, controller: Controller) -> Result<Controller, Controller> {
         match self {
             MotionField::Free(_) => Err(controller),
@@ -28,7 +29,7 @@ impl MotionField {
         }
     }
 
-    /// A number that tells it from fields of other equations, or with other names.
+    /// A number that distinguishes it from fields of other equations or names.
     pub(crate) fn digest(&self) -> u64 {
         self.motion().digest()
     }
@@ -40,7 +41,7 @@ impl MotionField {
         }
     }
 
-    /// The machine code of f, if it is no more than that.
+    /// The machine code of f, if f is nothing else.
     pub(crate) fn machine_code(&mut self) -> Option<MachineCode> {
         match self {
             MotionField::Free(motion) => motion.machine_code(),
@@ -48,7 +49,7 @@ impl MotionField {
         }
     }
 
-    /// What the machine code takes for parameters as they are.
+    /// The parameters of the machine code, for the current values.
     pub(crate) fn code_parameters(&mut self) -> Option<&[f64]> {
         match self {
             MotionField::Free(motion) => motion.code_parameters(),
@@ -56,7 +57,7 @@ impl MotionField {
         }
     }
 
-    /// What it asks for of the parameters as they are.
+    /// The pivots of M that depend on parameters alone, for the current values.
     pub(crate) fn fixed_pivots(&mut self) -> Option<&[f64]> {
         match self {
             MotionField::Free(motion) => motion.fixed_pivots(),
@@ -79,7 +80,7 @@ impl MotionField {
         self.motion().constraint_names()
     }
 
-    /// Writes what should be zero of each of them.
+    /// Writes the residual of each constraint.
     pub(crate) fn constraint_residuals(&mut self, t: f64, y: &[f64], residuals: &mut [f64]) {
         match self {
             MotionField::Free(motion) => motion.constraint_residuals_to(t, y, residuals),

@@ -20,9 +20,10 @@ use crate::machinery::motion_field::MotionField;
 
 /// The equations of motion of a model, compiled: ẏ = f(t, y). Free it with pc_system_free.
 pub struct pc_system {
-    /// Dropped first: what functions of the program destroy may look at names.
+    /// Dropped first: a `destroy` of the program may read names.
     pub(crate) inner: Exclusive<Inner>,
-    /// What needs the field to live, but not to be held; known after the first evaluation.
+    /// The machine code of f, which needs a live field but no lock; known after the first
+    /// evaluation.
     direct: OnceLock<Option<Direct>>,
     pub(crate) inventory: Arc<Inventory>,
 }
@@ -55,14 +56,14 @@ impl Inventory {
         self.names.len()
     }
 
-    /// Derives something else from the model, which may take as much as the first derivation.
+    /// Derives something else from the model, with the limits of the first derivation.
     pub(crate) fn derive<T>(&self, work: impl FnOnce(Model) -> Result<T, CallError>) -> Result<T, CallError> {
         let mut model = self.model.clone();
         model.limit(self.model.budget().limits().clone());
         deep(|| work(model))
     }
 
-    /// When something that begins now has to end, by the limits of the first derivation.
+    /// The deadline of what begins now, by the limits of the first derivation.
     pub(crate) fn deadline(&self) -> Deadline {
         Deadline::new(self.model.budget().limits())
     }
@@ -76,23 +77,23 @@ impl Inventory {
 #[derive(Clone)]
 pub(crate) struct Inner {
     pub(crate) field: MotionField,
-    /// The values of the parameters, of which some follow others.
+    /// The values of the parameters, some of which are expressions in others.
     pub(crate) values: Parameters,
-    /// The time and state with the values of the integrals that are kept by projection.
+    /// The time and state at which the integrals kept by projection have their values.
     kept_at: (f64, Vec<f64>),
-    /// What happens where; none in most models.
+    /// The events of the model.
     pub(crate) events: FlowEvents,
-    /// Derived when first asked for.
+    /// Derived on first use.
     pub(crate) mechanics: Option<Mechanics>,
     pub(crate) legendre: Option<LegendreTransform>,
-    /// The motion with its derivative by time, or nothing where f does not contain it.
+    /// The motion with its derivative by time, or nothing where f does not contain time.
     by_time: Option<Option<Box<Motion>>>,
-    /// Those of M, when first solved with.
+    /// The factors of M, after the first solution with M.
     pub(crate) factors: Option<MassFactors>,
     pub(crate) room: Room,
 }
 
-/// Room for what calls have on the way, so that only the first ones allocate.
+/// Room for intermediate results, so that only the first calls allocate.
 #[derive(Clone, Default)]
 pub(crate) struct Room {
     /// As long as the state.
@@ -102,13 +103,13 @@ pub(crate) struct Room {
 }
 
 impl Room {
-    /// So many numbers, and room for a state.
+    /// Room for `len` numbers, and for a state.
     pub(crate) fn split(&mut self, len: usize) -> (&mut [f64], &mut [f64]) {
         self.values.resize(len, 0.0);
         (&mut self.values, &mut self.state)
     }
 
-    /// So many numbers.
+    /// Room for `len` numbers.
     pub(crate) fn numbers(&mut self, len: usize) -> &mut [f64] {
         self.split(len).0
     }
@@ -126,7 +127,7 @@ impl pc_system {
         let observables = motion.observable_names();
         let constraints = &model.document().constraints;
         let names: Vec<String> = constraints.iter().map(|c| format!("λ_{}", c.name.text)).collect();
-        // After the outputs of the model, of which one may be called as they are.
+        // Reactions follow the outputs of the model, one of which may have the name of a reaction.
         let places = motion.conserved_len() + model.document().outputs.len()..observables.len();
         let reactions = places.filter(|&i| reactions && names.contains(&observables[i]));
         let forces = model.external_forces();
@@ -175,29 +176,29 @@ impl pc_system {
         })
     }
 
-    /// Another one of the same equations.
+    /// A copy with the same equations.
     pub(crate) fn copy(&self) -> Result<pc_system, CallError> {
         let mut inner = self.inner.take()?.clone();
         let direct = OnceLock::new();
         if self.direct().is_some() {
-            // The code is there, and the copy has it as well.
+            // The code is compiled, and the copy shares it.
             direct.get_or_init(|| Direct::of(&mut inner.field));
         }
         Ok(pc_system { inventory: Arc::clone(&self.inventory), direct, inner: Exclusive::new(inner) })
     }
 
-    /// The machine code of f, where it is all that f is, and known to be.
+    /// The machine code of f, where f is known to be nothing else.
     #[inline]
     pub(crate) fn direct(&self) -> Option<&Direct> {
         self.direct.get()?.as_ref()
     }
 
-    /// So that evaluations from now on need only the machine code, if that is all.
+    /// Lets later evaluations use the machine code alone, where f is nothing else.
     pub(crate) fn prepare_direct(&self, inner: &mut Inner) {
         self.direct.get_or_init(|| Direct::of(&mut inner.field));
     }
 
-    /// Makes those in `values` the parameters.
+    /// Takes `values` as the parameters.
     pub(crate) fn take_values(&self, inner: &mut Inner) {
         inner.take_values();
         if let Some(direct) = self.direct() {
@@ -207,7 +208,7 @@ impl pc_system {
 }
 
 impl Inner {
-    /// What is kept by projection are then the values of these parameters.
+    /// Takes `values` as the parameters; kept integrals then have their values for these.
     fn take_values(&mut self) {
         let values = self.values.values();
         self.field.parameters_mut().copy_from_slice(values);
@@ -218,8 +219,8 @@ impl Inner {
         }
     }
 
-    /// The motion with its derivative by time, derived when first asked for, with the parameters as they are; nothing where f
-    /// does not contain it.
+    /// The motion with its derivative by time, derived on first use, with the current parameters;
+    /// nothing where f does not contain time.
     pub(crate) fn by_time(&mut self, inventory: &Inventory) -> Result<Option<&mut Motion>, CallError> {
         if self.by_time.is_none() {
             self.by_time = Some(match self.field.time_dependence() {
@@ -241,14 +242,14 @@ impl Inner {
         Ok(motion)
     }
 
-    /// What is kept by projection are then the values there.
+    /// Keeps integrals at their values at (t, y).
     pub(crate) fn keep_from(&mut self, t: f64, y: &[f64]) {
         self.kept_at = (t, y.to_vec());
         self.field.restart(t, y);
     }
 }
 
-/// Calls `body` with what the system is, and what only one may use at a time.
+/// Calls `body` with the inventory of the system, and with what one call may use at a time.
 ///
 /// # Safety
 /// `system` is null or a live handle, `error` null or a place for a pointer.
@@ -261,7 +262,7 @@ pub(crate) unsafe fn inside(
     unsafe { holding(system, error, |system, inner| body(&system.inventory, inner)) }
 }
 
-/// Calls `body` with the system, and what only one may use at a time.
+/// Calls `body` with the system, and with what one call may use at a time.
 ///
 /// # Safety
 /// As for [`inside`].
@@ -279,12 +280,12 @@ pub(crate) unsafe fn holding(
     unsafe { entry(error, body) }
 }
 
-/// A number of the inventory; 0 of null.
+/// A number of the inventory; 0 for null.
 pub(crate) fn count(system: Option<&pc_system>, number: impl FnOnce(&Inventory) -> usize) -> usize {
     system.map_or(0, |system| number(&system.inventory))
 }
 
-/// A name of the inventory; null of null, and beyond the last.
+/// A name of the inventory; null for null, and beyond the last.
 pub(crate) fn name(
     system: Option<&pc_system>,
     index: usize,

@@ -8,7 +8,7 @@ thread_local! {
 }
 
 fn count() {
-    // A thread that ends is past counting.
+    // A thread that is ending no longer counts.
     let _ = COUNT.try_with(|count| count.set(count.get() + 1));
 }
 
@@ -18,7 +18,7 @@ unsafe extern "C" {
     fn __libc_realloc(block: *mut c_void, size: usize) -> *mut c_void;
 }
 
-// These stand before those of the C library, which Rust and SUNDIALS would take.
+// These take the place of the functions of the C library that Rust and SUNDIALS call.
 
 // SAFETY: the function of the C library by its other name.
 #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! Calls on the way of a simulation allocate nothing after the first.
+//! Calls during a simulation allocate nothing after the first.
 
 #![cfg(all(target_os = "linux", target_env = "gnu"))]
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
@@ -29,7 +29,7 @@ unsafe extern "C" fn push(
     0
 }
 
-/// A model by name, on what external forces act, which integrals are kept.
+/// A model by name, the quasi-velocities with external forces, the integrals kept, and the form.
 struct Case(String, &'static [&'static str], &'static [&'static str], pc_form);
 
 impl std::fmt::Display for Case {
@@ -40,11 +40,11 @@ impl std::fmt::Display for Case {
     }
 }
 
-/// All that comes with the library, and some in other ways.
+/// All models of the library, and some of them with other settings.
 fn cases() -> Vec<Case> {
     use pc_form::{PC_CANONICAL, PC_POINCARE};
     let all = (0..pc_builtin_count()).map(|i| {
-        // SAFETY: static text, for there are so many.
+        // SAFETY: static text, since the index is below the count.
         let name = unsafe { CStr::from_ptr(pc_builtin_name(i)) };
         Case(name.to_str().unwrap().to_owned(), &[], &[], PC_POINCARE)
     });
@@ -89,7 +89,7 @@ fn system(Case(name, on, kept, form): &Case) -> System {
     system
 }
 
-/// How often a call allocates after it was made twice.
+/// How often a call allocates after two earlier calls.
 fn again(mut function: impl FnMut(*mut *mut pc_error) -> pc_status) -> usize {
     for _ in 0..2 {
         call(&mut function).unwrap();
@@ -178,7 +178,7 @@ fn evaluations_allocate_nothing() {
                 moved.copy_from_slice(&y);
                 pc_system_project(s, t, moved.as_mut_ptr(), n, e)
             };
-            // The nearest velocities of a nonlinear constraint are looked for with matrices of their own.
+            // Projection onto a nonlinear constraint allocates matrices.
             if case.0 != "appell-hamel" {
                 note("project", again(project));
             }
@@ -211,8 +211,9 @@ fn evaluations_allocate_nothing() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// Once the order of the method has grown, in steps in which nothing occurs: an occurrence is kept. Where steep functions of time
-/// and state travel along the motion, they are looked through anew in each step.
+/// This holds once the order of the method has grown, in steps without events, since an occurrence
+/// is stored. Models with steep functions of time and state are left out: each step searches these
+/// functions again.
 #[test]
 fn steps_allocate_nothing() {
     use pc_linear_solver::{PC_LINEAR_AUTOMATIC, PC_LINEAR_KRYLOV, PC_LINEAR_SPARSE};
@@ -235,7 +236,8 @@ fn steps_allocate_nothing() {
             (PC_DOP853 as c_int, pc_iteration::PC_ITERATION_OF_METHOD as c_int, PC_LINEAR_AUTOMATIC),
         ];
         for (method, iteration, linear) in methods {
-            // The long steps of this method contain turns of functions of time, which are listed.
+            // The long steps of this method list the extrema of functions of time that they
+            // contain.
             let in_time = [
                 "turning-wire",
                 "charged-particle-induction",
@@ -253,7 +255,7 @@ fn steps_allocate_nothing() {
                 linear_solver: linear as c_int,
                 relative_tolerance: 1e-6,
                 absolute_tolerance: 1e-8,
-                max_step: 10.0, // a motion at rest would be at its end at once
+                max_step: 10.0, // otherwise one step takes a motion at rest to its end
                 ..Default::default()
             };
             let solver = common::Solver::of(&system, &options);
@@ -295,7 +297,7 @@ fn steps_allocate_nothing() {
                 let none = ptr::null_mut();
                 assert_eq!(pc_solver_time(solver.0, &raw mut t, none), pc_status::PC_OK);
                 assert_eq!(pc_solver_state(solver.0, y.as_mut_ptr(), n, none), pc_status::PC_OK);
-                // After a reset there is no step yet.
+                // After a reset there is no step to interpolate.
                 if !is_new_start {
                     let inside = pc_solver_interpolate(solver.0, t, 0, y.as_mut_ptr(), n, none);
                     assert_eq!(inside, pc_status::PC_OK);

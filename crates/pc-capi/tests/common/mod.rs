@@ -9,7 +9,8 @@ use std::ptr;
 
 use pc::*;
 
-/// The spherical pendulum on a rod, which a multiplier holds: called "rod" beside the models that come with the library.
+/// The spherical pendulum on a rod held by a multiplier: called "rod", in addition to the built-in
+/// models.
 pub(crate) const ROD: &str = r#"
 [coordinates]
 x = 0.6
@@ -69,7 +70,7 @@ pub(crate) fn c(text: &str) -> CString {
     CString::new(text).unwrap()
 }
 
-/// A text that is freed.
+/// A copy of a text, which is then freed.
 pub(crate) fn taken(text: *mut c_char) -> String {
     // SAFETY: a text given by the library, freed once.
     unsafe {
@@ -142,7 +143,7 @@ impl System {
         (t, y)
     }
 
-    /// What one of the functions of (t, y) writes.
+    /// The numbers that a function of (t, y) writes.
     pub(crate) fn at(&self, function: At, t: f64, y: &[f64], length: usize) -> Result<Vec<f64>, Refusal> {
         let mut values = vec![0.0; length];
         // SAFETY: a live system and room as said.
@@ -198,7 +199,7 @@ impl Solver {
         Solver(solver, system.dim())
     }
 
-    /// Of a checkpoint.
+    /// From a checkpoint.
     pub(crate) fn restored(
         system: &System,
         options: &pc_solver_options,
@@ -218,14 +219,14 @@ impl Solver {
         }
     }
 
-    /// How it ends, and the state there.
+    /// Outcome and state of an advance.
     pub(crate) fn advance(&self, t: f64) -> (Result<(), Refusal>, Vec<f64>) {
         let mut y = vec![0.0; self.1];
         // SAFETY: a live solver and room as said.
         (call(|error| unsafe { pc_solver_advance(self.0, t, y.as_mut_ptr(), y.len(), error) }), y)
     }
 
-    /// How a step ends, when, and the state there.
+    /// Outcome, time and state of a step.
     pub(crate) fn step(&self, towards: f64) -> (Result<(), Refusal>, f64, Vec<f64>) {
         let (mut t, mut y) = (0.0, vec![0.0; self.1]);
         // SAFETY: a live solver and room as said.
@@ -256,7 +257,7 @@ impl Solver {
         call(interpolate).map(|()| y)
     }
 
-    /// The motion up to `t`, and how that ends.
+    /// Outcome and motion of an integration to `t`.
     pub(crate) fn run_dense(&self, t: f64) -> (Result<(), Refusal>, Dense) {
         let mut dense = ptr::null_mut();
         // SAFETY: a live solver and a place for the handle.
@@ -272,7 +273,7 @@ impl Solver {
         count
     }
 
-    /// The last time, with the states before and after.
+    /// The last occurrence: its time, and the states before and after.
     pub(crate) fn last(&self, event: usize) -> Result<(f64, Vec<f64>, Vec<f64>), Refusal> {
         let (mut t, mut before, mut after) = (0.0, vec![0.0; self.1], vec![0.0; self.1]);
         let (y, z, dim) = (before.as_mut_ptr(), after.as_mut_ptr(), self.1);
@@ -323,11 +324,13 @@ impl Drop for Dense {
     }
 }
 
-/// Refused, each with a status and a message that ends so; the arguments are written as for C, without the last.
+/// Each call is refused with this status and a message with this end; the arguments are those of C,
+/// without the last.
 #[allow(unused_macros, reason = "only the tests of refusals use it")]
 macro_rules! refused {
     ($status:expr, $end:expr; $($function:ident($($argument:expr),* $(,)?);)*) => {$(
-        // SAFETY: null, live objects, or places as said; that what is wrong does no harm is what is tested.
+        // SAFETY: null, live objects, or places as said; the test is that wrong arguments do no
+        // harm.
         let refusal = common::call(|error| unsafe { $function($($argument,)* error) }).unwrap_err();
         assert_eq!(refusal.status, $status, "{}: {}", stringify!($function), refusal.message);
         assert!(refusal.message.ends_with($end), "{}: {}", stringify!($function), refusal.message);

@@ -1,7 +1,7 @@
-// Calls in any order through pc.hpp, whose functions of the program throw now and then: what is thrown comes out of the call
-// that called them, the first of it if it is more, and nothing else happens.
+// Calls in any order through pc.hpp, with functions of the program that throw now and then. The
+// first exception comes out of the call that called them, and nothing else happens.
 //
-//     sequences [NUMBER]     plays so many, else 300
+//     sequences [NUMBER]     plays NUMBER sequences, by default 300
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -58,7 +58,7 @@ private:
     int pick(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
     double number() { return pick(20) == 0 ? std::numeric_limits<double>::quiet_NaN() : 3.0 - 0.01 * pick(600); }
 
-    // Throws now and then; else the value, or none.
+    // Throws now and then; otherwise returns the value, or NaN.
     double value(double right)
     {
         if (pick(400) == 0) {
@@ -133,7 +133,7 @@ private:
         case 9: pc::kernel(*system_).jacobian(number(), y, matrix); break;
         case 10: solver_ = std::make_unique<pc::solver>(pc::solver::restore(*system_, solver_->checkpoint())); break;
         default: {
-            // Without forces, which would be called by another thread while the observer is.
+            // Without forces: another thread would call them while the observer runs.
             const pc::system top(pc::model::builtin("euler-top"));
             const pc::vector states(3 * top.dim(), 0.2);
             pc::solver_options options;

@@ -1,4 +1,4 @@
-//! Functions of the program, which answer, fail or write nothing as they are told.
+//! Functions of the program that succeed, fail or write nothing, as requested.
 
 use std::ffi::{c_int, c_void};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -6,10 +6,10 @@ use std::{ptr, slice};
 
 use pc::*;
 
-/// What a function does; it is freed with what calls it.
+/// What a function does; freed with the handle that calls it.
 pub(crate) struct Own {
     pub(crate) calls: AtomicUsize,
-    /// After how many calls it fails with `code`, or, if that is 0, writes nothing.
+    /// The number of calls after which it fails with `code` or, if this is 0, writes nothing.
     pub(crate) good: usize,
     pub(crate) code: c_int,
 }
@@ -100,7 +100,7 @@ pub(crate) extern "C" fn force_jacobian(
     0
 }
 
-/// Who watches a run.
+/// Data of the observer of a run.
 pub(crate) struct Watch {
     pub(crate) solver: *mut pc_solver,
     pub(crate) stop: bool,

@@ -1,8 +1,8 @@
-//! Calls at random, and what they hand over.
+//! Random calls, with random arguments.
 
 use proptest::prelude::*;
 
-/// A call; numbers choose among what there is.
+/// A call; numbers choose among functions and arguments.
 #[derive(Clone, Debug)]
 pub(crate) enum Call {
     Model(ModelCall),
@@ -42,7 +42,7 @@ pub(crate) enum SystemCall {
         t: f64,
         y: Vec<f64>,
     },
-    /// A function of (t, y) and what else it takes.
+    /// A function of (t, y) and further arguments.
     With {
         function: u8,
         room: u8,
@@ -101,7 +101,7 @@ fn texts() -> impl Strategy<Value = String> {
     ]
 }
 
-/// Texts that match; the expression is read once.
+/// Texts that match an expression, which is parsed once.
 fn like(expression: &str) -> impl Strategy<Value = String> + use<> {
     prop::string::string_regex(expression).unwrap()
 }
@@ -149,7 +149,7 @@ fn of_system() -> impl Strategy<Value = SystemCall> {
             .prop_map(|(function, index, value)| Parameters { function, index, value }),
         1 => ([texts(), texts()], state()).prop_map(|(texts, y)| Bracket(texts, y)),
         1 => (-1i8..4).prop_map(Print),
-        // What has a degree is long derived.
+        // A theory with a degree takes long, so it is rare.
         1 => (-1i8..4, prop_oneof![9 => Just(0u8), 1 => Just(1u8)]).prop_map(|(format, degree)| Theory(format, degree)),
         1 => (texts(), numbers()).prop_map(|(name, t)| Emit(name, t)),
         1 => any::<u8>().prop_map(Inventory),
@@ -181,7 +181,7 @@ fn of_solver() -> impl Strategy<Value = SolverCall> {
     ]
 }
 
-/// Calls one after the other; in most of the sequences something to work with comes first.
+/// A sequence of calls; most begin by making handles.
 pub(crate) fn calls() -> impl Strategy<Value = Vec<Call>> {
     let one = prop_oneof![
         10 => of_model().prop_map(Call::Model),

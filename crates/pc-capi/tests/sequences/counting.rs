@@ -11,7 +11,7 @@ thread_local! {
 }
 
 fn count(change: isize) {
-    // A thread that ends is past counting.
+    // A thread that is ending no longer counts.
     let _ = LIVE.try_with(|live| live.set(live.get() + change));
 }
 

@@ -8,10 +8,10 @@ use pc::*;
 use crate::callbacks::observe_member;
 use crate::calls::Call;
 
-/// What a call answers, if not PC_OK.
+/// The status of a call, an error unless PC_OK.
 pub(crate) type Outcome = Result<(), pc_status>;
 
-/// Each null at first. A new one takes the place of the one before, which is freed.
+/// The handles, null at first. A new handle replaces the former one, which is freed.
 pub(crate) struct Handles {
     pub(crate) model: *mut pc_model,
     pub(crate) system: *mut pc_system,
@@ -137,7 +137,7 @@ impl Drop for Handles {
     }
 }
 
-/// What needs no handle.
+/// Calls that need no handle.
 fn nothing(which: u8) -> Outcome {
     // SAFETY: null, or texts that are freed once.
     unsafe {
@@ -159,7 +159,7 @@ fn nothing(which: u8) -> Outcome {
     Ok(())
 }
 
-/// An array of the length that is right, or, seldom, of another; or null.
+/// An array of the right length, rarely of another one; or null.
 pub(crate) struct Array(Vec<f64>, bool);
 
 impl Array {
@@ -183,7 +183,7 @@ impl Array {
     }
 }
 
-/// A text that the library gave.
+/// Checks and frees a text from the library.
 pub(crate) fn free_text(text: *mut c_char) {
     // SAFETY: null or a text to be freed, once.
     unsafe {
@@ -192,7 +192,7 @@ pub(crate) fn free_text(text: *mut c_char) {
     }
 }
 
-/// An argument of functions that is looked at only for being null.
+/// An argument of functions that is only compared with null.
 pub(crate) fn flag(set: bool) -> *mut c_void {
     if set { ptr::dangling_mut() } else { ptr::null_mut() }
 }

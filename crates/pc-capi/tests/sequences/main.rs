@@ -1,7 +1,7 @@
 //! Calls in any order, with any text: no crash, every failure with its message, nothing left behind.
 //!
-//! `PC_SEQUENCES=1000000 cargo test --release -p pc-capi --test sequences` plays more of them than the few hundred of
-//! every day, on all cores.
+//! `PC_SEQUENCES=1000000 cargo test --release -p pc-capi --test sequences` plays many more than the
+//! usual few hundred, on all cores.
 
 #![expect(clippy::unwrap_used, unsafe_code, reason = "tests")]
 
@@ -25,7 +25,8 @@ use proptest::prelude::any;
 use proptest::prop_assert;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-/// Makes the calls and frees what is left; how many succeeded, and what of their allocations was not freed.
+/// Makes the calls and frees the handles; returns how many calls succeeded, and how many
+/// allocations were not freed.
 fn play(calls: &[Call], quiet: bool) -> (usize, isize) {
     let before = counting::live();
     let mut handles = Handles::none(quiet);
@@ -34,7 +35,8 @@ fn play(calls: &[Call], quiet: bool) -> (usize, isize) {
     (succeeded, counting::live() - before)
 }
 
-/// Plays so many sequences, others for each batch; how many of their calls succeeded.
+/// Plays `cases` sequences, different ones for each batch; returns how many of their calls
+/// succeeded.
 fn play_all(cases: u32, batch: u32) -> usize {
     let seed = batch.to_le_bytes().repeat(8);
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
@@ -45,7 +47,7 @@ fn play_all(cases: u32, batch: u32) -> usize {
         // What the threads of an ensemble allocate and free is not counted here.
         let threads = calls.iter().any(|call| matches!(call, Call::Ensemble { .. }));
         if left != 0 && !threads {
-            // What is made once, such as the table of the host's functions, is not made again.
+            // Some allocations are made only once, such as the table of the host's functions.
             left = play(&calls, quiet).1;
         }
         prop_assert!(threads || left == 0, "{} allocations left behind", left);
@@ -56,7 +58,7 @@ fn play_all(cases: u32, batch: u32) -> usize {
     succeeded.get()
 }
 
-/// Sequences are played in so many at a time, so that a long play says how far it is.
+/// Sequences in a batch, after which a long play reports its progress.
 const BATCH: u32 = 5000;
 
 #[test]

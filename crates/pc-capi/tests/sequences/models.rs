@@ -9,7 +9,8 @@ use crate::calls::ModelCall;
 use crate::common::c;
 use crate::handles::{Handles, Outcome, free_text};
 
-/// Models that are soon compiled: with and without events, constraints of each kind, resets, and L that is not quadratic.
+/// Models that compile quickly: with and without events, constraints of each kind, resets, and L
+/// that is not quadratic.
 const SHORT: [&CStr; 12] = [
     c"bouncing-ball",
     c"chaplygin-sleigh",
@@ -26,7 +27,7 @@ const SHORT: [&CStr; 12] = [
 ];
 
 impl Handles {
-    /// The outcome of a call that makes a model, which takes the place of the one before.
+    /// The outcome of a call that makes a model, which replaces the former one.
     fn made(&mut self, make: impl FnOnce(*mut *mut pc_model, *mut *mut pc_error) -> pc_status) -> Outcome {
         let mut made = ptr::dangling_mut();
         let outcome = self.call(|error| make(&raw mut made, error));
@@ -108,7 +109,8 @@ impl Handles {
     }
 }
 
-/// One of the functions that say something of a model. Those that make a model at all come often.
+/// One of the functions that set entries of a model. Those without which there is no model are
+/// frequent.
 ///
 /// # Safety
 /// The model is null or live, the texts are.

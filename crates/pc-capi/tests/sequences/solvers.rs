@@ -112,7 +112,7 @@ impl Handles {
                         3 => pc_solver_sensitivity(solver, usize::from(*which) / 64, data, len, error),
                         0 => pc_solver_time(solver, &raw mut t, error),
                         1 => pc_solver_state(solver, data, len, error),
-                        // One of an older header is shorter.
+                        // The structure of an older header is shorter.
                         _ => pc_solver_statistics(solver, &raw mut work, usize::from(which % 12) * 8, error),
                     })
                 }
@@ -135,7 +135,7 @@ impl Handles {
         }
     }
 
-    /// Room for the state, or, seldom, for another number of numbers.
+    /// Room for the state, rarely of a wrong length.
     fn state(&self, length: u8) -> Array {
         // SAFETY: null or a live handle. The solver may be of another system.
         Array::of(length.wrapping_mul(37), unsafe { pc_system_dim(self.system.as_ref()) })
@@ -183,7 +183,8 @@ impl Handles {
     }
 }
 
-/// Options of which one may be changed, to what is right or wrong. The tolerances live as long as `y`.
+/// Options, one of which may be changed to a right or wrong value. The tolerances live as long as
+/// `y`.
 fn options(method: i8, change: u8, y: &[f64]) -> pc_solver_options {
     let mut options = pc_solver_options { method: c_int::from(method), max_steps: 200, ..Default::default() };
     let number = y.first().copied().unwrap_or(0.5);

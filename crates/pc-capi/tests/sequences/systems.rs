@@ -143,7 +143,7 @@ impl Handles {
         }
     }
 
-    /// A function of (t, y) and what else it takes.
+    /// A function of (t, y) and further arguments.
     fn with(&self, function: u8, room: u8, t: f64, y: &[f64], index: usize) -> Outcome {
         let system = self.system;
         // SAFETY: the handle is null or live, arrays are as long as said.
@@ -163,7 +163,7 @@ impl Handles {
                 2 => pc_system_event_reset(system, index, t, y, y_length, error),
                 3 => pc_system_energy(system, t, y, y_length, &raw mut number, error),
                 4 => pc_system_jvp(system, t, y, y_length, v, v_length, out, length, error),
-                // In the place of its own input, which is refused.
+                // The product overlaps its input, which is refused.
                 5 => pc_system_jvp(system, t, y, y_length, v, v_length, v, v_length, error),
                 6 => pc_system_verify(system, 1 + index, ptr::null_mut(), error),
                 7 => pc_system_start_by_parameter(system, index, out, length, error),
@@ -173,7 +173,7 @@ impl Handles {
         }
     }
 
-    /// Names up to the last and none beyond.
+    /// There are names up to the last index, and none beyond.
     fn inventory(&self, index: usize) -> Outcome {
         type Count = extern "C" fn(Option<&pc_system>) -> usize;
         type Name = extern "C" fn(Option<&pc_system>, usize) -> *const c_char;
@@ -234,7 +234,7 @@ impl Handles {
                 pc_kernel_rhs(0.0, y.data(), room.as_mut_ptr(), kernel.cast()),
                 pc_kernel_jacobian(0.0, y.data(), room.as_mut_ptr(), kernel.cast()),
                 pc_kernel_rhs_many(0.0, y.data(), 1, room.as_mut_ptr(), kernel.cast()),
-                // In its own place, which is refused.
+                // The rates overlap the state, which is refused.
                 pc_kernel_rhs(0.0, y.data(), y.data(), kernel.cast()),
             ];
             assert!(answers.iter().all(|answer| (-1..2).contains(answer)));

@@ -61,7 +61,7 @@ pub struct CompareArguments {
 }
 
 impl CompareArguments {
-    /// The model of this name, its parameters and start as in the file.
+    /// The model of this name, with the parameters and start of the file.
     pub fn model(&self, name: &str) -> ModelArguments {
         ModelArguments {
             model: name.to_owned(),

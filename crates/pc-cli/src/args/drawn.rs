@@ -1,4 +1,4 @@
-//! What is drawn of a motion.
+//! Arguments for pictures of a motion.
 
 use clap::Args;
 use pc_report::picture::Wanted;
@@ -19,7 +19,7 @@ pub struct DrawnArguments {
 }
 
 impl DrawnArguments {
-    /// The same without the command line.
+    /// The same for `pc_report`.
     pub fn wanted(&self) -> Wanted {
         let trimmed = |names: &[String]| names.iter().map(|name| name.trim().to_owned()).collect();
         Wanted { columns: trimmed(&self.columns), pairs: self.xy.clone(), wrapped: trimmed(&self.wrap) }

@@ -1,4 +1,4 @@
-//! What stands below the help of each command: examples, as they can be typed in.
+//! The text below the help of each command: examples that can be typed as they are.
 
 pub(super) const CHECK: &str = "\
 Examples:

@@ -132,7 +132,7 @@ pub(crate) fn run_form(text: &str) -> Result<RunForm, String> {
     choice(text, &["lagrange", "voronets"])
 }
 
-/// One of the values of `T`; those of `later` are known and cannot be had yet.
+/// One of the values of `T`; those of `later` are not supported yet.
 pub(super) fn choice<T: ValueEnum>(text: &str, later: &[&str]) -> Result<T, String> {
     T::from_str(text, false).map_err(|_| {
         let names: Vec<String> = T::value_variants()

@@ -12,10 +12,10 @@ use pc_model::{Assembly, Builtin, Document, Model, ModelError};
 use crate::args::options::{ModelArguments, Setting, VelocityArguments};
 use crate::error::CliError;
 
-/// The model that the command line names, its parameters and start set.
+/// The model that the command line names, with its parameters and start set.
 ///
-/// `-` is standard input; a name with `/` or `.` in it, or that of an existing file, is a file; any other name is
-/// that of a built-in model.
+/// `-` is standard input; a name that contains `/` or `.` or is that of an existing file is a file;
+/// any other name is that of a built-in model.
 ///
 /// # Errors
 /// [`CliError`] if it cannot be found, read or understood, or has no such parameter or start value.
@@ -47,10 +47,11 @@ pub(crate) fn set(model: &mut Model, settings: &[Setting]) -> Result<(), CliErro
     Ok(())
 }
 
-/// The same with the velocities that its equations are to be written in; `is_hamel` says whether they are in those given.
+/// The same with the velocities of its equations; `is_hamel` says whether these are the ones given.
 ///
 /// # Errors
-/// As [`open`], and [`CliError::Definitions`] where velocities are given and not asked for.
+/// As [`open`], and [`CliError::Definitions`] where velocities are given that the form does not
+/// take.
 pub fn open_in(
     arguments: &ModelArguments,
     velocities: &VelocityArguments,
@@ -60,7 +61,7 @@ pub fn open_in(
     if !is_hamel && let Some(definition) = velocities.definitions.first() {
         return Err(CliError::Definitions { name: definition.name.clone() });
     }
-    // What the command line gives takes the place of what the file does.
+    // Definitions on the command line replace those of the file.
     if !velocities.definitions.is_empty() {
         model.give_no_quasi_velocities();
     }
@@ -91,7 +92,7 @@ fn document(name: &str) -> Result<Document, CliError> {
     Ok(Document::from_bytes(name, &bytes)?)
 }
 
-/// That there is no model of this name, with the one whose name is nearest.
+/// The error for an unknown model, with the one whose name is nearest.
 pub(crate) fn no_such_model(name: &str) -> CliError {
     let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or(name);
     let nearest = nearest(stem, Builtin::all().map(|model| model.name));
@@ -102,7 +103,7 @@ pub(crate) fn no_such_model(name: &str) -> CliError {
 /// The system of a model and its equations in independent quasi-velocities, expressions in `graph`.
 ///
 /// # Errors
-/// [`ModelError`] at the place in the file that is to blame.
+/// [`ModelError`] at the place in the file that causes it.
 pub fn derive<'g>(model: &Model, graph: &'g Graph) -> Result<(Assembly<'g>, Equations<'g>), ModelError> {
     let assembly = model.assemble(graph)?;
     let equations = assembly.equations()?;

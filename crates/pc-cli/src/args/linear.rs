@@ -119,7 +119,7 @@ pub struct Bounds {
     pub high: f64,
 }
 
-/// More starts than these take hours.
+/// More starts take hours.
 const MOST_STARTS: usize = 1_000_000;
 
 fn starts(text: &str) -> Result<usize, String> {

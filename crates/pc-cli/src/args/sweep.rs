@@ -134,19 +134,19 @@ pub struct Vary {
     pub values: Values,
 }
 
-/// The values of what is varied, at least one.
+/// The values of a varied quantity, at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// So many from one to another, evenly spaced.
+    /// From one number to another, this many, evenly spaced.
     Even(f64, f64, u64),
-    /// So many from one to another, each the same number of times the one before.
+    /// From one number to another, this many, with a constant ratio.
     Logarithmic(f64, f64, u64),
-    /// These.
+    /// These values.
     List(Vec<f64>),
 }
 
 impl Values {
-    /// How many they are.
+    /// How many there are.
     pub fn count(&self) -> u64 {
         match self {
             Values::Even(_, _, count) | Values::Logarithmic(_, _, count) => *count,
@@ -167,7 +167,7 @@ impl Values {
             Values::Even(from, _, _) | Values::Logarithmic(from, _, _) if place == 0 => *from,
             Values::Even(_, to, count) | Values::Logarithmic(_, to, count) if place == count - 1 => *to,
             Values::Even(from, to, count) => from + (to - from) * part(*count),
-            // By decimal logarithms, so that powers of ten between powers of ten are what they are.
+            // Decimal logarithms keep powers of ten between powers of ten exact.
             Values::Logarithmic(from, to, count) => {
                 let (a, b) = (from.abs().log10(), to.abs().log10());
                 10f64.powf(a + (b - a) * part(*count)).copysign(*from)
@@ -285,7 +285,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_are_where_they_are_said_to_be() {
+    fn values_follow_their_spacing() {
         let all = |values: Values| (0..values.count()).map(|i| values.at(i)).collect::<Vec<_>>();
         assert_eq!(all(Values::Even(1.0, 2.0, 3)), [1.0, 1.5, 2.0]);
         assert_eq!(all(Values::Logarithmic(1e-3, 100.0, 6)), [1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0]);

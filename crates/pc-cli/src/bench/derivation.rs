@@ -8,8 +8,9 @@ use pc_model::{Document, Model, ModelError};
 use crate::bench::kernels::Derived;
 use crate::bench::measure::Times;
 
-/// The stages: reading the text; frame, energies and constraints; equations in quasi-velocities; programs of the right-hand
-/// side, of its Jacobian and of what is observed; machine code of the right-hand side with its first evaluation.
+/// The stages: reading the text; frame, energies and constraints; equations in quasi-velocities;
+/// programs of the right-hand side, its Jacobian and the observables; machine code of the
+/// right-hand side with its first evaluation.
 pub(crate) const STAGES: [&str; 5] = ["text", "system", "equations", "programs", "machine code"];
 
 /// Milliseconds of each stage, and of all of them together.
@@ -37,7 +38,7 @@ impl Derivation {
         let mut motion = derived.compile(CompileOptions::default())?;
         laps[3] = clock.lap();
         let mut rates = vec![0.0; derived.start().len()];
-        // Whether it can be evaluated is found out before anything is timed.
+        // Evaluations that fail are found by `Derived::variants`, before anything is timed.
         let _ = motion.rhs(assembly.t_start, derived.start(), &mut rates);
         laps[4] = clock.lap();
         for (times, lap) in self.stages.iter_mut().zip(laps) {

@@ -44,7 +44,7 @@ impl<'a, 'g> Derived<'a, 'g> {
         &self.start
     }
 
-    /// The motion as `pc run` integrates it, but for the kernel.
+    /// The motion as `pc run` integrates it, with these options of the kernel.
     ///
     /// # Errors
     /// [`ModelError`] where it cannot be compiled.
@@ -56,8 +56,8 @@ impl<'a, 'g> Derived<'a, 'g> {
         Ok(motion?.driven_by(self.signals.clone()))
     }
 
-    /// The same with the numbers of the parameters in place of these; none where multipliers hold constraints, or inputs
-    /// have tables.
+    /// The same with the parameters replaced by their values; none where multipliers hold
+    /// constraints or inputs have tables.
     fn bound(&self) -> Result<Option<Motion>, ModelError> {
         match &self.form {
             Form::Independent(equations) if self.signals.is_empty() => {
@@ -68,7 +68,7 @@ impl<'a, 'g> Derived<'a, 'g> {
         }
     }
 
-    /// All ways to evaluate them that there are at the start.
+    /// All ways to evaluate the equations that work at the start.
     ///
     /// # Errors
     /// [`ModelError`] where they cannot be compiled.

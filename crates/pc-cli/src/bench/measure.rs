@@ -3,9 +3,9 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// How long a turn is.
+/// Length of a turn.
 const SLICE: Duration = Duration::from_micros(100);
-/// Most turns of each variant: more do not make the smallest times smaller.
+/// Most turns of each variant: more do not lower the smallest times.
 const MOST: usize = 1000;
 /// Fewest turns.
 const FEWEST: usize = 3;
@@ -48,7 +48,7 @@ pub(crate) struct Variant<'a> {
     pub(crate) call: Box<Call<'a>>,
 }
 
-/// Nanoseconds an evaluation of each variant, the variants taking turns until the time is spent.
+/// Nanoseconds per evaluation of each variant; the variants take turns until the time is spent.
 pub(crate) fn interleave(state: &[f64], variants: &mut [Variant<'_>], patience: Duration) -> Vec<Times> {
     let calls: Vec<u32> = variants.iter_mut().map(|variant| calls_in_a_slice(state, variant)).collect();
     let mut times = vec![Times::default(); variants.len()];
@@ -57,7 +57,7 @@ pub(crate) fn interleave(state: &[f64], variants: &mut [Variant<'_>], patience: 
         if round >= FEWEST && start.elapsed() > patience {
             break;
         }
-        // Every other round goes backwards, so that none has always the same one before it.
+        // Every other round goes backwards, so that no variant always follows the same one.
         for turn in 0..variants.len() {
             let i = if round % 2 == 0 { turn } else { variants.len() - 1 - turn };
             let duration = slice(state, &mut variants[i], calls[i]);
@@ -80,8 +80,8 @@ fn calls_in_a_slice(state: &[f64], variant: &mut Variant<'_>) -> u32 {
 }
 
 fn slice(state: &[f64], variant: &mut Variant<'_>, calls: u32) -> Duration {
-    // Where the state begins depends on the outputs, masked to nothing: each call waits for the one before, as in an
-    // integrator.
+    // The address of the state depends on the outputs, masked to zero, so each call waits for the
+    // one before, as in an integrator.
     let mask = black_box(0u64);
     let mut outputs = vec![0.0f64; variant.outputs];
     let start = Instant::now();

@@ -7,7 +7,7 @@ use crate::bench::derivation::{Derivation, STAGES};
 use crate::bench::measure::{Times, Variant};
 use crate::report::text::labelled;
 
-/// What was measured of a model.
+/// The measurements of a model.
 pub(crate) struct Figures<'v> {
     pub(crate) title: String,
     /// Length of the state.

@@ -1,4 +1,4 @@
-//! `pc bench`: how long the derivation of a model takes, and an evaluation of its equations.
+//! `pc bench`: how long the derivation of a model and an evaluation of its equations take.
 
 use std::time::Instant;
 
@@ -23,7 +23,7 @@ use crate::report::notes::say_moved;
 /// [`CliError`] of the model; [`CliError::Write`].
 pub fn command(arguments: &BenchArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
-    // Each derivation may take what one may; the time is that of all of them.
+    // Each derivation has the full memory limit; the time limit holds for all of them together.
     let fresh = || -> Model {
         let mut model = model.clone();
         model.limit(model.budget().limits().clone());

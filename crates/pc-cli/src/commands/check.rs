@@ -13,7 +13,7 @@ use crate::report::notes::say_moved;
 /// Prints the properties of a model before it is run.
 ///
 /// # Errors
-/// [`CliError`]; of an inconsistent model that is the answer.
+/// [`CliError`]; for an inconsistent model this is the answer.
 pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
     let graph = model.graph();

@@ -19,7 +19,8 @@ use crate::output::standard_output::print;
 /// Integrates both motions, and prints how far they are apart.
 ///
 /// # Errors
-/// [`CompareError::Different`] where they are not the same; that a motion failed, once what was reached is compared.
+/// [`CompareError::Different`] where they are not the same; the failure of a motion, after the
+/// times that it reached are compared.
 pub fn command(arguments: &CompareArguments) -> Result<(), CliError> {
     let (first, second) = models(arguments)?;
     let written = |model: &Model| model.document().simulation.t_end.as_ref().map(|t| t.value);
@@ -57,7 +58,7 @@ pub fn command(arguments: &CompareArguments) -> Result<(), CliError> {
     if differences.is_empty() { Ok(()) } else { Err(CompareError::Different { differences }.into()) }
 }
 
-/// Whether somebody, or a limit, put an end to a run.
+/// Whether Ctrl-C or a limit ended a run.
 fn is_stopped(run: &Run) -> bool {
     matches!(run.ending, Ending::Interrupted | Ending::Ended(_))
 }

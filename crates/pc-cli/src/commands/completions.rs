@@ -1,4 +1,4 @@
-//! `pc completions`: what a shell completes of the command line.
+//! `pc completions`: the command line for the completion of a shell.
 
 use clap::CommandFactory;
 use clap_complete::generate;
@@ -13,7 +13,7 @@ use crate::output::standard_output::print;
 /// # Errors
 /// [`CliError::Write`]
 pub fn command(arguments: &CompletionsArguments) -> Result<(), CliError> {
-    // The generator panics where it cannot write, which memory excludes.
+    // The generator panics where it cannot write, so it writes to memory.
     let mut script = Vec::new();
     generate(arguments.shell, &mut Arguments::command(), "pc", &mut script);
     print(|out| out.write_all(&script))

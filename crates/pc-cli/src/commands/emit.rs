@@ -1,4 +1,4 @@
-//! `pc emit`: the equations as source of other languages.
+//! `pc emit`: the equations as source in other languages.
 
 use std::fs;
 use std::io::Write;
@@ -33,7 +33,7 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     let (equations, form) = assembly.equations_of(arguments.form.into())?;
     let language = match arguments.lang {
         Some(Lang::Rust) => Language::Rust,
-        Some(Lang::C) | None => Language::C, // the command line asks for one
+        Some(Lang::C) | None => Language::C, // the command line requires a language
     };
     let mut options = EmitOptions::new(language, name(model.document().source.name()));
     options = options.title(model.title()).jacobian(!arguments.no_jacobian);
@@ -57,7 +57,7 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     if !remarks.is_empty() {
         options = options.remark(remarks.join("\n"));
     }
-    // A motion with the inputs of the start would be another.
+    // With its inputs fixed at their start values, the motion would be a different one.
     if let Some(t_end) = model.document().simulation.t_end.as_ref().filter(|_| !has_tables) {
         options = options.start(assembly.t_start, &assembly.start_in(&form)?, t_end.value);
     }
@@ -88,7 +88,7 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The name of a model file without directory and ending.
+/// The name of a model file without directory and extension.
 pub(super) fn name(file: &str) -> &str {
     Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or("model").trim_matches(['<', '>'])
 }

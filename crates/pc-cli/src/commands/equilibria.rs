@@ -13,7 +13,7 @@ use crate::linear::ground::{Ground, placed};
 use crate::output::standard_output::print;
 use crate::report::notes::{say_dropped, say_moved};
 
-/// Does what `pc equilibria` is asked to.
+/// Runs `pc equilibria`.
 ///
 /// # Errors
 /// [`CliError`]

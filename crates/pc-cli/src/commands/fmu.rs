@@ -14,7 +14,7 @@ use crate::output::place::Place;
 use crate::report::notes::{choice, say_choice, say_dropped, say_moved};
 use crate::report::text::say;
 
-/// Writes the FMU of a model, whole.
+/// Writes the FMU of a model, whole or not at all.
 ///
 /// # Errors
 /// [`CliError`].

@@ -1,4 +1,4 @@
-//! `pc linearize`: the motions near a state, to first order, and their eigenvalues over a parameter.
+//! `pc linearize`: the motions near a state to first order, and their eigenvalues over a parameter.
 
 use pc_analysis::{AnalysisError, CyclicCoordinates, Linearization, Linearizer, RootLocus, SteadyOptions};
 use pc_model::Model;
@@ -21,7 +21,7 @@ use crate::output::standard_output::print;
 use crate::report::notes::{say_dropped, say_moved};
 use crate::report::text::{say, short};
 
-/// Does what `pc linearize` is asked to.
+/// Runs `pc linearize`.
 ///
 /// # Errors
 /// [`CliError`]
@@ -70,7 +70,7 @@ pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
     }
 }
 
-/// Which cyclic coordinates are kept if nothing is said of them.
+/// Which cyclic coordinates are kept by default.
 #[derive(Clone, Copy, PartialEq)]
 enum CyclicChoice {
     /// All at an equilibrium, none of a motion.
@@ -110,7 +110,7 @@ fn linearization(
     }
 }
 
-/// The eigenvalues for each value.
+/// The eigenvalues for each value of the parameter.
 fn locus(
     model: &Model,
     ground: &mut Ground<'_>,
@@ -154,7 +154,7 @@ fn locus(
                 locus.components.clone_from(&linear.components);
                 Some(linear.spectrum.eigenvalues())
             }
-            // A wrong name is wrong for all values.
+            // A wrong command line is wrong for all values.
             Err(error) if error.exit_code() == CliError::USAGE => return found.map(|_| locus),
             Err(error) => {
                 locus.missing.push((value, error.to_string()));
@@ -179,7 +179,7 @@ fn varied(model: &Model, name: &str, value: f64) -> Result<Model, CliError> {
     Ok(varied)
 }
 
-/// One object.
+/// The linearization as one JSON object.
 fn object(model: &Model, at: At, linear: &Linearization) -> Value {
     let at = match at {
         At::Steady => "steady",
@@ -194,7 +194,7 @@ fn object(model: &Model, at: At, linear: &Linearization) -> Value {
     Value::from(all)
 }
 
-/// The names of what the arrays are of, each list separated by commas.
+/// Names for the rows and columns of the arrays, each list separated by commas.
 fn names(linear: &Linearization) -> Vec<(&'static str, String)> {
     let state: Vec<&str> = linear.state.iter().map(|(name, _)| name.as_str()).collect();
     let mut names = vec![
@@ -209,7 +209,8 @@ fn names(linear: &Linearization) -> Vec<(&'static str, String)> {
     names
 }
 
-/// A line for each number: its array, the names of its row and column, the number; the parts of complex ones in lines of their own.
+/// A line for each number: its array, the names of its row and column, the number; real and
+/// imaginary parts have separate lines.
 fn csv(linear: &Linearization) -> String {
     let (y, u, h) = (&linear.components, &linear.inputs, &linear.outputs);
     let numbers = |count: usize| (1..=count).map(|i| i.to_string()).collect::<Vec<_>>();

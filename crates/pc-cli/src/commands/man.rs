@@ -62,7 +62,7 @@ fn page(command: Command) -> io::Result<(String, Vec<u8>)> {
     Ok((name, page))
 }
 
-/// What stands below the help: examples as they are typed in, then notes, a paragraph a line.
+/// The text below the help: examples as they are typed in, then notes, a paragraph per line.
 fn sections(more: &str) -> String {
     let (examples, notes) = match more.strip_prefix("Examples:\n") {
         Some(rest) => rest.split_once("\n\n").unwrap_or((rest, "")),
@@ -87,7 +87,7 @@ fn verbatim<'l>(lines: impl IntoIterator<Item = &'l str>) -> String {
     format!(".nf\n{}.fi\n", lines.into_iter().map(|line| escaped(line.trim())).collect::<String>())
 }
 
-/// A line of text that no formatter takes for a request.
+/// A line of text, escaped so that no formatter takes it for a request.
 fn escaped(line: &str) -> String {
     format!("\\&{}\n", line.replace('\\', "\\e").replace('-', "\\-").replace('\'', "\\(aq"))
 }

@@ -1,4 +1,4 @@
-//! `pc models`: what comes with the program.
+//! `pc models`: the built-in models.
 
 use std::io::{self, Write};
 
@@ -15,7 +15,7 @@ use crate::args::options::Format;
 use crate::error::CliError;
 use crate::output::standard_output::print;
 
-/// Prints the list of the built-in models, the text of one, their tags, or the algebras that have a name.
+/// Prints the list of the built-in models, the text of one, their tags, or the named algebras.
 ///
 /// # Errors
 /// [`CliError::NoSuchModel`]; [`CliError::NoSuchTag`]; [`CliError::Write`].
@@ -71,7 +71,7 @@ fn object(model: &Builtin) -> Value {
     })
 }
 
-/// What stands above the model; nothing of one that cannot be read, which the tests exclude.
+/// The heading of a model; empty if it cannot be read, which the tests exclude.
 fn heading(model: &Builtin) -> Heading {
     model.document().map(|document| document.model).unwrap_or_default()
 }

@@ -12,13 +12,13 @@ use crate::output::place::{Place, file};
 use crate::output::standard_output::print;
 use crate::report::text::say;
 
-/// The schema beside a model.
+/// The file of the schema beside a model.
 const SCHEMA_FILE: &str = "pc-model.schema.json";
 
 /// Writes a model that runs, whose comments explain the format.
 ///
 /// # Errors
-/// [`CliError::Place`] where the file is there already; [`CliError::Write`].
+/// [`CliError::Place`] where the file exists already; [`CliError::Write`].
 pub fn command(arguments: &NewArguments) -> Result<(), CliError> {
     let directive = if arguments.schema { format!("#:schema ./{SCHEMA_FILE}\n") } else { String::new() };
     let text = directive + arguments.kind.text();
@@ -37,7 +37,7 @@ pub fn command(arguments: &NewArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Writes the schema unless there is one.
+/// Writes the schema unless the file exists.
 fn write_schema(path: &Path) -> Result<(), CliError> {
     match fs::read(path) {
         Ok(known) if known == SCHEMA.as_bytes() => Ok(()),

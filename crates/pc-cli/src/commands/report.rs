@@ -12,7 +12,7 @@ use crate::motion::run::Run;
 use crate::output::destination::{Destination, Encoding};
 use crate::plot::gif::{frames, nearest};
 
-/// Points of a curve that looks smooth.
+/// Points with which a curve looks smooth.
 const SMOOTH: usize = 601;
 /// Width and height of a frame.
 const PAPER: [f64; 2] = [480.0, 360.0];
@@ -20,7 +20,7 @@ const PAPER: [f64; 2] = [480.0, 360.0];
 /// Writes the page of a model.
 ///
 /// # Errors
-/// [`CliError`]; of a motion that failed, what was reached has been written then.
+/// [`CliError`]; a motion that failed has been written as far as it was reached.
 pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
     let destination = Destination::page(arguments.output.as_deref())?;
     let mut model = input::open(&arguments.shown.model)?;
@@ -43,7 +43,8 @@ const NO_END: &str = "There is no motion: the text says no end of time, and --t-
 /// Writes a motion as a page, a film, or a picture of one frame.
 ///
 /// # Errors
-/// [`CliError`], also where there is nothing to be drawn; of a motion that failed, what was reached has been written then.
+/// [`CliError`], also where there is nothing to draw; a motion that failed has been written as far
+/// as it was reached.
 pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
     let destination = Destination::shown(arguments.output.as_deref())?;
     let is_frame = matches!(destination.encoding(), Encoding::Svg | Encoding::Png | Encoding::Pdf);
@@ -76,7 +77,7 @@ pub fn page(model: &Model, run: &Run) -> Result<String, CliError> {
     Ok(report(model, Some(&run.record()))?)
 }
 
-/// The motion, smooth where it is drawn.
+/// The motion, with enough rows for smooth curves.
 fn integrated(model: &mut Model, shown: &ShownArguments) -> Result<Run, CliError> {
     let arguments = shown.as_run();
     for name in &arguments.project {

@@ -32,10 +32,10 @@ use crate::report::notes::{choice, say_choice, say_moved, say_negative_energy, s
 use crate::report::verification::Verification;
 use crate::report::{summary, text};
 
-/// Does what `pc run` is asked to.
+/// Runs `pc run`.
 ///
 /// # Errors
-/// [`CliError`]; what was reached has been written then.
+/// [`CliError`]; the motion has been written as far as it was reached.
 pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     let destination = Destination::table(arguments.output.as_deref())?;
     let picture =
@@ -72,13 +72,14 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     }
 }
 
-/// Derives, compiles and integrates the motion of a model; `plan` is asked for once the model is known to be sound.
-/// Whatever the form, the table shows quasi-velocities. At the start and, where that is soon done, at the end the
-/// equations are compared with a second derivation. Curves can be drawn of it.
+/// Derives, compiles and integrates the motion of a model; `plan` is called once the model is known
+/// to be sound. Whatever the form, the table shows quasi-velocities. At the start and, if this is
+/// fast, at the end the equations are compared with a second derivation. The run has the points
+/// that smooth curves need.
 ///
 /// # Errors
-/// [`CliError`] if there is no motion at all, or the second derivation disagrees; one that could not be completed is a
-/// [`Run`].
+/// [`CliError`] if there is no motion at all, or the second derivation disagrees; an incomplete
+/// motion is a [`Run`].
 pub fn integrate(
     model: &Model,
     form: RunForm,
@@ -88,16 +89,17 @@ pub fn integrate(
     integrate_into(None, model, form, asked, &CheckpointArguments::default(), plan)
 }
 
-/// What is done besides.
+/// What a run includes besides the integration.
 #[derive(Clone, Copy, Debug)]
 struct Asked {
     /// Whether the equations are compared with a second derivation.
     verify: bool,
-    /// Whether the motion is known between its rows.
+    /// Whether the run has the motion between its rows.
     fine: bool,
 }
 
-/// As [`integrate`], with checkpoints, and writes the rows to `stream` at once where they are too many to be held.
+/// As [`integrate`], with checkpoints; writes the rows to `stream` as they are computed where they
+/// are too many for memory.
 fn integrate_into(
     stream: Option<&mut Stream<'_>>,
     model: &Model,
@@ -124,7 +126,7 @@ fn integrate_into(
     let (rows, limits) = (plan.samples as u64, model.budget().limits());
     let alone = checkpoints.path().is_none() && plan.sensitivities.is_empty();
     let stream = stream.filter(|_| alone && memory::is_much(rows, numbers, limits));
-    // What is given away is still asked for at so many times.
+    // Of rows that are written at once, only the times are held.
     memory::allow(rows, if stream.is_some() { 1 } else { numbers }, limits)?;
     let mut checkpoints = Checkpoints::new(checkpoints, model, &plan, form)?;
     let mut derivatives = match plan.sensitivities.as_slice() {
@@ -137,7 +139,8 @@ fn integrate_into(
         verification.compare(&flow, &assembly, "the start", plan.t_start, &flow.start)?;
     }
 
-    // Derivatives are known at the rows alone; what was resumed is not integrated from its start again.
+    // Derivatives are known at the rows alone, and a resumed motion is not integrated from its
+    // start again.
     let mut again = (asked.fine && alone).then(|| flow.clone());
     let mut given = stream.map(|stream| Given::new(&flow, stream)).transpose()?;
     interrupt::catch();
@@ -239,7 +242,7 @@ fn write(
     }
 }
 
-/// What is wanted of a motion, drawn.
+/// The wanted columns of a motion, drawn.
 ///
 /// # Errors
 /// [`CliError::Plot`] where it has no such column.
@@ -253,7 +256,7 @@ impl Run {
     pub(crate) fn outcome(self) -> Result<(), CliError> {
         let names = self.state;
         match self.ending {
-            // How the file was written says why.
+            // The error of the file says why it is unwritten.
             Ending::Completed | Ending::Event { .. } | Ending::Unwritten => Ok(()),
             Ending::Interrupted => Err(CliError::Interrupted { t: self.statistics.current_time }),
             Ending::Ended(limit) => Err(CliError::Ended { t: self.statistics.current_time, limit }),

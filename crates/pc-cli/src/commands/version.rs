@@ -1,4 +1,4 @@
-//! `pc --version`: what this program is, and what it is made of.
+//! `pc --version`: the version, and what is built in.
 
 use std::io::{self, Write};
 
@@ -34,7 +34,7 @@ fn write(verbose: bool, out: &mut dyn Write) -> io::Result<()> {
     lines.into_iter().try_for_each(|(label, line)| write!(out, "{}", labelled(label, 11, &[line])))
 }
 
-/// What this processor has of the instructions that make kernels fast.
+/// The instruction sets of this processor that make kernels fast.
 #[cfg(target_arch = "x86_64")]
 fn processor() -> Vec<&'static str> {
     let known = [

@@ -9,16 +9,16 @@ use crate::motion::run::{Ending, Run};
 /// The column that nearly every two motions share.
 const ENERGY: &str = "energy";
 
-/// What two motions have in common, and what not.
+/// How two motions agree and differ.
 #[derive(Debug)]
 pub struct Comparison {
-    /// What is allowed.
+    /// The difference allowed.
     pub allowance: Allowance,
-    /// How many times are compared, and the last of them.
+    /// How many times are compared.
     pub rows: usize,
     /// The last of these times.
     pub until: f64,
-    /// For each column that is compared.
+    /// The difference of each column that is compared.
     pub differences: Vec<Difference>,
     /// Columns of the first alone.
     pub only_first: Vec<String>,
@@ -56,7 +56,8 @@ impl Comparison {
         let mut differences = Vec::new();
         for name in shared.iter().filter(is_wanted) {
             let found = difference(name, column(first, name), column(second, name));
-            // The same motion follows from Lagrangians whose energies differ by a number, or by a factor.
+            // Lagrangians that differ by a constant or a factor give the same motion but different
+            // energies.
             let is_aside = name == ENERGY && arguments.columns.is_empty();
             differences.push(if is_aside { found.aside() } else { found });
         }
@@ -83,7 +84,7 @@ impl Comparison {
     }
 }
 
-/// The expressions that are compared, with what they are called.
+/// The expressions that are compared, with their labels.
 fn pairs(arguments: &CompareArguments) -> Result<Vec<(String, Formula, Formula)>, CompareError> {
     let pair = |map: &crate::args::options::Setting| {
         let label = format!("{} = {}", map.name, map.value);

@@ -7,36 +7,36 @@ pub struct Difference {
     pub name: String,
     /// The largest difference; infinite where only one of the values is finite.
     pub largest: f64,
-    /// When it is reached.
+    /// The time at which it is reached.
     pub time: f64,
     /// The largest finite value of both columns.
     pub scale: f64,
-    /// What is allowed.
+    /// The largest difference allowed.
     pub allowed: f64,
-    /// The first time at which it is more than that.
+    /// The first time at which the difference is larger.
     pub since: Option<f64>,
-    /// Whether motions that differ here are two.
+    /// Whether a difference in this column makes the motions different.
     pub counts: bool,
 }
 
-/// What is allowed: |a − b| ≤ `absolute` + `relative`·(the largest value of the column).
+/// The difference allowed: |a − b| ≤ `absolute` + `relative`·(the largest value of the column).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Allowance {
-    /// In parts of the largest value.
+    /// As a fraction of the largest value.
     pub relative: f64,
-    /// Whatever the size of the values.
+    /// Independent of the values.
     pub absolute: f64,
 }
 
 impl Allowance {
-    /// What is allowed of values as large as this.
+    /// The difference allowed for a column with this largest value.
     pub fn at(self, scale: f64) -> f64 {
         self.absolute + self.relative * scale
     }
 }
 
 impl Difference {
-    /// That of the values (t, a, b).
+    /// The difference of the values (t, a, b).
     pub fn new(name: String, values: &[(f64, f64, f64)], allowance: Allowance) -> Difference {
         let finite = values.iter().flat_map(|&(_, a, b)| [a, b]).filter(|value| value.is_finite());
         let scale = finite.fold(0.0f64, |scale, value| scale.max(value.abs()));
@@ -62,7 +62,7 @@ impl Difference {
         difference
     }
 
-    /// The same, which says nothing of the motion.
+    /// The same, but without effect on whether the motions are the same.
     #[must_use]
     pub fn aside(self) -> Difference {
         Difference { counts: false, ..self }

@@ -4,7 +4,7 @@ use pc_expr::parse::ParseError;
 
 use crate::exit_code;
 
-/// What cannot be compared, and that motions differ.
+/// A comparison that cannot be made, or motions that differ.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
@@ -20,7 +20,7 @@ pub enum CompareError {
     /// Two models from standard input.
     #[error("only one of the models can come from standard input")]
     StandardInput,
-    /// The motions begin at other times.
+    /// The motions begin at different times.
     #[error("the motions begin at t = {first} and t = {second}: `t_start` in [simulation] must be the same")]
     Starts {
         /// That of the first.
@@ -40,15 +40,15 @@ pub enum CompareError {
         /// Those of the second.
         second: Vec<String>,
     },
-    /// A column that not both have.
+    /// A column that is not in both motions.
     #[error("--columns: `{name}` is not a column of both motions; these are {}", shared.join(", "))]
     NotShared {
-        /// The name asked for.
+        /// The requested name.
         name: String,
-        /// Those of both.
+        /// The columns of both.
         shared: Vec<String>,
     },
-    /// Text that is no expression.
+    /// Text that is not an expression.
     #[error("--map: `{text}`: {error}; {}", error.help())]
     Expression {
         /// As written.
@@ -65,10 +65,10 @@ pub enum CompareError {
         name: String,
         /// The model.
         model: String,
-        /// What there is.
+        /// The columns and parameters of the model.
         known: Vec<String>,
     },
-    /// A derivative, which a table has not.
+    /// A derivative, which a table does not have.
     #[error("--map: `{text}`: d() cannot be taken of columns; make it an entry of [outputs] in the model")]
     Derivative {
         /// The expression.

@@ -4,16 +4,16 @@ use std::ops::Range;
 
 use pc_model::{Diagnostic, Place, Source};
 
-/// Something in a URDF file that is wrong, or has no place in a model.
+/// Something in a URDF file that is wrong, or cannot be part of a model.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{rendered}")]
 pub struct UrdfError {
-    /// File, line and column, the message, the line and what would be right.
+    /// File, line and column, the message, the line and a remedy.
     pub rendered: String,
 }
 
 impl UrdfError {
-    /// The error at these bytes of the file, which stand in that element.
+    /// The error at these bytes of the file, in the element `entry`.
     pub(crate) fn at(
         source: &Source,
         span: Range<usize>,

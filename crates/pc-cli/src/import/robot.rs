@@ -1,4 +1,4 @@
-//! What a URDF file says of a robot.
+//! The contents of a URDF file.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ pub(crate) struct Robot {
     pub(crate) name: String,
     pub(crate) links: Vec<Link>,
     pub(crate) joints: Vec<Joint>,
-    /// Elements that a model has no place for, each with how often it stands there.
+    /// Elements that a model cannot contain, each with how often it occurs.
     pub(crate) left_out: Vec<(String, usize)>,
 }
 
@@ -31,7 +31,7 @@ pub(crate) struct Inertial {
     pub(crate) inertia: [f64; 6],
 }
 
-/// A place, and turns by roll, pitch and yaw about fixed axes x, y and z.
+/// A position, and turns by roll, pitch and yaw about fixed axes x, y and z.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pose {
     pub(crate) xyz: [f64; 3],
@@ -54,7 +54,7 @@ pub(crate) struct Joint {
     pub(crate) mimic: Option<Mimic>,
 }
 
-/// What a joint lets move.
+/// The kind of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Fixed,
@@ -66,7 +66,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// The kinds by their words.
+    /// The kinds by their names.
     pub(crate) const ALL: [(&'static str, Kind); 6] = [
         ("fixed", Kind::Fixed),
         ("revolute", Kind::Revolute),
@@ -82,7 +82,7 @@ impl Kind {
     }
 }
 
-/// That a joint follows another: x = multiplier · other + offset.
+/// A joint that follows another one: x = multiplier · other + offset.
 #[derive(Clone, Debug)]
 pub(crate) struct Mimic {
     pub(crate) joint: String,

@@ -13,8 +13,8 @@ use crate::import::urdf;
 
 /// The text of the model of a robot in URDF, and what was left out of it, a line each.
 ///
-/// Bodies have the names of links, coordinates those of joints, each as far as it is a name; the root link stands still, or is
-/// free if `floats`. Limits and meshes stay as remarks.
+/// Bodies have the names of links, coordinates those of joints, changed where they are not names of
+/// the language; the root link is fixed, or free if `floats`. Limits and meshes become comments.
 ///
 /// # Errors
 /// [`UrdfError`] with file, line and column.
@@ -30,9 +30,9 @@ pub fn model_of_urdf(source: &Source, floats: bool) -> Result<(String, Vec<Strin
 struct Tree<'a> {
     source: &'a Source,
     robot: &'a Robot,
-    /// Links, each after that it hangs on, with the joint between them.
+    /// Links, each after its parent, with the joint between them.
     order: Vec<(&'a Link, Option<&'a Joint>)>,
-    /// Links by what their bodies are called, joints by what their coordinates are.
+    /// The names of the bodies of links, and of the coordinates of joints.
     bodies: HashMap<&'a str, String>,
     coordinates: HashMap<&'a str, String>,
 }
@@ -120,7 +120,7 @@ impl<'a> Tree<'a> {
         Ok(Tree { source, robot, order, bodies, coordinates })
     }
 
-    /// That what moves has mass.
+    /// An error unless everything that moves has mass.
     fn check_masses(&self) -> Result<(), UrdfError> {
         let mut carries: HashSet<&str> = HashSet::new();
         for (link, joint) in self.order.iter().rev() {
@@ -316,7 +316,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// An angle; what is a multiple of a quarter turn to the digits of a file is one.
+/// An angle, as a multiple of a quarter turn where it is one to the digits of a file.
 fn angle(angle: f64) -> String {
     let quarters = (angle / std::f64::consts::FRAC_PI_2).round();
     if quarters != 0.0 && (angle - quarters * std::f64::consts::FRAC_PI_2).abs() <= 1e-10 {
@@ -339,7 +339,8 @@ fn list(numbers: &[f64]) -> String {
     format!("[{}]", numbers.join(", "))
 }
 
-/// R I Rᵀ with the rotation of the inertial's origin: three moments where the others vanish.
+/// R I Rᵀ, with R the rotation of the inertial's origin: only the three moments where the products
+/// vanish.
 fn along_axes_of_the_link(inertial: &Inertial) -> Vec<f64> {
     let [xx, yy, zz, xy, yz, xz] = inertial.inertia;
     let own = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
@@ -365,7 +366,7 @@ fn along_axes_of_the_link(inertial: &Inertial) -> Vec<f64> {
     }
 }
 
-/// The name as far as it is one, made longer where it is taken.
+/// The name, with invalid characters replaced, and longer where it is taken.
 fn unused(name: &str, taken: &mut HashSet<String>) -> String {
     let mut own: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if !is_name(&own) {

@@ -40,7 +40,7 @@ impl Reader<'_> {
         UrdfError::at(self.source, span, format!("<{}{name}>", node.tag_name().name()), message, help)
     }
 
-    /// An error about an element, of which its opening tag is shown.
+    /// An error about an element, which shows its opening tag.
     fn wrong(&self, node: Node<'_, '_>, message: impl Into<String>, help: &str) -> UrdfError {
         self.error(self.tag(node), node, message.into(), help)
     }
@@ -262,7 +262,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Three numbers with spaces between them; none where the attribute is not there.
+    /// Three numbers separated by spaces; none without the attribute.
     fn vector(&self, node: Node<'_, '_>, key: &str) -> Result<Option<[f64; 3]>, UrdfError> {
         let Some(text) = node.attribute(key) else { return Ok(None) };
         let numbers: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse::<f64>).collect();

@@ -9,7 +9,7 @@ pub(crate) struct Array {
     pub(crate) name: String,
     pub(crate) rows: usize,
     pub(crate) columns: usize,
-    /// Whether it is a list of its rows, of one number each.
+    /// Whether it is a vector: a column written as a list.
     pub(crate) is_list: bool,
     /// Row after row.
     pub(crate) real: Vec<f64>,
@@ -33,7 +33,7 @@ impl Array {
         Array { name: name.to_owned(), rows: real.len(), columns: 1, is_list: true, real, imaginary: None }
     }
 
-    /// Rows of pairs of real and imaginary part.
+    /// From rows of pairs of real and imaginary part.
     fn complex(name: &str, rows: &[Vec<(f64, f64)>]) -> Array {
         let (real, imaginary) = rows.iter().flatten().copied().unzip();
         let columns = rows.first().map_or(0, Vec::len);
@@ -48,7 +48,7 @@ impl Array {
     }
 }
 
-/// What is no number.
+/// A missing number.
 const NONE: (f64, f64) = (f64::NAN, f64::NAN);
 
 /// `state`, `A`, `B`, `C`, `D`, `eigenvalues`, `modes` (as columns), and `M`, `G`, `K`, `F` where they are defined.

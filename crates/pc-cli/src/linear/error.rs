@@ -1,4 +1,4 @@
-//! What can go wrong with linearizations and equilibria.
+//! Errors of linearizations and equilibria.
 
 use pc_analysis::{AnalysisError, BranchCount};
 use pc_model::UnknownValue;
@@ -26,19 +26,19 @@ pub enum LinearError {
         option: &'static str,
         /// As written.
         name: String,
-        /// What there is.
+        /// The components of the state.
         known: Vec<String>,
     },
-    /// A box that says nothing, or contains nothing.
+    /// A box that is meaningless or empty.
     #[error("--box: {0}")]
     Box(AnalysisError),
-    /// Nothing is steady.
+    /// No state is steady.
     #[error(
         "the equations depend on time explicitly, so that no state is steady\n  help: {help}",
         help = if *of_linearization { "--at start gives their Jacobian at the start" } else { "give what drives them a constant value" }
     )]
     DependsOnTime {
-        /// Whether a linearization was asked for.
+        /// Whether a linearization was requested.
         of_linearization: bool,
     },
     /// A constraint that is not affine in the velocities.
@@ -57,7 +57,7 @@ pub enum LinearError {
     NotSteady {
         /// √Σ f_i²
         residual: f64,
-        /// Where it ended.
+        /// The state at which it ended.
         state: Vec<(String, f64)>,
     },
     /// The start is not steady, and no other state is known to be reachable.
@@ -81,12 +81,12 @@ pub enum LinearError {
         /// The state.
         state: Vec<(String, f64)>,
     },
-    /// No value of a parameter has a steady state.
+    /// There is no steady state for any value of the parameter.
     #[error("there is no steady state for any of the {values} values; for the first: {first}")]
     NoneSteady {
         /// The number of values.
         values: usize,
-        /// What was wrong with the first.
+        /// The error for the first value.
         first: String,
     },
     /// The state has more or fewer components for another value of a parameter.
@@ -96,7 +96,7 @@ pub enum LinearError {
         name: String,
         /// Its value.
         value: f64,
-        /// How many.
+        /// The numbers of components.
         cause: BranchCount,
     },
     /// The search found nothing.
@@ -120,7 +120,7 @@ pub enum LinearError {
 }
 
 impl LinearError {
-    /// Of an error of the analysis that concerns no name of the command line.
+    /// From an error of the analysis that concerns no name of the command line.
     pub(crate) fn of(error: AnalysisError, of_linearization: bool) -> LinearError {
         match error {
             AnalysisError::DependsOnTime => LinearError::DependsOnTime { of_linearization },

@@ -53,7 +53,7 @@ impl Destination {
     /// A file for a list.
     ///
     /// # Errors
-    /// As there.
+    /// As for [`of_arrays`](Destination::of_arrays).
     pub(crate) fn of_list(path: &Path) -> Result<Destination, CliError> {
         Destination::new(path, &[("json", Format::Json), ("csv", Format::Csv)], ".json or .csv")
     }
@@ -64,16 +64,17 @@ impl Destination {
         let Some(&(_, format)) = format else {
             return Err(CliError::UnknownExtension { option: "-o", path: path.to_owned(), expected });
         };
-        // The archive is not written from its beginning to its end.
+        // Writing the archive needs to seek.
         let place = if format == Format::Npz { Place::regular(path) } else { Place::new(path) };
         let place = place.map_err(|source| CliError::no_place(path, source))?;
         Ok(Destination { place, format })
     }
 
-    /// Writes it there.
+    /// Writes the result to the destination.
     ///
     /// # Errors
-    /// [`CliError::Write`], which says where it is instead; an existing file is then as it was.
+    /// [`CliError::Write`], which says where the result was kept; an existing file is then
+    /// unchanged.
     pub(crate) fn write(&self, contents: &Contents<'_>) -> Result<(), CliError> {
         self.place.write_or_keep(self.format == Format::Csv, |out| match self.format {
             Format::Json => writeln!(out, "{:#}", contents.json),
@@ -84,7 +85,8 @@ impl Destination {
     }
 }
 
-/// One array for each, a complex one with a last axis of real and imaginary part; the archive bears no date.
+/// One array for each, a complex one with a last axis of real and imaginary part; the archive has
+/// no date.
 fn npz(arrays: &[Array], out: &mut FileWriter<'_>) -> io::Result<()> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)

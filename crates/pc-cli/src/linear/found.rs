@@ -9,14 +9,14 @@ use crate::linear::text::rounded;
 use crate::output::csv::{field, header};
 use crate::report::text::{labelled, short, wrapped};
 
-/// Columns of a line behind its number.
+/// Columns of a line after its number.
 const WIDTH: usize = 92;
 const LABEL: usize = 4;
 
-/// What Newton's method leaves of a zero.
+/// The largest value that Newton's method may leave of a zero.
 const ZERO: f64 = 1e-9;
 
-/// What is shown of a state: all but the quasi-velocities that vanish.
+/// The components of a state that are shown: all but the quasi-velocities that vanish.
 fn shown<'a>(names: &'a [String], found: &FoundEquilibrium, places: usize) -> Vec<(&'a str, f64)> {
     let all = names.iter().zip(&found.state).enumerate();
     let is_shown = |&(i, (_, value)): &(usize, (&String, &f64))| i < places || value.abs() > ZERO;
@@ -65,7 +65,7 @@ fn family(one: &FoundEquilibrium) -> Option<String> {
     })
 }
 
-/// One object.
+/// The equilibria as one JSON object.
 pub(crate) fn json(title: &str, names: &[String], found: &Equilibria) -> Value {
     let one = |one: &FoundEquilibrium| {
         json!({

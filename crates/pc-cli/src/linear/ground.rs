@@ -1,4 +1,4 @@
-//! From a model to what linearizes it.
+//! From a model to its linearizer.
 
 use std::convert::Infallible;
 
@@ -16,13 +16,13 @@ pub(crate) struct Ground<'g> {
     pub(crate) assembly: Assembly<'g>,
     pub(crate) equations: Equations<'g>,
     pub(crate) linearizer: Linearizer,
-    /// Its start in these.
+    /// The start in the variables of these equations.
     pub(crate) start: Vec<f64>,
 }
 
 impl<'g> Ground<'g> {
     /// # Errors
-    /// [`CliError`] at the place in the file that is to blame.
+    /// [`CliError`] at the place in the file that causes it.
     pub(crate) fn new(model: &Model, graph: &'g Graph) -> Result<Ground<'g>, CliError> {
         let assembly = model.assemble(graph)?;
         if assembly.constraints.nonlinear().is_some() {
@@ -54,8 +54,9 @@ impl<'g> Ground<'g> {
         Ok(Ground { assembly, equations, linearizer, start })
     }
 
-    /// For each component of the state its place among the start values of the model; none where other values of the parameters
-    /// or the start may lead to other equations, or the start has to be solved for.
+    /// For each component of the state its place among the start values of the model; none where
+    /// other parameters or starts may lead to other equations, or where the start has to be solved
+    /// for.
     pub(crate) fn places(&self, model: &Model) -> Option<Vec<usize>> {
         let is_fixed = self.assembly.constraints.redundant().is_empty();
         let follows = model.derives_start() || model.completes_start() || model.projects_start();
@@ -67,7 +68,8 @@ impl<'g> Ground<'g> {
         state.map(|x| names.iter().position(|name| name == x)).collect()
     }
 
-    /// Gives the equations the values of a model; its start, at these places.
+    /// Sets the parameters of the equations to those of a model, and returns its start, read at
+    /// these places.
     ///
     /// # Errors
     /// [`CliError::Model`] where a start value is not a number.
@@ -89,7 +91,7 @@ fn integrals<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Integral
     integrals_of(assembly, equations, &Neighbourhood { centre }, true)
 }
 
-/// Those of the integrals that are functions of the coordinates alone.
+/// The integrals that are functions of the coordinates alone.
 fn of_coordinates<'g>(equations: &Equations<'g>, integrals: &Integrals<'g>) -> Vec<Expr<'g>> {
     let system = equations.system();
     let others: Vec<Expr<'g>> = system
@@ -104,7 +106,7 @@ fn of_coordinates<'g>(equations: &Equations<'g>, integrals: &Integrals<'g>) -> V
     conserved.map(|integral| integral.value).filter(|f| !others.iter().any(|&y| f.depends_on(y))).collect()
 }
 
-/// An error of the analysis at the place in the file that is to blame for it, if one is.
+/// An error of the analysis, at the place in the file that causes it, if there is one.
 pub(crate) fn placed(assembly: &Assembly<'_>, error: AnalysisError, of_linearization: bool) -> CliError {
     match error {
         AnalysisError::Nonholo(error) => at(assembly, error),

@@ -31,7 +31,7 @@ fn mode(mode: &Mode) -> Value {
     json!(mode.vector.as_ref().map(pairs))
 }
 
-/// The members of the object of a linearization, behind those that say of what.
+/// The members of the object of a linearization, except those that identify it.
 pub(crate) fn members(linear: &Linearization) -> Map<String, Value> {
     let pairs = |list: &[(String, f64)]| map(list.iter().map(|(name, value)| (name.as_str(), *value)));
     let eigenvalues: Vec<[f64; 2]> =

@@ -11,10 +11,10 @@ use crate::linear::text::{aligned, complex};
 use crate::output::csv::field;
 use crate::report::text::short;
 
-/// A root locus with what it is of.
+/// A root locus with its model and parameter.
 pub(crate) struct Locus {
     pub(crate) title: String,
-    /// What is varied.
+    /// The parameter or start value that is varied.
     pub(crate) name: String,
     pub(crate) components: Vec<String>,
     pub(crate) locus: RootLocus,
@@ -58,7 +58,7 @@ impl Locus {
         text
     }
 
-    /// One object.
+    /// The locus as one JSON object.
     pub(crate) fn json(&self) -> Value {
         let parts = |branch: &Vec<Option<Eigenvalue>>, part: fn(&Eigenvalue) -> f64| {
             branch.iter().map(|lambda| lambda.as_ref().map(part)).collect::<Vec<_>>()

@@ -17,7 +17,8 @@ const CHARACTERS: u32 = 4;
 const DOUBLES: u32 = 6;
 const COMPLEX: u32 = 1 << 11;
 
-/// Writes arrays of numbers, then texts, each on one line. There is no date in the file: the same numbers give the same bytes.
+/// Writes arrays of numbers, then texts, each on one line. The file has no date: the same numbers
+/// give the same bytes.
 pub(super) fn write(arrays: &[Array], texts: &[(&str, String)], out: &mut dyn Write) -> io::Result<()> {
     let mut header = b"MATLAB 5.0 MAT-file, written by pc".to_vec();
     header.resize(124, b' ');
@@ -60,7 +61,7 @@ fn variable(
     out.write_all(&element(MATRIX, &body))
 }
 
-/// A tag of eight bytes, then the data, padded to a multiple of as many.
+/// A tag of eight bytes, then the data, padded to a multiple of eight bytes.
 fn element(kind: u32, data: &[u8]) -> Vec<u8> {
     let mut bytes = kind.to_le_bytes().to_vec();
     bytes.extend((data.len() as u32).to_le_bytes());

@@ -8,19 +8,19 @@ use pc_print::{columns, eigenvalues_in_words, one_line};
 
 use crate::report::text::{labelled, short, small, wrapped};
 
-/// Columns of a line behind its label.
+/// Columns of a line after its label.
 const WIDTH: usize = 84;
 const LABEL: usize = 13;
 
-/// What Newton's method leaves of a zero.
+/// The largest value that Newton's method may leave of a zero.
 const ZERO: f64 = 1e-9;
 
-/// Six digits; what is left of a zero is one.
+/// Six digits; 0 for what Newton's method leaves of a zero.
 pub(crate) fn rounded(value: f64) -> String {
     if value.abs() <= ZERO { "0".to_owned() } else { short(value, 6) }
 }
 
-/// The whole page; `moved` says whether the state was looked for.
+/// The whole page; `moved` says whether the state was found from the start.
 pub(crate) fn page(title: &str, linear: &Linearization, moved: bool) -> String {
     let mut text = format!("{}\n", one_line(title));
     let mut line = |label: &str, lines: &[String]| text += &labelled(label, LABEL, lines);
@@ -71,7 +71,7 @@ pub(crate) fn page(title: &str, linear: &Linearization, moved: bool) -> String {
     text
 }
 
-/// What kind of state it is, and where.
+/// The kind of state, and where it is.
 fn place(linear: &Linearization, moved: bool) -> String {
     let kind = match (linear.is_steady, linear.cyclic.is_empty()) {
         (false, _) => return format!("the start, not steady: rates of norm {}", small(linear.residual)),

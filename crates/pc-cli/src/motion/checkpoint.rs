@@ -1,4 +1,4 @@
-//! Checkpoints of a run: written on the way, and resumed from.
+//! Checkpoints of a run: written during the integration, and resumed from.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -20,11 +20,12 @@ use crate::motion::plan::Plan;
 use crate::output::place::Place;
 use crate::report::text;
 
-/// Internal steps from one checkpoint to the next by default: many more than the few dozen short ones that follow a restart.
+/// Internal steps from one checkpoint to the next by default: many more than the few dozen short
+/// steps after a restart.
 const EVERY: NonZeroU64 = NonZeroU64::new(1000).expect("not 0");
 
-/// The time between two writes of the file, in multiples of the time that the last write took. How often it is written
-/// does not change the numbers.
+/// The least time between two writes of the file, in multiples of the time of the last write. It
+/// does not affect the numbers.
 const PATIENCE: u32 = 20;
 
 /// Checkpoints of one run.
@@ -33,12 +34,12 @@ pub(crate) struct Checkpoints {
     place: Place,
     every: NonZeroU64,
     identity: Identity,
-    /// Where to begin, if not at the start.
+    /// The checkpoint to begin at, if not the start.
     from: Option<Checkpoint>,
 }
 
 impl Checkpoints {
-    /// What the command line asks for: nothing, a file to write, one to go on from.
+    /// The checkpoints of the command line: none, a file to write, a file to continue from.
     ///
     /// # Errors
     /// [`CheckpointFileError`]; [`CliError::Place`] where no file can be.
@@ -55,7 +56,7 @@ impl Checkpoints {
                 Ok(None)
             };
         };
-        // A device would be replaced by a file.
+        // A file would replace a device.
         let place = Place::regular(path).map_err(|source| CliError::no_place(path, source))?;
         let overwritten = arguments.checkpoint.as_ref().and_then(|path| beginning(path).ok());
         if overwritten.is_some_and(|bytes| !bytes.is_empty() && !Checkpoint::is_one(&bytes)) {
@@ -72,7 +73,7 @@ impl Checkpoints {
         Ok(Some(checkpoints))
     }
 
-    /// Reads the checkpoint to go on from.
+    /// Reads the checkpoint to continue from.
     fn take_up(&mut self, path: &Path, every: Option<NonZeroU64>) -> Result<(), CheckpointFileError> {
         let bytes =
             read(path).map_err(|source| CheckpointFileError::Read { path: path.to_owned(), source })?;
@@ -93,7 +94,8 @@ impl Checkpoints {
     /// Integrates the motion of `flow` from its start or from the checkpoint.
     ///
     /// # Errors
-    /// [`CliError::Write`] if the file cannot be written at the beginning; later that is only said.
+    /// [`CliError::Write`] if the file cannot be written at the beginning; later failures are only
+    /// reported.
     pub(crate) fn solve(
         &mut self,
         flow: &Flow,
@@ -120,8 +122,8 @@ impl Checkpoints {
                 (took, written) = (start.elapsed(), Instant::now());
             }
         };
-        // The equations as they were compiled, without memory of what they were evaluated at; that what they keep is another
-        // after a reset is in the checkpoint.
+        // The equations as compiled, without memory of earlier evaluations; the checkpoint knows
+        // the values of kept integrals after a reset.
         let parts = || (flow.motion.clone(), flow.events.clone());
         let (times, options) = (plan.times(), plan.options());
         let solved = solve_checkpointed(&options, parts, from, &times, self.every, save, step);
@@ -137,7 +139,7 @@ impl Checkpoints {
     }
 }
 
-/// Enough of a file to know whether it is a checkpoint.
+/// Bytes of a file that show whether it is a checkpoint.
 const BEGINNING: u64 = 256;
 
 fn beginning(path: &Path) -> io::Result<Vec<u8>> {
@@ -146,11 +148,11 @@ fn beginning(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The bytes of a checkpoint; of anything else no more than the beginning.
+/// The bytes of a checkpoint; only the beginning of any other file.
 fn read(path: &Path) -> io::Result<Vec<u8>> {
     let bytes = beginning(path)?;
     if Checkpoint::is_one(&bytes) { fs::read(path) } else { Ok(bytes) }
 }
 
-/// Name of the number of steps between checkpoints.
+/// Name of the number of steps between checkpoints in an identity.
 const INTERVAL: &str = "--every";

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use pc_solve::CheckpointError;
 
-/// Why a run cannot go on from a file, or keep checkpoints there.
+/// Why a run cannot continue from a file, or keep checkpoints there.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointFileError {

@@ -1,4 +1,4 @@
-//! The motion between its rows, as close as it needs to be drawn.
+//! The motion between its rows, with the points that pictures need.
 
 use std::ops::ControlFlow;
 
@@ -9,15 +9,15 @@ use crate::motion::interrupt;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
 
-/// Numbers that are held.
+/// Most numbers in memory.
 const MOST_NUMBERS: usize = 4_000_000;
 
-/// Points of a motion, unless its steps have very many each.
+/// Fewest points of a motion, unless its steps would have more than the most points of a step.
 const FEWEST: usize = 2000;
 const MOST_POINTS: usize = 60;
 
-/// Points of a step, so that the polynomial of the method is seen as the curve that it is: steps of multistep methods are short
-/// against what moves, one of Taylor's method is up to half an oscillation.
+/// Points of a step, enough to show the polynomial of the method as a curve: steps of multistep
+/// methods are short compared with an oscillation, a step of Taylor's method can be half of one.
 fn points(method: Method) -> usize {
     match method {
         Method::Adams | Method::Bdf => 3,
@@ -26,11 +26,12 @@ fn points(method: Method) -> usize {
     }
 }
 
-/// What an integrator takes two times for the same by.
+/// The relative difference up to which an integrator takes two times for the same.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
-/// The time at which a table of inputs is read at the end `t` of a step that lies towards `inside`: at a break before the step that
-/// of the break, at one behind it the last before it. So a jump has both of its values.
+/// The time at which a table of inputs is read at an end `t` of a step that contains `inside`: at a
+/// break after `inside` the last number before the break, at one before it the break itself. So a
+/// jump shows both of its values.
 fn side(breaks: &[f64], t: f64, inside: f64) -> f64 {
     let near = ROUNDINGS * t.abs();
     let first = breaks.partition_point(|&time| time < t - near);
@@ -41,14 +42,15 @@ fn side(breaks: &[f64], t: f64, inside: f64) -> f64 {
     }
 }
 
-/// The states of the steps of a motion and between them, those before and after events and jumps of inputs included, as a table;
-/// none where they do not reach as far as `reached`. The motion is integrated once more: no row of its own depends on it.
+/// The states at the ends of steps and between them, with those before and after events and jumps
+/// of inputs, as a table; none where they do not reach as far as `reached`. The motion is
+/// integrated again, so that its rows do not depend on this.
 pub(crate) fn table(flow: &mut Flow, plan: &Plan, steps: u64, reached: f64) -> Option<Table> {
     let columns = 1 + flow.names.len() + flow.motion.observable_names().len();
-    // Where nothing bends the steps are few and long.
+    // Nearly straight motions have few, long steps.
     let points = points(plan.method).max((FEWEST / (steps as usize).max(1)).min(MOST_POINTS));
     let most = MOST_NUMBERS / columns;
-    // So many that a pixel has many of them all the same.
+    // With more points than these, leaving some out does not show: a pixel has many.
     let stride = (steps as usize).saturating_mul(points).div_ceil(most).max(1);
     let mut states: Vec<(f64, Vec<f64>)> = Vec::new();
     let mut count = 0;
@@ -71,10 +73,10 @@ pub(crate) fn table(flow: &mut Flow, plan: &Plan, steps: u64, reached: f64) -> O
         keep(side(&breaks, to, from), &segment);
         if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    // What fails there has failed before, and been said.
+    // A failure has already been reported by the first integration.
     let _ = solve.start().ok()?.run_dense(plan.t_end, segment, |_| ControlFlow::Continue(()));
     let (last, _) = states.last()?;
-    // Steps of the same method from the same start end in the same places, but for the last.
+    // The same method from the same start makes the same steps, except the last.
     let is_whole = (reached - last).abs() <= 0.01 * (reached - plan.t_start).abs();
     is_whole.then(|| Table::of_states(flow, &states))
 }
@@ -87,7 +89,7 @@ mod tests {
     fn a_break_is_read_on_the_side_of_the_step() {
         let breaks = [0.0, 1.0, 2.5];
         let before = 1.0f64.next_down();
-        // Forwards the step before the break ends there, backwards the step behind it does.
+        // Forwards, the step before the break ends there; backwards, the step after it does.
         assert_eq!([side(&breaks, 1.0, 0.4), side(&breaks, 1.0, 1.7)], [before, 1.0]);
         // The end of a step may miss the break by rounding, on either side.
         for t in [1.0 - 2.0 * f64::EPSILON, 1.0 + 2.0 * f64::EPSILON] {

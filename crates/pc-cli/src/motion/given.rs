@@ -1,4 +1,4 @@
-//! A motion whose rows are written while it is integrated, so that they take no memory.
+//! A motion whose rows are written as they are computed, so that they take no memory.
 
 use std::ops::ControlFlow;
 
@@ -11,12 +11,12 @@ use crate::motion::plan::Plan;
 use crate::motion::table::Table;
 use crate::output::stream::Stream;
 
-/// What is known of the rows that were written.
+/// A record of the rows that were written.
 pub(crate) struct Given<'s, 'p> {
-    /// What they are read off: the one that is integrated is in use.
+    /// A second flow to compute rows with, since the integration uses the first.
     flow: Flow,
     stream: &'s mut Stream<'p>,
-    /// The last of them, and how far they drifted.
+    /// The last row, and the drifts so far.
     pub(crate) table: Table,
     /// The largest residual of each constraint.
     pub(crate) constraints: Vec<(String, f64)>,
@@ -34,7 +34,8 @@ impl<'s, 'p> Given<'s, 'p> {
         Ok(Given { flow: flow.clone(), stream, table, constraints, last: None })
     }
 
-    /// The motion as far as it can be computed, and why not further; without its states.
+    /// Integrates the motion as far as possible, without its states; the error says why not
+    /// further.
     pub(crate) fn follow(
         &mut self,
         flow: &mut Flow,
@@ -53,7 +54,7 @@ impl<'s, 'p> Given<'s, 'p> {
     }
 
     fn take(&mut self, t: f64, y: &[f64]) -> ControlFlow<()> {
-        // There may be many rows in a step.
+        // A step may have many rows, so steps alone do not notice Ctrl-C in time.
         if interrupt::requested() {
             return ControlFlow::Break(());
         }

@@ -1,4 +1,5 @@
-//! Everything that the numbers of a motion depend on: stored with an interrupted run, so that only the same command continues it.
+//! All that the numbers of a motion depend on: stored with an interrupted run, so that only the
+//! same command continues it.
 
 use pc_model::Model;
 use pc_solve::Accumulation;
@@ -47,7 +48,7 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
     identity
 }
 
-/// The first thing that is not the same, in words.
+/// The first difference, in words.
 pub(crate) fn difference(then: &Identity, now: &Identity) -> Option<String> {
     let value = |identity: &Identity, name: &str| {
         identity.iter().find(|(known, _)| known == name).map_or("(not there)", |(_, value)| value).to_owned()

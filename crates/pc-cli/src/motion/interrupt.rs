@@ -24,7 +24,7 @@ pub(crate) fn requested() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
-/// What says so.
+/// The flag that Ctrl-C sets.
 pub(crate) fn flag() -> &'static AtomicBool {
     &INTERRUPTED
 }

@@ -7,24 +7,26 @@ use pc_model::Flow;
 use crate::error::CliError;
 use crate::motion::plan::Plan;
 
-/// Copies of the states while a checkpoint is written: what was reached before, what it is now, and its bytes.
+/// Copies of the states while a checkpoint is written: those of the last checkpoint, the current
+/// ones, and the bytes.
 const CHECKPOINTED: u64 = 3;
 
-/// Numbers that are held for each row until the table is written.
+/// Numbers in memory for each row until the table is written.
 pub(crate) fn numbers(flow: &Flow, plan: &Plan, checkpointed: bool) -> u64 {
     let dim = flow.motion.dim() as u64;
     let columns = 1 + flow.names.len() as u64 + flow.motion.observable_names().len() as u64;
     let copies = if checkpointed { CHECKPOINTED } else { 1 };
-    // The derivatives of each state are held by the trajectory and apart from it, each time with where they are.
+    // Derivatives are held by the trajectory and separately, with their times and states, and in
+    // the row of the table.
     let derivatives = match plan.sensitivities.len() as u64 {
         0 => 0,
         parameters => parameters * (2 * dim + flow.names.len() as u64) + dim + 4,
     };
-    // The time when it is asked for, the time and state when it is reached, the row of the table.
+    // The requested time; the time and state of the trajectory; the row of the table.
     1 + copies * (1 + dim) + columns + derivatives
 }
 
-/// That so many rows of so many numbers are within the memory of the limits.
+/// An error unless `rows` rows of `numbers` numbers each are within the memory limit.
 ///
 /// # Errors
 /// [`CliError::Rows`]
@@ -36,10 +38,10 @@ pub(crate) fn allow(rows: u64, numbers: u64, limits: &Limits) -> Result<(), CliE
     Ok(())
 }
 
-/// Rows that take more than so many bytes are written while the motion is integrated, if they can.
+/// Rows that take more bytes are written as they are computed, where that is possible.
 const MUCH: u64 = 64 << 20;
 
-/// Whether rows had better be given away, or have to.
+/// Whether rows should be written as they are computed.
 pub(crate) fn is_much(rows: u64, numbers: u64, limits: &Limits) -> bool {
     rows.saturating_mul(numbers).saturating_mul(size_of::<f64>() as u64) > MUCH.min(limits.memory)
 }

@@ -1,4 +1,4 @@
-//! The plan of a run: from the command line, else the model file, else the defaults.
+//! The plan of a run, from the command line, else the model file, else the defaults.
 
 use pc_model::Model;
 use pc_model::document;
@@ -32,7 +32,7 @@ fn of_file(method: document::Method) -> Method {
     }
 }
 
-/// Rows of a table if nobody says how many.
+/// Default number of rows of a table.
 const SAMPLES: usize = 201;
 
 /// Time span, rows, method, tolerances and limit of the steps of a run.

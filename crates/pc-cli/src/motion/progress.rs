@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::report::text::short;
 
-/// A run that takes no longer needs no bar.
+/// A shorter run needs no bar.
 const PATIENCE: Duration = Duration::from_millis(500);
 /// Steps between two looks at the clock.
 const STRIDE: u32 = 64;

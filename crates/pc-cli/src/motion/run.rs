@@ -21,7 +21,8 @@ pub struct Run {
     pub state: Vec<String>,
     /// The table as far as it was reached.
     pub table: Table,
-    /// The motion between its rows too, as close as it needs to be drawn, where that was asked for.
+    /// The motion between its rows too, with the points that pictures need, where that was
+    /// requested.
     pub fine: Option<Table>,
     /// The constraints that are held, with the largest residual of each at the output times.
     pub constraints: Vec<(String, f64)>,
@@ -57,11 +58,11 @@ pub enum Ending {
     },
     /// By Ctrl-C.
     Interrupted,
-    /// At a limit of time.
+    /// By the time limit.
     Ended(Spent),
-    /// Rows were written on the way, and one could not be.
+    /// A row could not be written.
     Unwritten,
-    /// The integration could not go on.
+    /// The integration could not continue.
     Failed(Box<SolveError>),
 }
 

@@ -25,12 +25,12 @@ pub(crate) fn parameters(model: &Model, names: &[String]) -> Result<Vec<usize>, 
     names.iter().map(place).collect()
 }
 
-/// Derivatives by parameters to be integrated with a motion, and those that were found.
+/// Derivatives by parameters that are integrated with a motion, with the results.
 pub(crate) struct Derivatives {
     parameters: Vec<usize>,
     names: Vec<String>,
     wanted: Sensitivities,
-    /// Of each output, column-major.
+    /// The derivatives at each output, column-major.
     matrices: Vec<Vec<f64>>,
 }
 
@@ -49,7 +49,8 @@ impl Derivatives {
         Ok(Derivatives { parameters: parameters.to_vec(), names, wanted, matrices: Vec::new() })
     }
 
-    /// The motion as far as it can be computed, and why not further; `output` sees each output and may stop it.
+    /// Integrates the motion as far as possible; the error says why not further. `output` sees each
+    /// output and may stop it.
     pub(crate) fn follow(
         &mut self,
         flow: &mut Flow,
@@ -82,7 +83,7 @@ impl Derivatives {
             .collect()
     }
 
-    /// What stands in these columns at output number `i`, which is y at time t.
+    /// The values of these columns at output number `i`, which is y at time t.
     pub(crate) fn row(&self, flow: &Flow, i: usize, t: f64, y: &[f64]) -> Vec<f64> {
         let columns = self.matrices[i].chunks_exact(y.len()).zip(&self.parameters);
         columns.flat_map(|(column, &j)| flow.derivative(t, y, column, j)).collect()

@@ -16,7 +16,8 @@ pub struct Table {
     derivatives: usize,
     /// One row after the other.
     values: Vec<f64>,
-    /// Of rows that were given away: then the last one alone is here.
+    /// A record of the rows that were written as they were computed: `values` then has only the
+    /// last one.
     given: Option<Given>,
 }
 
@@ -25,14 +26,14 @@ pub struct Table {
 pub struct NotFinite {
     /// The first of them.
     pub value: f64,
-    /// When it has this value.
+    /// The time of this value.
     pub t: f64,
-    /// In how many rows it has none.
+    /// How many rows have no finite value.
     pub rows: usize,
 }
 
 impl NotFinite {
-    /// Takes note of another value.
+    /// Counts another value.
     fn note(known: Option<NotFinite>, t: f64, value: f64) -> Option<NotFinite> {
         match known {
             _ if value.is_finite() => known,
@@ -42,14 +43,14 @@ impl NotFinite {
     }
 }
 
-/// What is known of rows that were given away.
+/// A record of rows that were written as they were computed.
 #[derive(Clone, Debug, PartialEq)]
 struct Given {
     rows: usize,
     start: Vec<f64>,
     /// The largest changes since the start.
     worst: Vec<f64>,
-    /// What was not finite, column by column.
+    /// Values that were not finite, column by column.
     not_finite: Vec<Option<NotFinite>>,
 }
 
@@ -59,7 +60,7 @@ impl Table {
         Table::with_derivatives(flow, trajectory, None)
     }
 
-    /// The same, and behind that what is known of derivatives.
+    /// The same, followed by derivatives.
     pub(crate) fn with_derivatives(
         flow: &mut Flow,
         trajectory: &Trajectory,
@@ -77,7 +78,7 @@ impl Table {
         table
     }
 
-    /// Rows at states.
+    /// The rows of these states.
     pub(crate) fn of_states(flow: &mut Flow, states: &[(f64, Vec<f64>)]) -> Table {
         let mut table = Table::empty(flow, Vec::new());
         for (t, y) in states {
@@ -87,13 +88,13 @@ impl Table {
         table
     }
 
-    /// A table whose rows are given away.
+    /// A table whose rows are written as they are computed.
     pub(crate) fn given(flow: &Flow) -> Table {
         let given = Given { rows: 0, start: Vec::new(), worst: Vec::new(), not_finite: Vec::new() };
         Table { given: Some(given), ..Table::empty(flow, Vec::new()) }
     }
 
-    /// Puts the row of a state in place of the last one.
+    /// Replaces the last row by that of a state.
     pub(crate) fn give(&mut self, flow: &mut Flow, t: f64, y: &[f64]) {
         self.values.clear();
         self.values.push(t);
@@ -144,7 +145,7 @@ impl Table {
         self.values.is_empty()
     }
 
-    /// The rows in order; the last alone of rows that were written while there were more to come.
+    /// The rows in order; only the last one of rows that were written as they were computed.
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[f64]> + ExactSizeIterator {
         self.values.chunks_exact(self.columns.len())
     }
@@ -154,7 +155,7 @@ impl Table {
         self.values.chunks_exact(self.columns.len()).map(move |row| row[j])
     }
 
-    /// What of column number `j` is not finite, if anything is.
+    /// The values of column number `j` that are not finite, if there are any.
     pub fn not_finite(&self, j: usize) -> Option<NotFinite> {
         match &self.given {
             Some(given) => given.not_finite.get(j).copied().flatten(),
@@ -204,12 +205,12 @@ impl Table {
                 (start, self.column(j).fold(0.0f64, |worst, value| raised(worst, value - start)))
             }
         };
-        // Against a start that is itself no larger than the drift a ratio says nothing.
+        // A ratio means nothing where the start value is no larger than the drift.
         Drift { absolute, relative: (absolute < start.abs()).then(|| absolute / start.abs()) }
     }
 }
 
-/// The larger of the worst change so far and another one; f64::max would lose a NaN.
+/// The larger of the worst change so far and another one (f64::max would lose a NaN).
 fn raised(worst: f64, change: f64) -> f64 {
     let change = change.abs();
     if change > worst || change.is_nan() { change } else { worst }

@@ -9,11 +9,12 @@ use tempfile::NamedTempFile;
 use crate::output::partial;
 use crate::output::place::Place;
 
-/// A file that is written, with what is not on disk yet.
+/// A buffered writer to a file.
 pub(crate) type FileWriter<'f> = BufWriter<&'f mut File>;
 
 impl Place {
-    /// Puts what `write` writes there. Until all of it is on disk, a file is what it was.
+    /// Puts what `write` writes there. Until all of it is on disk, an existing file stays
+    /// unchanged.
     ///
     /// # Errors
     /// [`io::Error`]
@@ -24,7 +25,7 @@ impl Place {
         }
     }
 
-    /// The same for a file that is not there, and is kept should it have come into being since.
+    /// The same for a file that did not exist; if it has been created since, it is kept.
     ///
     /// # Errors
     /// [`io::Error`]
@@ -35,7 +36,7 @@ impl Place {
         made.persist_noclobber(&self.file).map(drop).map_err(|error| error.error)
     }
 
-    /// The same for a regular file; what could be written where not all could.
+    /// The same for a regular file; an error comes with what could be written.
     pub(super) fn replace(
         &self,
         write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
@@ -47,7 +48,7 @@ impl Place {
         }
     }
 
-    /// Puts a file that was made beside it there.
+    /// Moves a file made beside the place to it.
     pub(super) fn put(&self, mut made: NamedTempFile) -> Result<(), (io::Error, Option<NamedTempFile>)> {
         let replaced = made.as_file().sync_all().and_then(|()| match fs::metadata(&self.file) {
             Err(_) => Ok(true),
@@ -61,7 +62,7 @@ impl Place {
     }
 }
 
-/// Writes to a file; what a failure leaves unwritten is not tried again.
+/// Writes to a file; after a failure, the unwritten rest is not tried again.
 pub(super) fn fill(
     file: &mut File,
     write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
@@ -72,7 +73,7 @@ pub(super) fn fill(
     written
 }
 
-/// Gives a file the owner and the mode of the one that it replaces; false where that is not allowed.
+/// Gives a file the owner and mode of the one that it replaces; false where this is not permitted.
 #[cfg(unix)]
 fn take_after(made: &File, old: &Metadata) -> io::Result<bool> {
     use std::os::unix::fs::{MetadataExt, fchown};
@@ -91,7 +92,7 @@ fn take_after(_: &File, _: &Metadata) -> io::Result<bool> {
     Ok(true)
 }
 
-/// Copies what is complete into a file of somebody else, who remains its owner.
+/// Copies the complete file into one of another user, who remains its owner.
 fn overwrite(made: &mut File, file: &Path) -> io::Result<()> {
     let mut old = OpenOptions::new().write(true).truncate(true).open(file)?;
     made.rewind()?;

@@ -7,7 +7,8 @@ use pc_print::one_line;
 
 use crate::motion::table::Table;
 
-/// A header, then a line for each row, numbers with 17 significant digits: those that give the same number back.
+/// A header, then a line for each row, numbers with 17 significant digits, which reproduce them
+/// exactly.
 pub(super) fn write(table: &Table, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{}", header(table.columns()))?;
     table.rows().try_for_each(|numbers| row(numbers, out))

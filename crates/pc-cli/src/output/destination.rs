@@ -30,9 +30,9 @@ pub enum Encoding {
     Png,
     /// A page for print.
     Pdf,
-    /// A page of a browser.
+    /// A page for a browser.
     Html,
-    /// Bitmaps one after the other.
+    /// A sequence of bitmaps.
     Gif,
 }
 
@@ -110,7 +110,7 @@ impl Destination {
         let Some(&(_, encoding)) = encoding else {
             return Err(CliError::UnknownExtension { option, path: path.to_owned(), expected });
         };
-        // The archive is not written from its beginning to its end.
+        // Writing the archive needs to seek.
         let place = if encoding == Encoding::Npz { Place::regular(path) } else { Place::new(path) };
         let place = place.map_err(|source| CliError::no_place(path, source))?;
         Ok(Destination { encoding, place: Some(place) })
@@ -119,7 +119,8 @@ impl Destination {
     /// Writes the table of a run.
     ///
     /// # Errors
-    /// [`CliError::Write`], which says where the table is instead; an existing file is then as it was.
+    /// [`CliError::Write`], which says where the table was kept; an existing file is then
+    /// unchanged.
     pub fn write_table(&self, run: &Run) -> Result<(), CliError> {
         let Some(place) = &self.place else {
             return standard_output::print_or_keep("motion.csv", |out| csv::write(&run.table, out));
@@ -136,7 +137,8 @@ impl Destination {
         })
     }
 
-    /// The table while it grows, where it can be written from its beginning to its end.
+    /// A stream for the rows of the table as they are computed, if the destination is a regular CSV
+    /// file.
     pub(crate) fn stream(&self) -> Option<Stream<'_>> {
         let place = self.place.as_ref().filter(|place| place.device.is_none());
         place.filter(|_| self.encoding == Encoding::Csv).map(Stream::to)
@@ -165,7 +167,7 @@ impl Destination {
         })
     }
 
-    /// Writes pictures one after the other, as GIF.
+    /// Writes a sequence of pictures as GIF.
     ///
     /// # Errors
     /// As for [`write_plot`](Destination::write_plot).

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::motion::run::Run;
 use crate::report::summary;
 
-/// Numbers are as short as gives the same number back; what is not finite is null.
+/// Numbers have the fewest digits that reproduce them exactly; values that are not finite are null.
 pub(super) fn write(run: &Run, out: &mut dyn Write) -> io::Result<()> {
     let parameters: Map<String, Value> =
         run.parameters.iter().map(|(name, value)| (name.clone(), json!(value))).collect();

@@ -1,9 +1,9 @@
-//! Where a result is that could not be written where it belongs.
+//! Where a result was kept that could not be written to its destination.
 
 use std::fmt;
 use std::path::PathBuf;
 
-/// Where a result is that could not be written where it belongs.
+/// Where a result was kept that could not be written to its destination.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Kept {
     /// Nowhere.

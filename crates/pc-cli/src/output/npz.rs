@@ -9,11 +9,11 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 use crate::motion::run::Run;
 use crate::output::atomic::FileWriter;
 
-/// Numbers from which on an entry needs the format of the archive for more than 4 GiB.
+/// The length in numbers from which an entry needs the archive format for more than 4 GiB.
 const LARGE: u64 = (1 << 29) - 1024;
 
-/// One array of `f64` for each column, and `events/NAME` with its times for each event; the archive bears no date, so that
-/// the same run gives the same bytes.
+/// One array of `f64` for each column, and `events/NAME` with the times of each event; the archive
+/// has no date, so that the same run gives the same bytes.
 pub(super) fn write(run: &Run, out: &mut FileWriter<'_>) -> io::Result<()> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
@@ -42,8 +42,8 @@ pub(super) fn write(run: &Run, out: &mut FileWriter<'_>) -> io::Result<()> {
     Ok(())
 }
 
-/// The name of a column as that of an entry of an archive, which leads nowhere else where it is unpacked: `%` and what could,
-/// such as the slash in `../x`, are spelt as in addresses.
+/// The name of a column as that of an entry of an archive, which stays in the directory where it is
+/// unpacked: `%` and what could leave it, such as the slash in `../x`, are percent-encoded.
 pub(crate) fn entry(name: &str) -> String {
     let leads = |c: Option<char>| matches!(c, None | Some('.' | '/'));
     let mut entry = String::with_capacity(name.len());

@@ -1,7 +1,7 @@
 //! Files that are being written, beside those that they will replace.
 //!
-//! That of `a.csv` is `.a.csv.pc-a1B2c3.part`, with six characters by chance, and locked as long as its process lives: one that
-//! is not locked was left by a run that was killed.
+//! The partial file of `a.csv` is `.a.csv.pc-a1B2c3.part`, with six random characters, and locked
+//! as long as its process lives: one that is not locked was left by a run that was killed.
 
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
@@ -12,7 +12,7 @@ use tempfile::{Builder, NamedTempFile};
 
 const SUFFIX: &str = ".part";
 const CHANCE: usize = 6;
-/// Most systems have names of 255 bytes.
+/// Longest part of the name of the file; most systems allow 255 bytes for the whole.
 const LONGEST: usize = 200;
 
 /// A new file beside `file`, locked.
@@ -25,11 +25,11 @@ pub(super) fn make(file: &Path) -> io::Result<NamedTempFile> {
         builder.permissions(new_file());
         let directory = directory(file);
         let made = builder.tempfile_in(directory).map_err(|error| {
-            // It names a file that nobody knows.
+            // The error itself names the partial file, which the user does not know.
             let message = format!("no file can be created in {}: {}", directory.display(), error.kind());
             io::Error::new(error.kind(), message)
         })?;
-        // Where locks are unknown nobody takes it for left behind either. Before it was locked somebody may have.
+        // Without locks, no process removes it as a leftover; before the lock, one may have.
         let _ = made.as_file().try_lock();
         if made.path().exists() {
             return Ok(made);
@@ -37,7 +37,7 @@ pub(super) fn make(file: &Path) -> io::Result<NamedTempFile> {
     }
 }
 
-/// Removes what killed runs have left beside `file`; what cannot be removed is in nobody's way.
+/// Removes what killed runs have left beside `file`; files that cannot be removed do no harm.
 pub(super) fn remove_leftovers(file: &Path) {
     let prefix = prefix(file);
     let (prefix, suffix) = (prefix.as_encoded_bytes(), SUFFIX.as_bytes());
@@ -76,7 +76,7 @@ fn prefix(file: &Path) -> OsString {
     prefix
 }
 
-/// What any new file gets, less what the user takes from all.
+/// The mode of any new file, before the user's umask.
 #[cfg(unix)]
 fn new_file() -> fs::Permissions {
     use std::os::unix::fs::PermissionsExt;

@@ -15,19 +15,20 @@ pub(crate) fn file(path: Option<&Path>) -> Option<&Path> {
 /// The place of a file that is replaced whole, or of a device that is written through.
 #[derive(Debug)]
 pub(crate) struct Place {
-    /// As it was asked for.
+    /// The path as given.
     pub(super) asked: PathBuf,
-    /// What links lead to.
+    /// The file that links lead to.
     pub(super) file: PathBuf,
-    /// What keeps nothing, such as a FIFO, is written through, and is open from the beginning.
+    /// A character device or FIFO, open from the beginning and written directly.
     pub(super) device: Option<File>,
 }
 
 impl Place {
-    /// A regular file, there or not, in a directory in which files can be made; what killed runs have left beside it is removed.
+    /// A regular file, existing or not, in a directory in which files can be made; leftovers of
+    /// killed runs are removed.
     ///
     /// # Errors
-    /// [`io::Error`] that says what stands in the way.
+    /// [`io::Error`] that says why it cannot be written.
     pub(crate) fn regular(path: &Path) -> io::Result<Place> {
         match fs::metadata(path) {
             Ok(found) if !found.is_file() && !found.is_dir() => Err(refused("it is not a regular file")),
@@ -35,7 +36,7 @@ impl Place {
         }
     }
 
-    /// A file that is not there yet, be it by a dangling link.
+    /// A file that does not exist yet, not even as a dangling link.
     ///
     /// # Errors
     /// As for [`regular`](Place::regular).
@@ -50,7 +51,8 @@ impl Place {
         }
     }
 
-    /// The same, or a character device or FIFO, which is opened: that of a FIFO waits for its reader.
+    /// A regular file, or a character device or FIFO, which is opened; opening a FIFO waits for its
+    /// reader.
     ///
     /// # Errors
     /// As for [`regular`](Place::regular).
@@ -60,7 +62,7 @@ impl Place {
                 return Err(io::Error::new(ErrorKind::IsADirectory, "it is a directory"));
             }
             Ok(found) if found.is_file() => {
-                // Root may write what is marked as read-only; who has marked it meant to keep it.
+                // Root could write it, but the mark says that it should stay.
                 if found.permissions().readonly() {
                     return Err(refused("it is read-only"));
                 }
@@ -80,13 +82,13 @@ impl Place {
         Ok(Place { asked: path.to_owned(), file, device })
     }
 
-    /// As it was asked for.
+    /// The path as given.
     pub(crate) fn path(&self) -> &Path {
         &self.asked
     }
 }
 
-/// That a file can be made beside `file`.
+/// An error unless a file can be made beside `file`.
 fn try_directory(file: &Path) -> io::Result<()> {
     let directory = directory(file);
     if !fs::metadata(directory).is_ok_and(|found| found.is_dir()) {
@@ -100,7 +102,7 @@ fn try_directory(file: &Path) -> io::Result<()> {
 /// As many links as the system itself follows.
 const MOST_LINKS: usize = 40;
 
-/// The file that links lead to though it is not there yet.
+/// The file that links lead to, which does not exist yet.
 fn end_of_links(path: &Path) -> io::Result<PathBuf> {
     let mut file = path.to_owned();
     for _ in 0..MOST_LINKS {

@@ -1,4 +1,4 @@
-//! Rescue of a result that cannot be written where it belongs.
+//! Rescue of a result that cannot be written to its destination.
 
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -11,8 +11,9 @@ use crate::output::kept::Kept;
 use crate::output::place::Place;
 
 impl Place {
-    /// Puts a result there, or else in the directory of temporary files, or else what could be written of it beside the file
-    /// where that is of use: where `is_lines` says that its lines are.
+    /// Puts a result at its place, or else in the directory of temporary files, or else, if
+    /// `is_lines` says that single lines are of use, the part that could be written beside the
+    /// file.
     ///
     /// # Errors
     /// [`CliError::Write`] that says where it is.
@@ -43,10 +44,10 @@ impl Place {
     }
 }
 
-/// Bytes of a name.
+/// Most bytes of the name.
 const LONGEST: usize = 100;
 
-/// The result in a file of its own in the directory of temporary files, if that is possible.
+/// Writes the result to a new file in the directory of temporary files, if that is possible.
 pub(super) fn elsewhere(
     name: &str,
     write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
@@ -57,7 +58,7 @@ pub(super) fn elsewhere(
     Some(file.keep().ok()?.1)
 }
 
-/// The whole lines of what could be written, in FILE.partial unless there is such a file.
+/// Keeps the complete lines of what could be written in FILE.partial, unless that exists.
 pub(super) fn beside(file: &Path, mut part: NamedTempFile) -> Option<PathBuf> {
     let end = end_of_lines(part.as_file_mut()).ok().filter(|&end| end > 0)?;
     part.as_file().set_len(end).ok()?;
@@ -67,7 +68,7 @@ pub(super) fn beside(file: &Path, mut part: NamedTempFile) -> Option<PathBuf> {
     part.persist_noclobber(&path).ok().map(|_| path)
 }
 
-/// The number of bytes to the end of the last line that has one.
+/// The number of bytes up to the end of the last complete line.
 fn end_of_lines(file: &mut (impl Read + Seek)) -> io::Result<u64> {
     const BLOCK: u64 = 1 << 16;
     let mut end = file.seek(SeekFrom::End(0))?;

@@ -1,4 +1,4 @@
-//! Standard output; a reader that goes away is not reported.
+//! Standard output; it is no error if its reader goes away.
 
 use std::io::{self, ErrorKind, Write};
 
@@ -9,12 +9,12 @@ use crate::output::rescue::elsewhere;
 /// Writes to standard output.
 ///
 /// # Errors
-/// [`CliError::Write`], which is not worth a message where the reader has gone away (`pc run … | head`).
+/// [`CliError::Write`], which needs no message where the reader has gone away (`pc run … | head`).
 pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
     attempt(write).map_err(error)
 }
 
-/// Writes a result to standard output, or else into a file of the directory of temporary files.
+/// Writes a result to standard output, or else to a file in the directory of temporary files.
 pub(super) fn print_or_keep(
     name: &str,
     write: impl Fn(&mut dyn Write) -> io::Result<()>,
@@ -33,7 +33,7 @@ fn attempt(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<(
     written
 }
 
-/// That nothing else is left of what could not be written.
+/// The error of output that could not be written and is not kept anywhere.
 pub fn error(source: io::Error) -> CliError {
     unwritten(source, Kept::Nowhere)
 }

@@ -1,4 +1,4 @@
-//! Rows that are written while there are more to come.
+//! Rows that are written as they are computed.
 
 use std::io::{self, BufWriter, Write};
 use std::ops::ControlFlow;
@@ -11,13 +11,13 @@ use crate::output::place::Place;
 use crate::output::rescue::beside;
 use crate::output::{csv, partial};
 
-/// A table of comma-separated values that grows beside the file which it replaces at its end.
+/// A table of comma-separated values that grows beside the file that it replaces at the end.
 #[derive(Debug)]
 pub(crate) struct Stream<'p> {
     place: &'p Place,
-    /// Nothing before it is begun.
+    /// The file, once begun.
     out: Option<BufWriter<NamedTempFile>>,
-    /// Why no more could be written.
+    /// The error that ended the writing.
     error: Option<io::Error>,
 }
 
@@ -44,12 +44,12 @@ impl<'p> Stream<'p> {
         begun.map_err(|source| CliError::cannot_write(self.place.path(), source))
     }
 
-    /// Whether there is something to be ended.
+    /// Whether the file has been made.
     pub(crate) fn is_begun(&self) -> bool {
         self.out.is_some()
     }
 
-    /// Writes a row; breaks off where that fails, and has failed.
+    /// Writes a row; breaks where this fails.
     pub(crate) fn row(&mut self, numbers: &[f64]) -> ControlFlow<()> {
         let Some(out) = &mut self.out else { return ControlFlow::Break(()) };
         if let Err(error) = csv::row(numbers, out) {
@@ -64,7 +64,7 @@ impl<'p> Stream<'p> {
         self.error.is_some()
     }
 
-    /// Puts the table at its place, or what there is of it beside that.
+    /// Puts the table at its place, or its complete rows beside it.
     ///
     /// # Errors
     /// [`CliError::Write`] that says where it is.

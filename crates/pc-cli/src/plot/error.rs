@@ -22,12 +22,12 @@ pub enum PlotError {
         /// What the encoder says.
         message: String,
     },
-    /// A column to be drawn is not there.
+    /// A column to be drawn does not exist.
     #[error("--{option}: {source}")]
     Column {
         /// The option that names it.
         option: &'static str,
-        /// The column, and those there are.
+        /// The column, and the existing ones.
         source: UnknownColumn,
     },
 }

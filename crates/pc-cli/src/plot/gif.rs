@@ -1,4 +1,4 @@
-//! Drawings one after the other, as GIF.
+//! A sequence of drawings as GIF.
 
 use gif::{Encoder, Frame, Repeat};
 use pc_report::picture::Drawing;
@@ -7,18 +7,19 @@ use crate::plot::error::PlotError;
 use crate::plot::glyphs::Glyphs;
 use crate::plot::png::{opaque, painted};
 
-/// Pixels of a point.
+/// Pixels per point.
 const SCALE: f32 = 1.0;
-/// Frames of a second.
+/// Frames per second.
 const RATE: f64 = 25.0;
-/// Hundredths of a second that a frame stands, by that rate.
+/// Duration of a frame at this rate, in hundredths of a second.
 const DELAY: u16 = 4;
-/// Frames of the longest film: what takes longer is shown faster.
+/// Most frames of a film: longer motions are shown faster.
 const MOST: usize = 250;
-/// How finely colours are chosen, from 1 to 30; the finest takes ten times as long, and shows no more of lines on white.
+/// Speed of the choice of colours, from 1 (best) to 30; 1 takes ten times as long, and lines on
+/// white look the same.
 const SPEED: i32 = 10;
 
-/// So many of the frames at `times`, by their numbers, as show the motion as fast as it is.
+/// The numbers of those frames at `times` that show the motion at its true speed.
 pub(crate) fn frames(times: &[f64]) -> Vec<usize> {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
     let span = last - first;
@@ -33,7 +34,7 @@ pub(crate) fn nearest(times: &[f64], time: f64) -> usize {
     (0..times.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
 
-/// The film, which goes round and round.
+/// The film, which repeats.
 ///
 /// # Errors
 /// [`PlotError`]

@@ -10,7 +10,7 @@ pub(super) struct Glyphs {
     face: Face<'static>,
 }
 
-/// A character with its place on the line, in units of the font.
+/// A character with its position on the line, in units of the font.
 pub(super) struct Placed {
     pub(super) glyph: GlyphId,
     pub(super) character: char,
@@ -22,17 +22,17 @@ impl Glyphs {
         Face::parse(dejavu::sans::regular(), 0).map(|face| Glyphs { face }).map_err(|_| PlotError::Font)
     }
 
-    /// Units of the font that are the height of a text.
+    /// Units of the font per height of a text.
     pub(super) fn units(&self) -> f64 {
         f64::from(self.face.units_per_em())
     }
 
-    /// The characters of a text with their places relative to its anchor.
+    /// The characters of a text with their positions relative to its anchor.
     pub(super) fn placed(&self, text: &str, anchor: Anchor) -> Vec<Placed> {
         let mut x = 0.0;
         let mut placed = Vec::new();
         for character in text.chars() {
-            // What the font does not have is its empty box.
+            // A character that the font lacks is shown as its empty box.
             let glyph = self.face.glyph_index(character).unwrap_or(GlyphId(0));
             placed.push(Placed { glyph, character, x });
             x += self.advance(glyph);
@@ -46,14 +46,14 @@ impl Glyphs {
         placed
     }
 
-    /// How far the next character is.
+    /// The distance to the next character.
     pub(super) fn advance(&self, glyph: GlyphId) -> f64 {
         f64::from(self.face.glyph_hor_advance(glyph).unwrap_or(0))
     }
 
     /// Draws the outline, y up.
     pub(super) fn outline(&self, glyph: GlyphId, builder: &mut impl OutlineBuilder) {
-        // A space has none.
+        // A space has no outline.
         let _ = self.face.outline_glyph(glyph, builder);
     }
 }

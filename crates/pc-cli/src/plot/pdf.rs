@@ -1,7 +1,8 @@
 //! Drawings as a page of PDF [ISO 32000-1], with text that can be found and copied.
 //!
-//! Characters are procedures of fonts of type 3 (9.6.5), so that no more of the font is in the file than the picture uses; a
-//! table says which character each is (9.10.3). The content is compressed by deflate (7.4.4).
+//! Characters are procedures of fonts of type 3 (9.6.5), so that the file contains only the
+//! characters used; a table gives the Unicode of each (9.10.3). The content is compressed by
+//! deflate (7.4.4).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -15,7 +16,7 @@ use ttf_parser::{GlyphId, OutlineBuilder};
 use crate::plot::error::PlotError;
 use crate::plot::glyphs::Glyphs;
 
-/// Characters of a font: their codes are one byte, of which 0 is left out.
+/// Most characters of a font: their codes are one byte, without 0.
 const CODES: usize = 255;
 
 /// The page.
@@ -39,7 +40,7 @@ pub(crate) fn pdf(drawing: &Drawing) -> Result<Vec<u8>, PlotError> {
     Ok(file.end())
 }
 
-/// What paints the page, y down.
+/// The content stream of the page, y down.
 fn content(drawing: &Drawing, fonts: &mut Fonts<'_>) -> String {
     let mut content = format!("1 0 0 -1 0 {} cm 1 j\n", drawing.height);
     for shape in &drawing.shapes {
@@ -98,7 +99,7 @@ fn add(content: &mut String, more: std::fmt::Arguments<'_>) {
     let _ = content.write_fmt(more); // writing to a string cannot fail
 }
 
-/// The characters that are used, by the order in which they were met.
+/// The characters that are used, in order of first use.
 struct Fonts<'g> {
     glyphs: &'g Glyphs,
     known: BTreeMap<char, usize>,
@@ -116,7 +117,7 @@ impl Fonts<'_> {
         (place / CODES, place % CODES + 1)
     }
 
-    /// Writes them; what a page says of its resources.
+    /// Writes the fonts, and returns the resources of the page.
     fn write(&self, file: &mut File) -> Result<String, PlotError> {
         let mut resources = "/Font <<".to_owned();
         for (number, characters) in self.characters.chunks(CODES).enumerate() {
@@ -159,14 +160,14 @@ impl Fonts<'_> {
     }
 }
 
-/// Lines of a table, no more than 100 together.
+/// Lines of a table, in blocks of at most 100.
 fn blocks(lines: &str) -> String {
     let lines: Vec<&str> = lines.lines().collect();
     let block = |some: &[&str]| format!("{} beginbfchar\n{}\nendbfchar\n", some.len(), some.join("\n"));
     lines.chunks(100).map(block).collect()
 }
 
-/// The outline of a character as a path; curves of the second degree are written as ones of the third.
+/// The outline of a character as a path; quadratic curves are written as cubic ones.
 struct Outline {
     path: String,
     at: [f32; 2],
@@ -203,7 +204,8 @@ impl OutlineBuilder for Outline {
     }
 }
 
-/// A file as far as it is written, with the place of each object; number 0 is not used, 1 to 3 are kept for the page.
+/// A file as far as it is written, with the offset of each object; number 0 is not used, 1 to 3 are
+/// for the page.
 struct File {
     bytes: Vec<u8>,
     places: Vec<usize>,
@@ -233,7 +235,7 @@ impl File {
         Ok(number)
     }
 
-    /// The file with its table of places.
+    /// The file with its table of offsets.
     fn end(mut self) -> Vec<u8> {
         let (start, count) = (self.bytes.len(), self.places.len());
         let entries: String =

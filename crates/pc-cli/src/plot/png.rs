@@ -9,7 +9,7 @@ use ttf_parser::OutlineBuilder;
 use crate::plot::error::PlotError;
 use crate::plot::glyphs::Glyphs;
 
-/// Pixels of a point.
+/// Pixels per point.
 const SCALE: f32 = 2.0;
 
 /// The bitmap, on white.
@@ -20,7 +20,7 @@ pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, PlotError> {
     encoded(&painted(drawing, SCALE, &Glyphs::new()?)?)
 }
 
-/// The pixels, of which `magnification` are a point.
+/// The pixels, `magnification` of them per point.
 ///
 /// # Errors
 /// [`PlotError`]
@@ -38,7 +38,7 @@ pub(super) fn painted(drawing: &Drawing, magnification: f32, glyphs: &Glyphs) ->
             }
             Shape::Area { from, to, ink } => {
                 let rect = Rect::from_ltrb(from[0] as f32, from[1] as f32, to[0] as f32, to[1] as f32);
-                // Edges between areas that touch would show the paper.
+                // With antialiasing, the background would show between adjacent areas.
                 let paint = Paint { anti_alias: false, ..paint(*ink) };
                 if let Some(rect) = rect {
                     pixels.fill_rect(rect, &paint, scale, None);
@@ -101,7 +101,7 @@ fn stroke(ink: Ink) -> Stroke {
     }
 }
 
-/// Red, green and blue of each.
+/// Red, green and blue of each pixel.
 pub(super) fn opaque(pixels: &Pixmap) -> Vec<u8> {
     pixels.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
 }

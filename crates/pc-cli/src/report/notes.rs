@@ -6,15 +6,15 @@ use pc_report::{NEGATIVE_ENERGY, dropped};
 
 use crate::report::text::{say, short, wrapped};
 
-/// Says which constraints were dropped, on standard error.
+/// Says on standard error which constraints were dropped.
 pub fn say_dropped(assembly: &Assembly<'_>) {
     for (name, reason) in dropped(assembly) {
         say(format_args!("note: the constraint {name} {reason}; it is dropped\n"));
     }
 }
 
-/// A remark on equations in the `free` velocities, chosen among those that constraints bind, or in all where
-/// constraints bind none of them to others; none where there is no choice.
+/// A remark on equations in the `free` velocities, which were chosen as independent, or on those in
+/// all velocities, of which nonlinear constraints are integrals; none where there is no choice.
 pub fn choice(assembly: &Assembly<'_>, free: &[Expr<'_>]) -> Option<String> {
     let ConstraintFormulation::Multipliers(_) = assembly.constraints.formulation() else { return None };
     if let Some(held) = assembly.constraints.nonlinear() {
@@ -50,7 +50,7 @@ pub fn say_choice(choice: &str) {
     say(format_args!("note: {}\n", choice.replace('\n', "\n      ")));
 }
 
-/// Says where the start was moved, on standard error.
+/// Says on standard error where the start was moved.
 pub fn say_moved(assembly: &Assembly<'_>) {
     if let Some(written) = &assembly.written_start {
         let names = assembly.system.state();
@@ -71,14 +71,14 @@ pub fn say_moved(assembly: &Assembly<'_>) {
     }
 }
 
-/// Says that the kinetic energy is negative where it is, on standard error.
+/// Says on standard error if the kinetic energy is negative.
 pub fn say_negative_energy(assembly: &Assembly<'_>) {
     if assembly.has_negative_energy() {
         say(format_args!("note: {NEGATIVE_ENERGY}\n"));
     }
 }
 
-/// Says which forces of reactions on bodies are not among the outputs, on standard error.
+/// Says on standard error which reaction forces on bodies are not among the outputs.
 pub fn say_undetermined(assembly: &Assembly<'_>) {
     let left_out = assembly.constraints.undetermined();
     if !left_out.is_empty() {

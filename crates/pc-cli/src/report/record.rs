@@ -1,4 +1,4 @@
-//! What pages and pictures show of a run.
+//! A run for pages and pictures.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use crate::report::summary;
 use crate::report::text::short;
 
 impl Run {
-    /// What pages and pictures show of it.
+    /// The run for pages and pictures.
     pub fn record(&self) -> Record {
         let at = || short(self.statistics.current_time, 6);
         let remark = match &self.ending {

@@ -24,7 +24,8 @@ pub fn text(run: &Run) -> String {
     text
 }
 
-/// What is said of a run, each with a label, in lines; the time it took is left out, so that the same run says the same.
+/// The labelled lines of the summary, without the computing time, so that the same run has the same
+/// summary.
 pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
     let (plan, work) = (&run.plan, &run.statistics);
     let mut entries: Vec<(&'static str, Vec<String>)> = Vec::new();
@@ -72,7 +73,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
 
 const WORK: &str = "work";
 
-/// What a method that chooses did, or one that cannot should have.
+/// What the method `auto` chose, or a remark where DOP853 met a stiff motion.
 fn chosen(run: &Run) -> Vec<String> {
     let (plan, work) = (&run.plan, &run.statistics);
     let times = |n: u64| if n == 1 { "once".to_owned() } else { format!("{n} times") };
@@ -111,7 +112,7 @@ fn work_done(run: &Run) -> String {
     parts.join(", ")
 }
 
-/// Occurrences of an event that are all listed.
+/// Up to this number, all occurrences of an event are listed.
 const FEW: usize = 5;
 
 fn events(run: &Run) -> Vec<String> {
@@ -177,7 +178,7 @@ fn held(run: &Run) -> Vec<String> {
     run.constraints.iter().map(line).collect()
 }
 
-/// The summary for files; the time it took is left out, so that the same run gives the same file.
+/// The summary for files, without the computing time, so that the same run gives the same file.
 pub fn json(run: &Run) -> Value {
     let (plan, work, table) = (&run.plan, &run.statistics, &run.table);
     let drift: Map<String, Value> = table

@@ -11,18 +11,18 @@ use crate::error::CliError;
 pub struct Verification {
     second: Result<Second, VerifyError>,
     form: &'static str,
-    /// Where it was compared, and what came of it.
+    /// Where it was compared, with the results.
     outcomes: Vec<(&'static str, Result<Agreement, VerifyError>)>,
 }
 
 impl Verification {
-    /// Of the equations of a model in a form, not compared anywhere yet.
+    /// The second derivation of a model in a form, not compared anywhere yet.
     pub fn new(model: &Model, assembly: &Assembly<'_>, form: RunForm) -> Verification {
         let form = Variables::from(form).name();
         Verification { second: Second::new(model, assembly), form, outcomes: Vec::new() }
     }
 
-    /// Whether one comparison uses up the available time, about a tenth of the derivation.
+    /// Whether one comparison takes too long, that is, more than about a tenth of the derivation.
     pub fn is_long(&self, flow: &Flow) -> bool {
         self.second.as_ref().is_ok_and(|second| second.is_long(flow))
     }

@@ -39,13 +39,13 @@ use crate::sweep::{plot, shards};
 
 /// Bytes of finished members that may wait for an earlier one.
 const WAITING: usize = 64 << 20;
-/// … and how many.
+/// Finished members that may wait for an earlier one.
 const MOST_WAITING: usize = 4096;
 
 /// Runs `pc sweep`.
 ///
 /// # Errors
-/// [`CliError`]; what was finished is kept then.
+/// [`CliError`]; finished members are kept.
 pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let destination = Destination::new(&arguments.output)?;
     let picture = output::destination::Destination::plot(arguments.plot.as_deref())?;
@@ -74,7 +74,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     if arguments.shard.is_some() {
         header = shards::described(header, shard, all, &title, &sheet);
     }
-    // Of each member at work its trajectory, its table, its record and the bytes of that.
+    // Each member at work has its trajectory, its table, its record and the bytes of the record.
     let threads =
         arguments.threads.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     memory::allow(plan.samples as u64, (4 * columns * threads) as u64, model.budget().limits())?;
@@ -101,7 +101,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
             let message = &panicked.message;
             Some(work.panicked(shard.member(place), message))
         });
-        // None: interrupted on its way, or ended by a limit.
+        // A member without a record was interrupted, or ended by a limit.
         let Some(record) = record else { return ControlFlow::Break(()) };
         kept = journal.append(&record);
         progress.at(place + 1);
@@ -132,7 +132,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let tally = journal.tally().clone();
     let mut said = summary(&title, &plan, &tally, (before, work.beside()), start.elapsed().as_secs_f64());
     if arguments.shard.is_some() {
-        // Whether any member was completed is known when all shards are there.
+        // Only all shards together show whether any member was completed.
         said += &labelled("shard", 9, &[format!("{shard}, in {}, for pc merge", journal.path().display())]);
         text::say(format_args!("{said}"));
         return Ok(());
@@ -172,8 +172,8 @@ pub(super) fn judged(tally: &Tally) -> Result<(), CliError> {
     }
 }
 
-/// That the text of the model is right. What the values of its parameters make inconsistent may be consistent in a
-/// member.
+/// An error unless the text of the model is right. A model that is inconsistent only for its
+/// parameter values may be consistent in a member.
 fn look(model: &Model) -> Result<(), CliError> {
     let graph = model.graph();
     match model.assemble(&graph) {
@@ -186,7 +186,7 @@ fn look(model: &Model) -> Result<(), CliError> {
     }
 }
 
-/// What the result depends on.
+/// All that the result depends on.
 fn header(model: &Model, arguments: &SweepArguments, plan: &Plan, form: RunForm) -> Identity {
     let vary = arguments.vary.iter().map(ToString::to_string);
     let random = arguments.random.iter().map(|Random { name, law }| match law {
@@ -209,7 +209,7 @@ fn header(model: &Model, arguments: &SweepArguments, plan: &Plan, form: RunForm)
     header
 }
 
-/// How many members ended how.
+/// The numbers of members by how they ended.
 pub(super) fn counted(tally: &Tally) -> String {
     let others = tally.done - tally.completed - tally.by_event;
     let mut members = format!("{}, {} completed", tally.done, tally.completed);

@@ -15,7 +15,7 @@ pub(crate) struct Design {
     members: u64,
 }
 
-/// What is varied.
+/// A quantity that is varied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Target {
     Parameter(String),
@@ -32,7 +32,8 @@ enum Values {
 
 impl Design {
     /// # Errors
-    /// [`SweepError`] if a name is not of the model, is given twice or is set too, or there are too many members.
+    /// [`SweepError`] if a name is not in the model, is given twice or is also set, or there are
+    /// too many members.
     pub(crate) fn new(model: &Model, arguments: &SweepArguments) -> Result<Design, SweepError> {
         let varied = arguments.vary.iter().map(|vary| &vary.name);
         let random = arguments.random.iter().map(|random| &random.name);
@@ -61,7 +62,7 @@ impl Design {
         self.members
     }
 
-    /// What is varied, as columns are called.
+    /// The columns of the varied quantities.
     pub(crate) fn names(&self) -> Vec<String> {
         let name = |target: &Target| match target {
             Target::Parameter(name) => name.clone(),
@@ -89,7 +90,7 @@ impl Design {
             }
             Values::Random { laws, seed } => {
                 let mut stream = member_stream(*seed, member);
-                // The command line has refused what is no distribution.
+                // The command line has refused invalid distributions.
                 let nan = f64::NAN;
                 let draw = |law: &Law| match *law {
                     Law::Normal(m, s) => Normal::new(m, s).map_or(nan, |law| law.sample(&mut stream)),
@@ -107,7 +108,7 @@ impl Design {
     pub(crate) fn model(&self, model: &Model, values: &[f64]) -> Model {
         let mut model = model.clone();
         for (target, &value) in self.targets.iter().zip(values) {
-            // The names are known to be of this model.
+            // The names are known to be in this model.
             let _ = match target {
                 Target::Parameter(name) => model.set(name, value).is_ok(),
                 Target::Start(name) => model.set_start(name, value).is_ok(),

@@ -14,7 +14,7 @@ use crate::sweep::shard::Shard;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SweepError {
-    /// What is varied is not of the model.
+    /// A name that is not in the model.
     #[error(transparent)]
     UnknownValue(UnknownValue),
     /// One name has values from two options.
@@ -32,7 +32,7 @@ pub enum SweepError {
         /// The journal.
         journal: PathBuf,
     },
-    /// Another file is in the place of the journal.
+    /// The file in the place of the journal is not one.
     #[error("{} was not left by a sweep of this version; remove it, or give another -o", journal.display())]
     Foreign {
         /// The file.
@@ -70,26 +70,26 @@ pub enum SweepError {
         /// Why.
         source: io::Error,
     },
-    /// A file that is to be put together is none that a sweep with `--shard` has left.
+    /// A file to be merged is not a shard.
     #[error("{} was not left by `pc sweep --shard` of this version", path.display())]
     NoShard {
         /// The file.
         path: PathBuf,
     },
-    /// There is no shard to be put together.
+    /// There is no shard to be merged.
     #[error("there are no shards to put together: give the files that `pc sweep --shard` has left")]
     NoShards,
-    /// A shard is of another sweep than another.
+    /// Two shards are of different sweeps.
     #[error("{} and {} are not of the same sweep: the first has {what}", path.display(), other.display())]
     OtherShard {
-        /// The one.
+        /// One of them.
         path: PathBuf,
         /// The other.
         other: PathBuf,
         /// What is different.
         what: String,
     },
-    /// A shard is there twice.
+    /// A shard is given twice.
     #[error("the shard {shard} is there twice: {} and {}", paths[0].display(), paths[1].display())]
     ShardTwice {
         /// Which.
@@ -97,7 +97,7 @@ pub enum SweepError {
         /// The files.
         paths: [PathBuf; 2],
     },
-    /// Shards are not there.
+    /// Shards are missing.
     #[error("of {of} shards {} missing: {}", if shards.len() == 1 { "one is" } else { "some are" }, numbers(shards))]
     Missing {
         /// Their numbers.
@@ -120,10 +120,10 @@ pub enum SweepError {
         /// How many it should have.
         members: u64,
     },
-    /// The finished members cannot be read once more.
+    /// The finished members cannot be read again.
     #[error("cannot draw the sweep: its finished members cannot be read")]
     Read(#[source] io::Error),
-    /// The picture that is asked for cannot be drawn.
+    /// The requested picture cannot be drawn.
     #[error("--plot: {0}")]
     Drawn(#[from] SweepPlotError),
     /// The threads cannot be started.
@@ -134,10 +134,10 @@ pub enum SweepError {
     NoneCompleted {
         /// How many there are.
         members: u64,
-        /// What is the matter with the first.
+        /// The error of the first.
         first: String,
     },
-    /// A limit of time.
+    /// The time limit ended the sweep.
     #[error("ended after {done} of {members} members: {limit}; the same command continues from there")]
     Ended {
         /// How many are finished.

@@ -5,8 +5,8 @@
 //! frame of the header: the model and the options, [[what, value], …] in JSON
 //! frame of a record, for members 0, 1, 2, …
 //! ```
-//! A frame is length, CRC-32 and bytes. Records are only appended, each with one call of the system; what a torn one
-//! left at the end is cut off.
+//! A frame is length, CRC-32 and bytes. Records are only appended, each with one call of the
+//! system; an incomplete record at the end is cut off.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
@@ -27,7 +27,7 @@ pub(crate) struct Journal {
     file: File,
     /// Where the records begin.
     records: u64,
-    /// Which members they are of.
+    /// The members that they belong to.
     shard: Shard,
     tally: Tally,
 }
@@ -37,19 +37,20 @@ pub(crate) trait Records {
     /// The records.
     ///
     /// # Errors
-    /// What the system says of the file.
+    /// [`io::Error`] of the file.
     fn records(&self) -> io::Result<Box<dyn Iterator<Item = io::Result<Record>> + '_>>;
 
-    /// Where they are if they cannot be written, unless they stay where they were found.
+    /// The file that keeps them if the table cannot be written; none where they stay in their
+    /// shards anyway.
     fn kept(&self) -> Option<&Path>;
 }
 
-/// How many members have ended how.
+/// The numbers of members by how they ended.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Tally {
     /// Members that are finished.
     pub(crate) done: u64,
-    /// Of these, the completed ones.
+    /// The completed ones among them.
     pub(crate) completed: u64,
     /// Those that a terminal event has ended.
     pub(crate) by_event: u64,
@@ -57,11 +58,11 @@ pub(crate) struct Tally {
     pub(crate) others: Vec<(u64, Status, String)>,
 }
 
-/// So many messages say enough.
+/// Most messages that are kept.
 const MESSAGES: usize = 5;
 
 impl Tally {
-    /// Of several journals together.
+    /// The sum of several journals.
     pub(crate) fn sum<'t>(parts: impl Iterator<Item = &'t Tally>) -> Tally {
         let mut sum = Tally::default();
         for part in parts {
@@ -89,7 +90,7 @@ impl Tally {
 }
 
 impl Journal {
-    /// Where that of a whole sweep is, beside its table.
+    /// The path of the journal of a whole sweep, beside its table.
     pub(crate) fn beside(table: &Path) -> PathBuf {
         let mut name = table.as_os_str().to_owned();
         name.push(".partial");
@@ -99,7 +100,7 @@ impl Journal {
     /// The journal of a shard: a new one, or the one that the same sweep has left.
     ///
     /// # Errors
-    /// [`SweepError`] if it is that of another sweep or is in use.
+    /// [`SweepError`] if it belongs to another sweep or is in use.
     pub(crate) fn open(path: PathBuf, shard: Shard, header: &Identity) -> Result<Journal, SweepError> {
         let refused = |source| SweepError::Journal { journal: path.clone(), source };
         if std::fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
@@ -123,10 +124,10 @@ impl Journal {
         Ok(Journal { tally, ..journal })
     }
 
-    /// One that is only read, with its header; `shard` is what the header says.
+    /// A journal that is only read, with its header, from which `shard` reads the shard.
     ///
     /// # Errors
-    /// [`SweepError`] if it is none, or in use.
+    /// [`SweepError`] if the file is not a journal, or is in use.
     pub(crate) fn finished(
         path: &Path,
         shard: impl FnOnce(&Identity) -> Option<Shard>,
@@ -158,7 +159,7 @@ impl Journal {
         }
     }
 
-    /// Writes the `beginning`, unless it is there.
+    /// Writes the `beginning`, unless the file has it.
     fn begin(&mut self, beginning: &[u8], header: &Identity) -> Result<(), SweepError> {
         let refused = |source| SweepError::Journal { journal: self.path.clone(), source };
         let mut found = Vec::new();
@@ -168,7 +169,7 @@ impl Journal {
             return Ok(());
         }
         if beginning.starts_with(&found) {
-            // New, or its beginning torn.
+            // A new file, or an incomplete beginning.
             self.file.set_len(0).map_err(refused)?;
             return self.file.write_all(beginning).map_err(refused);
         }
@@ -181,7 +182,7 @@ impl Journal {
         })
     }
 
-    /// How many records there are of what kind, and where they end.
+    /// The numbers of records by how they ended, and where the records end.
     fn scan(&self) -> io::Result<(Tally, u64)> {
         let (mut tally, mut end) = (Tally::default(), self.records);
         let mut reader = self.reader(self.records)?;
@@ -207,17 +208,17 @@ impl Journal {
         Ok(())
     }
 
-    /// Where it is.
+    /// The path of the file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// How many members have ended how.
+    /// The numbers of members by how they ended.
     pub(crate) fn tally(&self) -> &Tally {
         &self.tally
     }
 
-    /// Removes it: the table is complete.
+    /// Removes the journal once the table is complete.
     ///
     /// # Errors
     /// [`SweepError::Journal`]
@@ -268,7 +269,7 @@ fn frame(bytes: &[u8]) -> Vec<u8> {
     frame
 }
 
-/// The bytes of the next frame; none if it is not there in full or is not what was written.
+/// The bytes of the next frame; none if it is incomplete or damaged.
 fn read_frame(reader: &mut impl Read) -> io::Result<Option<Vec<u8>>> {
     let mut head = Vec::new();
     reader.by_ref().take(FRAME).read_to_end(&mut head)?;

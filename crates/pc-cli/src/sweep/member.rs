@@ -15,7 +15,7 @@ use crate::motion::interrupt;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
 
-/// What all members have in common.
+/// What all members share.
 pub(crate) struct Members {
     model: Model,
     design: Design,
@@ -28,15 +28,16 @@ pub(crate) struct Members {
     /// Number of columns of a motion, `t` first.
     columns: usize,
     prototype: Option<Prototype>,
-    /// How many came to their end beside others.
+    /// How many were completed beside others, in vectors.
     beside: AtomicU64,
 }
 
-/// A member before its motion: its equations with what is known of it, or its record; none if time was over.
+/// A member before its motion: its equations and the beginning of its record, or the record of an
+/// error; none if the time limit was reached.
 type Begun = Result<Box<(Flow, Record)>, Option<Record>>;
 
 impl Members {
-    /// `rows`: whether all rows of the plan are wanted instead of the last.
+    /// `rows` says whether all rows of the plan are wanted instead of the last.
     pub(crate) fn new(
         model: Model,
         design: Design,
@@ -51,7 +52,7 @@ impl Members {
         Members { model, design, form, t_start, times, options, all_rows: rows, columns, prototype, beside }
     }
 
-    /// What is known of a member before its motion and, if it can be integrated beside others, its field and its start.
+    /// A member before its motion and, if it can be integrated beside others, its field and start.
     pub(crate) fn begin(&self, member: u64) -> (Begun, Option<(LaneField, Vec<f64>)>) {
         let values = self.design.values(member);
         let blank = Record {
@@ -63,7 +64,7 @@ impl Members {
             rows: vec![f64::NAN; self.width()],
         };
         let mut model = self.design.model(&self.model, &blank.values);
-        // Memory is each member's own, time that of all.
+        // The memory limit holds for each member, the time limit for all together.
         model.within(self.model.budget().beside());
         match self.flow(&model) {
             Ok(mut flow) => {
@@ -77,7 +78,7 @@ impl Members {
         }
     }
 
-    /// The record of a member that came to its end beside others.
+    /// The record of a member that was completed beside others.
     pub(crate) fn completed(&self, begun: Begun, trajectory: &Trajectory) -> Option<Record> {
         let (mut flow, blank) = *begun.ok()?;
         self.beside.fetch_add(1, Ordering::Relaxed);
@@ -89,7 +90,7 @@ impl Members {
         })
     }
 
-    /// Integrates a member; none if it was stopped on its way, or time was over.
+    /// Integrates a member; none if it was stopped, or the time limit was reached.
     pub(crate) fn integrate(&self, begun: Begun, stop: &Stop<'_>) -> Option<Record> {
         let (mut flow, blank) = match begun {
             Ok(begun) => *begun,
@@ -125,23 +126,23 @@ impl Members {
         })
     }
 
-    /// How many members came to their end beside others.
+    /// How many members were completed beside others.
     pub(crate) fn beside(&self) -> u64 {
         self.beside.load(Ordering::Relaxed)
     }
 
-    /// Start, output times and options of all.
+    /// Start, output times and options of all members.
     pub(crate) fn span(&self) -> (f64, &[f64], &Options) {
         (self.t_start, &self.times, &self.options)
     }
 
-    /// What is kept of a member whose computation panicked.
+    /// The record of a member whose computation panicked.
     pub(crate) fn panicked(&self, member: u64, message: &str) -> Record {
         let (values, rows) = (self.design.values(member), vec![f64::NAN; self.width()]);
         Record { member, status: Status::Panicked, steps: 0, message: line(message), values, rows }
     }
 
-    /// Numbers in a row: the columns of a motion, and the drifts beside the last one.
+    /// Numbers in a row: the columns of a motion, and the drifts if only the last row is wanted.
     fn width(&self) -> usize {
         self.columns + if self.all_rows { 0 } else { self.model.document().integrals.len() + 1 }
     }
@@ -154,7 +155,8 @@ impl Members {
         Flow::new(model, &model.assemble(&graph)?, self.form.into())
     }
 
-    /// All rows, or the last one with the drifts; what was `reached` is one more.
+    /// All rows, or the last one with the drifts; the state `reached` by a failed motion is one
+    /// more row.
     fn rows(&self, flow: &mut Flow, trajectory: &Trajectory, reached: Option<(f64, &[f64])>) -> Vec<f64> {
         let table = Table::new(flow, trajectory);
         let last = reached.map(|(t, y)| std::iter::once(t).chain(flow.row(t, y)).collect::<Vec<f64>>());
@@ -167,7 +169,7 @@ impl Members {
     }
 }
 
-/// max |I(t) − I(t_start)| of column `j`, with one row more.
+/// max |I(t) − I(t_start)| of column `j`, including one more row.
 fn drift(table: &Table, more: Option<&[f64]>, j: usize) -> f64 {
     let drift = table.drift(j).absolute;
     match (table.rows().next(), more) {

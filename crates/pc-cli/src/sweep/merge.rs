@@ -14,7 +14,7 @@ use crate::sweep::shards::Shards;
 /// Runs `pc merge`.
 ///
 /// # Errors
-/// [`CliError`]; nothing is written unless all shards are there and complete.
+/// [`CliError`]; nothing is written unless all shards are given and complete.
 pub fn command(arguments: &MergeArguments) -> Result<(), CliError> {
     let destination = Destination::new(&arguments.output)?;
     let picture = output::destination::Destination::plot(arguments.plot.as_deref())?;

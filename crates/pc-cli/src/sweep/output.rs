@@ -1,4 +1,5 @@
-//! The table of a sweep as a file, made from its journal in memory that does not grow with the number of members.
+//! The table of a sweep as a file, made from its journal with memory independent of the number of
+//! members.
 //!
 //! A journal and the sheet of its rows become a file. `csv`, `json`, `npz` and `parquet` are the formats,
 //! `destination` chooses one.

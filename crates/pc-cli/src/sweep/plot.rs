@@ -1,4 +1,5 @@
-//! The picture of a sweep: over one parameter curves, over two a colour for each pair, of drawn members how often what occurs.
+//! The picture of a sweep: curves over one parameter, a colour for each pair over two, histograms
+//! of random members.
 
 use std::io;
 
@@ -10,15 +11,16 @@ use crate::sweep::plot_error::{MOST_CELLS, SweepPlotError};
 use crate::sweep::record::Status;
 use crate::sweep::sheet::Sheet;
 
-/// Panels of columns that nobody chose.
+/// Most panels unless columns are chosen.
 const MOST_PANELS: usize = 8;
-/// Curves of members over time.
+/// Most curves of members over time.
 const MOST_MEMBERS: usize = 8;
-/// Parts of the members that have no larger value, as they are called.
+/// The quantiles that are shown, with their names.
 const QUANTILES: [(f64, &str); 5] =
     [(0.05, "5 %"), (0.25, "25 %"), (0.5, "median"), (0.75, "75 %"), (0.95, "95 %")];
 
-/// That a picture can be made of a sweep in which each of the varied has so many values, before it is computed.
+/// An error, before anything is computed, unless a sweep in which the varied quantities have
+/// `counts` values can be drawn.
 ///
 /// # Errors
 /// [`SweepPlotError`]
@@ -42,7 +44,8 @@ pub(crate) fn check(
     }
 }
 
-/// The places of the chosen columns among those of the motion; all but time where none is.
+/// The places of the chosen columns among those of the motion; all but time and drifts if none is
+/// chosen.
 fn chosen(sheet: &Sheet, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError> {
     let names = sheet.motion_names();
     if wanted.is_empty() {
@@ -58,7 +61,7 @@ fn chosen(sheet: &Sheet, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError
     wanted.iter().map(place).collect()
 }
 
-/// A member that ended as it should, in the chosen columns.
+/// A member that was completed or ended by an event, in the chosen columns.
 struct Member {
     values: Vec<f64>,
     /// Time, then the columns, of each row.
@@ -74,7 +77,7 @@ impl Member {
 /// The picture of finished members.
 ///
 /// # Errors
-/// [`SweepPlotError`], and what the system says of the members.
+/// [`SweepPlotError`], and errors of reading the members.
 pub(crate) fn picture(
     title: &str,
     sheet: &Sheet,
@@ -140,7 +143,7 @@ pub(crate) fn picture(
     Ok(Ok(Picture { title: title.to_owned(), remarks, panels }))
 }
 
-/// Of columns that nobody chose the first few that are not the same in all members.
+/// Unless columns are chosen, the first few that are not the same in all members.
 fn interesting(finished: &mut [Member], places: &[usize], remarks: &mut Vec<String>) -> Vec<usize> {
     let differs = |k: usize| {
         let mut all = finished.iter().flat_map(|member| member.rows.iter().map(move |row| row[1 + k]));
@@ -163,7 +166,7 @@ fn interesting(finished: &mut [Member], places: &[usize], remarks: &mut Vec<Stri
     kept.into_iter().map(|k| places[k]).collect()
 }
 
-/// The different values of what is varied, in order.
+/// The different values of a varied quantity, in order.
 fn values(finished: &[Member], j: usize) -> Vec<f64> {
     let mut values: Vec<f64> = finished.iter().map(|member| member.values[j]).collect();
     values.sort_by(f64::total_cmp);
@@ -171,7 +174,7 @@ fn values(finished: &[Member], j: usize) -> Vec<f64> {
     values
 }
 
-/// Logarithms where each value is as many times the one before, else as it is.
+/// A logarithmic scale where the ratio of successive values is constant, else a linear one.
 fn scale_of(values: &[f64]) -> Scale {
     let ratios: Vec<f64> = values.windows(2).map(|pair| pair[1] / pair[0]).collect();
     let even = |ratio: &f64| (ratio - ratios[0]).abs() < 1e-6 * ratios[0];
@@ -184,7 +187,7 @@ fn placed(value: f64, scale: Scale) -> f64 {
     if scale == Scale::Decades { value.log10() } else { value }
 }
 
-/// Curves over what is varied.
+/// Curves over a varied quantity.
 fn curves(finished: &[Member], j: usize, varied: &str, names: &[String]) -> Vec<Panel> {
     let scale = scale_of(&values(finished, j));
     let curve = |(k, name): (usize, &String)| {
@@ -201,14 +204,14 @@ fn curves(finished: &[Member], j: usize, varied: &str, names: &[String]) -> Vec<
         .collect()
 }
 
-/// From the first point of a curve to the last, if these are two.
+/// The range of a curve, if its first and last points differ.
 fn span(curve: Option<&Curve>) -> Option<(f64, f64)> {
     let points = &curve?.points;
     let (first, last) = (points.first()?.0, points.last()?.0);
     (first != last).then_some((first.min(last), first.max(last)))
 }
 
-/// A column over time, a curve for a member; of many some, evenly chosen.
+/// A column over time, a curve for each member, or for some evenly chosen ones of many.
 fn paths(finished: &[Member], k: usize, name: &str, label: &dyn Fn(&Member) -> String) -> Panel {
     let count = finished.len().min(MOST_MEMBERS);
     let last = finished.len().saturating_sub(1);
@@ -242,7 +245,7 @@ fn cells(finished: &[Member], [(a, x), (b, y)]: [(usize, &str); 2], k: usize, na
     }
 }
 
-/// How many members have which value, with the quantiles.
+/// The histogram of a column, with quantiles.
 fn histogram(finished: &[Member], k: usize, name: &str) -> Panel {
     let mut values: Vec<f64> =
         finished.iter().map(|member| member.last(k)).filter(|v| v.is_finite()).collect();
@@ -263,7 +266,8 @@ fn histogram(finished: &[Member], k: usize, name: &str) -> Panel {
     }
 }
 
-/// Bars of equal width, 2 r n^(−1/3) where that is reasonable, r from the first quartile to the third [Freedman, Diaconis 1981].
+/// Bars of equal width, 2 r n^(−1/3) where that is reasonable, with the interquartile range r
+/// [Freedman, Diaconis 1981].
 fn bars(sorted: &[f64]) -> Vec<[f64; 3]> {
     let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else { return Vec::new() };
     if low == high {
@@ -290,7 +294,7 @@ fn bands(finished: &[Member], k: usize, name: &str) -> Panel {
     let mut curves: Vec<Curve> =
         QUANTILES.iter().map(|(_, label)| Curve { name: (*label).to_owned(), points: Vec::new() }).collect();
     for (i, &t) in times.iter().enumerate() {
-        // A member that an event ended has a row at another time.
+        // A member ended by an event has a last row at another time.
         let here = finished.iter().filter_map(|member| member.rows.get(i)).filter(|row| row[0] == t);
         let mut values: Vec<f64> = here.map(|row| row[1 + k]).filter(|v| v.is_finite()).collect();
         values.sort_by(f64::total_cmp);
@@ -302,7 +306,7 @@ fn bands(finished: &[Member], k: usize, name: &str) -> Panel {
     Panel { span, ..Panel::over("t", name, Scale::Linear, curves) }
 }
 
-/// The value that a part of sorted ones does not exceed, between two of them as far as it is between their places.
+/// The quantile of sorted values, by linear interpolation between two of them.
 fn quantile(sorted: &[f64], part: f64) -> Option<f64> {
     let place = part * (sorted.len().checked_sub(1)?) as f64;
     let (below, rest) = (place.floor() as usize, place.fract());

@@ -1,20 +1,20 @@
 //! Why a sweep cannot be drawn.
 
-/// Colours of a panel: more are more than a picture has points.
+/// Most cells of a panel: a picture has no more points.
 pub(super) const MOST_CELLS: u64 = 250_000;
 
 /// Why a sweep cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SweepPlotError {
-    /// More is varied than can be drawn.
+    /// More quantities are varied than can be drawn.
     #[error(
         "{varied} values are varied; of a grid over one or two values, or of drawn members, a picture can be made"
     )]
     Varied {
-        /// How many values have more than one value.
+        /// How many quantities have more than one value.
         varied: usize,
     },
-    /// More members than there is room for colours.
+    /// More members than cells of different colour.
     #[error(
         "{members} members are more than the {MOST_CELLS} colours that can be told apart; give fewer values"
     )]
@@ -22,12 +22,12 @@ pub enum SweepPlotError {
         /// How many there are.
         members: u64,
     },
-    /// A column that is not there.
+    /// A column that does not exist.
     #[error("there is no column `{name}`; the columns are {}", known.join(", "))]
     UnknownColumn {
-        /// The name asked for.
+        /// The requested name.
         name: String,
-        /// Those there are.
+        /// The existing columns.
         known: Vec<String>,
     },
 }

@@ -4,13 +4,13 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A sweep that takes no longer needs no bar.
+/// A shorter sweep needs no bar.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Shows how many members are finished, on standard error if that is a terminal.
 pub(super) struct Progress {
     start: Instant,
-    /// Finished before.
+    /// Members finished by an earlier run.
     from: u64,
     members: u64,
     bar: Option<ProgressBar>,
@@ -21,7 +21,7 @@ impl Progress {
         Progress { start: Instant::now(), from, members, bar: None }
     }
 
-    /// Notes that so many members are finished.
+    /// Notes that `done` members are finished.
     pub(super) fn at(&mut self, done: u64) {
         let elapsed = self.start.elapsed();
         if elapsed < PATIENCE {

@@ -5,7 +5,7 @@
 pub(crate) enum Status {
     /// At its end.
     Completed,
-    /// Its integration failed on the way.
+    /// Its integration failed.
     Failed,
     /// It could not start.
     Refused,
@@ -42,7 +42,7 @@ pub(crate) struct Record {
     pub(crate) steps: u64,
     /// Why it was not completed, or which event ended it; else empty.
     pub(crate) message: String,
-    /// What was varied.
+    /// The values of the varied quantities.
     pub(crate) values: Vec<f64>,
     /// Rows, one after the other.
     pub(crate) rows: Vec<f64>,
@@ -65,7 +65,7 @@ impl Record {
         bytes
     }
 
-    /// The record that these bytes are.
+    /// The record from its bytes.
     pub(crate) fn from_bytes(mut bytes: &[u8]) -> Option<Record> {
         let bytes = &mut bytes;
         let record = Record {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Every so many-th member from one on: members of like cost are often neighbours.
+/// Every `of`-th member, since neighbours often cost the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     /// Its number, from 1.
@@ -32,12 +32,12 @@ impl Shard {
         self.number - 1 + place * self.of
     }
 
-    /// How many of so many members are its own.
+    /// How many of `all` members it has.
     pub(crate) fn members(self, all: u64) -> u64 {
         (all + self.of - self.number) / self.of
     }
 
-    /// Where its members are kept, beside the table of all.
+    /// The path of its journal, beside the table of the whole sweep.
     pub(crate) fn beside(self, table: &Path) -> PathBuf {
         let mut name = table.as_os_str().to_owned();
         name.push(format!(".shard-{}-of-{}", self.number, self.of));

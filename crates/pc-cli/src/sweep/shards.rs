@@ -9,14 +9,14 @@ use crate::sweep::journal::{Journal, Records, Tally};
 use crate::sweep::shard::Shard;
 use crate::sweep::sheet::Sheet;
 
-/// Names of what the header of a shard says, beside what all motions depend on.
+/// Names of the entries in the header of a shard, in addition to those of any sweep.
 const SHARD: &str = "--shard";
 const MEMBERS: &str = "the number of members:";
 const TITLE: &str = "the title";
 const SHEET: &str = "the columns";
 const RANDOM: &str = "--random";
 
-/// What a shard says of itself, so that no model is needed to put shards together.
+/// The header of a shard, so that shards can be merged without the model.
 pub(crate) fn described(
     mut header: Identity,
     shard: Shard,
@@ -51,7 +51,7 @@ impl Shards {
     /// Opens the shards in these files, in any order.
     ///
     /// # Errors
-    /// [`SweepError`] if one is missing, there twice, not complete, or of another sweep.
+    /// [`SweepError`] if one is missing, given twice, incomplete, or of another sweep.
     pub(crate) fn open(paths: &[PathBuf]) -> Result<Shards, SweepError> {
         let mut first: Option<(Identity, PathBuf)> = None;
         let mut found: Vec<(Shard, Journal)> = Vec::new();
@@ -108,7 +108,7 @@ impl Shards {
         })
     }
 
-    /// How many members have ended how.
+    /// The numbers of members by how they ended.
     pub(crate) fn tally(&self) -> Tally {
         Tally::sum(self.journals.iter().map(Journal::tally))
     }

@@ -6,7 +6,7 @@ use serde_json::json;
 use super::design::Design;
 use super::record::Record;
 
-/// What stands in a column.
+/// The kind of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Integer,
@@ -28,16 +28,17 @@ pub(crate) struct Sheet {
     columns: Vec<(String, Kind)>,
     /// How many values are varied.
     varied: usize,
-    /// Numbers in a row that are of the motion.
+    /// Numbers of the motion in a row.
     width: usize,
 }
 
 impl Sheet {
-    /// Number of the member, what is varied, how it ended, then `motion`, steps and message.
+    /// Number of the member, varied quantities, status, then `motion`, steps and message.
     pub(crate) fn new(design: &Design, motion: &[String]) -> Sheet {
         let numbers = |names: &[String]| names.iter().map(|name| (name.clone(), Kind::Number)).collect();
         let (varied, shown): (Vec<_>, Vec<_>) = (numbers(&design.names()), numbers(motion));
-        // What is varied and shown is the same, as a parameter that is an integral would be: names are of one space.
+        // Varied quantities and columns of the motion share one namespace in the model, so they
+        // need no new names.
         let taken: Vec<String> = varied.iter().chain(&shown).map(|(name, _)| name.clone()).collect();
         let free = |name: &str, kind| {
             let mut name = name.to_owned();
@@ -63,7 +64,7 @@ impl Sheet {
         json!([self.varied, self.width, columns]).to_string()
     }
 
-    /// The sheet of a text.
+    /// The sheet from its text.
     pub(crate) fn from_text(text: &str) -> Option<Sheet> {
         let (varied, width, columns): (usize, usize, Vec<(String, u8)>) = serde_json::from_str(text).ok()?;
         let kind = |kind| match kind {
@@ -73,7 +74,7 @@ impl Sheet {
             _ => None,
         };
         let columns: Option<Vec<_>> = columns.into_iter().map(|(name, k)| Some((name, kind(k)?))).collect();
-        // member, what is varied, status, the motion, steps and message
+        // member, varied quantities, status, the motion, steps and message
         columns.filter(|all| all.len() == varied + width + 4 && width > 0).map(|columns| Sheet {
             columns,
             varied,
@@ -81,7 +82,7 @@ impl Sheet {
         })
     }
 
-    /// Names of what is varied.
+    /// Names of the varied quantities.
     pub(crate) fn varied(&self) -> impl Iterator<Item = &str> {
         self.columns[1..=self.varied].iter().map(|(name, _)| name.as_str())
     }
@@ -92,8 +93,8 @@ impl Sheet {
         self.columns[from..from + self.width].iter().map(|(name, _)| name.as_str()).collect()
     }
 
-    /// The columns of a motion of a model: those of `pc run`, with the drifts of what should be constant if these are
-    /// wanted.
+    /// The columns of a motion of a model: those of `pc run`, with the drifts of the integrals and
+    /// the energy if wanted.
     pub(crate) fn motion(model: &Model, drifts: bool) -> Vec<String> {
         let document = model.document();
         let named = |list: &[pc_model::document::NamedExpression]| {

@@ -1,4 +1,4 @@
-// Before all else on a page: whatever goes wrong is written down.
+// First on the page: records all errors.
 window.wrong = [];
 window.addEventListener("error", function (e) { window.wrong.push("error: " + (e.message || e.target)); }, true);
 window.addEventListener("unhandledrejection", function (e) { window.wrong.push("rejection: " + e.reason); });

@@ -1,11 +1,11 @@
-// After all else: what the page looks like here is told to the page around it.
+// Last on the page: reports the layout to the surrounding page.
 window.addEventListener("load", function () {
   function box(element) { return element.getBoundingClientRect(); }
   function look() {
     document.querySelectorAll("details").forEach(function (d) { d.open = true; });
     var root = document.documentElement, maths = Array.from(document.querySelectorAll("math"));
     var flat = maths.filter(function (m) { return !(box(m).width > 2 && box(m).height > 2); });
-    // What is taller than a page is lost on paper.
+    // A formula taller than a page would be cut off in print.
     var tall = maths.filter(function (m) { return box(m).height > 900; });
     // A browser that does not know the elements writes their text on one line.
     var fractions = Array.from(document.querySelectorAll("mfrac"));

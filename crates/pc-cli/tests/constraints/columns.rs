@@ -18,7 +18,7 @@ fn all_declared_quasi_velocities_are_columns() {
     }
 }
 
-/// In momenta of the velocities left free the others are columns all the same.
+/// The state has only momenta of the free velocities, but all quasi-velocities are columns.
 #[test]
 fn the_canonical_form_has_the_same_columns() {
     for model in [SLEIGH, SLIP, SPHERE] {
@@ -26,14 +26,15 @@ fn the_canonical_form_has_the_same_columns() {
         assert_eq!(usual.0, canonical.0);
         agree(&usual, &canonical, 1e-6);
     }
-    // All momenta are components of the state, so that nothing is chosen and the constraints are kept.
+    // All momenta are components of the state, so no velocities are chosen and the constraints are
+    // kept.
     let text = stderr(&pc(SPHERE, &["run", "-", "--form", "canonical"]));
     assert!(!text.contains("note:"), "{text}");
     assert!(text.contains("\n  held     length  to "), "{text}");
 }
 
-/// On a belt that moves, ẏ = V + x, the energy of all velocities grows by the work of the belt; it is the same column
-/// whatever is integrated, ½ (1 + (V + x)²) with x = t.
+/// On a moving belt, ẏ = V + x, the energy in all velocities grows by the work of the belt; every
+/// form gives the same column, ½ (1 + (V + x)²) with x = t.
 #[test]
 fn the_energy_is_that_of_all_velocities_in_every_form() {
     let belt = "[coordinates]\nx = 0.0\ny = 0.0\n[quasi_velocities]\n\"x'\" = 1.0\n\"y'\" = 2.0\n[constraints]\n\
@@ -50,7 +51,7 @@ fn the_energy_is_that_of_all_velocities_in_every_form() {
     assert!(derived.contains("only along the constraints, which are not integrable"), "{derived}");
 }
 
-/// λ = v ω (m − m² a²/(m a² + J)) of the blade along the motion.
+/// The reaction of the blade along the motion is λ = v ω (m − m² a²/(m a² + J)).
 #[test]
 fn reactions_are_columns_on_request() {
     let (names, rows) = run(SLEIGH, &["--outputs", "reactions"]);

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::{SLEIGH, SLIP, SPHERE, agree, json_of, pc, run, stderr, stdout, table};
 
-/// Each form of each model: text that names the constraint, LaTeX that does, and JSON that has it.
+/// For each form of each model, text, LaTeX and JSON contain the constraint.
 #[test]
 fn all_forms_are_printed() {
     let sleigh_line = "Constraints\n  blade: y' cos(phi) - x' sin(phi) = 0   (nonholonomic)\n";
@@ -52,7 +52,7 @@ fn all_forms_are_printed() {
     assert_eq!(reactions, expected);
 }
 
-/// Emitted C, compiled and run on its own: where a quasi-velocity vanishes, and in chosen velocities.
+/// Emitted C is compiled and run: where a quasi-velocity vanishes, and in chosen velocities.
 #[test]
 fn emitted_source_has_the_same_motion() {
     let directory = tempfile::tempdir().expect("a directory");
@@ -60,7 +60,7 @@ fn emitted_source_has_the_same_motion() {
     for (name, text, state) in [("slip", SLIP, 5), ("sphere", SPHERE, 5)] {
         std::fs::write(path(&format!("{name}.toml")), text).expect("written");
         let (file, directory) = (path(&format!("{name}.toml")), path(""));
-        // Shorter equations are those of y' and z', which the motion leads to where they are singular.
+        // The equations of y' and z' are shorter, but become singular along the motion.
         let choice: &[&str] = if name == "sphere" { &["--independent", "x',y'"] } else { &[] };
         let output = pc("", &[&["emit", &file, "--lang", "c", "-o", &directory], choice].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
@@ -84,13 +84,14 @@ fn emitted_source_has_the_same_motion() {
             (0..columns.len()).filter(|&i| !["u", "z'", "area"].contains(&columns[i].as_str())).collect();
         let end = rows.last().expect("rows");
         for (found, &i) in last.iter().zip(&kept) {
-            // The main of the source has fixed steps of Runge and Kutta, errors of which are below 10⁻⁶.
+            // The main of the source uses Runge–Kutta steps of fixed length, with errors below
+            // 10⁻⁶.
             assert!((found - end[i]).abs() < 1e-6, "{name} {}: {found} {}\n{printed}", columns[i], end[i]);
         }
     }
 }
 
-/// Appell's and Hamel's machine: its forms, and which there are not.
+/// Appell's and Hamel's machine: its forms, and those that it lacks.
 #[test]
 fn a_nonlinear_constraint_has_the_forms_with_multipliers() {
     let text = stdout(&pc("", &["derive", "appell-hamel"]));
@@ -138,8 +139,8 @@ fn a_nonlinear_constraint_has_the_forms_with_multipliers() {
     assert!(stderr(&output).starts_with(note), "{}", stderr(&output));
 }
 
-/// Outputs that contain reactions, also forces on bodies: of constraints on positions, of a rolling disk held by
-/// multipliers, and of quasi-velocities that vanish.
+/// Outputs that contain reactions, also as forces on bodies: of constraints on positions, of a
+/// skate held by multipliers, and of quasi-velocities that vanish.
 const WITH_REACTIONS: [(&str, &str); 3] = [
     (
         "pendulum",
@@ -163,7 +164,8 @@ const WITH_REACTIONS: [(&str, &str); 3] = [
     ),
 ];
 
-/// Emitted source has the reactions put in as functions of the state: at the states of a run it gives the numbers of the run.
+/// In emitted source, reactions are functions of the state: at the states of a run it gives the
+/// numbers of the run.
 #[test]
 fn emitted_outputs_have_the_reactions_put_in() {
     let directory = tempfile::tempdir().expect("a directory");

@@ -1,4 +1,4 @@
-//! Models with `[constraints]` as the program treats them.
+//! The program on models with `[constraints]`.
 
 mod columns;
 mod forms;
@@ -34,7 +34,7 @@ t_end = 3.0
 samples = 4
 "#;
 
-/// The same in a frame that has the lateral velocity u, in the middle.
+/// The same in a frame with the lateral velocity u as the second of three.
 pub(crate) const SLIP: &str = r#"
 [coordinates]
 x = 0.0
@@ -124,8 +124,8 @@ pub(crate) fn json_of(model: &str, arguments: &[&str]) -> Value {
     serde_json::from_str(&stdout(&pc(model, arguments))).expect("JSON")
 }
 
-/// The columns of one table that the other has too, side by side; errors of two integrations with the usual
-/// tolerance 10⁻⁹ differ by some hundred of it after some seconds.
+/// Compares the columns that both tables have; after some seconds, two integrations with the usual
+/// tolerance 10⁻⁹ differ by a few hundred times this.
 #[track_caller]
 pub(crate) fn agree(
     one: &(Vec<String>, Vec<Vec<f64>>),

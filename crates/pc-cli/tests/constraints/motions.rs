@@ -1,4 +1,4 @@
-//! Motions that constraints hold.
+//! Motions on constraints.
 
 use crate::{agree, pc, run};
 
@@ -20,13 +20,13 @@ fn chain(links: usize) -> String {
     )
 }
 
-/// Thirty links in Cartesian coordinates; whatever the time it takes, the links stay long and the energy stays.
+/// Thirty links in Cartesian coordinates keep their lengths and their energy.
 #[test]
 fn a_long_chain_keeps_its_constraints() {
     let (columns, rows) = run(&chain(30), &[]);
     assert_eq!(columns.len(), 1 + 4 * 30 + 1);
     let energy = |row: &Vec<f64>| *row.last().expect("an energy");
-    // −9.8 · 0.8 · Σ i at the start; 10⁻⁹ of the sizes of its parts a step, some hundred steps.
+    // −9.8 · 0.8 · Σ i at the start; errors of 10⁻⁹ of its terms in each of a few hundred steps.
     assert!((energy(&rows[2]) - energy(&rows[0])).abs() < 1e-7 * energy(&rows[0]).abs(), "{rows:?}");
     let end = &rows[2];
     for i in 1..30 {
@@ -38,7 +38,7 @@ fn a_long_chain_keeps_its_constraints() {
 }
 
 /// A bead on a circle with L = −√(1 − v²) − y: M depends on the velocities, in the equations and in the metric of the
-/// projection. By the angle the same is one equation.
+/// projection. In the angle, the same motion has one equation.
 #[test]
 fn a_fast_bead_moves_as_in_its_angle() {
     let cartesian = "[coordinates]\nx = 0.6\ny = -0.8\n[quasi_velocities]\n\"x'\" = 0.64\n\"y'\" = 0.48\n[constraints]\n\
@@ -48,11 +48,12 @@ fn a_fast_bead_moves_as_in_its_angle() {
                     lagrangian = \"-sqrt(1 - q'^2) - 0.4*sin(q)\"\n[outputs]\nx = \"cos(q)\"\ny = \"sin(q)\"\n\
                     [simulation]\nt_end = 5.0\nsamples = 6\n";
     let exact = ["--rtol", "1e-12", "--atol", "1e-14"];
-    // Some hundred steps of 10⁻¹² each, and what a pendulum makes of them.
+    // A few hundred steps with errors of 10⁻¹², amplified by the motion.
     agree(&run(cartesian, &exact), &run(by_angle, &exact), 1e-9);
 }
 
-/// A stiff damped spring at a pendulum bound by its length: BDF goes with the Jacobian as with difference quotients.
+/// A stiff damped spring at a pendulum held by its length: BDF with the Jacobian does as well as
+/// with difference quotients.
 #[test]
 fn the_jacobian_of_held_motions_serves_bdf() {
     use pc_mech::{CompileOptions, Graph};
@@ -81,7 +82,8 @@ fn the_jacobian_of_held_motions_serves_bdf() {
     }
     let [with, without] = [with.1, without.1];
     assert!(with.jacobian_evaluations > 0, "{with:?}");
-    // An explicit method would take some 10⁴ steps a second; Newton's method would fail where the Jacobian is wrong.
+    // An explicit method would take about 10⁴ steps per second; Newton's method would fail with a
+    // wrong Jacobian.
     assert!(with.steps < 2000 && 2 * with.steps < 3 * without.steps, "{with:?} {without:?}");
     assert!(with.nonlinear_iterations < 2 * with.steps && with.nonlinear_failures < 10, "{with:?}");
 }

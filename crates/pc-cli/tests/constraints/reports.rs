@@ -1,4 +1,4 @@
-//! What the program reports of constraints and refuses.
+//! Reports and refusals of constraints.
 
 use serde_json::json;
 
@@ -24,13 +24,13 @@ fn a_start_is_moved_on_request() {
         assert_eq!(pc(&off, &[command, "-"]).status.code(), Some(4));
         assert_eq!(pc(&off, &[command, "-", "--project-start"]).status.code(), Some(0));
     }
-    // Parameters move constraint and start together where the text says so.
+    // A parameter moves constraint and start together if both contain it.
     assert_eq!(pc(SPHERE, &["check", "-", "--set", "l=2"]).status.code(), Some(4), "x is a number");
     let together = SPHERE.replace("x = 0.6", "x = \"0.6*l\"");
     assert_eq!(pc(&together, &["check", "-", "--set", "l=2"]).status.code(), Some(0));
 }
 
-/// The edge of the cusp y² = x³ at the origin: no motion goes on from there.
+/// The cusp of y² = x³ at the origin: no motion continues from there.
 #[test]
 fn a_singular_place_on_the_way_ends_the_run() {
     let cusp = "[coordinates]\nx = 1.0\ny = 1.0\n[quasi_velocities]\n\"x'\" = -2.0\n\"y'\" = -3.0\n[constraints]\n\
@@ -38,11 +38,12 @@ fn a_singular_place_on_the_way_ends_the_run() {
     let output = pc(cusp, &["run", "-"]);
     let text = stderr(&output);
     assert_eq!(output.status.code(), Some(5), "{text}");
-    // The length of y² = x³ from (1, 1) to the edge is (13√13 − 8)/27, the speed is √13.
+    // The length of y² = x³ from (1, 1) to the cusp is (13√13 − 8)/27, the speed is √13.
     let arrival = (13.0 * 13f64.sqrt() - 8.0) / 27.0 / 13f64.sqrt();
     let said = text.split("the integration failed at t = ").nth(1).and_then(|rest| rest.split(',').next());
     let t: f64 = said.expect("a time").parse().expect("a number");
-    // Near the edge x ~ (t_1 − t)^1, y ~ x^(3/2): a step of the square root of the tolerance is lost there.
+    // Near the cusp x ~ t_1 − t and y ~ x^(3/2): a step of the square root of the tolerance is lost
+    // there.
     assert!((t - arrival).abs() < 1e-4, "{t} {arrival}");
     assert!(text.contains("`edge`"), "the constraint is named: {text}");
     let (_, rows) = table(&String::from_utf8(output.stdout).expect("UTF-8"));
@@ -139,7 +140,7 @@ fn a_mass_of_the_wrong_sign_is_reported() {
     assert_eq!(output.status.code(), Some(0), "a note is no error");
     assert!(stderr(&output).starts_with(&format!("note: {words}\n")), "{}", stderr(&output));
     assert!(!stdout(&pc(SPHERE, &["check", "-"])).contains("wrong sign"));
-    // What the constraint forbids does not count.
+    // A negative mass in a direction that the constraint forbids does not count.
     let forbidden = "[coordinates]\nx = 0.0\ny = 0.0\n[constraints]\nwall = \"y\"\n[lagrangian]\n\
                      kinetic = \"(x'^2 - y'^2)/2\"\n[simulation]\nt_end = 1.0\n";
     assert!(!stderr(&pc(forbidden, &["run", "-"])).contains("wrong sign"));

@@ -12,11 +12,11 @@ pub(crate) struct Motion {
     /// Names of the columns, `t` first.
     pub(crate) columns: Vec<String>,
     pub(crate) rows: Vec<Vec<f64>>,
-    /// What occurred, and when.
+    /// Events with their times.
     pub(crate) events: Vec<(String, f64)>,
     /// How it ended, as the program calls it.
     pub(crate) ending: String,
-    /// How far the steps went; not beyond a terminal event.
+    /// The end of the last step, or of a terminal event.
     pub(crate) reached: f64,
     /// Steps, evaluations, Jacobians, rejected steps.
     pub(crate) work: [u64; 4],
@@ -31,7 +31,7 @@ pub(crate) struct Settings {
     pub(crate) bdf: bool,
 }
 
-/// What is asked of a model beside its text.
+/// Settings of a model in addition to its text.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Asked<'a> {
     pub(crate) canonical: bool,
@@ -43,7 +43,8 @@ pub(crate) struct Asked<'a> {
 /// Number of rows.
 const SAMPLES: usize = 13;
 
-/// `pc run MODEL`, with reactions and further arguments, and how it said to have done it.
+/// The motion of `pc run MODEL` with reactions and further arguments, and the settings that it
+/// reports.
 pub(crate) fn by_program(model: &str, asked: &Asked<'_>, further: &[&str]) -> (Motion, Settings) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("run.json");
@@ -60,7 +61,8 @@ pub(crate) fn by_program(model: &str, asked: &Asked<'_>, further: &[&str]) -> (M
     read(&fs::read_to_string(path).unwrap())
 }
 
-/// The file of a run. Its numbers are read by the standard library, which is exact; `serde_json` is so to the last bit but one.
+/// Reads the file of a run. The standard library parses its numbers exactly; `serde_json` may err
+/// in the last bit.
 fn read(text: &str) -> (Motion, Settings) {
     let file: Value = serde_json::from_str(text).unwrap();
     let number = |text: &str| text.parse().unwrap_or(f64::NAN);
@@ -92,7 +94,7 @@ fn read(text: &str) -> (Motion, Settings) {
     (motion, settings)
 }
 
-/// What a call refuses, with the message.
+/// The result of a call, with status and message of an error.
 fn call(function: impl FnOnce(*mut *mut pc_error) -> pc_status) -> Result<(), (pc_status, String)> {
     let mut error = ptr::null_mut();
     let status = function(&raw mut error);
@@ -186,7 +188,7 @@ impl System {
     }
 }
 
-/// A function that writes numbers which belong to a state.
+/// A function that writes numbers at a state.
 type At = unsafe extern "C" fn(
     *const pc_system,
     f64,
@@ -227,8 +229,8 @@ extern "C" fn note(
     0
 }
 
-/// The same motion by pc_solver_run, and the number of observables among its columns, the last ones. As in the program, the
-/// equations are not evaluated beyond the end.
+/// The same motion by pc_solver_run, and the number of observables, which are its last columns. As
+/// in the program, the equations are not evaluated beyond the end.
 pub(crate) fn by_library(model: &str, asked: &Asked<'_>, settings: &Settings) -> (Motion, usize) {
     let &Settings { t_start, t_end, rtol, atol, bdf } = settings;
     let method = if bdf { pc_method::PC_BDF } else { pc_method::PC_ADAMS };

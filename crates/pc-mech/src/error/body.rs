@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BodyError {
-    /// A rotation whose columns are not orthogonal, or not of one length.
+    /// A rotation whose columns are not orthogonal, or not of equal length.
     #[error(
         "the matrix of a body is not a rotation: its columns {} and {} are not orthogonal and of equal length; the defect is `{defect}`",
         columns.0, columns.1

@@ -41,7 +41,8 @@ pub enum ConstraintError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// A constraint that was left to follow from the others, which it does not everywhere.
+    /// A constraint that was dropped because it follows from the others, but does not do so
+    /// everywhere.
     #[error(
         "the constraint `{constraint}`, which followed from the others, no longer does at t = {t}{}",
         listed(state)
@@ -54,7 +55,7 @@ pub enum ConstraintError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// A constraint that is another one where the motion passes, so that velocities jump.
+    /// A constraint whose condition on velocities jumps along the motion, so that velocities do.
     #[error("the condition of `{constraint}` on velocities jumps at {}: velocities jump there", at(place))]
     Jumps {
         /// Its name.
@@ -70,7 +71,7 @@ pub enum ConstraintError {
         /// Why not.
         why: String,
     },
-    /// A state from which no way was found to where the constraints are satisfied.
+    /// No state near this one was found that satisfies the constraints.
     #[error(
         "no state that satisfies the constraints {} was found near t = {t}{}",
         quoted(constraints),

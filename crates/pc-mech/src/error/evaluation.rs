@@ -4,11 +4,11 @@ use pc_expr::readable;
 
 use crate::error::lists::listed;
 
-/// An error of the numbers of a motion.
+/// An error in the evaluation of a motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EvaluationError {
-    /// A pivot of the mass matrix vanished on the way.
+    /// A pivot of the mass matrix vanishes.
     #[error(
         "the mass matrix is singular: its pivot for `{quasi_velocity}` is {} at t = {t}{}",
         readable(*pivot),
@@ -49,13 +49,13 @@ pub enum EvaluationError {
     /// A motion whose equations are not one program, so that no Taylor series is known.
     #[error("Taylor's method needs equations that are solved in expressions: {because}")]
     NoSeries {
-        /// What they are instead.
+        /// Why its equations are not one.
         because: &'static str,
     },
-    /// A vector field that could not be evaluated for a reason of its own.
+    /// The failure of another vector field.
     #[error("{cause}")]
     NotEvaluated {
-        /// What it said.
+        /// Its message.
         cause: String,
     },
 }

@@ -11,7 +11,7 @@ pub enum ForceError {
     NotAQuasiVelocity {
         /// The name.
         name: String,
-        /// The quasi-velocities there are.
+        /// The quasi-velocities of the system.
         known: Vec<String>,
     },
     /// An external force for a system that has declared none.
@@ -53,7 +53,7 @@ pub enum ForceError {
         quasi_velocities: Vec<String>,
         /// Time.
         t: f64,
-        /// What it said.
+        /// Its message.
         cause: String,
     },
 }

@@ -9,9 +9,9 @@ pub enum IntegralError {
     /// An integral to be kept that the system does not have.
     #[error("`{name}` is not an integral of the system; there are {}", quoted(known))]
     Unknown {
-        /// The name asked for.
+        /// The requested name.
         name: String,
-        /// Those there are.
+        /// The integrals of the system.
         known: Vec<String>,
     },
     /// A function to be kept that is not an integral.

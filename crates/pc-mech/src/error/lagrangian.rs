@@ -6,7 +6,7 @@ use crate::error::lists::{approximately, at, quoted};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LagrangianError {
-    /// Neither a Lagrangian was given nor one that depends on the quasi-velocities.
+    /// There is no Lagrangian, or it does not depend on the quasi-velocities.
     #[error("the system has no Lagrangian")]
     Missing,
     /// ∂²L/∂η∂η is singular at almost all states.
@@ -19,10 +19,10 @@ pub enum LagrangianError {
         rank: usize,
         /// Number of quasi-velocities.
         size: usize,
-        /// The quasi-velocities in whose elimination no pivot was left.
+        /// The quasi-velocities for which elimination finds no pivot.
         quasi_velocities: Vec<String>,
     },
-    /// H(t, x, y) was asked for where y = ∂L/∂η is not linear in the quasi-velocities.
+    /// H(t, x, y) was requested where y = ∂L/∂η is not linear in the quasi-velocities.
     #[error(
         "the Hamiltonian as a function of the momenta needs a Lagrangian that is quadratic in the quasi-velocities; \
          this one is not in `{quasi_velocity}`"
@@ -31,7 +31,7 @@ pub enum LagrangianError {
         /// A quasi-velocity in which L is not quadratic.
         quasi_velocity: String,
     },
-    /// Lagrange's equations asked for in coordinates that are not independent.
+    /// Lagrange's equations were requested in coordinates that are not independent.
     #[error(
         "Lagrange's equations need independent coordinates; here {coordinates} coordinates move with \
          {quasi_velocities} quasi-velocities"

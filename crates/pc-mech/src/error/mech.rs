@@ -45,7 +45,7 @@ pub enum MechError {
     /// An error of a matrix.
     #[error(transparent)]
     Matrix(#[from] MatrixError),
-    /// An error of the numbers of a motion.
+    /// An error in the evaluation of a motion.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
     /// An error of the algebra.
@@ -57,13 +57,14 @@ pub enum MechError {
 }
 
 impl MechError {
-    /// Whether a closed H(t, x, y) was asked for where [none is found](LagrangianError::NotQuadratic).
+    /// Whether a closed H(t, x, y) was requested where [none is
+    /// found](LagrangianError::NotQuadratic).
     pub fn is_not_quadratic(&self) -> bool {
         matches!(self, MechError::Lagrangian(LagrangianError::NotQuadratic { .. }))
     }
 
-    /// Whether Lagrange's equations were asked for in coordinates that are not independent: there are not as many as
-    /// quasi-velocities, or their velocities do not follow from these.
+    /// Whether Lagrange's equations were requested in coordinates that are not independent: their
+    /// number is not that of the quasi-velocities, or their velocities do not follow from these.
     pub fn is_of_dependent_coordinates(&self) -> bool {
         matches!(
             self,
@@ -90,7 +91,7 @@ impl MechError {
 }
 
 impl From<Failure> for MechError {
-    /// What a [`Motion`](crate::Motion) failed with; of other vector fields their words.
+    /// The error of a [`Motion`](crate::Motion); of other vector fields, their message.
     fn from(failure: Failure) -> MechError {
         let own = failure.cause().downcast_ref::<MechError>();
         own.cloned().unwrap_or_else(|| EvaluationError::NotEvaluated { cause: failure.to_string() }.into())
@@ -112,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn failures_keep_their_error_or_their_words() {
+    fn failures_keep_their_error_or_their_message() {
         let own = MechError::from(ForceError::NoneDeclared);
         assert_eq!(MechError::from(Failure::fatal(own.clone())), own);
         let other = MechError::from(Failure::fatal(std::fmt::Error));

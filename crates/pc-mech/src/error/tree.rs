@@ -1,16 +1,16 @@
-//! What can be wrong with bodies joined by joints.
+//! Errors of bodies connected by joints.
 
 /// An error of a tree of bodies.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TreeError {
-    /// Two bodies of one name.
+    /// Two bodies with the same name.
     #[error("there are two bodies called `{body}`")]
     TwoBodies {
         /// Their name.
         body: String,
     },
-    /// A parent that there is not.
+    /// A parent that does not exist.
     #[error("the body `{body}` hangs on `{parent}`, which there is not")]
     NoParent {
         /// The body.
@@ -41,10 +41,10 @@ pub enum TreeError {
         what: &'static str,
         /// Number of names.
         found: usize,
-        /// What the joint has.
+        /// The number of those of the joint.
         expected: usize,
     },
-    /// A part of a body that moves.
+    /// A part of a body that is not constant.
     #[error("the {what} of `{body}` is constant; here it depends on `{symbol}`")]
     NotConstant {
         /// The body.

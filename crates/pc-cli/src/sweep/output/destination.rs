@@ -59,7 +59,7 @@ impl Destination {
     /// Writes the table.
     ///
     /// # Errors
-    /// [`CliError::Write`]; an existing file is then as it was.
+    /// [`CliError::Write`]; an existing file is then unchanged.
     pub(crate) fn write(&self, title: &str, sheet: &Sheet, members: &dyn Records) -> Result<(), CliError> {
         let written = self.place.write(|out| match self.encoding {
             Encoding::Csv => csv::write(sheet, members, out),

@@ -8,7 +8,7 @@ use crate::output::atomic::FileWriter;
 use crate::sweep::journal::Records;
 use crate::sweep::sheet::{Cell, Sheet};
 
-/// Numbers are as short as gives the same number back; what is not finite is null.
+/// Numbers have the fewest digits that reproduce them exactly; values that are not finite are null.
 pub(super) fn write(
     title: &str,
     sheet: &Sheet,

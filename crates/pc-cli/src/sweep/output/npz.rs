@@ -11,7 +11,7 @@ use crate::output::npz::entry;
 use crate::sweep::journal::Records;
 use crate::sweep::sheet::{Cell, Kind, Sheet};
 
-/// One array for each column, of `f64`, `u64` or text; the archive bears no date.
+/// One array for each column, of `f64`, `u64` or text; the archive has no date.
 pub(super) fn write(sheet: &Sheet, members: &dyn Records, out: &mut FileWriter<'_>) -> io::Result<()> {
     let (rows, lengths) = extent(sheet, members)?;
     let options = SimpleFileOptions::default()

@@ -14,7 +14,7 @@ use crate::output::atomic::FileWriter;
 use crate::sweep::journal::Records;
 use crate::sweep::sheet::{Cell, Kind, Sheet};
 
-/// Rows that are held in memory.
+/// Most rows in memory.
 const GROUP: usize = 65_536;
 
 /// A column of a group of rows.
@@ -75,7 +75,7 @@ impl Column {
             (Column::Integers(column), Cell::Integer(value)) => column.push(value.cast_signed()),
             (Column::Numbers(column), Cell::Number(value)) => column.push(value),
             (Column::Texts(column), Cell::Text(text)) => column.push(ByteArray::from(text)),
-            // A cell is of the kind of its column.
+            // A cell always has the kind of its column.
             _ => {}
         }
     }
