@@ -1,7 +1,7 @@
 //! The command line, and the model it names.
 //!
 //! In goes a command line, out come the arguments of a command, and a model. Read `options` first, the options of the
-//! commands with the `forms` of equations, with those of a `sweep`, of a page (`report`), of linearizations (`linear`), of a comparison
+//! commands with the `forms` of equations, with those of a `sweep`, of a page (`report`), of linearizations (`linear`, at the state that `steady` chooses), of a comparison
 //! (`compare`) and of measurements (`bench`), those of what is `drawn`, those for a `checkpoint`, `models` and other `tools` around
 //! models; `command_line` is all of them with their `examples`, and `input` turns MODEL into a model and its equations.
 
@@ -17,5 +17,6 @@ pub mod linear;
 pub mod models;
 pub mod options;
 pub mod report;
+pub mod steady;
 pub mod sweep;
 pub mod tools;
