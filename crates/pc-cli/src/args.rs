@@ -1,10 +1,9 @@
 //! The command line, and the model it names.
 //!
-//! In goes a command line, out come the arguments of a command, and a model. Read `options` first,
-//! the arguments shared by commands, with the `forms` of equations; then those of single commands:
-//! `sweep`, `report`, `linear`, `compare`, `bench`, `drawn` (pictures), `checkpoint`, `models` and
-//! other `tools`. `command_line` is all of them with their `examples`, and `input` turns MODEL into
-//! a model and its equations.
+//! In goes a command line, out come the arguments of a command, and a model. Read `options` first, the options of the
+//! commands with the `forms` of equations, with those of a `sweep`, of a page (`report`), of linearizations (`linear`, at the state that `steady` chooses), of a comparison
+//! (`compare`) and of measurements (`bench`), those of what is `drawn`, those for a `checkpoint`, `models` and other `tools` around
+//! models; `command_line` is all of them with their `examples`, and `input` turns MODEL into a model and its equations.
 
 pub mod bench;
 pub mod checkpoint;
@@ -18,5 +17,6 @@ pub mod linear;
 pub mod models;
 pub mod options;
 pub mod report;
+pub mod steady;
 pub mod sweep;
 pub mod tools;

@@ -2,11 +2,12 @@
 //!
 //! A model becomes a [`Check`](check::Check). `frame` describes its frame, `combinations` its constraints,
 //! `integrals` the conserved quantities, `measure` the invariant measure, `steady` the nearest steady motion,
-//! `agreement` the second derivation; `check` combines these, as text or as JSON.
+//! `agreement` the second derivation; `check` combines these, as text or as JSON, `findings` in one row of a table.
 
 pub(crate) mod agreement;
 pub(crate) mod check;
 mod combinations;
+pub(crate) mod findings;
 mod frame;
 mod integrals;
 mod measure;

@@ -34,6 +34,7 @@ mod remarks;
 mod scene;
 
 pub use check::check::Check;
+pub use check::findings::Finding;
 pub use error::ReportError;
 pub use page::player::animation;
 pub use page::report::report;

@@ -118,6 +118,23 @@ impl Linearizer {
         self.put_together(t, state, &[], is_steady)
     }
 
+    /// The number of components of the reduced state near a state, without the cyclic coordinates or with all of them.
+    ///
+    /// # Errors
+    /// [`ShapeError`](pc_mech::ShapeError); where f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
+    pub fn components(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        cyclic: CyclicCoordinates,
+    ) -> Result<usize, AnalysisError> {
+        shape("the state", state.len(), self.names().len())?;
+        let is_left_out = |i: &usize| cyclic == CyclicCoordinates::LeftOut && self.cyclic.contains(i);
+        let kept: Vec<usize> = (0..self.sizes.coordinates).filter(|i| !is_left_out(i)).collect();
+        let reduced = self.evaluated(t, state)?.reduced(&kept, self.sizes.coordinates, state.len())?;
+        Ok(reduced.kept.len())
+    }
+
     /// The cyclic coordinates that move, and those on whose rates they act.
     fn moving(&mut self, t: f64, state: &[f64]) -> Result<Vec<usize>, AnalysisError> {
         let rates = self.motion.rates(t, state)?;

@@ -68,7 +68,7 @@ pub enum Command {
     Report(Box<ReportArguments>),
     /// Write a page on which the motion can be watched
     Animate(Box<AnimateArguments>),
-    /// Integrate many motions over parameters and starts, on all cores; finished ones survive interruptions
+    /// Integrate, linearize or check over parameters and starts, on all cores; what is finished survives interruptions
     Sweep(Box<SweepArguments>),
     /// Make one table of the shards of a sweep
     Merge(MergeArguments),

@@ -29,7 +29,9 @@ Examples:
 pub(super) const SWEEP: &str = "\
 Examples:
   pc sweep heavy-top-lagrange --vary mg=0.5:2:100 -o sweep.csv
-  pc sweep heavy-top-lagrange --samples 1000 --random \"I1=normal(1,0.05)\" --seed 7 -o cloud.npz";
+  pc sweep heavy-top-lagrange --samples 1000 --random \"I1=normal(1,0.05)\" --seed 7 -o cloud.npz
+  pc sweep whipple-bicycle --of linearize --set roll=0 --vary v0=0:10:101 -o roots.csv
+  pc sweep chaplygin-sleigh --of check --vary a=0,0.1,0.5 -o checks.csv";
 
 pub(super) const EMIT: &str = "\
 Examples:

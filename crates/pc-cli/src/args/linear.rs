@@ -5,28 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use crate::args::options::{self, ModelArguments};
+use crate::args::steady::StateArguments;
 use crate::args::sweep::{self, Vary};
-
-/// The state about which equations are linearized.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum At {
-    /// The equilibrium or steady motion near the start: all but the cyclic coordinates rest.
-    #[default]
-    Steady,
-    /// The equilibrium near the start with all quasi-velocities 0.
-    Rest,
-    /// The start, steady or not.
-    Start,
-}
-
-/// Which cyclic coordinates are components of the state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Cyclic {
-    /// Those that rest.
-    Keep,
-    /// None.
-    Drop,
-}
 
 /// How a table of matrices is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -55,16 +35,9 @@ pub struct LinearizeArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// The state: the equilibrium or steady motion near the start, an equilibrium at rest near it, or the start as it is
-    #[arg(long, value_name = "STATE", default_value = "steady")]
-    pub at: At,
-    /// Components of the state, separated by commas, that keep their start values while a steady state is looked for
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    pub hold: Vec<String>,
-    /// Cyclic coordinates: keep those that rest, or drop all; else they are kept at an equilibrium and at the start, and dropped
-    /// of a motion and with --vary
-    #[arg(long, value_name = "WHICH")]
-    pub cyclic: Option<Cyclic>,
+    /// The state.
+    #[command(flatten)]
+    pub state: StateArguments,
     /// Give a parameter or start value N values evenly spaced, both ends included, and follow the eigenvalues: the root locus
     #[arg(long, value_name = "NAME=FROM:TO:N", value_parser = sweep::vary)]
     pub vary: Option<Vary>,

@@ -4,7 +4,7 @@ use std::fmt;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args};
+use clap::{ArgGroup, Args, ValueEnum};
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::drawn::DrawnArguments;
@@ -12,7 +12,35 @@ use crate::args::examples;
 use crate::args::forms::{RunForm, run_form};
 use crate::args::options;
 use crate::args::options::{IntegrationArguments, ModelArguments, RunArguments, VelocityArguments};
+use crate::args::steady::StateArguments;
 use crate::sweep::shard::Shard;
+
+/// What a sweep finds of each member.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SweepOf {
+    /// Its motion, as `pc run`.
+    Run,
+    /// The eigenvalues at a state near its start, as `pc linearize`.
+    Linearize,
+    /// Its properties, as `pc check`.
+    Check,
+}
+
+impl SweepOf {
+    /// As on the command line.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            SweepOf::Run => "run",
+            SweepOf::Linearize => "linearize",
+            SweepOf::Check => "check",
+        }
+    }
+
+    /// The one of this word.
+    pub(crate) fn of_word(word: &str) -> Option<SweepOf> {
+        [SweepOf::Run, SweepOf::Linearize, SweepOf::Check].into_iter().find(|of| of.word() == word)
+    }
+}
 
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]
@@ -24,7 +52,8 @@ use crate::sweep::shard::Shard;
                   A row has the number of the member, the varied values (start values as NAME(start)), how it ended \
                   (completed; event: it was ended by the event of the message; failed: the row is what was reached; refused: it could not start; panicked), the \
                   columns of `pc run` at the end, the drift of each integral, the number of steps, and a message \
-                  where it was not completed.\n\
+                  where it was not completed. --of linearize has the real and imaginary parts re1, im1, … of the eigenvalues in descending \
+                  order of the real parts, and the stability by them, instead; --of check has verdicts of `pc check`.\n\
                   What is finished is kept in FILE.partial until FILE is complete: after an interruption of any kind \
                   the same command goes on from there, and gives the same bytes.\n\
                   Exit codes: 0 also if some members were not completed, they are counted in the summary; 5 if none \
@@ -34,6 +63,9 @@ pub struct SweepArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
+    /// Of each member its motion (run), its eigenvalues (linearize), or its properties (check)
+    #[arg(long, value_name = "WHAT", default_value = "run")]
+    pub of: SweepOf,
     /// Give a parameter or start value N values evenly spaced, both ends included, or with FROM:TO:N:log as many times
     /// the one before each, or with A,B,… these (repeatable)
     #[arg(long, value_name = "NAME=FROM:TO:N", value_parser = vary, conflicts_with = "random")]
@@ -65,6 +97,9 @@ pub struct SweepArguments {
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,
+    /// With --of linearize: the state.
+    #[command(flatten)]
+    pub state: StateArguments,
     /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
@@ -104,6 +139,32 @@ pub struct MergeArguments {
 }
 
 impl SweepArguments {
+    /// The first option that says nothing of what is found of each member.
+    pub(crate) fn idle(&self) -> Option<&'static str> {
+        let IntegrationArguments { rtol, atol, max_step, events, method } = &self.integration;
+        let of_runs = [
+            ("--t-end", self.t_end.is_some()),
+            ("--rows", self.rows.is_some()),
+            ("--rtol", rtol.is_some()),
+            ("--atol", atol.is_some()),
+            ("--max-step", max_step.is_some()),
+            ("--samples-per-step", events.samples_per_step.is_some()),
+            ("--accumulation", events.accumulation.is_some()),
+            ("--method", method.is_some()),
+            ("--form", self.form.is_some()),
+            ("--project", !self.project.is_empty()),
+        ];
+        let of_linearizations = [
+            ("--at", self.state.at.is_some()),
+            ("--hold", !self.state.hold.is_empty()),
+            ("--cyclic", self.state.cyclic.is_some()),
+        ];
+        let first = |of: SweepOf, options: &[(&'static str, bool)]| {
+            options.iter().find(|&&(_, given)| given && self.of != of).map(|&(option, _)| option)
+        };
+        first(SweepOf::Run, &of_runs).or_else(|| first(SweepOf::Linearize, &of_linearizations))
+    }
+
     /// The corresponding arguments of `pc run` for one member.
     pub fn as_run(&self) -> RunArguments {
         RunArguments {

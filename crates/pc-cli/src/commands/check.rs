@@ -1,14 +1,13 @@
 //! `pc check`: the consistency and the properties of a model.
 
 use pc_print::{visible, visible_json};
-use pc_report::Check;
-use pc_verify::{Options, VerifyError, verify};
 
 use crate::args::input;
 use crate::args::options::{CheckArguments, Format};
 use crate::error::CliError;
 use crate::output::standard_output::print;
 use crate::report::notes::say_moved;
+use crate::report::verification::checked;
 
 /// Prints the properties of a model before it is run.
 ///
@@ -19,13 +18,7 @@ pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
     let graph = model.graph();
     let (assembly, equations) = input::derive(&model, &graph)?;
     say_moved(&assembly);
-    let second = match verify(&model, &Options::default()) {
-        Err(error @ VerifyError::Disagreement(_)) => return Err(CliError::Verify(Box::new(error))),
-        outcome => outcome,
-    };
-    assembly.within_limits()?;
-    let check = Check::new(&model, &assembly, &equations)?.compared(second);
-    assembly.within_limits()?;
+    let check = checked(&model, &assembly, &equations)?;
     print(|out| match arguments.format {
         Format::Text => write!(out, "{}", visible(&check.text())),
         Format::Json => writeln!(out, "{}", visible_json(&check.json())),

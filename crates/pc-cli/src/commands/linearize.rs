@@ -1,12 +1,13 @@
 //! `pc linearize`: the motions near a state to first order, and their eigenvalues over a parameter.
 
-use pc_analysis::{AnalysisError, CyclicCoordinates, Linearization, Linearizer, RootLocus, SteadyOptions};
+use pc_analysis::{Linearization, RootLocus};
 use pc_model::Model;
 use pc_print::{visible, visible_json};
 use serde_json::{Map, Value, json};
 
 use crate::args::input;
-use crate::args::linear::{At, Cyclic, LinearizeArguments, MatrixFormat};
+use crate::args::linear::{LinearizeArguments, MatrixFormat};
+use crate::args::steady::At;
 use crate::args::sweep::Vary;
 use crate::error::CliError;
 use crate::linear::arrays::{Array, of_linearization};
@@ -14,6 +15,7 @@ use crate::linear::error::LinearError;
 use crate::linear::file::{Contents, Destination};
 use crate::linear::ground::{Ground, placed};
 use crate::linear::locus::Locus;
+use crate::linear::near::{CyclicChoice, Varied, near};
 use crate::linear::{json, text};
 use crate::output::csv::field;
 use crate::output::destination::Destination as Picture;
@@ -34,7 +36,7 @@ pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
     say_dropped(&ground.assembly);
     say_moved(&ground.assembly);
     if let Some(vary) = &arguments.vary {
-        let locus = locus(&model, &mut ground, vary, arguments)?;
+        let locus = locus(&model, &ground, vary, arguments)?;
         for (value, reason) in &locus.missing {
             let reason = reason.lines().next().unwrap_or_default();
             say(format_args!("note: nothing at {} = {}: {reason}\n", vary.name, short(*value, 6)));
@@ -51,13 +53,13 @@ pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
         };
     }
     let (t, start) = (ground.assembly.t_start, ground.start.clone());
-    let linear = linearization(&mut ground.linearizer, t, &start, arguments, CyclicChoice::OfState)
+    let linear = near(&mut ground.linearizer, t, &start, &arguments.state, CyclicChoice::OfState)
         .map_err(|error| placed(&ground.assembly, error, true))?;
     ground.assembly.within_limits()?;
-    let page = || text::page(model.title(), &linear, arguments.at != At::Start);
+    let page = || text::page(model.title(), &linear, arguments.state.at() != At::Start);
     match (&destination, arguments.format) {
         (Some(destination), _) => destination.write(&Contents {
-            json: &object(&model, arguments.at, &linear),
+            json: &object(&model, arguments.state.at(), &linear),
             csv: &csv(&linear),
             arrays: &of_linearization(&linear),
             texts: &names(&linear),
@@ -65,47 +67,7 @@ pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
         (None, Some(MatrixFormat::Text) | None) => print(|out| write!(out, "{}", visible(&page()))),
         (None, Some(MatrixFormat::Csv)) => print(|out| write!(out, "{}", csv(&linear))),
         (None, Some(MatrixFormat::Json)) => {
-            print(|out| writeln!(out, "{}", visible_json(&object(&model, arguments.at, &linear))))
-        }
-    }
-}
-
-/// Which cyclic coordinates are kept by default.
-#[derive(Clone, Copy, PartialEq)]
-enum CyclicChoice {
-    /// All at an equilibrium, none of a motion.
-    OfState,
-    /// None: the number of components is the same for all values of a parameter.
-    None,
-}
-
-fn linearization(
-    linearizer: &mut Linearizer,
-    t: f64,
-    start: &[f64],
-    arguments: &LinearizeArguments,
-    choice: CyclicChoice,
-) -> Result<Linearization, AnalysisError> {
-    let mut guess = start.to_vec();
-    let mut held = arguments.hold.clone();
-    let options = |held: Vec<String>| SteadyOptions::default().fixed(held);
-    match arguments.at {
-        At::Start => return linearizer.at(t, start),
-        At::Steady => {}
-        At::Rest => {
-            let moving = linearizer.quasi_velocities();
-            guess[moving.clone()].fill(0.0);
-            held.extend(linearizer.names()[moving].iter().cloned());
-        }
-    }
-    let options = options(held);
-    let kept = CyclicCoordinates::KeptAtRest;
-    match (arguments.cyclic, choice) {
-        (Some(Cyclic::Keep), _) => linearizer.steady_with(t, &guess, &options, kept),
-        (Some(Cyclic::Drop), _) | (None, CyclicChoice::None) => linearizer.steady(t, &guess, &options),
-        (None, CyclicChoice::OfState) => {
-            let all = linearizer.steady_with(t, &guess, &options, kept)?;
-            if all.cyclic.is_empty() { Ok(all) } else { linearizer.steady(t, &guess, &options) }
+            print(|out| writeln!(out, "{}", visible_json(&object(&model, arguments.state.at(), &linear))))
         }
     }
 }
@@ -113,7 +75,7 @@ fn linearization(
 /// The eigenvalues for each value of the parameter.
 fn locus(
     model: &Model,
-    ground: &mut Ground<'_>,
+    ground: &Ground<'_>,
     vary: &Vary,
     arguments: &LinearizeArguments,
 ) -> Result<Locus, CliError> {
@@ -129,26 +91,10 @@ fn locus(
         locus: RootLocus::default(),
         missing: Vec::new(),
     };
-    let places = ground.places(model);
+    let linearizations = Varied::of(model, ground, &arguments.state);
     for &value in &values {
         ground.assembly.within_limits()?;
-        ground.assembly.within_limits()?;
-        let model = varied(model, &vary.name, value)?;
-        let found = match &places {
-            Some(places) => ground.moved_to(&model, places).and_then(|start| {
-                let t = ground.assembly.t_start;
-                linearization(&mut ground.linearizer, t, &start, arguments, CyclicChoice::None)
-                    .map_err(|error| placed(&ground.assembly, error, true))
-            }),
-            None => {
-                let graph = model.graph();
-                Ground::new(&model, &graph).and_then(|mut own| {
-                    let (t, start) = (own.assembly.t_start, own.start.clone());
-                    linearization(&mut own.linearizer, t, &start, arguments, CyclicChoice::None)
-                        .map_err(|error| placed(&own.assembly, error, true))
-                })
-            }
-        };
+        let found = linearizations.linearization(&varied(model, &vary.name, value)?);
         let eigenvalues = match &found {
             Ok(linear) => {
                 locus.components.clone_from(&linear.components);
@@ -181,15 +127,10 @@ fn varied(model: &Model, name: &str, value: f64) -> Result<Model, CliError> {
 
 /// The linearization as one JSON object.
 fn object(model: &Model, at: At, linear: &Linearization) -> Value {
-    let at = match at {
-        At::Steady => "steady",
-        At::Rest => "rest",
-        At::Start => "start",
-    };
     let mut all = Map::new();
     all.insert("model".to_owned(), json!(model.title()));
     all.insert("parameters".to_owned(), json::map(model.parameters()));
-    all.insert("at".to_owned(), json!(at));
+    all.insert("at".to_owned(), json!(at.word()));
     all.extend(json::members(linear));
     Value::from(all)
 }

@@ -68,18 +68,6 @@ impl<'g> Ground<'g> {
         state.map(|x| names.iter().position(|name| name == x)).collect()
     }
 
-    /// Sets the parameters of the equations to those of a model, and returns its start, read at
-    /// these places.
-    ///
-    /// # Errors
-    /// [`CliError::Model`] where a start value is not a number.
-    pub(crate) fn moved_to(&mut self, model: &Model, places: &[usize]) -> Result<Vec<f64>, CliError> {
-        let values = model.start()?;
-        let parameters: Vec<f64> = model.parameters().map(|(_, value)| value).collect();
-        self.linearizer.set_parameters(&parameters);
-        Ok(places.iter().map(|&place| values[place]).collect())
-    }
-
     /// The integrals known or found.
     pub(crate) fn integrals(&self) -> Integrals<'g> {
         integrals(&self.assembly, &self.equations)

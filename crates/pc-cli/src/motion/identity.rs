@@ -1,4 +1,4 @@
-//! All that the numbers of a motion depend on: stored with an interrupted run, so that only the
+//! Everything that the numbers of a motion, or of other work on a model, depend on: stored with what is interrupted, so that only the
 //! same command continues it.
 
 use pc_model::Model;
@@ -10,8 +10,24 @@ use crate::motion::plan::Plan;
 /// Names and values in the order of their importance.
 pub(crate) type Identity = Vec<(String, String)>;
 
-/// Version, parameters, start, plan and text of a model.
+/// Of the motion of a model.
 pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
+    let plan = [
+        ("--project", model.kept().join(", ")),
+        ("--t-end", plan.t_end.to_string()),
+        ("--rtol", format!("{:e}", plan.rtol)),
+        ("--atol", format!("{:e}", plan.atol)),
+        ("--max-step", plan.max_step.map_or("none".to_owned(), |length| format!("{length:e}"))),
+        ("--samples-per-step", plan.samples_per_step.map_or("4".to_owned(), |parts| parts.to_string())),
+        ("--accumulation", format!("{:e}", plan.accumulation.unwrap_or(Accumulation::default().within))),
+        ("--method", plan.method.to_string().to_lowercase()),
+        ("--form", format!("{form:?}").to_lowercase()),
+    ];
+    of_work(model, plan)
+}
+
+/// Of some work on a model: version, parameters, start, what the work itself depends on, and the text of the model.
+pub(crate) fn of_work(model: &Model, own: impl IntoIterator<Item = (&'static str, String)>) -> Identity {
     let entry = |name: &str, value: String| (name.to_owned(), value);
     let mut identity = vec![entry("pc", env!("CARGO_PKG_VERSION").to_owned())];
     identity.extend(
@@ -25,19 +41,9 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
         let sum = crc32fast::hash(&numbers.collect::<Vec<u8>>());
         entry(&format!("the table of input {}:", place + 1), format!("{sum:08x}"))
     }));
-    identity.extend([
-        entry("--project-start", model.projects_start().to_string()),
-        entry("--project", model.kept().join(", ")),
-        entry("--t-end", plan.t_end.to_string()),
-        entry("--rtol", format!("{:e}", plan.rtol)),
-        entry("--atol", format!("{:e}", plan.atol)),
-        entry("--max-step", plan.max_step.map_or("none".to_owned(), |length| format!("{length:e}"))),
-        entry("--samples-per-step", plan.samples_per_step.map_or("4".to_owned(), |parts| parts.to_string())),
-        entry("--accumulation", format!("{:e}", plan.accumulation.unwrap_or(Accumulation::default().within))),
-        entry("--method", plan.method.to_string().to_lowercase()),
-        entry("--form", format!("{form:?}").to_lowercase()),
-        entry("text of the model", format!("{}\n", model.document().source.text())),
-    ]);
+    identity.push(entry("--project-start", model.projects_start().to_string()));
+    identity.extend(own.into_iter().map(|(name, value)| entry(name, value)));
+    identity.push(entry("text of the model", format!("{}\n", model.document().source.text())));
     let given = model.given_quasi_velocities().iter();
     identity
         .extend(given.map(|given| entry(&format!("{} =", given.name()), given.expression().text.clone())));

@@ -1,10 +1,31 @@
 //! The result of the second derivation.
 
+use pc_mech::Equations;
 use pc_model::{Assembly, Flow, Model, Variables};
-use pc_verify::{Agreement, Second, VerifyError};
+use pc_report::Check;
+use pc_verify::{Agreement, Options, Second, VerifyError, verify};
 
 use crate::args::forms::RunForm;
 use crate::error::CliError;
+
+/// The properties of a model, compared with a second derivation.
+///
+/// # Errors
+/// [`CliError::Verify`] if that disagrees; [`CliError::Model`] if something of the model cannot be derived.
+pub fn checked<'g>(
+    model: &Model,
+    assembly: &Assembly<'g>,
+    equations: &Equations<'g>,
+) -> Result<Check<'g>, CliError> {
+    let second = match verify(model, &Options::default()) {
+        Err(error @ VerifyError::Disagreement(_)) => return Err(CliError::Verify(Box::new(error))),
+        outcome => outcome,
+    };
+    assembly.within_limits()?;
+    let check = Check::new(model, assembly, equations)?.compared(second);
+    assembly.within_limits()?;
+    Ok(check)
+}
 
 /// The comparison of a motion with a second derivation, at some of its states.
 #[derive(Debug)]

@@ -1,8 +1,8 @@
-//! `pc sweep`: many motions of one model, over parameters and starts, in one table.
+//! `pc sweep`: one model for many values of parameters and starts, in one table.
 //!
 //! ```text
-//! Design ─ values of a member ─► Members ─ its motion ─► Record ─► Journal ─► table
-//!          on all cores, by pc_solve::Ensemble             in the order of the members
+//! Design ─ values of a member ─► Work ─ its motion, eigenvalues or properties ─► Record ─► Journal ─► table
+//!          on all cores, by pc_solve::Ensemble                       in the order of the members
 //! ```
 //! The journal is the only link between a member and the table, so a sweep may end at any moment and continue later.
 
@@ -15,26 +15,27 @@ use pc_model::{Category, Model};
 use pc_print::one_line;
 use pc_solve::{Ending, Ensemble};
 
-use crate::args::forms::RunForm;
 use crate::args::input;
-use crate::args::sweep::{Law, Random, SweepArguments};
+use crate::args::sweep::{Law, Random, SweepArguments, SweepOf};
 use crate::error::CliError;
 use crate::motion::identity;
 use crate::motion::identity::Identity;
 use crate::motion::interrupt;
-use crate::motion::memory;
 use crate::motion::plan::Plan;
 use crate::output;
-use crate::report::text::{labelled, short};
+use crate::report::text::labelled;
 use crate::report::{notes, text};
+use crate::sweep::checks::Checks;
 use crate::sweep::design::Design;
 use crate::sweep::error::SweepError;
 use crate::sweep::journal::{Journal, Records, Tally};
-use crate::sweep::member::Members;
+use crate::sweep::linearizations::Linearizations;
+use crate::sweep::motions::Motions;
 use crate::sweep::output::destination::Destination;
 use crate::sweep::progress::Progress;
 use crate::sweep::shard::Shard;
 use crate::sweep::sheet::Sheet;
+use crate::sweep::work::Work;
 use crate::sweep::{plot, shards};
 
 /// Bytes of finished members that may wait for an earlier one.
@@ -49,35 +50,30 @@ const MOST_WAITING: usize = 4096;
 pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let destination = Destination::new(&arguments.output)?;
     let picture = output::destination::Destination::plot(arguments.plot.as_deref())?;
+    if let Some(option) = arguments.idle() {
+        return Err(SweepError::Idle { option, of: arguments.of.word() }.into());
+    }
     let mut model = input::open(&arguments.model)?;
     for name in &arguments.project {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
     let design = Design::new(&model, arguments)?;
-    let form = Plan::form(&model, &arguments.as_run());
-    look(&model)?;
-    let plan = Plan::new(&model, &arguments.as_run())?;
-
-    let all_rows = arguments.rows.is_some();
-    let motion = Sheet::motion(&model, !all_rows);
-    let columns = Sheet::motion(&model, false).len();
-    let sheet = Sheet::new(&design, &motion);
+    let (all, names) = (design.members(), design.names());
     let is_random = arguments.samples.is_some();
+    let (title, deadline) = (model.title().to_owned(), model.budget().deadline().clone());
+    let threads =
+        arguments.threads.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    let (work, depends_on) = begun(arguments, model, design, threads)?;
+    let sheet = Sheet::new(arguments.of, &names, work.columns());
     if picture.is_some() {
         let counts: Vec<u64> = arguments.vary.iter().map(|vary| vary.values.count()).collect();
         plot::check(&sheet, &arguments.columns, &counts, is_random).map_err(SweepError::Drawn)?;
     }
-    let title = model.title().to_owned();
     let shard = arguments.shard.unwrap_or(Shard::ALL);
-    let all = design.members();
-    let mut header = header(&model, arguments, &plan, form);
+    let mut header = header(depends_on, arguments);
     if arguments.shard.is_some() {
         header = shards::described(header, shard, all, &title, &sheet);
     }
-    // Each member at work has its trajectory, its table, its record and the bytes of the record.
-    let threads =
-        arguments.threads.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
-    memory::allow(plan.samples as u64, (4 * columns * threads) as u64, model.budget().limits())?;
     let path = match arguments.shard {
         Some(shard) => shard.beside(destination.path()),
         None => Journal::beside(destination.path()),
@@ -85,18 +81,17 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let mut journal = Journal::open(path, shard, &header)?;
     let (members, before) = (shard.members(all), journal.tally().done);
 
-    let row = 8 * motion.len() * if all_rows { plan.samples } else { 1 };
+    let row = 8 * work.columns().len() * work.rows();
     let window = NonZeroUsize::new((WAITING / row.max(1)).min(MOST_WAITING)).unwrap_or(NonZeroUsize::MIN);
     let mut ensemble = Ensemble::new().window(window).stopped_by(interrupt::flag());
     if let Some(threads) = arguments.threads {
         ensemble = ensemble.threads(threads);
     }
     let start = Instant::now();
-    let work = Members::new(model, design, form, &plan, all_rows, columns);
     interrupt::catch();
     let mut progress = Progress::new(before, members);
     let mut kept = Ok(());
-    let consume = |place, record: Result<Option<_>, pc_solve::Panicked>| {
+    let mut consume = |place, record: Result<Option<_>, pc_solve::Panicked>| {
         let record = record.unwrap_or_else(|panicked| {
             let message = &panicked.message;
             Some(work.panicked(shard.member(place), message))
@@ -111,26 +106,19 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
             ControlFlow::Continue(())
         }
     };
-    let ending = ensemble.map_in_lanes(
-        before..members,
-        work.span(),
-        |place| work.begin(shard.member(place)),
-        |_, begun, trajectory| work.completed(begun, &trajectory),
-        |_, begun, stop| work.integrate(begun, stop),
-        consume,
-    );
+    let ending = work.records(&ensemble, shard, before..members, &mut consume);
     drop(progress);
     kept?;
     let done = journal.tally().done;
     if ending.map_err(SweepError::from)? == Ending::Stopped && done < members {
-        return Err(match plan.deadline.passed() {
+        return Err(match deadline.passed() {
             Some(limit) if !interrupt::requested() => SweepError::Ended { done, members, limit },
             _ => SweepError::Interrupted { done, members },
         }
         .into());
     }
     let tally = journal.tally().clone();
-    let mut said = summary(&title, &plan, &tally, (before, work.beside()), start.elapsed().as_secs_f64());
+    let mut said = summary(&title, work.as_ref(), &tally, before, start.elapsed().as_secs_f64());
     if arguments.shard.is_some() {
         // Only all shards together show whether any member was completed.
         said += &labelled("shard", 9, &[format!("{shard}, in {}, for pc merge", journal.path().display())]);
@@ -143,6 +131,38 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     text::say(format_args!("{said}"));
     drawn.transpose()?;
     judged(&tally)
+}
+
+/// The work that is asked for, with what it depends on.
+///
+/// # Errors
+/// [`CliError`] if the text of the model is wrong, or the work is not defined for it.
+fn begun(
+    arguments: &SweepArguments,
+    model: Model,
+    design: Design,
+    threads: usize,
+) -> Result<(Box<dyn Work>, Identity), CliError> {
+    Ok(match arguments.of {
+        SweepOf::Run => {
+            let (run, all_rows) = (arguments.as_run(), arguments.rows.is_some());
+            let form = Plan::form(&model, &run);
+            look(&model)?;
+            let plan = Plan::new(&model, &run)?;
+            let identity = identity::of_motion(&model, &plan, form);
+            (Box::new(Motions::new(model, design, (plan, form), all_rows, threads)?), identity)
+        }
+        SweepOf::Linearize => {
+            let state = &arguments.state;
+            let identity = identity::of_work(&model, Linearizations::depends_on(state));
+            (Box::new(Linearizations::new(model, design, state)?), identity)
+        }
+        SweepOf::Check => {
+            look(&model)?;
+            let identity = identity::of_work(&model, []);
+            (Box::new(Checks::new(model, design)), identity)
+        }
+    })
 }
 
 /// Writes the picture.
@@ -186,8 +206,8 @@ fn look(model: &Model) -> Result<(), CliError> {
     }
 }
 
-/// All that the result depends on.
-fn header(model: &Model, arguments: &SweepArguments, plan: &Plan, form: RunForm) -> Identity {
+/// What the result depends on.
+fn header(depends_on: Identity, arguments: &SweepArguments) -> Identity {
     let vary = arguments.vary.iter().map(ToString::to_string);
     let random = arguments.random.iter().map(|Random { name, law }| match law {
         Law::Normal(m, s) => format!("{name}=normal({m},{s})"),
@@ -204,7 +224,8 @@ fn header(model: &Model, arguments: &SweepArguments, plan: &Plan, form: RunForm)
         ("--seed", arguments.seed.to_string()),
         ("--rows", rows),
     ];
-    let mut header = identity::of_motion(model, plan, form);
+    let mut header = depends_on;
+    header.insert(0, ("--of".to_owned(), arguments.of.word().to_owned()));
     header.extend(entries.map(|(name, value)| (name.to_owned(), value)));
     header
 }
@@ -235,23 +256,18 @@ pub(super) fn uncompleted(tally: &Tally) -> String {
     lines
 }
 
-fn summary(title: &str, plan: &Plan, tally: &Tally, (before, beside): (u64, u64), elapsed: f64) -> String {
+fn summary(title: &str, work: &dyn Work, tally: &Tally, before: u64, elapsed: f64) -> String {
     let mut text = format!("{}\n", one_line(title));
-    let mut line = |label: &str, line: String| text += &labelled(label, 9, &[line]);
-    line("method", plan.in_words());
-    line("time", format!("{} to {}", short(plan.t_start, 10), short(plan.t_end, 10)));
+    for (label, line) in work.said() {
+        text += &labelled(label, 9, &[line]);
+    }
     let mut members = counted(tally);
     if before > 0 {
         members += &format!("; {before} were finished before");
     }
-    line("members", members);
+    text += &labelled("members", 9, &[members]);
     text += &uncompleted(tally);
-    let mut line = |label: &str, line: String| text += &labelled(label, 9, &[line]);
-    let computed = tally.done - before;
-    let mut work = format!("{elapsed:.3} s, {:.0} members/s", computed as f64 / elapsed);
-    if beside > 0 {
-        work += &format!(", {beside} side by side in vectors");
-    }
-    line("work", work);
-    text
+    let rate = (tally.done - before) as f64 / elapsed;
+    let took = format!("{elapsed:.3} s, {rate:.0} members/s{}", work.done());
+    text + &labelled("work", 9, &[took])
 }

@@ -23,6 +23,14 @@ pub enum SweepError {
         /// The name.
         name: String,
     },
+    /// An option that says nothing of what is found of each member.
+    #[error("{option} says nothing of what `--of {of}` finds; leave it out")]
+    Idle {
+        /// The option.
+        option: &'static str,
+        /// What is found.
+        of: &'static str,
+    },
     /// The grid has more members than can be counted.
     #[error("the grid has more than 2^64 members; give fewer values")]
     TooMany,
@@ -166,6 +174,7 @@ impl SweepError {
             SweepError::Interrupted { .. } => 130,
             SweepError::UnknownValue(_)
             | SweepError::Twice { .. }
+            | SweepError::Idle { .. }
             | SweepError::TooMany
             | SweepError::InUse { .. }
             | SweepError::Foreign { .. }

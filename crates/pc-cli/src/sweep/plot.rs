@@ -5,6 +5,7 @@ use std::io;
 
 use pc_report::picture::{Content, Curve, Panel, Picture, Scale, by_scale};
 
+use crate::args::sweep::SweepOf;
 use crate::report::text::short;
 use crate::sweep::journal::Records;
 use crate::sweep::plot_error::{MOST_CELLS, SweepPlotError};
@@ -47,10 +48,11 @@ pub(crate) fn check(
 /// The places of the chosen columns among those of the motion; all but time and drifts if none is
 /// chosen.
 fn chosen(sheet: &Sheet, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError> {
-    let names = sheet.motion_names();
+    let names = sheet.numbers();
     if wanted.is_empty() {
         // Time is the same in most members, and drifts are noise.
-        return Ok((1..names.len()).filter(|&j| !names[j].starts_with("drift(")).collect());
+        let is_shown = |&j: &usize| !is_time(sheet, j) && !names[j].starts_with("drift(");
+        return Ok((0..names.len()).filter(is_shown).collect());
     }
     let place = |name: &String| {
         names.iter().position(|known| *known == name.trim()).ok_or_else(|| SweepPlotError::UnknownColumn {
@@ -61,10 +63,29 @@ fn chosen(sheet: &Sheet, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError
     wanted.iter().map(place).collect()
 }
 
-/// A member that was completed or ended by an event, in the chosen columns.
+/// Whether a number is the time of its row.
+fn is_time(sheet: &Sheet, j: usize) -> bool {
+    sheet.of() == SweepOf::Run && j == 0
+}
+
+/// What a curve, a colour or a bar shows of a member.
+fn shown(of: SweepOf) -> &'static str {
+    match of {
+        SweepOf::Run => "At the end",
+        SweepOf::Linearize => "Eigenvalues",
+        SweepOf::Check => "Properties",
+    }
+}
+
+/// Behind the name of a column, when it is shown.
+fn at_the_end(of: SweepOf) -> &'static str {
+    if of == SweepOf::Run { " at the end" } else { "" }
+}
+
+/// A member that ended as it should, in the chosen columns.
 struct Member {
     values: Vec<f64>,
-    /// Time, then the columns, of each row.
+    /// Time, where rows have one, else what stands first; then the columns, of each row.
     rows: Vec<Vec<f64>>,
 }
 
@@ -89,7 +110,7 @@ pub(crate) fn picture(
         Ok(places) => places,
         Err(error) => return Ok(Err(error)),
     };
-    let width = sheet.motion_names().len();
+    let width = sheet.numbers().len();
     let (mut finished, mut left) = (Vec::new(), 0);
     for record in members.records()? {
         let record = record?;
@@ -114,11 +135,14 @@ pub(crate) fn picture(
     if wanted.is_empty() {
         places = interesting(&mut finished, &places, &mut remarks);
     }
-    let names: Vec<String> = places.iter().map(|&j| sheet.motion_names()[j].to_owned()).collect();
+    let names: Vec<String> = places.iter().map(|&j| sheet.numbers()[j].to_owned()).collect();
     let varied: Vec<&str> = sheet.varied().collect();
     let moving: Vec<usize> = (0..varied.len()).filter(|&j| values(&finished, j).len() > 1).collect();
+    let of = sheet.of();
     let panels = match (is_random, over_time, &moving[..]) {
-        (true, false, _) => names.iter().enumerate().map(|(k, name)| histogram(&finished, k, name)).collect(),
+        (true, false, _) => {
+            names.iter().enumerate().map(|(k, name)| histogram(&finished, k, name, of)).collect()
+        }
         (true, true, _) => names.iter().enumerate().map(|(k, name)| bands(&finished, k, name)).collect(),
         (false, true, [] | [_]) => {
             let label = |member: &Member| match moving.first() {
@@ -132,11 +156,15 @@ pub(crate) fn picture(
         }
         (false, false, [] | [_]) => {
             let j = moving.first().copied().unwrap_or(0);
-            curves(&finished, j, varied.get(j).copied().unwrap_or_default(), &names)
+            curves(&finished, j, varied.get(j).copied().unwrap_or_default(), (&names, of))
         }
         (false, _, &[a, b]) => {
             let at = |j| (j, varied[j]);
-            names.iter().enumerate().map(|(k, name)| cells(&finished, [at(a), at(b)], k, name)).collect()
+            names
+                .iter()
+                .enumerate()
+                .map(|(k, name)| cells(&finished, [at(a), at(b)], k, (name, of)))
+                .collect()
         }
         (false, _, more) => return Ok(Err(SweepPlotError::Varied { varied: more.len() })),
     };
@@ -187,8 +215,8 @@ fn placed(value: f64, scale: Scale) -> f64 {
     if scale == Scale::Decades { value.log10() } else { value }
 }
 
-/// Curves over a varied quantity.
-fn curves(finished: &[Member], j: usize, varied: &str, names: &[String]) -> Vec<Panel> {
+/// Curves over what is varied.
+fn curves(finished: &[Member], j: usize, varied: &str, (names, of): (&[String], SweepOf)) -> Vec<Panel> {
     let scale = scale_of(&values(finished, j));
     let curve = |(k, name): (usize, &String)| {
         let mut points: Vec<(f64, f64)> =
@@ -198,10 +226,7 @@ fn curves(finished: &[Member], j: usize, varied: &str, names: &[String]) -> Vec<
     };
     let curves: Vec<Curve> = names.iter().enumerate().map(curve).collect();
     let span = span(curves.first());
-    by_scale((varied, scale), "At the end", &curves)
-        .into_iter()
-        .map(|panel| Panel { span, ..panel })
-        .collect()
+    by_scale((varied, scale), shown(of), &curves).into_iter().map(|panel| Panel { span, ..panel }).collect()
 }
 
 /// The range of a curve, if its first and last points differ.
@@ -223,7 +248,12 @@ fn paths(finished: &[Member], k: usize, name: &str, label: &dyn Fn(&Member) -> S
 }
 
 /// A colour for each pair of values.
-fn cells(finished: &[Member], [(a, x), (b, y)]: [(usize, &str); 2], k: usize, name: &str) -> Panel {
+fn cells(
+    finished: &[Member],
+    [(a, x), (b, y)]: [(usize, &str); 2],
+    k: usize,
+    (name, of): (&str, SweepOf),
+) -> Panel {
     let (columns, rows) = (values(finished, a), values(finished, b));
     let mut cells = vec![f64::NAN; columns.len() * rows.len()];
     let place = |list: &[f64], value: f64| list.partition_point(|&known| known < value);
@@ -241,12 +271,12 @@ fn cells(finished: &[Member], [(a, x), (b, y)]: [(usize, &str); 2], k: usize, na
             rows: along(&rows, scales[1]),
             values: cells,
         },
-        ..Panel::over(x, format!("{name} at the end"), Scale::Linear, Vec::new())
+        ..Panel::over(x, format!("{name}{}", at_the_end(of)), Scale::Linear, Vec::new())
     }
 }
 
-/// The histogram of a column, with quantiles.
-fn histogram(finished: &[Member], k: usize, name: &str) -> Panel {
+/// How many members have which value, with the quantiles.
+fn histogram(finished: &[Member], k: usize, name: &str, of: SweepOf) -> Panel {
     let mut values: Vec<f64> =
         finished.iter().map(|member| member.last(k)).filter(|v| v.is_finite()).collect();
     values.sort_by(f64::total_cmp);
@@ -259,7 +289,7 @@ fn histogram(finished: &[Member], k: usize, name: &str) -> Panel {
         events: marks.iter().map(|(value, _)| *value).collect(),
         ..Panel::over(
             name,
-            format!("{name} at the end of {} members   {}", values.len(), said.join(",  ")),
+            format!("{name}{} of {} members   {}", at_the_end(of), values.len(), said.join(",  ")),
             Scale::Linear,
             Vec::new(),
         )

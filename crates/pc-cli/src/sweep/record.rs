@@ -44,8 +44,10 @@ pub(crate) struct Record {
     pub(crate) message: String,
     /// The values of the varied quantities.
     pub(crate) values: Vec<f64>,
-    /// Rows, one after the other.
+    /// The numbers of the rows, one row after the other.
     pub(crate) rows: Vec<f64>,
+    /// The words of the rows, likewise.
+    pub(crate) words: Vec<String>,
 }
 
 impl Record {
@@ -53,15 +55,20 @@ impl Record {
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let mut bytes =
             Vec::with_capacity(64 + self.message.len() + 8 * (self.values.len() + self.rows.len()));
+        let text = |bytes: &mut Vec<u8>, text: &str| {
+            bytes.extend((text.len() as u64).to_le_bytes());
+            bytes.extend(text.as_bytes());
+        };
         bytes.extend(self.member.to_le_bytes());
         bytes.push(Status::ALL.iter().position(|&status| status == self.status).unwrap_or(0) as u8);
         bytes.extend(self.steps.to_le_bytes());
-        bytes.extend((self.message.len() as u64).to_le_bytes());
-        bytes.extend(self.message.as_bytes());
+        text(&mut bytes, &self.message);
         for numbers in [&self.values, &self.rows] {
             bytes.extend((numbers.len() as u64).to_le_bytes());
             bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
         }
+        bytes.extend((self.words.len() as u64).to_le_bytes());
+        self.words.iter().for_each(|word| text(&mut bytes, word));
         bytes
     }
 
@@ -72,12 +79,10 @@ impl Record {
             member: integer(bytes)?,
             status: *Status::ALL.get(usize::from(*bytes.split_off_first()?))?,
             steps: integer(bytes)?,
-            message: {
-                let length = usize::try_from(integer(bytes)?).ok()?;
-                String::from_utf8(bytes.split_off(..length)?.to_vec()).ok()?
-            },
+            message: text(bytes)?,
             values: numbers(bytes)?,
             rows: numbers(bytes)?,
+            words: (0..integer(bytes)?).map(|_| text(bytes)).collect::<Option<_>>()?,
         };
         bytes.is_empty().then_some(record)
     }
@@ -85,6 +90,11 @@ impl Record {
 
 fn integer(bytes: &mut &[u8]) -> Option<u64> {
     Some(u64::from_le_bytes(bytes.split_off(..8)?.try_into().ok()?))
+}
+
+fn text(bytes: &mut &[u8]) -> Option<String> {
+    let length = usize::try_from(integer(bytes)?).ok()?;
+    String::from_utf8(bytes.split_off(..length)?.to_vec()).ok()
 }
 
 fn numbers(bytes: &mut &[u8]) -> Option<Vec<f64>> {

@@ -1,10 +1,9 @@
 //! The table of a sweep: rows of numbers and text, member by member.
 
-use pc_model::Model;
 use serde_json::json;
 
-use super::design::Design;
 use super::record::Record;
+use crate::args::sweep::SweepOf;
 
 /// The kind of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +11,19 @@ pub(crate) enum Kind {
     Integer,
     Number,
     Text,
+}
+
+/// A column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Column {
+    pub(crate) name: String,
+    pub(crate) kind: Kind,
+}
+
+impl Column {
+    pub(crate) fn new(name: impl Into<String>, kind: Kind) -> Column {
+        Column { name: name.into(), kind }
+    }
 }
 
 /// An entry of the table.
@@ -23,109 +35,109 @@ pub(crate) enum Cell<'a> {
 }
 
 /// The columns.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Sheet {
-    columns: Vec<(String, Kind)>,
+    of: SweepOf,
+    columns: Vec<Column>,
     /// How many values are varied.
     varied: usize,
-    /// Numbers of the motion in a row.
-    width: usize,
+    /// How many columns are results.
+    results: usize,
 }
 
 impl Sheet {
-    /// Number of the member, varied quantities, status, then `motion`, steps and message.
-    pub(crate) fn new(design: &Design, motion: &[String]) -> Sheet {
-        let numbers = |names: &[String]| names.iter().map(|name| (name.clone(), Kind::Number)).collect();
-        let (varied, shown): (Vec<_>, Vec<_>) = (numbers(&design.names()), numbers(motion));
-        // Varied quantities and columns of the motion share one namespace in the model, so they
-        // need no new names.
-        let taken: Vec<String> = varied.iter().chain(&shown).map(|(name, _)| name.clone()).collect();
+    /// Number of the member, what is varied, how it ended, then `results`, steps of a motion, and message.
+    pub(crate) fn new(of: SweepOf, names: &[String], results: &[Column]) -> Sheet {
+        let varied: Vec<Column> = names.iter().map(|name| Column::new(name, Kind::Number)).collect();
+        // What is varied and shown is the same, as a parameter that is an integral would be: names are of one space.
+        let taken: Vec<&str> = varied.iter().chain(results).map(|column| column.name.as_str()).collect();
         let free = |name: &str, kind| {
             let mut name = name.to_owned();
-            while taken.contains(&name) {
+            while taken.contains(&name.as_str()) {
                 name.push('_');
             }
-            vec![(name, kind)]
+            vec![Column::new(name, kind)]
         };
-        let columns = [
-            free("member", Kind::Integer),
-            varied,
-            free("status", Kind::Text),
-            shown,
-            free("steps", Kind::Integer),
-            free("message", Kind::Text),
-        ];
-        Sheet { columns: columns.concat(), varied: design.names().len(), width: motion.len() }
+        let steps = if of == SweepOf::Run { free("steps", Kind::Integer) } else { Vec::new() };
+        let (member, status) = (free("member", Kind::Integer), free("status", Kind::Text));
+        let message = free("message", Kind::Text);
+        let columns = [member, varied.clone(), status, results.to_vec(), steps, message].concat();
+        Sheet { of, columns, varied: varied.len(), results: results.len() }
+    }
+
+    /// What each member is.
+    pub(crate) fn of(&self) -> SweepOf {
+        self.of
     }
 
     /// The sheet as text.
     pub(crate) fn to_text(&self) -> String {
-        let columns: Vec<_> = self.columns.iter().map(|(name, kind)| json!([name, *kind as u8])).collect();
-        json!([self.varied, self.width, columns]).to_string()
+        let columns: Vec<_> =
+            self.columns.iter().map(|column| json!([column.name, column.kind as u8])).collect();
+        json!([self.of.word(), self.varied, self.results, columns]).to_string()
     }
 
     /// The sheet from its text.
     pub(crate) fn from_text(text: &str) -> Option<Sheet> {
-        let (varied, width, columns): (usize, usize, Vec<(String, u8)>) = serde_json::from_str(text).ok()?;
+        type Parts = (String, usize, usize, Vec<(String, u8)>);
+        let (of, varied, results, columns): Parts = serde_json::from_str(text).ok()?;
+        let of = SweepOf::of_word(&of)?;
         let kind = |kind| match kind {
             0 => Some(Kind::Integer),
             1 => Some(Kind::Number),
             2 => Some(Kind::Text),
             _ => None,
         };
-        let columns: Option<Vec<_>> = columns.into_iter().map(|(name, k)| Some((name, kind(k)?))).collect();
-        // member, varied quantities, status, the motion, steps and message
-        columns.filter(|all| all.len() == varied + width + 4 && width > 0).map(|columns| Sheet {
-            columns,
-            varied,
-            width,
-        })
+        let columns: Option<Vec<_>> =
+            columns.into_iter().map(|(name, k)| Some(Column::new(name, kind(k)?))).collect();
+        // member, what is varied, status, results, steps, message
+        let others = if of == SweepOf::Run { 4 } else { 3 };
+        let all = varied.checked_add(results)?.checked_add(others)?;
+        let columns = columns.filter(|columns| columns.len() == all && results > 0)?;
+        Some(Sheet { of, columns, varied, results })
     }
 
     /// Names of the varied quantities.
     pub(crate) fn varied(&self) -> impl Iterator<Item = &str> {
-        self.columns[1..=self.varied].iter().map(|(name, _)| name.as_str())
+        self.columns[1..=self.varied].iter().map(|column| column.name.as_str())
     }
 
-    /// Names of the columns of the motion.
-    pub(crate) fn motion_names(&self) -> Vec<&str> {
+    /// The columns of results.
+    fn results(&self) -> &[Column] {
         let from = self.varied + 2;
-        self.columns[from..from + self.width].iter().map(|(name, _)| name.as_str()).collect()
+        &self.columns[from..from + self.results]
     }
 
-    /// The columns of a motion of a model: those of `pc run`, with the drifts of the integrals and
-    /// the energy if wanted.
-    pub(crate) fn motion(model: &Model, drifts: bool) -> Vec<String> {
-        let document = model.document();
-        let named = |list: &[pc_model::document::NamedExpression]| {
-            list.iter().map(|item| item.name.text.clone()).collect::<Vec<_>>()
-        };
-        let energy = || vec!["energy".to_owned()];
-        let mut columns = vec!["t".to_owned()];
-        columns.extend(model.start_names());
-        columns.extend([named(&document.integrals), energy(), named(&document.outputs)].concat());
-        if drifts {
-            let kept = [named(&document.integrals), energy()].concat();
-            columns.extend(kept.iter().map(|name| format!("drift({name})")));
-        }
-        columns
+    /// Names of the numbers among the results.
+    pub(crate) fn numbers(&self) -> Vec<&str> {
+        let numbers = self.results().iter().filter(|column| column.kind == Kind::Number);
+        numbers.map(|column| column.name.as_str()).collect()
     }
 
-    /// Names and kinds.
-    pub(crate) fn columns(&self) -> &[(String, Kind)] {
+    /// All columns.
+    pub(crate) fn columns(&self) -> &[Column] {
         &self.columns
     }
 
     /// The rows of a member, at least one.
     pub(crate) fn rows<'r>(&self, record: &'r Record) -> impl Iterator<Item = Vec<Cell<'r>>> {
-        record.rows.chunks_exact(self.width).map(|row| {
+        let (mut numbers, mut words) = (record.rows.iter(), record.words.iter());
+        let mut result = move |column: &Column| match column.kind {
+            Kind::Text => words.next().map(|word| Cell::Text(word)),
+            Kind::Number | Kind::Integer => numbers.next().map(|&number| Cell::Number(number)),
+        };
+        std::iter::from_fn(move || {
             let mut cells = vec![Cell::Integer(record.member)];
             cells.extend(record.values.iter().copied().map(Cell::Number));
             cells.push(Cell::Text(record.status.word()));
-            cells.extend(row.iter().copied().map(Cell::Number));
-            cells.push(Cell::Integer(record.steps));
+            for column in self.results() {
+                cells.push(result(column)?);
+            }
+            if self.of == SweepOf::Run {
+                cells.push(Cell::Integer(record.steps));
+            }
             cells.push(Cell::Text(&record.message));
-            cells
+            Some(cells)
         })
     }
 }

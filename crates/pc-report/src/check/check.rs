@@ -23,33 +23,33 @@ pub struct Check<'g> {
     quasi_velocities: Vec<String>,
     /// First-order states.
     states: Vec<String>,
-    rank: usize,
+    pub(super) rank: usize,
     given_algebra: bool,
-    closure_residual: f64,
-    jacobi_residual: f64,
-    algebra: String,
-    mass_rank: usize,
+    pub(super) closure_residual: f64,
+    pub(super) jacobi_residual: f64,
+    pub(super) algebra: String,
+    pub(super) mass_rank: usize,
     negative_energy: bool,
     /// The number of its rows.
     free: usize,
     t_start: f64,
     start: Vec<f64>,
     largest_rate: f64,
-    frame: FrameFacts<'g>,
+    pub(super) frame: FrameFacts<'g>,
     /// Each with its kind.
     constraints: Vec<(String, String)>,
-    classified: Vec<ClassifiedConstraint>,
+    pub(super) classified: Vec<ClassifiedConstraint>,
     redundant: Vec<Redundant>,
     /// Their number.
     integrable_combinations: usize,
     /// Those that are found.
     combinations: Vec<IntegrableCombination<'g>>,
     start_residual: f64,
-    integrals: Integrals<'g>,
+    pub(super) integrals: Integrals<'g>,
     measure: Measure<'g>,
-    steady: SteadySearch,
+    pub(super) steady: SteadySearch,
     operations: Operations,
-    second: Option<Result<Agreement, VerifyError>>,
+    pub(super) second: Option<Result<Agreement, VerifyError>>,
 }
 
 impl<'g> Check<'g> {
@@ -249,7 +249,7 @@ fn algebra(system: &System<'_>) -> String {
 }
 
 /// Whether an identity with this numerical residual, relative to its terms, holds.
-fn held(residual: f64) -> String {
+pub(super) fn held(residual: f64) -> String {
     match Identity::of(residual) {
         Identity::Proved => "holds identically".to_owned(),
         Identity::Open { rest } if rest.is_finite() => format!("open: holds to {}", small(rest)),

@@ -41,24 +41,44 @@ fn motion_object(steady: &NearbySteadyMotion) -> Value {
     })
 }
 
+/// Why there is no motion to describe; none where one is found.
+fn missing(search: &SteadySearch) -> Option<String> {
+    Some(match search {
+        SteadySearch::NotAutonomous => "not looked for: the equations depend on time".to_owned(),
+        SteadySearch::SurfaceUnknown => {
+            "not looked for: the functions of the coordinates that the frame keeps are unknown".to_owned()
+        }
+        SteadySearch::Nonlinear => "not looked for: a constraint is not affine in the velocities".to_owned(),
+        SteadySearch::TooLarge { components } => {
+            format!("not looked for: {components} components of the state are too many")
+        }
+        SteadySearch::None => "none found near the start".to_owned(),
+        SteadySearch::Found(_) => return None,
+    })
+}
+
 /// The lines to print; none where no steady motion is to be expected.
 pub(super) fn lines(search: &SteadySearch, width: usize) -> Vec<String> {
     match search {
         SteadySearch::NotAutonomous => Vec::new(),
-        SteadySearch::SurfaceUnknown => {
-            vec![
-                "not looked for: the functions of the coordinates that the frame keeps are unknown"
-                    .to_owned(),
-            ]
-        }
-        SteadySearch::Nonlinear => {
-            vec!["not looked for: a constraint is not affine in the velocities".to_owned()]
-        }
-        SteadySearch::TooLarge { components } => {
-            vec![format!("not looked for: {components} components of the state are too many")]
-        }
-        SteadySearch::None => vec!["none found near the start".to_owned()],
         SteadySearch::Found(steady) => motion_lines(steady, width),
+        other => missing(other).into_iter().collect(),
+    }
+}
+
+/// The verdict on stability, or why there is none.
+pub(super) fn verdict(search: &SteadySearch) -> String {
+    match search {
+        SteadySearch::Found(steady) => stability_in_words(&steady.stability()),
+        other => missing(other).unwrap_or_default(),
+    }
+}
+
+/// The distance of the motion from the start; NaN if none is found.
+pub(super) fn distance(search: &SteadySearch) -> f64 {
+    match search {
+        SteadySearch::Found(steady) => steady.distance,
+        _ => f64::NAN,
     }
 }
 

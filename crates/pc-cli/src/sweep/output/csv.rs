@@ -9,7 +9,7 @@ use crate::sweep::sheet::{Cell, Sheet};
 
 /// A header, then a line for each row, numbers with 17 significant digits; text in quotes where it needs them.
 pub(super) fn write(sheet: &Sheet, members: &dyn Records, out: &mut FileWriter<'_>) -> io::Result<()> {
-    writeln!(out, "{}", header(sheet.columns().iter().map(|(name, _)| name)))?;
+    writeln!(out, "{}", header(sheet.columns().iter().map(|column| &column.name)))?;
     for record in members.records()? {
         for row in sheet.rows(&record?) {
             for (j, cell) in row.iter().enumerate() {

@@ -15,7 +15,7 @@ pub(super) fn write(
     members: &dyn Records,
     out: &mut FileWriter<'_>,
 ) -> io::Result<()> {
-    let names: Vec<&str> = sheet.columns().iter().map(|(name, _)| name.as_str()).collect();
+    let names: Vec<&str> = sheet.columns().iter().map(|column| column.name.as_str()).collect();
     write!(out, "{{\n\"model\": {},\n\"columns\": {},\n\"rows\": [", json!(title), json!(names))?;
     let mut comma = "";
     for record in members.records()? {

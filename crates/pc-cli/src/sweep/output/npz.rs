@@ -9,7 +9,7 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 use crate::output::atomic::FileWriter;
 use crate::output::npz::entry;
 use crate::sweep::journal::Records;
-use crate::sweep::sheet::{Cell, Kind, Sheet};
+use crate::sweep::sheet::{Cell, Column, Kind, Sheet};
 
 /// One array for each column, of `f64`, `u64` or text; the archive has no date.
 pub(super) fn write(sheet: &Sheet, members: &dyn Records, out: &mut FileWriter<'_>) -> io::Result<()> {
@@ -19,7 +19,7 @@ pub(super) fn write(sheet: &Sheet, members: &dyn Records, out: &mut FileWriter<'
         .last_modified_time(DateTime::default())
         .large_file(true);
     let mut archive = ZipWriter::new(out);
-    for (j, (name, kind)) in sheet.columns().iter().enumerate() {
+    for (j, Column { name, kind }) in sheet.columns().iter().enumerate() {
         archive.start_file(format!("{}.npy", entry(name)), options)?;
         let dtype = match kind {
             Kind::Integer => "<u8".to_owned(),

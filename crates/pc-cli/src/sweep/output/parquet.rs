@@ -12,7 +12,7 @@ use parquet::schema::types::Type;
 
 use crate::output::atomic::FileWriter;
 use crate::sweep::journal::Records;
-use crate::sweep::sheet::{Cell, Kind, Sheet};
+use crate::sweep::sheet::{self, Cell, Kind, Sheet};
 
 /// Most rows in memory.
 const GROUP: usize = 65_536;
@@ -47,7 +47,7 @@ pub(super) fn write(sheet: &Sheet, members: &dyn Records, out: &mut FileWriter<'
 }
 
 fn schema(sheet: &Sheet) -> Result<Type, ParquetError> {
-    let field = |(name, kind): &(String, Kind)| {
+    let field = |sheet::Column { name, kind }: &sheet::Column| {
         let (physical, logical) = match kind {
             Kind::Integer => (Physical::INT64, Some(LogicalType::integer(64, false))),
             Kind::Number => (Physical::DOUBLE, None),
@@ -61,7 +61,7 @@ fn schema(sheet: &Sheet) -> Result<Type, ParquetError> {
 }
 
 fn empty(sheet: &Sheet) -> Vec<Column> {
-    let column = |(_, kind): &(String, Kind)| match kind {
+    let column = |column: &sheet::Column| match column.kind {
         Kind::Integer => Column::Integers(Vec::new()),
         Kind::Number => Column::Numbers(Vec::new()),
         Kind::Text => Column::Texts(Vec::new()),

@@ -1,0 +1,116 @@
+//! The eigenvalues of each member.
+
+use std::ops::Range;
+
+use pc_analysis::{Eigenvalue, Linearization};
+use pc_model::Model;
+use pc_solve::{Ending, Ensemble, EnsembleError};
+
+use super::design::Design;
+use super::record::{Record, Status};
+use super::shard::Shard;
+use super::sheet::{Column, Kind};
+use super::work::{Consume, Members, Work, message};
+use crate::args::steady::{Cyclic, StateArguments};
+use crate::error::CliError;
+use crate::exit_code;
+use crate::linear::ground::Ground;
+use crate::linear::near::Varied;
+use crate::report::notes::say_dropped;
+
+/// Linearizes the equations of each member at a state near its start.
+pub(crate) struct Linearizations {
+    members: Members,
+    varied: Varied,
+    columns: Vec<Column>,
+    /// Most eigenvalues of a member.
+    most: usize,
+}
+
+impl Linearizations {
+    /// # Errors
+    /// [`CliError`] if the model as it is cannot be linearized at any state.
+    pub(crate) fn new(model: Model, design: Design, state: &StateArguments) -> Result<Self, CliError> {
+        let (varied, most) = {
+            let graph = model.graph();
+            let mut ground = Ground::new(&model, &graph)?;
+            say_dropped(&ground.assembly);
+            let varied = Varied::of(&model, &ground, state);
+            let most = varied.most_components(&mut ground)?;
+            (varied, most)
+        };
+        let numbers = (1..=most).flat_map(|i| [format!("re{i}"), format!("im{i}")]);
+        let mut columns: Vec<Column> = numbers.map(|name| Column::new(name, Kind::Number)).collect();
+        columns.push(Column::new("stability", Kind::Text));
+        Ok(Linearizations { members: Members::new(model, design, &columns), varied, columns, most })
+    }
+
+    /// What the numbers depend on beside the model.
+    pub(crate) fn depends_on(state: &StateArguments) -> [(&'static str, String); 3] {
+        [
+            ("--at", state.at().word().to_owned()),
+            ("--hold", state.hold.join(", ")),
+            ("--cyclic", state.cyclic.map_or("not given", Cyclic::word).to_owned()),
+        ]
+    }
+
+    fn record(&self, member: u64) -> Option<Record> {
+        if self.members.is_over() {
+            return None;
+        }
+        let blank = self.members.blank(member);
+        let refused = |status, message: &str, blank| self.members.ended(status, message, blank);
+        match self.varied.linearization(&self.members.model(&blank)) {
+            Ok(linear) if linear.components.len() > self.most => {
+                let (found, most) = (linear.components.len(), self.most);
+                let message = format!(
+                    "{found} eigenvalues, where the model as it is has {most}: the constraints have another rank here"
+                );
+                refused(Status::Refused, &message, blank)
+            }
+            Ok(linear) => Some(Record {
+                status: Status::Completed,
+                rows: parts(linear.spectrum.eigenvalues(), self.most),
+                words: vec![stability(&linear)],
+                ..blank
+            }),
+            Err(error) => {
+                let nothing_found = error.exit_code() == exit_code::FAILED;
+                let status = if nothing_found { Status::Failed } else { Status::Refused };
+                refused(status, &message(&error), blank)
+            }
+        }
+    }
+}
+
+/// Real and imaginary parts, filled up where there are fewer.
+fn parts(eigenvalues: &[Eigenvalue], most: usize) -> Vec<f64> {
+    let mut parts: Vec<f64> = eigenvalues.iter().flat_map(|value| [value.real, value.imaginary]).collect();
+    parts.resize(2 * most, f64::NAN);
+    parts
+}
+
+/// The verdict of the first approximation.
+fn stability(linear: &Linearization) -> String {
+    if linear.is_steady { linear.spectrum.verdict().to_string() } else { "not steady".to_owned() }
+}
+
+impl Work for Linearizations {
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn records(
+        &self,
+        ensemble: &Ensemble<'_>,
+        shard: Shard,
+        places: Range<u64>,
+        consume: Consume<'_>,
+    ) -> Result<Ending, EnsembleError> {
+        ensemble.map(places, |place, _| self.record(shard.member(place)), consume)
+    }
+
+    fn panicked(&self, member: u64, message: &str) -> Record {
+        self.members.panicked(member, message)
+    }
+}
