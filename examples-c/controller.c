@@ -1,5 +1,4 @@
-/* A force computed by the program: a disk rolls too slowly to stay upright, and a steering torque
- * keeps it upright. */
+/* A force computed by the program: a steering torque keeps a slowly rolling disk upright. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -112,8 +111,7 @@ int main(void)
     pc_system_free(steered);
     pc_system_free(left_alone);
     /* ω3 tends to 0.978, where the slowest root is −1.09: e^(−21) of the lean remains. The balance
-     * has the errors of the tolerance in a few thousand steps, and of Simpson's rule with h =
-     * 1/400. */
+     * has the errors of the tolerance in a few thousand steps, and of Simpson's rule, h = 1/400. */
     return ok && freed == 1 && fabs(y[THETA] - HALF_PI) < 1e-8 && fabs(y[W1]) + fabs(y[W2]) < 1e-7 &&
                    fallen[THETA] - HALF_PI > 0.4 && fabs(off) < 1e-8 && fabs(off_free) < 1e-8
                ? 0

@@ -1,6 +1,5 @@
-/* Your own CVODE with the equations of this library, in one program with the library's CVODE: a
- * pendulum in Cartesian coordinates, kept on its rod by projection, followed through its passages
- * of the lowest point. */
+/* Your own CVODE with the equations of this library, beside the library's CVODE: a pendulum in
+ * Cartesian coordinates, kept on its rod by projection, and its passages of the lowest point. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -115,7 +114,6 @@ int main(void)
     pc_cvode_free(&equations);
     pc_solver_free(solver);
     pc_system_free(system);
-    /* A few thousand steps with local errors of 1e-10, which grow with time; roots inside steps
-     * have one such error. */
+    /* A few thousand steps with local errors of 1e-10, which grow; roots have one such error. */
     return late < 1e-6 && apart < 1e-6 && off < 1e-7 ? 0 : 1;
 }

@@ -1,6 +1,5 @@
-/* The functions that pc/cvode.h gives CVODE, one by one, on a heavy top with integrals: the
- * Jacobian as a dense and as a sparse matrix, its product with a vector, a projection with the
- * error estimate, and errors where f cannot be evaluated. */
+/* The functions that pc/cvode.h gives CVODE, on a heavy top: the Jacobian as a dense and as a sparse
+ * matrix, its product with a vector, a projection with the error estimate, and errors of f. */
 #include <math.h>
 #include <stdio.h>
 
@@ -83,8 +82,7 @@ int main(void)
     }
     check(i == 0 && worst < 1e-13, "the product is that of the matrix");
 
-    /* The projection to the unit sphere is along the radius, and removes the radial part of an
-     * error. */
+    /* Projection to the unit sphere is radial, and removes the radial part of an error. */
     for (i = 0; i < DIM; i++) {
         state[i] *= i < 3 ? 1.001 : 1.0;
         e[i] = expected[i] = 1e-6 * (1.0 + i);
@@ -97,8 +95,7 @@ int main(void)
     /* The tolerance allows for e² and for rounding in e, a difference of numbers of order 1. */
     check(i == 0 && worst < 1e-11, "the projection, and that of the error estimate");
 
-    /* A root at 0.25 of the area integral, which is 1.26 at the start and linear in the vertical.
-     * */
+    /* A root at 0.25 of the area integral: 1.26 at the start, linear in the vertical. */
     equations.roots = &root;
     equations.roots_length = 1;
     i = pc_cvode_roots(t, y, &g, &equations);
