@@ -20,12 +20,12 @@ const ROUNDING: f64 = 1e-12;
 /// Bodies placed by expressions have it as well as those on joints; parameters in it are bound with the others.
 #[test]
 fn gravity_is_that_of_the_bodies() {
-    let graph = Graph::new();
-    let [m, g] = graph.symbols(["m", "g"]);
-    let falling = |builder: SystemBuilder<'_>| {
+    fn falling<'g>(builder: SystemBuilder<'g>) -> [[Expr<'g>; 3]; 2] {
         let system = builder.build().unwrap();
         [system.gravity(), system.with_parameters_bound().gravity()]
-    };
+    }
+    let graph = Graph::new();
+    let [m, g] = graph.symbols(["m", "g"]);
     let particle = || {
         let builder = System::builder(&graph).parameter(m, 1.0).parameter(g, 10.0).coordinates(["x", "y"]);
         builder.particle(|_, x, _| Particle::new(m, [x[0], x[1]]))
