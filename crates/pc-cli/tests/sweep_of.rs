@@ -174,8 +174,8 @@ fn killed(place: &Place, arguments: &[&str], bytes: u64) -> bool {
 #[test]
 fn what_was_killed_goes_on_and_gives_the_same_bytes() {
     for (options, step) in [
-        (["--of", "check", "--vary", "Ω=0:2:60"], 4001),
-        (["--of", "linearize", "--vary", "pull=0:1.5:4000"], 90_001),
+        (["--of", "check", "--vary", "Ω=0:2:60"], 1001),
+        (["--of", "linearize", "--vary", "pull=0:1.5:4000"], 20_001),
     ] {
         let place = Place::new(BEAD);
         let undisturbed = place.swept("whole.csv", &options);
@@ -183,7 +183,9 @@ fn what_was_killed_goes_on_and_gives_the_same_bytes() {
         // Never at the same place of a record.
         let kills = (0..4).filter(|i| killed(&place, &sweep, step + 77 * i)).count();
         assert!(kills >= 1, "{options:?} is over too soon for this test");
-        place.ends(&sweep, 0, &["were finished before"]);
+        // Unless the last one came to its end before it could be killed.
+        let is_left = place.at("a.csv.partial").exists();
+        place.ends(&sweep, 0, if is_left { &["were finished before"] } else { &[] });
         assert!(fs::read(place.at("a.csv")).expect("a table") == undisturbed, "{options:?}");
     }
 }
