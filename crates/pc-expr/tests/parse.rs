@@ -154,6 +154,9 @@ fn messages() {
     fails("2(y + 1)", " ^", "expected an operator before `(`", "multiplication is written `2*(…)`");
     fails("(a)(b)", "   ^", "expected an operator before `(`", "multiplication is written `(…)*(…)`");
     fails("sin(x y')", "      ^^", "expected an operator before `y'`", "multiplication is written `x*y'`");
+    fails("1/2 m x'^2", "    ^", "expected an operator before `m`", "multiplication is written `1/2*m`");
+    fails("a + x^2 y", "        ^", "expected an operator before `y`", "multiplication is written `x^2*y`");
+    fails("(a + b)*1e-3 y", "             ^", "expected an operator before `y`", "multiplication is written `1e-3*y`");
     fails("1.2.3", "   ^^", "expected an operator before `.3`", "multiplication is written `1.2*.3`");
     fails("1 + 2e999", "    ^^^^^", "number out of range", "the largest number is about 1.8e308");
     fails("a + sni(x)", "    ^^^", "unknown function `sni`", "did you mean `sin`?");

@@ -17,6 +17,25 @@ type Vector = [f64; 3];
 /// Products of numbers of order one, sums of some dozen terms: a few hundred units of rounding of the largest.
 const ROUNDING: f64 = 1e-12;
 
+/// Bodies placed by expressions have it as well as those on joints; parameters in it are bound with the others.
+#[test]
+fn gravity_is_that_of_the_bodies() {
+    fn falling<'g>(builder: SystemBuilder<'g>) -> [[Expr<'g>; 3]; 2] {
+        let system = builder.build().unwrap();
+        [system.gravity(), system.with_parameters_bound().gravity()]
+    }
+    let graph = Graph::new();
+    let [m, g] = graph.symbols(["m", "g"]);
+    let particle = || {
+        let builder = System::builder(&graph).parameter(m, 1.0).parameter(g, 10.0).coordinates(["x", "y"]);
+        builder.particle(|_, x, _| Particle::new(m, [x[0], x[1]]))
+    };
+    let [symbolic, bound] = falling(particle().gravity(|_| [Expr::ZERO, -g]));
+    assert_eq!(symbolic, [Expr::ZERO, -g, Expr::ZERO]);
+    assert_eq!(bound, [Expr::ZERO, (-10.0).into(), Expr::ZERO]);
+    assert_eq!(falling(particle()), [[Expr::ZERO; 3]; 2]);
+}
+
 fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

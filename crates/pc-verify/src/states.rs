@@ -39,7 +39,7 @@ impl Derivation {
         scale: f64,
         random: &mut Random,
     ) -> Result<Place, Irregular> {
-        let time = scale * random.signed();
+        let time = self.within_tables(near.t, scale * random.signed());
         let along: Vec<f64> = near.w.iter().map(|_| scale * random.signed()).collect();
         let mut at = self.moved(near, time, &along)?;
         let fastest = near.w.iter().fold(0.0f64, |fastest, w| fastest.max(w.abs()));
@@ -50,6 +50,12 @@ impl Derivation {
             *z += scale * (1.0 + z.abs()) * random.signed();
         }
         self.on_constraints(at)
+    }
+
+    /// A step of time, or the same one back where inputs have values only there: a table begins where a motion does.
+    fn within_tables(&self, t: f64, step: f64) -> f64 {
+        let is_known = |t: f64| self.text.tables.iter().all(|(_, table)| table.at(t).is_some());
+        if !is_known(t + step) && is_known(t - step) { -step } else { step }
     }
 
     /// The place reached from another one by the motion with velocity b ξ + τ b_0 for a unit of time, during

@@ -38,6 +38,9 @@ enum Token<'i> {
     End,
 }
 
+/// The longest product that is shown as a whole, in characters.
+const LONGEST_PRODUCT: usize = 24;
+
 type Input<'i> = LocatingSlice<&'i str>;
 type Lexed<T> = winnow::Result<T, EmptyError>;
 
@@ -112,16 +115,34 @@ impl<'i> Parser<'i> {
             Token::Unknown(character) => self.fail(ParseErrorKind::UnexpectedCharacter(character)),
             Token::Symbol(',') => self.fail(ParseErrorKind::StrayComma),
             _ => {
-                let left = match excerpt(self.text, self.last) {
-                    close if close == ")" => "(…)".into(),
-                    left => left,
-                };
+                let left = self.product_so_far();
                 let found = excerpt(self.text, self.span);
                 let right = if found == "(" { "(…)" } else { &found };
                 let product = format!("{left}*{right}");
                 self.fail(ParseErrorKind::ExpectedOperator { found, product })
             }
         }
+    }
+
+    /// The operand before the next token with what it multiplies or divides: `1/2` before `m` in `x + 1/2 m`.
+    fn product_so_far(&self) -> String {
+        let last = excerpt(self.text, self.last);
+        if last == ")" {
+            return "(…)".into();
+        }
+        let before = &self.text[..self.last.end];
+        let mut input = LocatingSlice::new(before);
+        let mut start = 0;
+        while let Ok((token, place)) = token(&mut input) {
+            match token {
+                Token::End => break,
+                // Behind a parenthesis the product goes on, but is shown from there.
+                Token::Symbol('+' | '-' | ',' | '(' | ')') => start = place.end,
+                _ => {}
+            }
+        }
+        let product = before[start..].trim_start_matches([' ', '\t', '\r', '\n', '*', '/', '^']);
+        if product.chars().count() > LONGEST_PRODUCT { last } else { product.into() }
     }
 
     fn sum(&mut self) -> Parsed {

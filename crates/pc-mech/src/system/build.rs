@@ -63,6 +63,8 @@ impl<'g> SystemBuilder<'g> {
         graph.check(&self.states.iter().map(|&(_, rate)| rate).collect::<Vec<_>>())?;
         graph.check(&frame.b().nonzero_entries())?;
         graph.check(frame.b0())?;
+        let acceleration = self.gravity.unwrap_or_default();
+        let gravity = std::array::from_fn(|i| acceleration.get(i).copied().unwrap_or(Expr::ZERO));
         Ok(System {
             frame,
             structure,
@@ -76,6 +78,7 @@ impl<'g> SystemBuilder<'g> {
             integrals: self.integrals,
             outputs: self.outputs,
             bodies,
+            gravity,
             tree,
         })
     }

@@ -28,6 +28,8 @@ pub struct System<'g> {
     pub(crate) integrals: Vec<(String, Expr<'g>)>,
     pub(crate) outputs: Vec<(String, Expr<'g>)>,
     pub(crate) bodies: Bodies<'g>,
+    /// The acceleration of gravity, filled up by zeros.
+    pub(crate) gravity: [Expr<'g>; 3],
     /// The bodies joined by joints of which it consists, if nothing else in it has inertia.
     pub(crate) tree: Option<Box<TreeSystem<'g>>>,
 }
@@ -93,10 +95,10 @@ impl<'g> System<'g> {
         self.tree().filter(|tree| tree.is_large())
     }
 
-    /// The acceleration of gravity of a [tree](System::tree), along the axes of the world; zero of a system
-    /// without one.
+    /// The [acceleration of gravity](crate::SystemBuilder::gravity) of its bodies, along the axes of the world; in a plane the last
+    /// component is zero, and all are of a system without it.
     pub fn gravity(&self) -> [Expr<'g>; 3] {
-        self.tree.as_ref().map_or([Expr::ZERO; 3], |tree| tree.gravity)
+        self.gravity
     }
 
     /// The parameters that are [functions of time](crate::SystemBuilder::signal).
@@ -214,7 +216,7 @@ impl<'g> System<'g> {
     }
 
     /// The same system with `put` applied to the expressions outside the frame: Lagrangian, forces,
-    /// integrals, outputs, rates of the states, velocities of bodies.
+    /// integrals, outputs, rates of the states, velocities of bodies, gravity.
     #[must_use]
     pub(crate) fn map_expressions(self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'g>>) -> System<'g> {
         let one = |x: Expr<'g>| put(&[x])[0];
@@ -227,6 +229,7 @@ impl<'g> System<'g> {
             outputs: named(self.outputs),
             states: self.states.into_iter().map(|(z, rate)| (z, one(rate))).collect(),
             bodies: self.bodies.map(&put),
+            gravity: self.gravity.map(one),
             tree: None,
             ..self
         }

@@ -33,6 +33,7 @@ impl<'g> System<'g> {
             integrals: named(&self.integrals),
             outputs: named(&self.outputs),
             bodies: self.bodies.map(all),
+            gravity: self.gravity.map(put),
             tree: Some(Box::new(tree)),
         }
     }
