@@ -235,8 +235,3 @@ fn types_and_lengths_are_known() {
     }
     assert_eq!(refusal(&schema, &json!([])), Some(": type \"object\"".to_owned()));
 }
-
-#[test]
-fn the_schema_of_the_documentation_is_that_of_the_program() {
-    assert_eq!(fs::read_to_string(Path::new(ROOT).join("docs/model.schema.json")).unwrap(), SCHEMA);
-}

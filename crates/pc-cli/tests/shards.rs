@@ -1,10 +1,11 @@
 //! `pc sweep --shard` and `pc merge`: the same bytes as one process, whatever happens to the
 //! processes of the shards.
 
+mod sweeps;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
+
+use sweeps::{Place, killed};
 
 /// A blade on ice, pushed off its mass centre.
 const SLEIGH: &str = r#"
@@ -31,61 +32,21 @@ const RANDOM: [&str; 6] = ["--samples", "500", "--random", "ω=normal(1,0.3)", "
 /// Members with m = 0 are refused: the mass matrix is singular.
 const GRID: [&str; 4] = ["--vary", "m=0,1,2", "--vary", "a=0.1:1:7"];
 
-struct Place(tempfile::TempDir);
-
-impl Place {
-    fn new() -> Place {
-        let directory = tempfile::tempdir().expect("a directory");
-        fs::write(directory.path().join("model.toml"), SLEIGH).expect("written");
-        Place(directory)
-    }
-
-    fn at(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn pc(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
-        command.args(arguments).current_dir(self.0.path()).stdin(Stdio::null());
-        command
-    }
-
-    #[track_caller]
-    fn ends(&self, arguments: &[&str], code: i32, mentions: &[&str]) {
-        let output = self.pc(arguments).output().expect("pc runs");
-        let text = said(&output);
-        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {text}");
-        for mention in mentions {
-            assert!(text.contains(mention), "{arguments:?} should mention {mention}: {text}");
-        }
-    }
-
-    /// The sweep into `table`, or a shard of it.
-    fn sweep<'a>(table: &'a str, members: &[&'a str], shard: &'a str) -> Vec<&'a str> {
-        let whole = [&["sweep", "model.toml", "-o", table][..], members].concat();
-        if shard.is_empty() { whole } else { [&whole[..], &["--shard", shard]].concat() }
-    }
-
-    #[track_caller]
-    fn swept(&self, table: &str, members: &[&str]) -> Vec<u8> {
-        self.ends(&Place::sweep(table, members, ""), 0, &[]);
-        fs::read(self.at(table)).expect("a table")
-    }
-
-    #[track_caller]
-    fn merged(&self, table: &str, shards: &[&str]) -> Vec<u8> {
-        self.ends(&[&["merge", "-o", table][..], shards].concat(), 0, &[]);
-        fs::read(self.at(table)).expect("a table")
-    }
+/// The sweep into `table`, or a shard of it.
+fn sweep<'a>(table: &'a str, members: &[&'a str], shard: &'a str) -> Vec<&'a str> {
+    let whole = [&["sweep", "model.toml", "-o", table][..], members].concat();
+    if shard.is_empty() { whole } else { [&whole[..], &["--shard", shard]].concat() }
 }
 
-fn said(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("UTF-8")
+#[track_caller]
+fn merged(place: &Place, table: &str, shards: &[&str]) -> Vec<u8> {
+    place.ends(&[&["merge", "-o", table][..], shards].concat(), 0, &[]);
+    fs::read(place.at(table)).expect("a table")
 }
 
 #[test]
 fn shards_give_the_bytes_of_one_process() {
-    let place = Place::new();
+    let place = Place::new(SLEIGH);
     let mut extensions = vec!["csv", "json", "npz"];
     if cfg!(feature = "parquet") {
         extensions.push("parquet");
@@ -94,22 +55,22 @@ fn shards_give_the_bytes_of_one_process() {
         let (whole, table) = (format!("whole.{extension}"), format!("a.{extension}"));
         let undisturbed = place.swept(&whole, &GRID);
         for shard in ["1/3", "2/3", "3/3"] {
-            place.ends(&Place::sweep(&table, &GRID, shard), 0, &["  shard    ", shard, "for pc merge"]);
+            place.ends(&sweep(&table, &GRID, shard), 0, &["  shard    ", shard, "for pc merge"]);
         }
         assert!(!place.at(&table).exists(), "there is no table of a part");
         let shards = [3, 1, 2].map(|i| format!("{table}.shard-{i}-of-3"));
         let shards: Vec<&str> = shards.iter().map(String::as_str).collect();
-        assert!(place.merged(&table, &shards) == undisturbed, "{extension}");
+        assert!(merged(&place, &table, &shards) == undisturbed, "{extension}");
         assert!(shards.iter().all(|shard| place.at(shard).exists()), "they stay where they are");
     }
     // With all rows, and more shards than members.
     let members = ["--vary", "a=0.1:1:2", "--rows", "3"];
     let undisturbed = place.swept("rows.csv", &members);
     for shard in ["1/3", "2/3", "3/3"] {
-        place.ends(&Place::sweep("b.csv", &members, shard), 0, &[]);
+        place.ends(&sweep("b.csv", &members, shard), 0, &[]);
     }
     let shards = ["b.csv.shard-1-of-3", "b.csv.shard-2-of-3", "b.csv.shard-3-of-3"];
-    assert!(place.merged("b.csv", &shards) == undisturbed);
+    assert!(merged(&place, "b.csv", &shards) == undisturbed);
     place.ends(
         &["merge", "a.csv.shard-1-of-3", "a.csv.shard-2-of-3", "a.csv.shard-3-of-3", "-o", "c.csv"],
         0,
@@ -119,9 +80,9 @@ fn shards_give_the_bytes_of_one_process() {
 
 #[test]
 fn shards_that_do_not_belong_together_are_named() {
-    let place = Place::new();
+    let place = Place::new(SLEIGH);
     for shard in ["1/3", "2/3"] {
-        place.ends(&Place::sweep("a.csv", &GRID, shard), 0, &[]);
+        place.ends(&sweep("a.csv", &GRID, shard), 0, &[]);
     }
     let (one, two) = ("a.csv.shard-1-of-3", "a.csv.shard-2-of-3");
     let refuses = |shards: &[&str], mentions: &[&str]| {
@@ -136,61 +97,43 @@ fn shards_that_do_not_belong_together_are_named() {
     // Shards of other sweeps: another tolerance, another text, another number of shards, a whole
     // sweep.
     let other = [&GRID[..], &["--rtol", "1e-6"]].concat();
-    place.ends(&Place::sweep("b.csv", &other, "3/3"), 0, &[]);
+    place.ends(&sweep("b.csv", &other, "3/3"), 0, &[]);
     refuses(
         &[one, two, "b.csv.shard-3-of-3"],
         &["b.csv.shard-3-of-3", "not of the same sweep", "--rtol 1e-6"],
     );
-    place.ends(&Place::sweep("c.csv", &GRID, "3/4"), 0, &[]);
+    place.ends(&sweep("c.csv", &GRID, "3/4"), 0, &[]);
     refuses(
         &[one, two, "c.csv.shard-3-of-4"],
         &["not of the same sweep", "--shard 3/4, where there it is 1/3"],
     );
     // An incomplete shard, which continues.
     let whole = "a.csv.shard-3-of-3";
-    place.ends(&Place::sweep("a.csv", &GRID, "3/3"), 0, &[]);
+    place.ends(&sweep("a.csv", &GRID, "3/3"), 0, &[]);
     let bytes = fs::read(place.at(whole)).expect("a shard");
     fs::write(place.at(whole), &bytes[..bytes.len() - 5]).expect("written");
     refuses(&[one, two, whole], &[whole, "the shard 3/3, has 6 of its 7 members", "repeat its command"]);
-    place.ends(&Place::sweep("a.csv", &GRID, "3/3"), 0, &["6 were finished before"]);
+    place.ends(&sweep("a.csv", &GRID, "3/3"), 0, &["6 were finished before"]);
     assert!(fs::read(place.at(whole)).expect("a shard") == bytes, "the same shard");
     // A shard that is being written.
     let held = fs::File::open(place.at(two)).expect("a file");
     held.lock().expect("locked");
     refuses(&[one, two, whole], &["another sweep is writing", two]);
     held.unlock().expect("unlocked");
-    assert!(place.merged("a.csv", &[one, two, whole]) == place.swept("whole.csv", &GRID));
+    assert!(merged(&place, "a.csv", &[one, two, whole]) == place.swept("whole.csv", &GRID));
     for shard in ["0/3", "4/3", "1", "x/y"] {
-        place.ends(&Place::sweep("a.csv", &GRID, shard), 2, &["write I/N"]);
+        place.ends(&sweep("a.csv", &GRID, shard), 2, &["write I/N"]);
     }
-}
-
-/// Kills the process as soon as its journal has `bytes` bytes; returns whether it was killed before
-/// its end.
-fn killed(place: &Place, arguments: &[&str], journal: &Path, bytes: u64) -> bool {
-    let length = || fs::metadata(journal).map_or(0, |metadata| metadata.len());
-    let before = length();
-    let mut child = place.pc(arguments).stderr(Stdio::null()).spawn().expect("pc starts");
-    let start = Instant::now();
-    while length() < before + bytes {
-        if child.try_wait().expect("a child").is_some() {
-            return false;
-        }
-        assert!(start.elapsed() < Duration::from_secs(60), "nothing happens");
-        std::thread::sleep(Duration::from_micros(200));
-    }
-    let _ = child.kill();
-    child.wait().expect("ended").code().is_none()
 }
 
 #[test]
 fn killed_shards_continue_where_they_were() {
-    let place = Place::new();
+    let place = Place::new(SLEIGH);
     let undisturbed = place.swept("whole.csv", &RANDOM);
     let mut kills = 0;
     for shard in ["1/2", "2/2"] {
         let journal = place.at(&format!("a.csv.shard-{}-of-2", &shard[..1]));
-        let arguments = Place::sweep("a.csv", &RANDOM, shard);
+        let arguments = sweep("a.csv", &RANDOM, shard);
         // Each time later than before, and at another place of a record.
         for bytes in (0..10).map(|i| 700 + 977 * i) {
             if !killed(&place, &arguments, &journal, bytes) {
@@ -202,5 +145,5 @@ fn killed_shards_continue_where_they_were() {
     }
     assert!(kills >= 6, "{kills} kills");
     let shards = ["a.csv.shard-1-of-2", "a.csv.shard-2-of-2"];
-    assert!(place.merged("a.csv", &shards) == undisturbed);
+    assert!(merged(&place, "a.csv", &shards) == undisturbed);
 }

@@ -1,11 +1,11 @@
 //! `pc sweep --of linearize` and `--of check`: rows are those of single commands, and the same bytes whatever happens on the way.
 
+mod sweeps;
+
 use std::fs;
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
 
 use serde_json::Value;
+use sweeps::{Place, killed};
 
 /// λ² = Ω² cos 2θ − g cos θ at an equilibrium; without one for a pull of more than g.
 const BEAD: &str = r#"
@@ -21,46 +21,6 @@ potential = "-g*cos(θ)"
 [forces]
 "θ" = "pull"
 "#;
-
-/// A directory with a model in it.
-struct Place(tempfile::TempDir);
-
-impl Place {
-    fn new(model: &str) -> Place {
-        let directory = tempfile::tempdir().expect("a directory");
-        fs::write(directory.path().join("model.toml"), model).expect("written");
-        Place(directory)
-    }
-
-    fn at(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn pc(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
-        command.args(arguments).current_dir(self.0.path()).stdin(Stdio::null());
-        command
-    }
-
-    #[track_caller]
-    fn ends(&self, arguments: &[&str], code: i32, mentions: &[&str]) -> Output {
-        let output = self.pc(arguments).output().expect("pc runs");
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {text}");
-        for mention in mentions {
-            assert!(text.contains(mention), "{arguments:?} should mention {mention}: {text}");
-        }
-        output
-    }
-
-    /// The bytes of a sweep of `model.toml`.
-    #[track_caller]
-    fn swept(&self, table: &str, options: &[&str]) -> Vec<u8> {
-        self.ends(&[&["sweep", "model.toml", "-o", table][..], options].concat(), 0, &[]);
-        assert!(!self.at(&format!("{table}.partial")).exists(), "the journal is gone");
-        fs::read(self.at(table)).expect("a table")
-    }
-}
 
 /// A table of JSON.
 struct Table {
@@ -154,23 +114,6 @@ fn the_bytes_depend_neither_on_threads_nor_on_shards() {
     }
 }
 
-/// Kills the sweep as soon as its journal has grown; whether it was at work.
-fn killed(place: &Place, arguments: &[&str], bytes: u64) -> bool {
-    let length = || fs::metadata(place.at("a.csv.partial")).map_or(0, |metadata| metadata.len());
-    let before = length();
-    let mut child = place.pc(arguments).stderr(Stdio::null()).spawn().expect("pc starts");
-    let start = Instant::now();
-    while length() < before + bytes {
-        if child.try_wait().expect("a child").is_some() {
-            return false;
-        }
-        assert!(start.elapsed() < Duration::from_secs(60), "nothing happens");
-        std::thread::sleep(Duration::from_micros(200));
-    }
-    let _ = child.kill();
-    child.wait().expect("ended").code().is_none()
-}
-
 #[test]
 fn what_was_killed_goes_on_and_gives_the_same_bytes() {
     for (options, step) in [
@@ -181,7 +124,8 @@ fn what_was_killed_goes_on_and_gives_the_same_bytes() {
         let undisturbed = place.swept("whole.csv", &options);
         let sweep = [&["sweep", "model.toml", "-o", "a.csv"][..], &options].concat();
         // Never at the same place of a record.
-        let kills = (0..4).filter(|i| killed(&place, &sweep, step + 77 * i)).count();
+        let kills =
+            (0..4).filter(|i| killed(&place, &sweep, &place.at("a.csv.partial"), step + 77 * i)).count();
         assert!(kills >= 1, "{options:?} is over too soon for this test");
         // Unless the last one came to its end before it could be killed.
         let is_left = place.at("a.csv.partial").exists();
@@ -271,10 +215,10 @@ fn options_that_say_nothing_are_refused() {
         let said = format!("{option} says nothing of what `--of {of}` finds; leave it out");
         place.ends(&[&sweep[..], &options].concat(), 2, &[&said]);
     }
-    assert_eq!(fs::read_dir(place.0.path()).expect("a directory").count(), 1, "nothing is left");
+    assert_eq!(fs::read_dir(place.at("")).expect("a directory").count(), 1, "nothing is left");
     // What another sweep has left is not gone on with.
     let cut = ["sweep", "model.toml", "-o", "a.csv", "--vary", "g=1:2:300"];
-    assert!(killed(&place, &[&cut[..], &["--of", "check"]].concat(), 3000));
+    assert!(killed(&place, &[&cut[..], &["--of", "check"]].concat(), &place.at("a.csv.partial"), 3000));
     place.ends(&[&cut[..], &["--of", "linearize"]].concat(), 2, &["--of check, where now it is linearize"]);
 }
 

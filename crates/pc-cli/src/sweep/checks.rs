@@ -18,15 +18,13 @@ use crate::report::verification::checked;
 /// Checks each member.
 pub(crate) struct Checks {
     members: Members,
-    columns: Vec<Column>,
 }
 
 impl Checks {
     pub(crate) fn new(model: Model, design: Design) -> Checks {
         let kind = |is_number| if is_number { Kind::Number } else { Kind::Text };
-        let columns: Vec<Column> =
-            Check::FINDINGS.iter().map(|&(name, is_number)| Column::new(name, kind(is_number))).collect();
-        Checks { members: Members::new(model, design, &columns), columns }
+        let columns = Check::FINDINGS.iter().map(|&(name, is_number)| Column::new(name, kind(is_number)));
+        Checks { members: Members::new(model, design, columns.collect()) }
     }
 
     fn record(&self, member: u64) -> Option<Record> {
@@ -58,8 +56,8 @@ fn findings(model: &Model) -> Result<[Finding; Check::FINDINGS.len()], CliError>
 }
 
 impl Work for Checks {
-    fn columns(&self) -> &[Column] {
-        &self.columns
+    fn members(&self) -> &Members {
+        &self.members
     }
 
     fn records(
@@ -70,9 +68,5 @@ impl Work for Checks {
         consume: Consume<'_>,
     ) -> Result<Ending, EnsembleError> {
         ensemble.map(places, |place, _| self.record(shard.member(place)), consume)
-    }
-
-    fn panicked(&self, member: u64, message: &str) -> Record {
-        self.members.panicked(member, message)
     }
 }

@@ -64,7 +64,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let threads =
         arguments.threads.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let (work, depends_on) = begun(arguments, model, design, threads)?;
-    let sheet = Sheet::new(arguments.of, &names, work.columns());
+    let sheet = Sheet::new(arguments.of, &names, work.members().columns());
     if picture.is_some() {
         let counts: Vec<u64> = arguments.vary.iter().map(|vary| vary.values.count()).collect();
         plot::check(&sheet, &arguments.columns, &counts, is_random).map_err(SweepError::Drawn)?;
@@ -81,7 +81,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let mut journal = Journal::open(path, shard, &header)?;
     let (members, before) = (shard.members(all), journal.tally().done);
 
-    let row = 8 * work.columns().len() * work.rows();
+    let row = 8 * work.members().columns().len() * work.rows();
     let window = NonZeroUsize::new((WAITING / row.max(1)).min(MOST_WAITING)).unwrap_or(NonZeroUsize::MIN);
     let mut ensemble = Ensemble::new().window(window).stopped_by(interrupt::flag());
     if let Some(threads) = arguments.threads {
@@ -94,7 +94,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let mut consume = |place, record: Result<Option<_>, pc_solve::Panicked>| {
         let record = record.unwrap_or_else(|panicked| {
             let message = &panicked.message;
-            Some(work.panicked(shard.member(place), message))
+            Some(work.members().panicked(shard.member(place), message))
         });
         // A member without a record was interrupted, or ended by a limit.
         let Some(record) = record else { return ControlFlow::Break(()) };

@@ -22,7 +22,6 @@ use crate::report::notes::say_dropped;
 pub(crate) struct Linearizations {
     members: Members,
     varied: Varied,
-    columns: Vec<Column>,
     /// Most eigenvalues of a member.
     most: usize,
 }
@@ -42,7 +41,7 @@ impl Linearizations {
         let numbers = (1..=most).flat_map(|i| [format!("re{i}"), format!("im{i}")]);
         let mut columns: Vec<Column> = numbers.map(|name| Column::new(name, Kind::Number)).collect();
         columns.push(Column::new("stability", Kind::Text));
-        Ok(Linearizations { members: Members::new(model, design, &columns), varied, columns, most })
+        Ok(Linearizations { members: Members::new(model, design, columns), varied, most })
     }
 
     /// What the numbers depend on beside the model.
@@ -96,8 +95,8 @@ fn stability(linear: &Linearization) -> String {
 }
 
 impl Work for Linearizations {
-    fn columns(&self) -> &[Column] {
-        &self.columns
+    fn members(&self) -> &Members {
+        &self.members
     }
 
     fn records(
@@ -108,9 +107,5 @@ impl Work for Linearizations {
         consume: Consume<'_>,
     ) -> Result<Ending, EnsembleError> {
         ensemble.map(places, |place, _| self.record(shard.member(place)), consume)
-    }
-
-    fn panicked(&self, member: u64, message: &str) -> Record {
-        self.members.panicked(member, message)
     }
 }

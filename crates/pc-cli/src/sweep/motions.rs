@@ -32,7 +32,6 @@ pub(crate) struct Motions {
     all_rows: bool,
     /// How many these are.
     rows: usize,
-    columns: Vec<Column>,
     prototype: Option<Prototype>,
     /// How many came to their end beside others.
     beside: AtomicU64,
@@ -59,14 +58,13 @@ impl Motions {
         memory::allow(plan.samples as u64, numbers, model.budget().limits())?;
         let prototype = Prototype::new(&model, form.into());
         Ok(Motions {
-            members: Members::new(model, design, &columns),
+            members: Members::new(model, design, columns),
             form,
             times: plan.times(),
             options: plan.options(),
             all_rows,
             rows: if all_rows { plan.samples } else { 1 },
             plan,
-            columns,
             prototype,
             beside: AtomicU64::new(0),
         })
@@ -153,14 +151,14 @@ impl Motions {
         }
         let drifts: Vec<f64> = table.conserved().map(|j| drift(&table, last.as_deref(), j)).collect();
         let row = last.or_else(|| table.rows().next_back().map(<[f64]>::to_vec));
-        let width = self.columns.len() - drifts.len();
+        let width = self.members.columns().len() - drifts.len();
         row.unwrap_or_else(|| vec![f64::NAN; width]).into_iter().chain(drifts).collect()
     }
 }
 
 impl Work for Motions {
-    fn columns(&self) -> &[Column] {
-        &self.columns
+    fn members(&self) -> &Members {
+        &self.members
     }
 
     fn rows(&self) -> usize {
@@ -183,10 +181,6 @@ impl Work for Motions {
             |_, begun, stop| self.integrate(begun, stop),
             consume,
         )
-    }
-
-    fn panicked(&self, member: u64, message: &str) -> Record {
-        self.members.panicked(member, message)
     }
 
     fn said(&self) -> Vec<(&'static str, String)> {

@@ -18,8 +18,8 @@ pub(crate) type Consume<'c> = &'c mut dyn FnMut(u64, Result<Option<Record>, Pani
 
 /// The work of a sweep: one member, one record, of which each row has the same columns.
 pub(crate) trait Work {
-    /// What stands in a row, beside number, values and status of the member.
-    fn columns(&self) -> &[Column];
+    /// The models, and what stands in their rows.
+    fn members(&self) -> &Members;
 
     /// Rows of a member.
     fn rows(&self) -> usize {
@@ -38,9 +38,6 @@ pub(crate) trait Work {
         consume: Consume<'_>,
     ) -> Result<Ending, EnsembleError>;
 
-    /// The record of a member whose computation panicked.
-    fn panicked(&self, member: u64, message: &str) -> Record;
-
     /// Lines of the summary before the number of members.
     fn said(&self) -> Vec<(&'static str, String)> {
         Vec::new()
@@ -56,28 +53,31 @@ pub(crate) trait Work {
 pub(crate) struct Members {
     model: Model,
     design: Design,
-    /// Numbers, and words, of the one row of a member that could not start.
-    numbers: usize,
-    words: usize,
+    columns: Vec<Column>,
 }
 
 impl Members {
     /// Those whose rows have these columns.
-    pub(crate) fn new(model: Model, design: Design, columns: &[Column]) -> Members {
-        let words = columns.iter().filter(|column| column.kind == Kind::Text).count();
-        Members { model, design, numbers: columns.len() - words, words }
+    pub(crate) fn new(model: Model, design: Design, columns: Vec<Column>) -> Members {
+        Members { model, design, columns }
     }
 
-    /// The record of a member that could not start, before anything is known of it but its values.
+    /// What stands in a row, beside number, values and status of the member.
+    pub(crate) fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The record of a member that could not start, before anything is known of it but its values: one row of nothing.
     pub(crate) fn blank(&self, member: u64) -> Record {
+        let words = self.columns.iter().filter(|column| column.kind == Kind::Text).count();
         Record {
             member,
             status: Status::Refused,
             steps: 0,
             message: String::new(),
             values: self.design.values(member),
-            rows: vec![f64::NAN; self.numbers],
-            words: vec![String::new(); self.words],
+            rows: vec![f64::NAN; self.columns.len() - words],
+            words: vec![String::new(); words],
         }
     }
 
