@@ -4,8 +4,8 @@
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use pc_analysis::{Leaf, Linearization, Linearizer, RootLocus, SteadyOptions};
-use pc_mech::{Graph, Matrix};
-use pc_model::{Document, Model, Source};
+use pc_mech::{Graph, Matrix, VectorField};
+use pc_model::{Builtin, Document, Model, Source};
 
 const BICYCLE: &str = include_str!("../mechanisms/whipple-bicycle.toml");
 
@@ -123,5 +123,30 @@ fn coefficients_are_those_of_the_benchmark() {
         near(&second.mass, &|i, j| mass[i][j]);
         near(&second.velocity, &|i, j| speed * c1[i][j]);
         near(&second.stiffness, &|i, j| gravity * k0[i][j] + speed * speed * k2[i][j]);
+    }
+}
+
+/// The built-in model has its weight from `[gravity]`, this text from a potential: the rates are the same, and down in pictures is
+/// the z of the paper.
+#[test]
+fn gravity_of_the_built_in_model_is_the_potential() {
+    let built_in = Builtin::named("whipple-bicycle").unwrap().document().unwrap();
+    let written = Document::parse(Source::new("bicycle.toml", BICYCLE)).unwrap();
+    let (graph, other) = (Graph::new(), Graph::new());
+    let (weight, potential) = (Model::new(built_in), Model::new(written));
+    let (of_weight, of_potential) = (weight.assemble(&graph).unwrap(), potential.assemble(&other).unwrap());
+    let z = of_weight.system.gravity().map(|component| component.to_string());
+    assert_eq!(z, ["0", "0", "g"]);
+    let (mut falls, start) = weight.compile(&of_weight).unwrap();
+    let (mut climbs, same) = potential.compile(&of_potential).unwrap();
+    assert_eq!((falls.names(), &start), (climbs.names(), &same));
+    for part in [0.0, 0.1, 0.2, 0.3] {
+        let y: Vec<f64> = (1u8..).zip(&start).map(|(i, y)| y + part * f64::from(i).sin()).collect();
+        let [mut a, mut b] = [vec![0.0; y.len()], vec![0.0; y.len()]];
+        falls.rhs(0.0, &y, &mut a).unwrap();
+        climbs.rhs(0.0, &y, &mut b).unwrap();
+        let largest = a.iter().fold(0.0f64, |largest, rate| largest.max(rate.abs()));
+        // Both are rounded some thousand times, and solved for.
+        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() <= 1e-10 * largest), "{a:?}\n{b:?}");
     }
 }

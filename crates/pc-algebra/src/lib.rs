@@ -102,6 +102,7 @@ pub use group::group::{
     DirectProduct, EulerAngles, HeisenbergGroup, LieGroup, PlaneMotions, PlaneRotations, RigidMotions,
     RotationMatrices, Side, UnitQuaternions,
 };
+pub use identity::discontinuity::{Discontinuity, discontinuities, may_jump};
 pub use identity::identity::Identity;
 pub use identity::jump::Jump;
 pub use identity::sample::Neighbourhood;

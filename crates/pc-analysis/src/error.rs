@@ -31,6 +31,18 @@ pub enum AnalysisError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
+    /// Outputs that contain reactions, at a state where the constraints do not determine these.
+    #[error(
+        "the constraints are dependent at{}, where they leave the reactions in {} undetermined",
+        listed(state).trim_start_matches(','),
+        quoted(outputs)
+    )]
+    ReactionsUndetermined {
+        /// Names of the outputs.
+        outputs: Vec<String>,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
     /// A name that no component of the state has.
     #[error("the state has no component `{name}`; it has {}", known.join(", "))]
     UnknownComponent {

@@ -2,3 +2,4 @@
 
 pub(crate) mod dense;
 pub(crate) mod newton;
+pub(crate) mod program;

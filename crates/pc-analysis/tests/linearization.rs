@@ -5,7 +5,7 @@
 use pc_analysis::{
     AnalysisError, CyclicCoordinates, Leaf, Linearization, Linearizer, NoSecondOrder, SteadyOptions, Verdict,
 };
-use pc_mech::{Graph, LieAlgebra, Matrix, System};
+use pc_mech::{Constraint, Graph, LieAlgebra, Matrix, System};
 
 /// Newton's method ends at rounding, and so do some ten operations on numbers up to some tens.
 const EXACT: f64 = 1e-13;
@@ -286,6 +286,109 @@ fn a_pendulum_on_its_circle() {
     assert_eq!(linear.components, ["x", "u"]);
     assert!((linear.state[1].1 + l).abs() < EXACT, "{:?}", linear.state);
     assert_near(&linear.state_matrix, &[&[0.0, 1.0], &[-g / l, 0.0]]);
+}
+
+/// A mass on a rod, pushed from the side with the force u: with θ from below, T = −2 λ at rest is
+/// g cos θ + u sin θ, in balance at tan θ = u/g.
+#[test]
+fn the_reaction_of_a_rod_by_state_and_input() {
+    let graph = Graph::new();
+    let [x, y, u, reaction] = graph.symbols(["x", "y", "u", "λ_rod"]);
+    let pendulum = System::builder(&graph)
+        .parameter(u, 7.5)
+        .coordinates(["x", "y"])
+        .lagrangian(|_, x, v| (v[0].square() + v[1].square()) / 2.0 - 10.0 * x[1])
+        .forces(|_, _, _| [u, 0.0.into()])
+        .output("tension", |_, _, _| -2.0 * reaction)
+        .output("square", |_, _, _| reaction.square())
+        .build()
+        .unwrap();
+    let circle = x.square() + y.square() - 1.0;
+    let held = pendulum.with_multipliers(&[Constraint::new("rod", circle)]).unwrap();
+    let leaf = Leaf { positions: vec![circle], ..Leaf::of(&pendulum) };
+    let mut linearizer = Linearizer::with_multipliers(&held, &leaf, &["u"]).unwrap();
+    let linear = linearizer.steady(0.0, &[0.6, -0.8, 0.0, 0.0], &SteadyOptions::default()).unwrap();
+    assert_eq!(linear.outputs, ["tension", "square"]);
+    // T = 12.5 there, dT/dθ = −g sin θ + u cos θ = 0, dT/du = sin θ; (T/2)² has the slope T/2 dT/du.
+    assert_near(&linear.feedthrough, &[&[0.6], &[3.75]]);
+    assert_near(&linear.output_matrix, &[&[0.0, 0.0], &[0.0, 0.0]]);
+}
+
+/// Two masses one below the other on rods, moving and pushed: the slopes of outputs with both reactions and an
+/// acceleration are difference quotients of what is observed along the constraints.
+#[test]
+fn reactions_of_two_rods_against_difference_quotients() {
+    let graph = Graph::new();
+    let [x, y, z, w, u, upper, lower] = graph.symbols(["x", "y", "z", "w", "u", "λ_upper", "λ_lower"]);
+    let accelerated = graph.symbol("z''");
+    let masses = System::builder(&graph)
+        .parameter(u, 0.7)
+        .coordinates(["x", "y", "z", "w"])
+        .lagrangian(|_, x, v| {
+            let kinetic = 3.0 * (v[0].square() + v[1].square()) + v[2].square() + v[3].square();
+            kinetic / 2.0 - 9.0 * (3.0 * x[1] + x[3])
+        })
+        .forces(|_, x, v| [-0.3 * v[0], u * x[0], u, 0.0.into()])
+        .output("lower", |_, _, _| lower)
+        .output("mixed", |_, x, v| upper * lower * x[0] + u * accelerated + v[2] * upper)
+        .build()
+        .unwrap();
+    let rods = [x.square() + y.square() - 1.0, (z - x).square() + (w - y).square() - 0.64];
+    let constraints = [Constraint::new("upper", rods[0]), Constraint::new("lower", rods[1])];
+    let held = masses.with_multipliers(&constraints).unwrap();
+    let leaf = Leaf { positions: rods.to_vec(), ..Leaf::of(&masses) };
+    let mut linearizer = Linearizer::with_multipliers(&held, &leaf, &["u"]).unwrap();
+
+    let state = |angles: &[f64; 4]| {
+        let [a, b, p, q] = *angles;
+        let first = [a.sin(), -a.cos(), p * a.cos(), p * a.sin()];
+        let second = [0.8 * b.sin(), -0.8 * b.cos(), 0.8 * q * b.cos(), 0.8 * q * b.sin()];
+        let both = |i: usize| first[i] + second[i];
+        [first[0], first[1], both(0), both(1), first[2], first[3], both(2), both(3)]
+    };
+    let here = [0.4, -0.9, 1.1, 0.5];
+    let linear = linearizer.at(0.0, &state(&here)).unwrap();
+    assert_eq!(linear.components.len(), 4);
+    let mut motion = held.compile().unwrap();
+    let places: Vec<usize> = ["lower", "mixed"]
+        .map(|name| motion.observable_names().iter().position(|known| known == name).unwrap())
+        .to_vec();
+    // Truncation and rounding of central differences of numbers up to some tens are alike.
+    let (step, close) = (1e-5, 1e-7);
+    let quotients = |ahead: &[f64], behind: &[f64]| -> Vec<f64> {
+        ahead.iter().zip(behind).map(|(ahead, behind)| (ahead - behind) / (2.0 * step)).collect()
+    };
+    for i in 0..4 {
+        let moved = |sign: f64| {
+            let mut angles = here;
+            angles[i] += sign * step;
+            state(&angles)
+        };
+        let (ahead, behind) = (moved(1.0), moved(-1.0));
+        let slopes = quotients(&motion.observe(0.0, &ahead), &motion.observe(0.0, &behind));
+        let all = quotients(&ahead, &behind);
+        let names = motion.names();
+        let of_components: Vec<f64> = linear
+            .components
+            .iter()
+            .map(|name| all[names.iter().position(|known| known == name).unwrap()])
+            .collect();
+        for (o, &place) in places.iter().enumerate() {
+            let found: f64 = (0..4).map(|j| linear.output_matrix[(o, j)] * of_components[j]).sum();
+            assert!((found - slopes[place]).abs() < close * slopes[place].abs().max(1.0), "{i} {o}");
+            assert!(slopes[place].abs() > 0.1, "{i} {o}: {}", slopes[place]);
+        }
+    }
+    let mut pushed = |value: f64| {
+        motion.parameters_mut()[0] = value;
+        motion.observe(0.0, &state(&here))
+    };
+    let slopes = quotients(&pushed(0.7 + step), &pushed(0.7 - step));
+    for (o, &place) in places.iter().enumerate() {
+        let found = linear.feedthrough[(o, 0)];
+        assert!((found - slopes[place]).abs() < close * slopes[place].abs().max(1.0), "{o}: {found}");
+        assert!(found.abs() > 0.01, "{o}: {found}");
+    }
 }
 
 /// The Jacobian at a state that is not steady is that along the motion: −3x² for ẍ = −x³.

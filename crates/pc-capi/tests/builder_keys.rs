@@ -302,7 +302,7 @@ fn joints_reach_the_text() {
     say!(model, pc_model_set_loop_length, "tip", "0.8").unwrap();
     assert!(text(&model).contains("[loops]\n\"tip\".\"kind\" = \"rod\"\n"));
     let refusal = turns(&model, "upper", "zxz", &["1"]).unwrap_err();
-    assert_eq!(refusal.message, "there are 3 axes and 1 angles");
+    assert_eq!(refusal.message, "each axis needs one angle: there are 3 axes and 1 angles");
 }
 
 fn start(model: &Model) -> Vec<f64> {

@@ -102,7 +102,7 @@ fn steps_go_from_event_to_event_and_are_those_of_an_advance() {
         t = end;
     }
     // The steps are the same, since all go towards the same time.
-    assert!(told.times.iter().zip(&expected.times).all(|(a, b)| a == b) && told.times.len() > 3);
+    assert!(told.times.iter().zip(&expected.times).all(|(a, b)| a == b) && told.times.len() >= 3);
     assert!(told.times.iter().all(|t| ends.contains(t)));
     assert_eq!(solver.step(f64::NAN).0.unwrap_err().status, PC_INVALID_ARGUMENT);
 }
@@ -129,7 +129,7 @@ fn accumulating_bounces_are_an_error() {
     assert_eq!(refusal.status, PC_INTEGRATION);
     // t₀ (1 + e)/(1 − e) = 4.06.
     assert!(
-        refusal.message.contains("the event bounce occurs without end near t = 4.06"),
+        refusal.message.contains("the event bounce occurs at ever shorter intervals near t = 4.06"),
         "{}",
         refusal.message
     );

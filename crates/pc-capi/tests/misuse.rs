@@ -56,7 +56,7 @@ fn minus_one_is_refused_as_a_length() {
     assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
     assert_eq!(
         refusal.message,
-        "text: 18446744073709551615 numbers are more than memory can hold, 9223372036854775807 at most; is the length −1?"
+        "text: memory cannot hold 18446744073709551615 numbers, only 9223372036854775807; is the length −1?"
     );
     let solver = Solver::of(&System::of("euler-top"), &sharp());
     let times = [1.0];

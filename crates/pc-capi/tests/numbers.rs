@@ -130,13 +130,15 @@ fn the_integration_is_that_of_the_solver_below() {
     for name in ["heavy-top-lagrange", "rod"] {
         let (system, (motion, t, start)) = (System::of(name), motion(name));
         let times = [1.0, 2.0, 5.0];
-        let mut expected =
-            pc_solve::Integration::new(motion, t, &start, &pc_solve::Options::default()).unwrap();
+        let adams = pc_solve::Options::new(pc_solve::Method::Adams);
+        let mut expected = pc_solve::Integration::new(motion, t, &start, &adams).unwrap();
+        let options = pc_solver_options { method: pc_method::PC_ADAMS as c_int, ..Default::default() };
         let mut solver = ptr::null_mut();
         // SAFETY: live handles, arrays as said; the solver is freed once.
         unsafe {
-            let new =
-                |error| pc_solver_new(system.0, ptr::null(), 0.0, ptr::null(), 0, &raw mut solver, error);
+            let new = |error| {
+                pc_solver_new(system.0, &raw const options, 0.0, ptr::null(), 0, &raw mut solver, error)
+            };
             call(new).unwrap();
             let mut y = vec![0.0; system.dim()];
             for time in times {

@@ -294,7 +294,7 @@ fn missing_events_are_refused() {
         pc_solver_last_occurrence(solver.0, 0, z, none, 0, z, 0);
     }
     refused! { PC_INVALID_ARGUMENT, "numbers, but there are 1"; pc_system_events(system.0, 0.0, y, 2, z, 2); }
-    refused! { PC_INVALID_ARGUMENT, "share memory";
+    refused! { PC_INVALID_ARGUMENT, "share memory, but must be separate";
         pc_system_events(system.0, 0.0, y, 2, y, 1);
         pc_solver_last_occurrence(solver.0, 0, z, y, 2, y, 2);
     }

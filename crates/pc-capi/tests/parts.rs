@@ -129,7 +129,7 @@ fn derivatives_by_time_and_the_inverse_of_the_mass_matrix() {
         let w = both.as_mut_ptr();
         pc_system_solve_mass_matrix(system.0, t, y.as_ptr(), 4, w, 2, w, 2, e)
     });
-    assert_eq!(shared.unwrap_err().message, "v and w share memory");
+    assert_eq!(shared.unwrap_err().message, "v and w share memory, but must be separate");
     // Without explicit time nothing is derived.
     let top = System::of("euler-top");
     let (t, y) = top.start();

@@ -181,7 +181,7 @@ fn arrays_of_wrong_lengths_are_refused() {
         // SAFETY: a live system; the shared array is refused.
         pc_system_rhs(system.0, t, shared, dim, shared, dim, error)
     });
-    assert_eq!(refused.unwrap_err().message, "y and ydot share memory");
+    assert_eq!(refused.unwrap_err().message, "y and ydot share memory, but must be separate");
 }
 
 #[test]

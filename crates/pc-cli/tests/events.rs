@@ -259,7 +259,10 @@ fn bounces_that_accumulate_end_a_run_with_their_limit() {
         "rows before the limit at 1.354…"
     );
     let text = said(&output);
-    assert!(text.contains("because: the event bounce occurs without end near t = 1.35457"), "{text}");
+    assert!(
+        text.contains("because: the event bounce occurs at ever shorter intervals near t = 1.35457"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -288,4 +291,38 @@ fn emitted_source_says_that_it_has_no_events() {
     let files = std::fs::read_dir(directory.path()).expect("a directory");
     let texts = files.map(|file| std::fs::read_to_string(file.expect("a file").path()).expect("text"));
     assert!(texts.into_iter().any(|text| text.contains(note)));
+}
+
+/// The example of the book: the third bounce, at √(2/g) (1 + 2·0.8 + 2·0.64), raises the count
+/// beyond 2.5 and so ends the run.
+#[test]
+fn a_reset_sets_off_another_event() {
+    let model = "[parameters]\nrestitution = 0.8\n[coordinates]\ny = 1.0\nbounces = 0\n[lagrangian]\n\
+                 kinetic = \"(y'^2 + bounces'^2)/2\"\npotential = \"9.81*y\"\n[events.bounce]\nwhen = \"y\"\n\
+                 direction = \"falling\"\nreset = { \"y'\" = \"-restitution*y'\", bounces = \"bounces + 1\" }\n\
+                 [events.enough]\nwhen = \"bounces - 2.5\"\nterminal = true\n[simulation]\nt_end = 3.0\n\
+                 rtol = 1e-13\natol = 1e-15\n";
+    let first = (2.0_f64 / 9.81).sqrt();
+    let third = first * (1.0 + 1.6 + 1.28);
+    for method in ["adams", "bdf", "dop853", "taylor", "auto"] {
+        let run = kept(model, "-", &["--method", method]);
+        assert_close(&times(&run, "bounce"), &[first, first * 2.6, third]);
+        assert_close(&times(&run, "enough"), &[third]);
+    }
+}
+
+/// A jump through zero is one passage, and leaves the zero after it; a pole of the tangent is none.
+#[test]
+fn jumps_and_poles_of_event_functions() {
+    let model = "[coordinates]\nx = 0\n[quasi_velocities]\n\"x'\" = 1\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
+                 [events.jump]\nwhen = \"step(x - 0.3, -1, 1)*(x - 1.5)\"\n[events.square]\n\
+                 when = \"sign(sin(10*x + 0.5))\"\n[events.tangent]\nwhen = \"tan(3*x)\"\n\
+                 [simulation]\nt_end = 2\n";
+    for method in ["adams", "bdf", "dop853", "taylor", "auto"] {
+        let run = kept(model, "-", &["--method", method]);
+        assert_close(&times(&run, "jump"), &[0.3, 1.5]);
+        let square: Vec<f64> = (1..=6).map(|k| (f64::from(k) * TAU / 2.0 - 0.5) / 10.0).collect();
+        assert_close(&times(&run, "square"), &square);
+        assert_close(&times(&run, "tangent"), &[TAU / 6.0]);
+    }
 }

@@ -84,7 +84,9 @@ fn the_smallest_number_counts_as_rounding() {
     ] {
         let (_, rows) = table(&model(c, start, other), &[]);
         let way = (rows[1][2] - rows[0][4]).abs(); // a few steps, each with one rounding
-        assert!(rows[1][1].abs() < 1e-300 && way <= 1e-14 * rows[0][4], "{c}, {start}: {rows:?}");
+        // Parts of the smallest number itself round to it or to nothing.
+        let rounding = 1e-14 * rows[0][4] + f64::from_bits(1);
+        assert!(rows[1][1].abs() < 1e-300 && way <= rounding, "{c}, {start}: {rows:?}");
     }
 }
 

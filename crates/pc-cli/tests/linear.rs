@@ -328,3 +328,38 @@ potential = "g*y"
             && (number(&list[1]["state"]["y"]) - 1.0).abs() < 1e-12
     );
 }
+
+/// A mass on a rod pushed by u: with θ from below the tension is g cos θ + u sin θ, 12.5 in balance at tan θ = u/g,
+/// where its slope is (0, sin θ). The force on the mass is the tension along the rod.
+#[test]
+fn reactions_among_the_outputs_have_slopes() {
+    let text = r#"
+[inputs]
+u = 7.5
+[coordinates]
+x = 0.6
+z = -0.8
+[constraints]
+rod = "x^2 + z^2 - 1"
+[bodies.bob]
+mass = 1
+position = ["x", 0, "z"]
+[gravity]
+acceleration = [0, 0, -10]
+[forces]
+x = "u"
+[outputs]
+tension = "-2*λ_rod"
+across = "F_rod_bob_x"
+along = "x*F_rod_bob_x + z*F_rod_bob_z"
+"#;
+    let all: Value = serde_json::from_str(&said(text, "linearize", &["--format", "json"])).expect("JSON");
+    assert_eq!(all["outputs"], serde_json::json!(["tension", "across", "along"]));
+    let slope = |matrix: &str, i: usize, j: usize| all[matrix][i][j].as_f64().expect("a number");
+    // The force across is −T x, and T is stationary in θ.
+    for (i, (by_input, by_x)) in [(0.6, 0.0), (-0.36, -12.5), (-0.6, 0.0)].into_iter().enumerate() {
+        assert!((slope("D", i, 0) - by_input).abs() < 1e-12, "{i}: {}", slope("D", i, 0));
+        assert!((slope("C", i, 0) - by_x).abs() < 1e-11, "{i}: {}", slope("C", i, 0));
+        assert!(slope("C", i, 1).abs() < 1e-12, "{i}: {}", slope("C", i, 1));
+    }
+}

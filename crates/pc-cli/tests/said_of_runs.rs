@@ -39,7 +39,7 @@ fn dry_friction_chatters() {
          change the law there, as the built-in model stick-slip-block does",
         "{said}"
     );
-    assert!(said.contains("500000 steps did not lead to the output at t = 2.5"), "{said}");
+    assert!(said.contains("500000 steps were not enough to reach the output at t = 2.5"), "{said}");
 }
 
 #[test]

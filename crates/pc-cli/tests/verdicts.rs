@@ -3,6 +3,8 @@
 use std::io::Write;
 use std::process::{Command, Stdio};
 
+use serde_json::Value;
+
 fn check(model: &str) -> String {
     let mut child = Command::new(env!("CARGO_BIN_EXE_pc"))
         .args(["check", "-"])
@@ -79,6 +81,39 @@ fn damping_leaves_the_direction_of_a_momentum_neutral() {
     // is undecided.
     let pushed = check(&format!("{CART}[forces]\nphi = \"-0.2*phi'\"\ns = \"s'^3\"\n"));
     assert!(!pushed.contains("asymptotically"), "{pushed}");
+}
+
+fn json(arguments: &[&str]) -> Option<Value> {
+    let output = Command::new(env!("CARGO_BIN_EXE_pc")).args(arguments).output().expect("pc runs");
+    serde_json::from_slice(&output.stdout).ok()
+}
+
+/// `pc check` and `pc linearize` count the same eigenvalues and say the same of stability wherever they look at the same
+/// state, with a quaternion, constraints and cyclic coordinates or without.
+#[test]
+fn check_and_linearize_agree_on_stability() {
+    let mut agreeing = Vec::new();
+    for model in pc_model::Builtin::all() {
+        let Some(check) = json(&["check", model.name, "--format", "json"]) else { continue };
+        let steady = &check["steady_motion"];
+        let linearize = ["linearize", model.name, "--format", "json", "--cyclic", "drop"];
+        let Some(linear) = (if steady.is_null() { None } else { json(&linearize) }) else { continue };
+        let values = steady["state"].as_object().expect("names and values");
+        let is_near = |(name, value): (&String, &Value)| {
+            let (one, other) = (value.as_f64().unwrap_or(f64::NAN), linear["state"][name].as_f64());
+            other.is_some_and(|other| (one - other).abs() <= 1e-7 * (1.0 + one.abs()))
+        };
+        if !values.iter().all(is_near) {
+            continue; // another member of the family
+        }
+        let count = |of: &Value| of["eigenvalues"].as_array().map(Vec::len);
+        assert_eq!(count(steady), count(&linear), "{}", model.name);
+        assert_eq!(steady["verdict"], linear["stability"], "{}", model.name);
+        agreeing.push(model.name);
+    }
+    let known =
+        ["reaction-wheels", "whipple-bicycle", "slider-crank-loop", "heavy-top-quaternion", "tilted-disk"];
+    assert!(known.iter().all(|name| agreeing.contains(name)), "{agreeing:?}");
 }
 
 /// A particle in four dimensions under two constraints on its velocities.

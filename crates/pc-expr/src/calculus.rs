@@ -5,8 +5,8 @@
 //! symbol; `independence` rids the coefficients of symbols that cancel, with the help of `numbers`;
 //! `polynomial` writes the result out. `potential` finds a function by its gradient; `root_powers` makes
 //! powers of roots recognisable; `typeset` rewrites expressions for readers and measures them by `columns`;
-//! `multiplied_out` opens brackets where sines and cosines then merge; `breaks` are the
-//! surfaces on which an expression may jump.
+//! `multiplied_out` opens brackets where sines and cosines then merge; `breaks` and `seams` are the
+//! surfaces on which expressions may jump.
 
 pub(crate) mod breaks;
 pub(crate) mod collect;
@@ -19,5 +19,6 @@ pub(crate) mod polynomial;
 pub(crate) mod potential;
 pub(crate) mod powers;
 pub(crate) mod root_powers;
+pub(crate) mod seams;
 pub(crate) mod substitution;
 pub(crate) mod typeset;

@@ -82,6 +82,7 @@ pub use ode::events::{Direction, Event, Events};
 pub use ode::lane_field::{LaneField, Watched};
 pub use ode::pattern::Pattern;
 pub use ode::program_field::ProgramField;
+pub use ode::rate_jump::RateJump;
 pub use ode::vector_field::{Failure, VectorField};
 pub use print::names::{Given, Name, Names, Side, Written};
 pub use print::style::Style;

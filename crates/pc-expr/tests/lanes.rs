@@ -431,3 +431,35 @@ fn rows_are_replaced_by_what_was_read() {
         assert!(frame[1].0[7].is_nan());
     }
 }
+
+/// More rows are replaced than any processor has registers, by values that nothing else reads any more.
+#[test]
+fn many_rows_are_replaced() {
+    const ROWS: usize = 70;
+    let mut tape = LaneTape::new();
+    let inputs = tape.inputs(ROWS);
+    let mut sum = tape.constant(0.25);
+    let mut values = Vec::new();
+    for &input in &inputs {
+        sum = tape.fused(Fused::MultiplyAdd, input, input, sum);
+        values.push(tape.binary(Binary::Add, sum, input));
+    }
+    for (&input, &value) in inputs.iter().zip(values.iter().rev()) {
+        tape.replace(input, value);
+    }
+    let rows: Vec<Lanes> = (0..ROWS)
+        .map(|i| Lanes(std::array::from_fn(|lane| 0.1 + (i * LANES + lane) as f64 * 0.01)))
+        .collect();
+    for kernel in kernels(&tape) {
+        let mut frame = kernel.frame();
+        frame[..ROWS].copy_from_slice(&rows);
+        kernel.run(&mut frame);
+        for lane in 0..LANES {
+            let mut sum = 0.25_f64;
+            for (row, replaced) in rows.iter().zip(frame[..ROWS].iter().rev()) {
+                sum = row.0[lane].mul_add(row.0[lane], sum);
+                assert_eq!(replaced.0[lane], sum + row.0[lane]);
+            }
+        }
+    }
+}

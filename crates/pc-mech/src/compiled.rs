@@ -7,7 +7,7 @@
 //! `legendre_transform` converts momenta into quasi-velocities and back; `in_momenta` is the motion of
 //! momenta under constraints, `forced_motion` that under forces computed outside. `running_error` bounds
 //! rounding, `point` holds the arguments of evaluations, `chart` detects where quasi-velocities and
-//! velocities no longer determine each other, `mass_factors` solves with M alone, and `failure` says why
+//! velocities no longer determine each other, `mass_factors` solves with M alone, `jumps` are where rates jump, and `failure` says why
 //! rates are undefined.
 
 pub(crate) mod chart;
@@ -22,6 +22,7 @@ pub(crate) mod first_order;
 pub(crate) mod forced_motion;
 pub(crate) mod implicit;
 pub(crate) mod in_momenta;
+pub(crate) mod jumps;
 pub(crate) mod legendre_transform;
 pub(crate) mod machine_code;
 pub(crate) mod mass_factors;

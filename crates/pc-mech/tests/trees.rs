@@ -566,7 +566,10 @@ fn invalid_trees_are_refused() {
     let body = |name: &str| TreeBody::new(name, Joint::revolute([0.0, 0.0, 1.0]));
     let error = |bodies: Vec<TreeBody<'_>>| Tree::new(&graph, bodies).unwrap_err().to_string();
     assert_eq!(error(vec![body("a"), body("a")]), "there are two bodies called `a`");
-    assert_eq!(error(vec![body("a").on("b")]), "the body `a` hangs on `b`, which there is not");
+    assert_eq!(
+        error(vec![body("a").on("b")]),
+        "the body `a` hangs on `b`, but there is no body of that name"
+    );
     assert_eq!(
         error(vec![body("a").on("c"), body("b").on("a"), body("c").on("b")]),
         "bodies hang on each other in a circle: a on c on b"

@@ -4,8 +4,8 @@
 //! `assembler`, which its parts share, and these in the order of `assemble`: `parameters` and `tables`,
 //! `frame`, `definitions`, `start`, `bodies`, the `tree` of those on joints and `external_force`, `brackets`,
 //! `constraints` with `constraint_treatment`, `body_reactions` and the names of a `resultant`, `action`,
-//! `event` and `events`, and quasi-velocities that are `given` in addition to the text; `trial`, `definite`
-//! and `orientations` check the start. A `function` and a `drawing` are assembled separately, on request.
+//! `event` and `events`, and quasi-velocities that are `given` in addition to the text; `trial`, `definite`,
+//! `inertia` and `orientations` check the start. A `function` and a `drawing` are assembled separately, on request.
 
 pub(crate) mod action;
 pub(crate) mod assemble;
@@ -25,6 +25,7 @@ pub(crate) mod external_force;
 pub(crate) mod frame;
 pub(crate) mod function;
 pub(crate) mod given;
+mod inertia;
 pub(crate) mod orientations;
 pub(crate) mod parameters;
 pub(crate) mod resultant;

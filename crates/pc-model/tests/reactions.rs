@@ -98,3 +98,38 @@ fn a_reaction_of_an_unknown_constraint_is_refused() {
     let error = model.assemble(&Graph::new()).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("the name `λ_first` is not declared"), "{error}");
 }
+
+/// Accelerations and reactions are no functions of the state in which d() could be taken: x'' = −x has the rate −x',
+/// not 0. Where their derivatives cancel before they are named, nothing is unknown.
+#[test]
+fn accelerations_and_reactions_have_no_rates() {
+    let text = |section: &str, function: &str| {
+        format!(
+            "[inputs]\nu = 7.5\n[coordinates]\nx = 0.6\nz = -0.8\n[quasi_velocities]\nv.is = \"x'\"\nw.is = \"z' + x*x'\"\n\
+             [constraints]\nrod = \"x^2 + z^2 - 1\"\n[bodies.bob]\nmass = 1\nposition = [\"x\", 0, \"z\"]\n[{section}]\nf = \"{function}\"\n"
+        )
+    };
+    let assembled = |text: &str| {
+        let model = pc_model::Model::new(Document::parse(Source::new("m.toml", text)).unwrap());
+        let graph = Graph::new();
+        model.assemble(&graph).map(|_| ()).map_err(|error| error.to_string())
+    };
+    for (function, what, name) in [
+        ("d(d(x'))", "acceleration", "x''"),
+        ("1 + d(x*d(x'))", "acceleration", "x''"),
+        ("d(d(d(x)))", "acceleration", "x''"),
+        ("d(d(w))", "acceleration", "w'"),
+        ("d(λ_rod)", "reaction", "λ_rod"),
+        ("x*d(F_rod_bob_z*x)", "reaction", "F_rod_bob_z"),
+    ] {
+        for section in ["outputs", "integrals"] {
+            let error = assembled(&text(section, function)).unwrap_err();
+            let expected = format!("[{section}] f: the rate of the {what} `{name}` is not known\n");
+            assert!(error.contains(&expected), "{error}");
+            assert!(error.contains("m.toml:15:"), "{error}");
+        }
+    }
+    for function in ["d(d(x))", "d(w) + λ_rod", "d(x'^2)", "d(0*d(x'))", "d(d(x') - d(x') + x)"] {
+        assert_eq!(assembled(&text("outputs", function)), Ok(()), "{function}");
+    }
+}

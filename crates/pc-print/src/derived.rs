@@ -159,8 +159,12 @@ pub fn energy_remark(assembly: &Assembly<'_>) -> Option<&'static str> {
     let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else { return None };
     let mut constraints = held.multipliers.constraints().iter();
     let same = held.multipliers.is_nonlinear() || constraints.all(|c| c.is_workless(&assembly.system));
-    (!same).then_some(ENERGY_REMARK)
+    let remark = if assembly.constraints.held().is_some() { OF_INDEPENDENT } else { OF_ALL_INDEPENDENT };
+    (!same).then_some(remark)
 }
 
-const ENERGY_REMARK: &str = "This energy is y·η − L of the independent velocities (Jacobi's integral). \
+const OF_ALL_INDEPENDENT: &str = "This energy is y·η − L of the independent velocities (Jacobi's integral), \
+                                  not that of all velocities.";
+
+const OF_INDEPENDENT: &str = "This energy is y·η − L of the independent velocities (Jacobi's integral). \
                              The energy of a run is that of all velocities.";

@@ -9,7 +9,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ydot[0] = 1.0;
         Ok(())
     });
-    let events = FnEvents::new().with(Event::new("half"), |_, y| Ok(y[0] - 0.5)).with_reset(
+    let events = FnEvents::new().with(Event::new("half").rising(), |_, y| Ok(y[0] - 0.5)).with_reset(
         Event::new("tooth").rising(),
         |_, y| Ok(y[0] - 1.0),
         |_, y| {

@@ -321,7 +321,9 @@ fn failures_carry_the_state_reached() {
         assert!((1.0..2.0).contains(&t) && (y[0] - t).abs() < 1e-9, "{t} {y:?}"); // y = t
         let SolveError::Integration(error) = error else { panic!("it began") };
         assert!(matches!(error.reason, Reason::Adjoint(_)));
-        let expected = format!("the adjoint equations, from the end back: {code} after reaching t = {t}: ");
+        let expected = format!(
+            "in the adjoint equations, integrated backwards from the end: {code} after reaching t = {t}: "
+        );
         assert!(error.to_string().starts_with(&expected), "{error}");
     }
     let error = gradient(Faulty { density: before_one, ..SOUND }).unwrap_err();
@@ -329,7 +331,7 @@ fn failures_carry_the_state_reached() {
     assert!(error.reached().is_some_and(|(t, y)| t >= 1.0 && (y[0] - t).abs() < 1e-9));
 
     let error = gradient(Faulty { end: |_| Err(Failure::recoverable(NoValue)), ..SOUND }).unwrap_err();
-    assert_eq!(error.to_string(), "the functional has no value at the end, t = 2");
+    assert_eq!(error.to_string(), "the functional cannot be evaluated at the end, t = 2");
     assert_eq!(error.source().unwrap().downcast_ref(), Some(&NoValue));
     assert!(error.reached().is_some_and(|(t, y)| t == 2.0 && (y[0] - 2.0).abs() < 1e-9));
 }
@@ -377,7 +379,7 @@ fn input_is_checked() {
         adjoint_gradient(SOUND, SOUND, 0.0, &[0.0], t1, &options).unwrap_err().to_string()
     };
     let new = || AdjointOptions::new(Options::default());
-    assert_eq!(refusal(new(), 0.0), "the end time is the start time, t = 0");
+    assert_eq!(refusal(new(), 0.0), "the end time equals the start time, t = 0");
     assert_eq!(refusal(new(), f64::NAN), "output time number 0 (from 0) is NaN");
     assert_eq!(
         refusal(new().checkpoint_interval(0), 1.0),

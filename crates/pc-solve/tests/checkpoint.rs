@@ -184,7 +184,7 @@ fn a_failure_ends_a_motion_with_checkpoints_as_it_ends_one_without() {
             .unwrap_err();
     assert_eq!(failure.error.code(), Some(Code::TooMuchWork));
     assert!(
-        failure.error.to_string().contains("35 steps did not lead to the output at t = 0.9"),
+        failure.error.to_string().contains("35 steps were not enough to reach the output at t = 0.9"),
         "{failure}"
     );
     let wrong = Checkpoint::start(0.0, &[1.0, 2.0]);

@@ -110,7 +110,7 @@ fn a_time_outside_is_refused() {
     for t in [-1e-9, 1.0 + 1e-9, f64::NAN] {
         let error = motion.evaluate(t).unwrap_err();
         assert!(matches!(error, InputError::OutsideSpan { start: 0.0, end: 1.0, .. }));
-        assert!(error.to_string().ends_with("lies outside the dense output, which goes from 0 to 1"));
+        assert!(error.to_string().ends_with("lies outside the dense output, which covers t = 0 to 1"));
     }
     assert_eq!(motion.evaluate(0.0).unwrap().len(), 2);
     assert!((motion.evaluate(1.0).unwrap()[0] - 1.0_f64.cos()).abs() < 1e-8);
@@ -235,7 +235,7 @@ fn the_step_limit_holds() {
         .dense(1.0);
     let error = failed.unwrap_err();
     assert_eq!(error.code(), Some(pc_solve::Code::TooMuchWork));
-    assert!(error.to_string().contains("10 steps did not lead to the output at t = 1"), "{error}");
+    assert!(error.to_string().contains("10 steps were not enough to reach the output at t = 1"), "{error}");
 }
 
 #[test]

@@ -395,7 +395,10 @@ fn checkpoints_of_other_motions_are_refused() {
     assert!(!from.occurrences().is_empty());
     let failure = solve((BALL.0, FnEvents::new), from.clone(), &times, &options, 20, |_, _| ()).unwrap_err();
     assert!(matches!(failure.error, SolveError::Input(InputError::EventCount { expected: 0, found: 1 })));
-    assert_eq!(failure.to_string(), "the checkpoint is of a motion with 1 events, not 0");
+    assert_eq!(
+        failure.to_string(),
+        "the checkpoint belongs to another motion: its number of events is 1, not 0"
+    );
 
     let bytes = from.to_bytes("ball");
     for length in 0..bytes.len() {

@@ -19,7 +19,7 @@ fn ball() -> Integration<Cvode<impl VectorField>, FnEvents<'static>> {
     };
     let events = FnEvents::new()
         .with_reset(Event::new("bounce").falling(), |_, y| Ok(y[0]), turn)
-        .with(Event::new("top"), |_, y| Ok(y[1]));
+        .with(Event::new("top").falling(), |_, y| Ok(y[1]));
     let sharp = Options::default().relative_tolerance(1e-13).absolute_tolerance(1e-15);
     let cvode = Integration::new(from_fn(2, rates), 0.0, &[1.0, 0.0], &sharp).expect("a start");
     cvode.with_events(events).expect("events")

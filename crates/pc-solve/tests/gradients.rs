@@ -308,7 +308,7 @@ fn gradients_that_do_not_exist_are_refused() {
     let last = FnEvents::new().with(Event::new("floor").terminal(true), |_, y| Ok(y[0]));
     let error = gradient(last, 2.0).unwrap_err();
     let message = error.to_string();
-    assert!(message.starts_with("the motion ends with the event floor at t = 2"), "{message}");
+    assert!(message.starts_with("the event floor ends the motion at t = 2"), "{message}");
     assert!(matches!(reason(error), Reason::EndsEarly { t, .. } if (t - 2.0).abs() < 1e-9));
     let turn = |_: f64, y: &mut [f64]| {
         y[1] = y[1].abs();

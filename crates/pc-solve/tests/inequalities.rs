@@ -95,16 +95,19 @@ fn starts_that_do_not_satisfy_them_are_refused() {
     assert_eq!(refusal(vec![Free, Negative], &[0.0, 0.0]), "y[1] at the start is 0, but must be negative");
     assert_eq!(
         refusal(vec![NotNegative, Free], &[-1.0, 0.0]),
-        "x at the start is -1, but must be not negative"
+        "x at the start is -1, but must be zero or positive"
     );
     assert_eq!(
         refusal(vec![NotPositive, Free], &[1.0, 0.0]),
-        "x at the start is 1, but must be not positive"
+        "x at the start is 1, but must be zero or negative"
     );
     assert_eq!(refusal(vec![NotNegative, NotPositive], &[0.0, 0.0]), "taken");
     assert_eq!(refusal(vec![Positive, Negative], &[1.0, -1.0]), "taken");
     assert_eq!(refusal(vec![Free, Free], &[1.0, 0.0]), "taken");
-    assert_eq!(refusal(vec![Free], &[1.0, 0.0]), "the inequalities: 1 numbers for 2 components");
+    assert_eq!(
+        refusal(vec![Free], &[1.0, 0.0]),
+        "the inequalities: expected one number for each component (2), found 1"
+    );
 
     let projected = from_fn(1, |_t, _y, ydot| {
         ydot[0] = 0.0;
@@ -114,7 +117,10 @@ fn starts_that_do_not_satisfy_them_are_refused() {
     let options = Options::default().inequalities(vec![Free]);
     let error = Integration::new(projected, 0.0, &[0.0], &options).unwrap_err();
     assert!(matches!(error, SolveError::Input(_)));
-    assert_eq!(error.to_string(), "inequalities cannot be kept for a vector field that projects its states");
+    assert_eq!(
+        error.to_string(),
+        "inequalities cannot be imposed on a vector field that projects its states: the projection could violate them"
+    );
 }
 
 /// A restart, and the reset of an event, must satisfy them too.

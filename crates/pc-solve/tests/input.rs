@@ -27,7 +27,7 @@ fn options() {
     assert_refused(&new().absolute_tolerance(-1.0), "the absolute tolerance is -1, but must be positive");
     assert_refused(
         &new().absolute_tolerance(vec![1e-9]),
-        "the absolute tolerances: 1 numbers for 2 components",
+        "the absolute tolerances: expected one number for each component (2), found 1",
     );
     assert_refused(
         &new().absolute_tolerance(vec![1e-9, 0.0]),
@@ -55,10 +55,13 @@ fn start() {
         Integration::new(field, t0, y0, &Options::default()).expect_err("must be refused").to_string()
     };
     assert_eq!(refusal(drift(0), 0.0, &[]), "the vector field has no components");
-    assert_eq!(refusal(drift(2), 0.0, &[0.0]), "the start: 1 numbers for 2 components");
+    assert_eq!(
+        refusal(drift(2), 0.0, &[0.0]),
+        "the start: expected one number for each component (2), found 1"
+    );
     assert_eq!(
         refusal(drift(usize::MAX), 0.0, &[0.0]),
-        "the start: 1 numbers for 18446744073709551615 components"
+        "the start: expected one number for each component (18446744073709551615), found 1"
     );
     assert_eq!(refusal(drift(1), f64::INFINITY, &[0.0]), "the start time is inf");
     assert_eq!(refusal(drift(2), 0.0, &[0.0, f64::NAN]), "y[1] at the start is NaN");
@@ -74,18 +77,18 @@ fn times() {
         failure.to_string()
     };
     assert_eq!(refusal(&[]), "no output times are given");
-    assert_eq!(refusal(&[1.0]), "the end time is the start time, t = 1");
+    assert_eq!(refusal(&[1.0]), "the end time equals the start time, t = 1");
     assert_eq!(refusal(&[2.0, f64::NAN, 3.0]), "output time number 1 (from 0) is NaN");
     assert_eq!(refusal(&[2.0, f64::INFINITY]), "output time number 1 (from 0) is inf");
     assert_eq!(
         refusal(&[2.0, 3.0, 3.0]),
-        "output time 3 (number 2 from 0) does not continue in one direction after 3"
+        "output times must increase throughout or decrease throughout: 3 (number 2 from 0) follows 3"
     );
     assert_eq!(
         refusal(&[2.0, 1.5, 3.0]),
-        "output time 1.5 (number 1 from 0) does not continue in one direction after 2"
+        "output times must increase throughout or decrease throughout: 1.5 (number 1 from 0) follows 2"
     );
-    assert_eq!(refusal(&[0.5, 1.5]), "t = 0.5 lies behind t = 1");
+    assert_eq!(refusal(&[0.5, 1.5]), "t = 0.5 has already been passed: the integration has reached t = 1");
     let options = Options::default().stop_time(1.5);
     let failure = solve(drift(1), 1.0, &[0.0], &[1.2, 1.6], &options).unwrap_err();
     assert_eq!(failure.to_string(), "t = 1.6 lies beyond the stop time 1.5");
@@ -96,16 +99,22 @@ fn times() {
 #[test]
 fn directions() {
     let mut cvode = Integration::new(drift(1), 0.0, &[0.0], &Options::default()).unwrap();
-    assert_eq!(cvode.step_towards(0.0).unwrap_err().to_string(), "the end time is the start time, t = 0");
+    assert_eq!(cvode.step_towards(0.0).unwrap_err().to_string(), "the end time equals the start time, t = 0");
     cvode.state_at(1.0).unwrap();
-    assert_eq!(cvode.state_at(0.5).unwrap_err().to_string(), "t = 0.5 lies behind t = 1");
-    assert_eq!(cvode.step_towards(0.5).unwrap_err().to_string(), "t = 0.5 lies behind t = 1");
+    assert_eq!(
+        cvode.state_at(0.5).unwrap_err().to_string(),
+        "t = 0.5 has already been passed: the integration has reached t = 1"
+    );
+    assert_eq!(
+        cvode.step_towards(0.5).unwrap_err().to_string(),
+        "t = 0.5 has already been passed: the integration has reached t = 1"
+    );
     assert_eq!(cvode.state_at(f64::NAN).unwrap_err().to_string(), "the time is NaN");
     assert_eq!(cvode.interpolate(f64::NAN, 0).unwrap_err().to_string(), "the time is NaN");
     let reached = cvode.statistics().current_time;
     assert_eq!(
         cvode.set_stop_time(Some(0.5)).unwrap_err().to_string(),
-        format!("t = 0.5 lies behind t = {reached}")
+        format!("t = 0.5 has already been passed: the integration has reached t = {reached}")
     );
     // The errors have changed nothing.
     assert_eq!(cvode.time(), 1.0);

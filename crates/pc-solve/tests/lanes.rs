@@ -315,3 +315,55 @@ fn a_flag_and_the_consumer_stop_lanes_in_progress() {
     });
     assert_eq!((ending.unwrap(), seen), (Ending::Stopped, vec![0, 1, 2, 3, 4]));
 }
+
+/// A request to stop may come at any moment, also between two groups of members.
+#[test]
+fn a_stop_between_groups_ends_the_ensemble() {
+    let program = pendulum();
+    let make = |_| Ok::<_, Failure>((of(&program, [1.0, 0.0]), vec![1.0, 0.0]));
+    for case in 0..60 {
+        let flag = AtomicBool::new(false);
+        let ensemble = ensemble(1 + case % 3, 8).window(NonZeroUsize::new(1 + case % 4).unwrap());
+        let by_flag = case % 2 == 0;
+        let consume = |member, _: Result<Trajectory, MemberError<Failure>>| {
+            if member < (case / 4) as u64 {
+                return ControlFlow::Continue(());
+            }
+            flag.store(true, Ordering::Relaxed);
+            if by_flag { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        };
+        let ensemble = ensemble.stopped_by(&flag);
+        let ending = ensemble.solve(0..100, make, 0.0, &[0.1], &options(1e-9), consume);
+        assert_eq!(ending.unwrap(), Ending::Stopped, "{case}");
+    }
+}
+
+/// By [`Method::Auto`] stiff members leave their lanes and are integrated as alone, to the last bit;
+/// the others stay.
+#[test]
+fn stiff_members_are_integrated_by_themselves() {
+    // Van der Pol's oscillator; every third one is stiff.
+    let program = program(2, |y, p, _| vec![y[1], p * (1.0 - y[0] * y[0]) * y[1] - y[0]]);
+    let damping = |member: u64| if member % 3 == 1 { 500.0 + member as f64 } else { 0.1 * member as f64 };
+    let field = |member| of(&program, [damping(member), 0.0]);
+    let make = |member| Ok::<_, Failure>((field(member), vec![2.0, 0.0]));
+    let auto = Options::new(Method::Auto).relative_tolerance(1e-8).absolute_tolerance(1e-10);
+    let times = [3.0, 20.0];
+    let of_threads = |threads, lanes| motions(&ensemble(threads, lanes), 21, make, (0.0, &times), &auto);
+    let all = of_threads(1, 16);
+    assert_eq!(bits(&all), bits(&of_threads(2, 5)));
+    for (member, motion) in (0..).zip(&all) {
+        let alone = solve(field(member), 0.0, &[2.0, 0.0], &times, &auto).unwrap();
+        if member % 3 == 1 {
+            assert_eq!((motion, motion.statistics().lane_steps), (&alone, 0), "{member}");
+            assert!(alone.statistics().stiff_from.is_some(), "{member}");
+        } else {
+            let work = motion.statistics();
+            assert_eq!(work.lane_steps, work.steps, "{member}");
+            for (a, b) in motion.states().iter().zip(alone.states()) {
+                // The tolerance times the growth over a few periods.
+                assert!((a - b).abs() < 1e-5, "{member}: {a} {b}");
+            }
+        }
+    }
+}

@@ -300,23 +300,23 @@ fn the_linear_solver_is_chosen_by_size_and_pattern() {
         assert!(matches!(error, SolveError::Input(_)));
         error.to_string()
     };
-    let no_pattern = "the sparse linear solver needs the zero pattern of the Jacobian, which the vector field does not have";
+    let no_pattern = "the sparse linear solver needs the zero pattern of the Jacobian, which the vector field does not provide";
     assert_eq!(refusal(2, None, LinearSolver::Sparse), no_pattern);
     assert_eq!(
         refusal(2, rod(3), LinearSolver::Sparse),
-        "the zero pattern of the Jacobian has 3 rows and 3 columns for 2 components"
+        "the zero pattern of the Jacobian is 3 × 3, but must be 2 × 2"
     );
     assert_eq!(
         refusal(3, rod(3), LinearSolver::Band { lower: 1, upper: 0 }),
-        "the rate of y[0] depends on y[1], outside of the band of 1 diagonals below the main one and 0 above"
+        "the rate of y[0] depends on y[1], which lies outside the band of 1 diagonals below the main one and 0 above: widen the band"
     );
     assert_eq!(
         refusal(3, rod(3), LinearSolver::Band { lower: 0, upper: 2 }),
-        "the rate of y[1] depends on y[0], outside of the band of 0 diagonals below the main one and 2 above"
+        "the rate of y[1] depends on y[0], which lies outside the band of 0 diagonals below the main one and 2 above: widen the band"
     );
     assert_eq!(
         refusal(3, None, LinearSolver::Band { lower: 3, upper: 0 }),
-        "a band of 3 diagonals below the main one and 0 above does not fit 3 components"
+        "a band of 3 diagonals below the main one and 0 above is too wide for a Jacobian of 3 × 3"
     );
     assert_eq!(
         refusal(2, None, LinearSolver::Krylov(Krylov::new(0))),

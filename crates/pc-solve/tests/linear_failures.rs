@@ -191,9 +191,11 @@ fn failures_are_named_and_leave_the_last_state() {
                 );
             }
             (_, Place::Product) => {
-                assert!(cause.to_string().starts_with("the change of the rate of left in a direction is "));
+                assert!(
+                    cause.to_string().starts_with("the derivative of the rate of left in a direction is ")
+                );
             }
-            (_, _) => assert!(cause.to_string().starts_with("the preconditioner makes left "), "{cause}"),
+            (_, _) => assert!(cause.to_string().starts_with("the preconditioner sets left to "), "{cause}"),
         }
         if !matches!(mishap, Mishap::Fatal | Mishap::Recoverable) {
             let cause = cause.downcast_ref::<NonFinite>().unwrap();

@@ -118,11 +118,11 @@ fn input_is_checked() {
     let refusal = |lyapunov: LyapunovOptions| {
         lyapunov_exponents(lorenz(), 0.0, &[1.0; 3], &options, &lyapunov).unwrap_err().to_string()
     };
-    let expected = "4 exponents are requested, but a flow in 3 dimensions has 1 to 3";
+    let expected = "the number of Lyapunov exponents is 4, but must be from 1 to 3, the number of components";
     assert_eq!(refusal(LyapunovOptions::new(4, 1.0, 1)), expected);
     assert_eq!(
         refusal(LyapunovOptions::new(0, 1.0, 1)),
-        "0 exponents are requested, but a flow in 3 dimensions has 1 to 3"
+        "the number of Lyapunov exponents is 0, but must be from 1 to 3, the number of components"
     );
     assert_eq!(refusal(LyapunovOptions::new(1, -1.0, 1)), "the interval is -1, but must be positive");
     assert_eq!(
@@ -131,7 +131,7 @@ fn input_is_checked() {
     );
     let late = lyapunov_exponents(lorenz(), 1e9, &[1.0; 3], &options, &LyapunovOptions::new(1, 1e-9, 1))
         .unwrap_err();
-    assert_eq!(late.to_string(), "the end time is the start time, t = 1000000000");
+    assert_eq!(late.to_string(), "the end time equals the start time, t = 1000000000");
 }
 
 /// Vectors that become parallel to rounding within one interval are refused.
@@ -147,7 +147,7 @@ fn long_intervals_are_refused() {
     assert_eq!((&error.reason, error.time), (&Reason::Collapsed { vector: 1 }, 40.0));
     assert_eq!(
         error.to_string(),
-        "tangent vector number 1 (from 0) has lost its direction at t = 40: shorter intervals keep it"
+        "tangent vector number 1 (from 0) is a combination of those before it, up to rounding, at t = 40: choose shorter intervals"
     );
 }
 

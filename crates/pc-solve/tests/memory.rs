@@ -22,7 +22,7 @@ fn a_million_events_leave_no_trace() {
         ydot[0] = 1.0;
         Ok(())
     });
-    let tooth = FnEvents::new().with(Event::new("half"), |_, y| Ok(y[0] - 0.5)).with_reset(
+    let tooth = FnEvents::new().with(Event::new("half").rising(), |_, y| Ok(y[0] - 0.5)).with_reset(
         Event::new("tooth").rising(),
         |_, y| Ok(y[0] - 1.0),
         |_, y| {

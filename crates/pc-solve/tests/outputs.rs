@@ -62,7 +62,10 @@ fn advancing_piecewise_gives_the_same_motion() {
 #[test]
 fn steps_and_interpolation() {
     let mut cvode = pendulum_at(0.0, &Options::default());
-    assert_eq!(cvode.interpolate(0.0, 0).unwrap_err().to_string(), "there is no last step to interpolate in");
+    assert_eq!(
+        cvode.interpolate(0.0, 0).unwrap_err().to_string(),
+        "there is nothing to interpolate: no step has been made"
+    );
     let mut before = 0.0;
     while cvode.time() < 5.0 {
         let state_before = cvode.state().to_vec();
@@ -115,7 +118,7 @@ fn invalid_interpolations_are_refused() {
             let from = to - length;
             assert_eq!(
                 error.to_string(),
-                format!("t = {t} lies outside the last step, which goes from t = {from} to {to}")
+                format!("t = {t} lies outside the last step, which covers t = {from} to {to}")
             );
             assert!(matches!(error, SolveError::Input(InputError::OutsideStep { .. })));
         }
@@ -124,7 +127,7 @@ fn invalid_interpolations_are_refused() {
             assert_eq!(
                 error.to_string(),
                 format!(
-                    "the derivative of order {beyond} is requested, but the last step has derivatives up to \
+                    "the derivative of order {beyond} is requested, but within the last step derivatives are known up to \
                      order {order}"
                 )
             );

@@ -127,7 +127,7 @@ fn derivatives_that_are_not_finite_are_named() {
     };
     assert_eq!(
         cause(faulty(NAN, true, ZERO), Method::Adams),
-        "the rate of x has a derivative along column 0 (from 0) that is NaN"
+        "the derivative of the rate of x along sensitivity number 0 (from 0) is NaN"
     );
     for method in [Method::Adams, Method::Bdf] {
         assert_eq!(cause(faulty(NAN, false, ZERO), method), "the derivative of the rate of x by x is NaN");
@@ -263,13 +263,16 @@ fn input_is_checked() {
     let new = Sensitivities::new;
     assert_eq!(
         refusal(new().by_parameter(1)),
-        "the vector field has 1 parameters, but number 1 (from 0) is requested"
+        "there is no parameter number 1 (from 0): the number of parameters is 1"
     );
     assert_eq!(
         refusal(new().by_start(1)),
-        "the vector field has 1 components, but number 1 (from 0) is requested"
+        "there is no component number 1 (from 0): the number of components is 1"
     );
-    assert_eq!(refusal(new().along([1.0, 2.0])), "the start of a sensitivity: 2 numbers for 1 components");
+    assert_eq!(
+        refusal(new().along([1.0, 2.0])),
+        "the start of a sensitivity: expected one number for each component (1), found 2"
+    );
     assert_eq!(refusal(new().by_parameter_from(0, [f64::NAN])), "a sensitivity of x at the start is NaN");
     assert_eq!(
         refusal(new().by_start(0).tolerances(0.0, 1.0)),
@@ -285,5 +288,5 @@ fn input_is_checked() {
     });
     let failure =
         solve_with_sensitivities(closure, 0.0, &[0.0], &[1.0], &options, &new().by_parameter(0)).unwrap_err();
-    assert_eq!(failure.to_string(), "the vector field has no derivative by its parameters");
+    assert_eq!(failure.to_string(), "the vector field does not provide its derivatives by the parameters");
 }

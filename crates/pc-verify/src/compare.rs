@@ -68,7 +68,7 @@ fn compared(
     let second = Second::new(observed, assembly)?;
     let mut agreement = second.nothing_yet();
     let flow = Flow::new(observed, assembly, Variables::QuasiVelocities)?;
-    let mut large = Projection { flow: flow.clone(), layout: Layout::of(&flow, &second.columns) };
+    let mut large = Projection { flow: flow.clone(), layout: Layout::of(&flow, &second) };
     let (wholly, states) = (second.wholly(options.states), second.affordable(options.states));
     let plain_graph = model.graph();
     let plain = model.assemble(&plain_graph)?;
@@ -242,7 +242,7 @@ impl Second {
         mut agreement: Agreement,
     ) -> Result<Agreement, VerifyError> {
         let row = self.row(&mut flow, t, state);
-        let layout = Layout::of(&flow, &self.columns);
+        let layout = Layout::of(&flow, self);
         let mut large = Projection { flow, layout };
         let place = self.place(t, &row).map_err(Passed::from);
         match place.and_then(|place| self.compare_projected(form, &mut large, &place, &mut agreement)) {

@@ -83,7 +83,8 @@ impl<'g> First<'g> {
         let coordinates = state[..n].iter().filter_map(place).collect();
         let (canonical, is_changed) = (flow.has_momenta(), !flow.has_own_variables());
         let columns = flow.free_quasi_velocities().iter().map(|&s| second.free(&names[s]));
-        let free: Option<Vec<Free>> = if canonical { columns.collect() } else { None };
+        let free: Option<Vec<Free>> =
+            if canonical || second.has_free_energy { columns.collect() } else { None };
         let mut candidates: Vec<(String, Option<Quantity>)> = Vec::new();
         let moving = n..state.len() - flow.motion.states();
         // Quasi-velocities absent from the model, and their rates, are compared as those of the model.

@@ -2,8 +2,9 @@
 //!
 //! A force F on a body at r that depends on the place alone, and is homogeneous of degree d in r there, has
 //! the force function U = F·r/(d + 1) (Euler) if F·X_s r = X_s U for all s. The text format adds such forces,
-//! whole or by components, to L. Here the property is tested in numbers: the quotient μ of F·X_s r and X_s
-//! (F·r) is one constant for all s, at all places and for other values of the parameters.
+//! whole or by components, to L; which ones is the choice of the first derivation, which proves the property
+//! where it can. Here the property is tested in numbers: the quotient μ of F·X_s r and X_s (F·r) is one
+//! constant for all s, at all places and for other values of the parameters.
 
 use crate::derivation::Derivation;
 use crate::error::Irregular;
@@ -20,8 +21,9 @@ const MOVED: f64 = 0.3;
 const ALIKE: f64 = 1e-9;
 
 impl Derivation {
-    /// Finds the factors μ_i of F_i r_i for all bodies.
-    pub(crate) fn find_force_functions(&mut self, near: &Place) {
+    /// Finds the factors μ_i of F_i r_i for all bodies, of the components that are chosen by the name of
+    /// the body and their place.
+    pub(crate) fn find_force_functions(&mut self, near: &Place, chosen: impl Fn(&str, usize) -> bool) {
         let mut random = Random::new(1);
         let mut other = self.clone();
         for value in &mut other.text.parameters {
@@ -29,16 +31,21 @@ impl Derivation {
         }
         let may = |body: &usize| self.text.bodies[*body].may_have_force_functions;
         for body in (0..self.text.bodies.len()).filter(may).collect::<Vec<_>>() {
-            let components: Vec<usize> = (0..self.text.bodies[body].force.len()).collect();
+            let name = &self.text.names.bodies[body];
+            let count = self.text.bodies[body].force.len();
+            let components: Vec<usize> = (0..count).filter(|&i| chosen(name, i)).collect();
             let factor = |components: &[usize]| {
                 let quotients = [&*self, &other].map(|derivation| derivation.factor(body, components, near));
                 let [Some(here), Some(there)] = quotients else { return None };
                 ((here - there).abs() <= ALIKE * here.abs()).then_some(here)
             };
-            let factors: Vec<f64> = match factor(&components) {
-                Some(whole) => vec![whole; components.len()],
-                None => components.iter().map(|&i| factor(&[i]).unwrap_or(0.0)).collect(),
+            let whole = factor(&components).filter(|_| components.len() == count);
+            let of_component = |i: usize| match whole {
+                Some(factor) => factor,
+                None if components.contains(&i) => factor(&[i]).unwrap_or(0.0),
+                None => 0.0,
             };
+            let factors: Vec<f64> = (0..count).map(of_component).collect();
             self.text.bodies[body].force_functions = factors;
         }
     }

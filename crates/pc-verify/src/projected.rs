@@ -19,6 +19,7 @@ use crate::linear::{matrix, pseudo_inverse};
 use crate::place::{Direction, Place, Virtual};
 use crate::quantities::REPETITIONS;
 use crate::rounding::{Random, Rounding, UNIT};
+use crate::second::Second;
 use crate::sized::Sized;
 use crate::text::Velocities;
 use crate::tolerance::ORDINARY;
@@ -47,12 +48,12 @@ pub(crate) struct Layout {
 
 impl Layout {
     /// The layout of a flow in quasi-velocities.
-    pub(crate) fn of(flow: &Flow, columns: &[String]) -> Layout {
+    pub(crate) fn of(flow: &Flow, second: &Second) -> Layout {
         let place = |list: &[String], name: &String| list.iter().position(|known| known == name);
         let observables = flow.motion.observable_names();
         Layout {
-            columns: columns.iter().map(|column| place(flow.motion.names(), column)).collect(),
-            energy: observables.iter().position(|name| name == "energy"),
+            columns: second.columns.iter().map(|column| place(flow.motion.names(), column)).collect(),
+            energy: observables.iter().position(|name| name == "energy" && !second.has_free_energy),
         }
     }
 }

@@ -44,6 +44,8 @@ pub struct Second {
     /// The names of the columns of a table.
     pub(crate) columns: Vec<String>,
     pub(crate) start: Place,
+    /// Whether the first derivation has the energy of independent velocities, y·η − L, and not that of all.
+    pub(crate) has_free_energy: bool,
     external: Vec<String>,
 }
 
@@ -108,8 +110,14 @@ impl Second {
             }
             derivation.kept = kept;
         }
-        derivation.find_force_functions(&start);
-        Ok(Second { derivation, columns, start, external: model.external_forces() })
+        let bodies = assembly.system.bodies();
+        derivation.find_force_functions(&start, |body, component| {
+            let known = bodies.iter().find(|known| known.name() == body);
+            known.is_some_and(|known| known.force_in_lagrangian().get(component) == Some(&true))
+        });
+        let is_free = assembly.constraints.held().is_none();
+        let has_free_energy = is_free && pc_print::energy_remark(assembly).is_some();
+        Ok(Second { derivation, columns, start, has_free_energy, external: model.external_forces() })
     }
 
     /// The place with these coordinates, columns and first-order states.
@@ -187,7 +195,7 @@ impl Second {
     pub(crate) fn observable(&self, name: &str) -> Option<Quantity> {
         let text = &self.derivation.text;
         if name == "energy" {
-            return Some(Quantity::Energy);
+            return Some(if self.has_free_energy { Quantity::FreeEnergy } else { Quantity::Energy });
         }
         let observed = text.observed.iter().position(|(known, _)| known == name).map(Quantity::Observed);
         let names = &text.names;
@@ -219,7 +227,8 @@ impl Second {
         evaluations.saturating_mul(self.derivation.text.terms())
     }
 
-    /// Whether one comparison uses up the available time, about a tenth of the derivation.
+    /// Whether one comparison takes more than some milliseconds: the equations are long, and those of this flow, in
+    /// momenta or in other variables, cannot be compared along virtual velocities instead.
     pub fn is_long(&self, flow: &Flow) -> bool {
         let is_own = flow.has_own_variables() && flow.motion.coordinates() == self.start.x.len();
         self.cost() > LONG && (flow.has_momenta() || !is_own)

@@ -372,12 +372,14 @@ fn number(term: &Term) -> Option<f64> {
     }
 }
 
-/// 1 + 2 q_0 S + 2 S² for the S of the vector of a unit quaternion.
+/// |q|² + 2 q_0 S + 2 S² for the S of the vector of a quaternion: |q|² times a rotation, so that energies
+/// agree also where a motion has left |q| = 1 by its tolerance.
 fn by_quaternion(q: &[Term]) -> Vec<Term> {
     let (s, two) = (skew(&q[1..]), Term::Number(2.0));
     let square = product(&s, &s);
+    let norm = scalar(q, q);
     let entry = |((unit, s), square): ((Term, Term), Term)| {
-        sum([unit, times([&two, &q[0], &s]), times([&two, &square])])
+        sum([times([&norm, &unit]), times([&two, &q[0], &s]), times([&two, &square])])
     };
     unit().into_iter().zip(s).zip(square).map(entry).collect()
 }

@@ -181,6 +181,81 @@ joint = { kind = "prismatic", axis = [0, 0, 1] }
   help: give it a mass, or make its joint `fixed`"#,
     ),
     (
+        "point mass on the axis",
+        r#"[parameters]
+m = 1.0
+[bodies.a]
+joint = { kind = "revolute", axis = [0, 1, 0] }
+mass = "m"
+center = [0, 2, 0]
+"#,
+        4,
+        r#"m.toml:4:9: [bodies.a] joint: nothing that the revolute joint of `a` turns has inertia about its axis (0, 1, 0)
+    joint = { kind = "revolute", axis = [0, 1, 0] }
+            ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+  help: give `a` an `inertia`, or by `center` a place off the axis for a mass that is not 0, or make its joint `fixed`"#,
+    ),
+    (
+        "tip without mass",
+        r#"[parameters]
+m = 0.0
+[bodies.a]
+joint = { kind = "revolute", axis = [0, 1, 0] }
+mass = 1
+center = [0, 0, -1]
+[bodies.b]
+parent = "a"
+joint = { kind = "revolute", axis = [0, 1, 0], at = [0, 0, -1] }
+mass = "m"
+center = [0, 0, -1]
+"#,
+        4,
+        r#"m.toml:9:9: [bodies.b] joint: nothing that the revolute joint of `b` turns has inertia about its axis (0, 1, 0)
+    joint = { kind = "revolute", axis = [0, 1, 0], at = [0, 0, -1] }
+            ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+  help: give `b` an `inertia`, or by `center` a place off the axis for a mass that is not 0, or make its joint `fixed`"#,
+    ),
+    (
+        "slide without mass",
+        r#"[parameters]
+m = 0.0
+[bodies.a]
+joint = { kind = "prismatic", axis = [0, 0, 1] }
+mass = "m"
+"#,
+        4,
+        r#"m.toml:4:9: [bodies.a] joint: nothing that the prismatic joint of `a` moves along its axis (0, 0, 1) has mass
+    joint = { kind = "prismatic", axis = [0, 0, 1] }
+            ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+  help: give `a` a mass that is not 0, or make its joint `fixed`"#,
+    ),
+    (
+        "point mass on a spherical joint",
+        r#"[bodies.a]
+joint = { kind = "spherical" }
+mass = 1
+center = [0, 0, -1]
+"#,
+        4,
+        r#"m.toml:2:9: [bodies.a] joint: nothing that the spherical joint of `a` turns has inertia about the axis (0, 0, 1) of the body
+    joint = { kind = "spherical" }
+            ^^^^^^^^^^^^^^^^^^^^^^
+  help: give `a` an `inertia`, or by `center` a place off the axis for a mass that is not 0, or make its joint `fixed`"#,
+    ),
+    (
+        "point mass at the crossing of the axes",
+        r#"[bodies.a]
+joint = { kind = "universal", axes = [[1, 0, 0], [0, 1, 0]] }
+mass = 1
+center = [0, 1, 0]
+"#,
+        4,
+        r#"m.toml:2:9: [bodies.a] joint: nothing that the universal joint of `a` turns has inertia about its second axis (0, 1, 0)
+    joint = { kind = "universal", axes = [[1, 0, 0], [0, 1, 0]] }
+            ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+  help: give `a` an `inertia`, or by `center` a place off the axis for a mass that is not 0, or make its joint `fixed`"#,
+    ),
+    (
         "name taken by a parameter",
         r#"[parameters]
 a = 1

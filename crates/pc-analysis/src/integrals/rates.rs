@@ -1,5 +1,6 @@
 //! Rates of change along the motion, and whether they vanish.
 
+use pc_algebra::may_jump;
 use pc_mech::{Canonical, Equations, Expr, Graph, System};
 
 use crate::error::{AnalysisError, check_variables};
@@ -171,11 +172,14 @@ impl<'g> Rates<'g> {
         Ok(Some(left).filter(|left| left.is_finite()))
     }
 
-    /// Whether f contains a sign, a step or an angle of changing quantities, and so may jump.
+    /// Whether f contains a sign, a step or an angle of changing quantities, and so may jump, or is seen to.
     pub fn has_jumps(&self, f: Expr<'g>) -> bool {
         let f = self.graph.substitute(&[f], &self.accelerations)[0];
         let changing: Vec<Expr<'g>> = self.flow.iter().map(|&(symbol, _)| symbol).collect();
-        self.graph.applies(f, &changing, |function| !function.is_continuous())
+        let number = |&(symbol, value): &(Expr<'g>, Expr<'g>)| Some((symbol, value.constant()?.to_f64()));
+        let numbers: Vec<(Expr<'g>, f64)> = self.parameters.iter().filter_map(number).collect();
+        // What cannot be evaluated is not known to be without jumps.
+        may_jump(self.graph, f, &changing, &numbers).unwrap_or(true)
     }
 
     /// The derivative with the parameters replaced by their numbers.

@@ -129,7 +129,7 @@ impl EquilibriumSearch {
         let known = Known::of(equations, integrals);
         // If the equations are in variables other than the state, only their energy is used.
         let is_own = equations.system().state().len() == start.len();
-        let seeker = if is_own { Seeker::new(equations, &mut motion, t, start, &known) } else { None };
+        let seeker = if is_own { Seeker::new(equations, &mut motion, (t, start), &known, &[]) } else { None };
         let keeps_energy = integrals.iter().any(|integral| integral.is_energy() && integral.is_conserved());
 
         let cyclic = linearizer.cyclic();
@@ -367,7 +367,7 @@ impl Linearizer {
         let steady = self.find_on(t, start, &state, &SteadyOptions::default().iterations(0))?;
         let spectrum = &linearization.spectrum;
         let mut described = match seeker {
-            Some(seeker) => seeker.described(&steady, start, Vec::new()),
+            Some(seeker) => seeker.described(&steady, start, Vec::new())?,
             None => NearbySteadyMotion {
                 state: Vec::new(),
                 rates: Vec::new(),

@@ -7,7 +7,7 @@ use crate::numeric::dense::{norm, product};
 
 /// Singular values, and rows of an orthonormal basis, below this part of the largest are zeros. Entries of
 /// frames and slopes of constraints are accurate to some ten or hundred roundings.
-const ZERO: f64 = 1e-10;
+pub(super) const ZERO: f64 = 1e-10;
 
 /// The directions δx in which coordinates can move: the image of b, tangent to the leaf of an integrable
 /// frame (Frobenius), within the kernel of the slopes of position constraints.

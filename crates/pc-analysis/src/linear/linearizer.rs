@@ -7,10 +7,12 @@ use pc_mech::{
     CompileOptions, Equations, Expr, Matrix, Motion, Multipliers, SingularValues, System, VectorField,
 };
 
-use crate::error::AnalysisError;
+use crate::error::{AnalysisError, check_variables};
 use crate::integrals::search::rank_of_gradients;
 use crate::linear::leaf::{Directions, Velocities};
-use crate::numeric::dense::norm;
+use crate::linear::reactions::Reactions;
+use crate::numeric::dense::{norm, product};
+use crate::numeric::program::values;
 use crate::stability::steady_motion::{SteadyMotion, SteadyOptions, cyclic_coordinates, first_approximation};
 use crate::stability::steady_search::{is_autonomous, names_time};
 
@@ -74,8 +76,10 @@ pub struct Linearizer {
     outputs: Vec<String>,
     /// The positions, the kept functions and the conditions on velocities, then their slopes.
     surface: Evaluator,
-    /// b, M, and for each output its derivatives by the state, the accelerations and the inputs.
+    /// b, M, and for each output its derivatives by the state, the accelerations, the reactions and the inputs.
     parts: Evaluator,
+    /// Those in the outputs.
+    reactions: Option<Reactions>,
     pub(super) sizes: Sizes,
     /// Whether as many functions are known as the frame keeps.
     is_leaf_known: bool,
@@ -122,7 +126,7 @@ impl Linearizer {
         inputs: &[&str],
     ) -> Result<Linearizer, AnalysisError> {
         let options = CompileOptions::default().parameter_jacobian(!inputs.is_empty());
-        Linearizer::of(equations.compile_for(options)?, equations, leaf, &[], inputs)
+        Linearizer::of(equations.compile_for(options)?, equations, leaf, None, inputs)
     }
 
     /// Linearizes equations with multipliers, which are regular wherever the constraints are: no choice of
@@ -137,18 +141,19 @@ impl Linearizer {
     ) -> Result<Linearizer, AnalysisError> {
         let options = CompileOptions::default().parameter_jacobian(!inputs.is_empty());
         let motion = multipliers.compile_for(options)?;
-        Linearizer::of(motion, multipliers.equations(), leaf, multipliers.velocities(), inputs)
+        Linearizer::of(motion, multipliers.equations(), leaf, Some(multipliers), inputs)
     }
 
-    /// As [`new`](Linearizer::new), with `conditions` on the velocities.
+    /// As [`new`](Linearizer::new), with `multipliers` where these hold conditions on the velocities.
     fn of<'g>(
         motion: Motion,
         equations: &Equations<'g>,
         leaf: &Leaf<'g>,
-        conditions: &[Expr<'g>],
+        multipliers: Option<&Multipliers<'g>>,
         inputs: &[&str],
     ) -> Result<Linearizer, AnalysisError> {
         let (system, graph) = (equations.system(), equations.system().graph());
+        let conditions = multipliers.map_or(&[][..], Multipliers::velocities);
         let names: Vec<String> = system.parameters().iter().map(|(symbol, _)| symbol.to_string()).collect();
         let place = |&input: &&str| match names.iter().position(|name| name == input) {
             Some(place) => Ok((input.to_owned(), place)),
@@ -164,7 +169,9 @@ impl Linearizer {
             leaf.positions.iter().chain(&leaf.kept).chain(conditions).copied().collect();
         let moving = [x, system.quasi_velocities()].concat();
         let slopes = functions.iter().flat_map(|&f| graph.gradient(f, &moving));
-        let parameters: Vec<Expr<'g>> = system.parameters().iter().map(|&(symbol, _)| symbol).collect();
+        let external = system.external_forces().iter().map(|&(_, symbol)| symbol);
+        let parameters: Vec<Expr<'g>> =
+            system.parameters().iter().map(|&(symbol, _)| symbol).chain(external).collect();
         let accelerations = system.accelerations();
         let time = Some(system.frame().time());
         let of_state = Inputs { time, state: state.clone(), parameters: parameters.clone() };
@@ -179,14 +186,22 @@ impl Linearizer {
             system.outputs().iter().flat_map(|&(_, h)| graph.gradient(h, by)).collect()
         };
         let symbols: Vec<Expr<'g>> = inputs.iter().map(|&(_, place)| parameters[place]).collect();
+        let outputs: Vec<Expr<'g>> = system.outputs().iter().map(|&(_, h)| h).collect();
+        let reacting =
+            multipliers.map(|all| (all, Reactions::observed(all))).filter(|(_, list)| !list.is_empty());
+        let reactions = reacting.as_ref().map_or(&[][..], |(all, _)| all.reactions());
+        let with_unknowns =
+            Inputs { state: [&state, &accelerations, reactions].concat(), ..of_state.clone() };
+        let known = [&with_unknowns.state[..], &parameters, &[system.frame().time()]].concat();
+        check_variables("an output", graph, &outputs, &known)?;
         let parts = [
             b.to_rows().concat(),
             mass,
             of_outputs(&state),
             of_outputs(&accelerations),
+            of_outputs(reactions),
             of_outputs(&symbols),
         ];
-        let with_accelerations = Inputs { state: [state, accelerations].concat(), ..of_state.clone() };
         let evaluator = |inputs: &Inputs<'g>, outputs: &[Expr<'g>]| -> Result<Evaluator, AnalysisError> {
             Ok(Evaluator::new(Program::new(graph, inputs, outputs)?, Backend::Interpreter))
         };
@@ -202,7 +217,10 @@ impl Linearizer {
         let is_timed = conditions.iter().any(|g| g.depends_on(system.frame().time()));
         Ok(Linearizer {
             surface: evaluator(&of_state, &surface)?,
-            parts: evaluator(&with_accelerations, &parts.concat())?,
+            parts: evaluator(&with_unknowns, &parts.concat())?,
+            reactions: reacting
+                .map(|(all, list)| Reactions::new(all, list, &of_state, &symbols))
+                .transpose()?,
             depends_on_time: is_timed || !is_autonomous(equations),
             names_time: is_timed || names_time(equations),
             outputs: system.outputs().iter().map(|(name, _)| name.clone()).collect(),
@@ -336,13 +354,7 @@ impl Linearizer {
         let (moving, m) = (self.sizes.coordinates + self.sizes.velocities, self.sizes.positions);
         let kept = m..m + self.sizes.kept;
         let rows = kept.end + self.sizes.conditions;
-        let mut numbers = vec![0.0; rows * (moving + 1)];
-        let parameters = self.motion.parameters().to_vec();
-        let parameters = &parameters[..self.surface.program().parameters_len()];
-        self.surface.eval(t, y, parameters, &mut numbers);
-        if numbers.iter().any(|number| !number.is_finite()) {
-            return Err(self.surface.blame(t, y, parameters).into());
-        }
+        let numbers = values(&mut self.surface, t, y, self.motion.parameters())?;
         let (values, slopes) = numbers.split_at(rows);
         let level = |a: usize| levels.filter(|_| kept.contains(&a)).map_or(0.0, |levels| levels[a]);
         let values = values.iter().enumerate().map(|(a, value)| value - level(a)).collect();
@@ -366,14 +378,15 @@ impl Linearizer {
         let conditions = Matrix::from_fn(self.sizes.conditions, n + l, |a, j| slopes[(first + a, j)]);
         let slopes = Matrix::from_fn(self.sizes.positions, n, |a, j| slopes[(a, j)]);
 
-        let state = [y, &rates[n..n + l]].concat();
         let parameters = self.motion.parameters().to_vec();
-        let parameters = &parameters[..self.parts.program().parameters_len()];
-        let mut numbers = vec![0.0; self.parts.program().outputs_len()];
-        self.parts.eval(t, &state, parameters, &mut numbers);
-        if numbers.iter().any(|number| !number.is_finite()) {
-            return Err(self.parts.blame(t, &state, parameters).into());
-        }
+        let rows = |of: &Matrix<f64>| Matrix::from_fn(l, of.columns(), |s, j| of[(n + s, j)]);
+        let accelerating = (&rates[n..n + l], &rows(&jacobian), &rows(&by_inputs));
+        let here = (t, y, parameters.as_slice());
+        let reacting = self.reactions.as_mut().map(|all| all.at(here, accelerating, self.motion.names()));
+        let reacting = reacting.transpose()?;
+        let reactions = reacting.as_ref().map_or(&[][..], |reacting| &reacting.values);
+        let state = [y, &rates[n..n + l], reactions].concat();
+        let numbers = values(&mut self.parts, t, &state, &parameters)?;
         let mut rest = numbers.as_slice();
         let mut take = |rows: usize, columns: usize| {
             let (own, others) = rest.split_at(rows * columns);
@@ -384,15 +397,21 @@ impl Linearizer {
         let b = take(n, self.sizes.whole);
         let mass = take(self.sizes.mass, self.sizes.mass);
         let (by_state, by_accelerations) = (take(outputs, size), take(outputs, l));
-        let by_own_inputs = take(outputs, places.len());
-        let through = |own: &Matrix<f64>, of: &Matrix<f64>| {
-            let sum =
-                |i: usize, j: usize| (0..l).map(|s| by_accelerations[(i, s)] * of[(n + s, j)]).sum::<f64>();
-            Matrix::from_fn(own.rows(), own.columns(), |i, j| own[(i, j)] + sum(i, j))
+        let (by_reactions, by_own_inputs) = (take(outputs, reactions.len()), take(outputs, places.len()));
+        let through = |own: Matrix<f64>, accelerated: &Matrix<f64>, reacted: Option<&Matrix<f64>>| {
+            let mut all = vec![own, product(&by_accelerations, accelerated)];
+            all.extend(reacted.map(|reacted| product(&by_reactions, reacted)));
+            Matrix::from_fn(outputs, all[0].columns(), |i, j| all.iter().map(|part| part[(i, j)]).sum())
         };
+        let (_, accelerated, accelerated_by_inputs) = accelerating;
+        let reacted = reacting.as_ref();
         Ok(Evaluated {
-            outputs: through(&by_state, &jacobian),
-            outputs_by_inputs: through(&by_own_inputs, &by_inputs),
+            outputs: through(by_state, accelerated, reacted.map(|all| &all.by_state)),
+            outputs_by_inputs: through(
+                by_own_inputs,
+                accelerated_by_inputs,
+                reacted.map(|all| &all.by_inputs),
+            ),
             mass: (self.sizes.mass == l).then_some(mass),
             directions: Directions::new(&b, &slopes)?,
             velocities: Velocities::new(&conditions, n, l)?,

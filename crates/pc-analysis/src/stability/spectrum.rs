@@ -54,6 +54,7 @@ pub struct Spectrum {
     eigenvalues: Vec<Eigenvalue>,
     zero_blocks: Vec<usize>,
     tolerance: f64,
+    uncertainty: f64,
 }
 
 impl Spectrum {
@@ -82,7 +83,8 @@ impl Spectrum {
         let zeros = zero_blocks.iter().sum();
         found.extend(std::iter::repeat_n(Eigenvalue { real: 0.0, imaginary: 0.0 }, zeros));
         found.sort_by(|a, b| b.real.total_cmp(&a.real).then(b.imaginary.total_cmp(&a.imaginary)));
-        Ok(Spectrum { eigenvalues: found, zero_blocks, tolerance: uncertainty.sqrt() * scale })
+        let tolerance = uncertainty.sqrt() * scale;
+        Ok(Spectrum { eigenvalues: found, zero_blocks, tolerance, uncertainty })
     }
 
     /// The n eigenvalues, in descending order of their real parts.
@@ -99,6 +101,11 @@ impl Spectrum {
     /// The absolute value up to which a real part counts as zero.
     pub fn tolerance(&self) -> f64 {
         self.tolerance
+    }
+
+    /// To what part of |A| the entries are known.
+    pub(crate) fn uncertainty(&self) -> f64 {
+        self.uncertainty
     }
 
     /// The number of eigenvalues whose real part counts as zero, zeros among them.

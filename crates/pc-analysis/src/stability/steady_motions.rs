@@ -90,8 +90,8 @@ impl SteadyMotions {
             return Err(NoSteadyMotions::NotAutonomous);
         }
         let known = Known::of(equations, integrals);
-        let seeker =
-            Seeker::new(equations, motion, t, start, &known).ok_or(NoSteadyMotions::NoApproximation)?;
+        let seeker = Seeker::new(equations, motion, (t, start), &known, positions)
+            .ok_or(NoSteadyMotions::NoApproximation)?;
         let choices: Vec<_> =
             known.choices().into_iter().map(|same| seeker.with_positions(same, positions)).collect();
         let of_place = choices.last().cloned().unwrap_or_default();
@@ -171,7 +171,7 @@ impl Found {
         }
         let Some(family) = family(&steady, surface, &kept) else { return };
         let names = same.iter().map(|(name, _)| name.clone()).collect();
-        let described = seeker.described(&steady, start, names);
+        let Ok(described) = seeker.described(&steady, start, names) else { return };
         self.list.push((steady.state, FoundSteadyMotion { motion: described, family }));
     }
 

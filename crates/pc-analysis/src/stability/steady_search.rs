@@ -2,17 +2,16 @@
 
 use pc_mech::{Equations, Expr, ExprError, Graph, Matrix, Motion, System};
 
+use crate::error::AnalysisError;
 use crate::integrals::integral::{Integral, bind};
 use crate::integrals::search::rank_of_gradients;
+use crate::stability::reachable::Reachable;
 use crate::stability::second_variation::SecondVariation;
 use crate::stability::spectrum::{Eigenvalue, Verdict};
 use crate::stability::steady_motion::{SteadyMotion, SteadyOptions, first_approximation};
 
 /// Where rates are steeper than at the start by this factor, the coordinates are singular.
 const MOST_STEEPER: f64 = 1e6;
-
-/// A differential is independent of others if more than this part of it is orthogonal to them.
-const INDEPENDENT: f64 = 1e-8;
 
 /// Steps of Newton's method.
 const MOST_STEPS: usize = 50;
@@ -32,7 +31,7 @@ pub struct NearbySteadyMotion {
     pub distance: f64,
     /// The integrals that have their values at the start.
     pub same: Vec<String>,
-    /// The eigenvalues of the first approximation.
+    /// The eigenvalues of the first approximation, in the directions that relations of the coordinates leave.
     pub eigenvalues: Vec<Eigenvalue>,
     /// The real part that counts as zero.
     pub tolerance: f64,
@@ -114,7 +113,7 @@ impl SteadySearch {
             return SteadySearch::TooLarge { components: start.len() };
         }
         let known = Known::of(equations, integrals);
-        let Some(seeker) = Seeker::new(equations, motion, t_start, start, &known) else {
+        let Some(seeker) = Seeker::new(equations, motion, (t_start, start), &known, positions) else {
             return SteadySearch::None;
         };
         for same in known.choices() {
@@ -124,7 +123,8 @@ impl SteadySearch {
             };
             let options = SteadyOptions::default();
             let Some(found) = seeker.steady_motion(motion, start, &options, &surface) else { continue };
-            let steady = seeker.described(&found, start, same.into_iter().map(|(name, _)| name).collect());
+            let same = same.into_iter().map(|(name, _)| name).collect();
+            let Ok(steady) = seeker.described(&found, start, same) else { continue };
             // A result farther from the start than the size of the start is not near it.
             if steady.distance <= 1.0 + seeker.size(&found, start) {
                 return SteadySearch::Found(Box::new(steady));
@@ -163,6 +163,8 @@ pub(crate) struct Seeker<'a, 'g> {
     equations: &'a Equations<'g>,
     bound: Equations<'g>,
     integrals: Vec<(String, Expr<'g>)>,
+    /// Functions of the coordinates that all motions keep.
+    relations: Vec<Expr<'g>>,
     t: f64,
     /// Rates that are steeper indicate singular coordinates.
     steepest: f64,
@@ -173,13 +175,15 @@ impl<'a, 'g> Seeker<'a, 'g> {
     pub(crate) fn new(
         equations: &'a Equations<'g>,
         motion: &mut Motion,
-        t: f64,
-        start: &[f64],
+        (t, start): (f64, &[f64]),
         known: &Known<'g>,
+        positions: &[(String, Expr<'g>)],
     ) -> Option<Seeker<'a, 'g>> {
         let slopes = first_approximation(motion, t, start).ok()?;
         let (bound, integrals) = (equations.with_parameters_bound(), known.integrals.clone());
-        Some(Seeker { equations, bound, integrals, t, steepest: MOST_STEEPER * largest(&slopes) })
+        let positions = positions.iter().map(|&(_, position)| bind(equations.system(), position));
+        let relations = known.of_coordinates.iter().map(|&(_, f)| f).chain(positions).collect();
+        Some(Seeker { equations, bound, integrals, relations, t, steepest: MOST_STEEPER * largest(&slopes) })
     }
 
     /// The functions, and those of the positions that are independent of them.
@@ -220,25 +224,43 @@ impl<'a, 'g> Seeker<'a, 'g> {
         found: &SteadyMotion,
         start: &[f64],
         same: Vec<String>,
-    ) -> NearbySteadyMotion {
+    ) -> Result<NearbySteadyMotion, AnalysisError> {
         let second = SecondVariation::under(&self.bound, &self.integrals, &found.state).ok();
         let second_variation = second.map(|second| EnergyCriterion {
             verdict: second.verdict,
             variables: Some(second.variables).filter(|variables| *variables != found.components),
         });
+        let reachable = self.reachable(found)?;
+        let differentials = differentials(self.equations.system(), found, &self.integrals)?;
         let kept = self.kept(found, start);
         let distance = kept.iter().map(|(_, y, start)| (y - start).powi(2)).sum::<f64>().sqrt();
-        NearbySteadyMotion {
+        Ok(NearbySteadyMotion {
             state: kept.into_iter().map(|(name, y, _)| (name, y)).collect(),
             rates: constant_rates(self.equations, found),
             distance,
             same,
-            eigenvalues: found.spectrum.eigenvalues().to_vec(),
-            tolerance: found.spectrum.tolerance(),
-            first_approximation: found.verdict(),
-            neutral: neutral_directions(self.equations, found, &self.integrals),
+            eigenvalues: reachable.spectrum.eigenvalues().to_vec(),
+            tolerance: reachable.spectrum.tolerance(),
+            first_approximation: reachable.spectrum.verdict(),
+            neutral: reachable.neutral(&differentials),
             second_variation,
-        }
+        })
+    }
+
+    /// The directions from a steady motion along which all relations hold.
+    fn reachable(&self, found: &SteadyMotion) -> Result<Reachable, AnalysisError> {
+        let system = self.equations.system();
+        let (graph, symbols) = (system.graph(), system.state());
+        let slopes: Vec<Expr<'g>> =
+            self.relations.iter().flat_map(|&f| graph.gradient(f, &symbols)).collect();
+        let state = symbols.iter().copied().zip(found.state.iter().copied());
+        let at: Vec<_> = state.chain([(system.frame().time(), self.t)]).collect();
+        let slopes = graph.evaluate(&slopes, &at)?;
+        let normals =
+            Matrix::from_fn(self.relations.len(), symbols.len(), |a, j| slopes[a * symbols.len() + j]);
+        let is_kept = |&i: &usize| found.components.contains(&symbols[i].to_string());
+        let kept: Vec<usize> = (0..symbols.len()).filter(is_kept).collect();
+        Ok(Reachable::of(found, &kept, &normals)?)
     }
 
     /// The size of the start in the components that are not cyclic.
@@ -254,49 +276,20 @@ impl<'a, 'g> Seeker<'a, 'g> {
     }
 }
 
-/// The number k of neutral directions of a member of a family of steady motions: the first approximation has
-/// λ = 0 in k blocks of size 1 and otherwise negative real parts, and there are k integrals with independent
-/// differentials, so that on each level near by the steady motion is isolated and asymptotically stable (I.
-/// G. Malkin's theorem of the critical case of k zeros).
-fn neutral_directions(
-    equations: &Equations<'_>,
+/// The differentials of the integrals by the components that are not cyclic. An integral with a cyclic coordinate
+/// is not one of these components alone.
+fn differentials<'g>(
+    system: &System<'g>,
     found: &SteadyMotion,
-    integrals: &[(String, Expr<'_>)],
-) -> Option<usize> {
-    let spectrum = &found.spectrum;
-    let &[count] = spectrum.zero_blocks() else { return None };
-    let damped = spectrum.eigenvalues().iter().filter(|value| value.real < -spectrum.tolerance()).count();
-    if damped + count != spectrum.eigenvalues().len() || spectrum.neutral() != count {
-        return None;
-    }
-    let (system, graph) = (equations.system(), equations.system().graph());
+    integrals: &[(String, Expr<'g>)],
+) -> Result<Vec<Vec<f64>>, ExprError> {
+    let graph = system.graph();
     let symbols = [system.frame().coordinates(), system.quasi_velocities()].concat();
-    let kept: Vec<Expr<'_>> =
-        symbols.iter().copied().filter(|y| found.components.contains(&y.to_string())).collect();
-    let at: Vec<(Expr<'_>, f64)> = symbols.into_iter().zip(found.state.iter().copied()).collect();
-    // An integral with a cyclic coordinate is not one of the other components alone.
-    let of_kept = |f: &Expr<'_>| {
-        graph
-            .symbols_of(&[*f])
-            .iter()
-            .all(|symbol| kept.contains(symbol) || !at.iter().any(|(y, _)| y == symbol))
-    };
-    let functions: Vec<Expr<'_>> = integrals.iter().map(|&(_, f)| f).filter(of_kept).collect();
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    for function in functions {
-        let mut gradient = graph.evaluate(&graph.gradient(function, &kept), &at).ok()?;
-        let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let size = length(&gradient);
-        for known in &basis {
-            let along: f64 = known.iter().zip(&gradient).map(|(a, b)| a * b).sum();
-            gradient.iter_mut().zip(known).for_each(|(g, known)| *g -= along * known);
-        }
-        let left = length(&gradient);
-        if left > INDEPENDENT * size {
-            basis.push(gradient.iter().map(|g| g / left).collect());
-        }
-    }
-    (basis.len() >= count).then_some(count)
+    let (kept, cyclic): (Vec<Expr<'g>>, Vec<Expr<'g>>) =
+        symbols.iter().partition(|y| found.components.contains(&y.to_string()));
+    let at: Vec<(Expr<'g>, f64)> = symbols.into_iter().zip(found.state.iter().copied()).collect();
+    let of_kept = integrals.iter().filter(|(_, f)| !cyclic.iter().any(|&x| f.depends_on(x)));
+    of_kept.map(|&(_, f)| graph.evaluate(&graph.gradient(f, &kept), &at)).collect()
 }
 
 /// The rates of the cyclic coordinates that contain no cyclic coordinate.

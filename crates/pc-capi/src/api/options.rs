@@ -163,7 +163,7 @@ pub enum pc_linear_solver {
 pub struct pc_solver_options {
     /// sizeof(pc_solver_options), set by pc_solver_options_init.
     pub size: usize,
-    /// A pc_method; PC_ADAMS by default.
+    /// A pc_method; PC_AUTO by default.
     pub method: c_int,
     /// A pc_iteration; PC_ITERATION_OF_METHOD by default.
     pub iteration: c_int,
@@ -207,7 +207,7 @@ impl Default for pc_solver_options {
     fn default() -> Self {
         pc_solver_options {
             size: size_of::<Self>(),
-            method: pc_method::PC_ADAMS as c_int,
+            method: pc_method::PC_AUTO as c_int,
             iteration: pc_iteration::PC_ITERATION_OF_METHOD as c_int,
             linear_solver: pc_linear_solver::PC_LINEAR_AUTOMATIC as c_int,
             max_order: 0,

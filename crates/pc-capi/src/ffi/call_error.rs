@@ -19,7 +19,7 @@ pub(crate) enum CallError {
     Null { what: &'static str },
     #[error("{what}: room for {found} numbers, but there are {expected}")]
     Length { what: &'static str, found: usize, expected: usize },
-    #[error("{what}: {found} numbers are more than memory can hold, {most} at most; is the length −1?")]
+    #[error("{what}: memory cannot hold {found} numbers, only {most}; is the length −1?")]
     TooLong { what: &'static str, found: usize, most: usize },
     #[error("{what} is misaligned: its address must be a multiple of {alignment} bytes")]
     Misaligned { what: &'static str, alignment: usize },
@@ -27,9 +27,9 @@ pub(crate) enum CallError {
     NotText { what: &'static str, offset: usize },
     #[error("{what} is {value}, but must be finite")]
     NotFinite { what: &'static str, value: f64 },
-    #[error("there are {axes} axes and {angles} angles")]
+    #[error("each axis needs one angle: there are {axes} axes and {angles} angles")]
     TurnsOfAxes { axes: usize, angles: usize },
-    #[error("{first} and {second} share memory")]
+    #[error("{first} and {second} share memory, but must be separate")]
     Overlap { first: &'static str, second: &'static str },
     #[error("{what} has no value here: it is {value}")]
     NoValue { what: &'static str, value: f64 },
@@ -45,7 +45,7 @@ pub(crate) enum CallError {
     Index { what: &'static str, index: usize, count: usize },
     #[error("{what} needs a model begun with pc_model_new; this one was read from a text")]
     NotADraft { what: &'static str },
-    #[error("there is no model called `{name}`; pc_builtin_name lists those there are")]
+    #[error("there is no built-in model called `{name}`; pc_builtin_name gives their names")]
     NoSuchModel { name: String },
     #[error("cannot read `{path}`: {source}")]
     Read { path: String, source: std::io::Error },

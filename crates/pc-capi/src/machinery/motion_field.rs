@@ -234,6 +234,10 @@ impl VectorField for MotionField {
         delegate!(self, field => field.enter(t, end))
     }
 
+    fn jumps(&self) -> &[pc_expr::RateJump] {
+        delegate!(self, field => field.jumps())
+    }
+
     fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
         delegate!(self, field => field.leads(from, to))
     }

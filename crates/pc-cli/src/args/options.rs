@@ -142,8 +142,9 @@ pub struct TheoryArguments {
 /// The search for events.
 #[derive(Clone, Debug, Default, Args)]
 pub struct EventArguments {
-    /// Search for events of what follows through constraints, from momenta or from tables at the ends of N equal parts of each step, and
-    /// closer where that leaves doubt; else as in the file, else 4. Between two such places an even number of zeros may be missed
+    /// Split each step into N equal parts to search for events whose functions are known only as numbers (through
+    /// constraints, momenta or tables), and more finely where in doubt; else as in the file, else 4. An even number of
+    /// zeros within one part may be missed
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub samples_per_step: Option<u32>,
     /// Events that follow each other ever faster are an error once the time left until they accumulate is this
@@ -167,8 +168,8 @@ pub struct IntegrationArguments {
     /// Events.
     #[command(flatten)]
     pub events: EventArguments,
-    /// Method: adams, dop853 or taylor (not stiff), bdf (stiff) or auto (dop853, and bdf where stiffness is seen); else that of the file,
-    /// else adams
+    /// Method: auto (dop853, and bdf where stiffness is seen), adams, dop853 or taylor (not stiff) or bdf (stiff); else that of the file,
+    /// else auto
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
 }

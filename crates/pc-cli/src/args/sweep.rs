@@ -66,8 +66,8 @@ pub struct SweepArguments {
     /// Of each member its motion (run), its eigenvalues (linearize), or its properties (check)
     #[arg(long, value_name = "WHAT", default_value = "run")]
     pub of: SweepOf,
-    /// Give a parameter or start value N values evenly spaced, both ends included, or with FROM:TO:N:log as many times
-    /// the one before each, or with A,B,… these (repeatable)
+    /// Vary a parameter or start value over N evenly spaced values from FROM to TO, both included; NAME=FROM:TO:N:log
+    /// spaces them in a constant ratio, NAME=A,B,… lists them (repeatable)
     #[arg(long, value_name = "NAME=FROM:TO:N", value_parser = vary, conflicts_with = "random")]
     pub vary: Vec<Vary>,
     /// Draw a parameter or start value: normal(m,s), uniform(a,b) or lognormal(m,s) (repeatable)

@@ -1,8 +1,8 @@
 //! `pc linearize`: the motions near a state to first order, and their eigenvalues over a parameter.
 
-use pc_analysis::{Linearization, RootLocus};
+use pc_analysis::{Linearization, RootLocus, Stability};
 use pc_model::Model;
-use pc_print::{visible, visible_json};
+use pc_print::{stability_in_words, visible, visible_json};
 use serde_json::{Map, Value, json};
 
 use crate::args::input;
@@ -55,20 +55,20 @@ pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
     let (t, start) = (ground.assembly.t_start, ground.start.clone());
     let linear = near(&mut ground.linearizer, t, &start, &arguments.state, CyclicChoice::OfState)
         .map_err(|error| placed(&ground.assembly, error, true))?;
+    let stability = ground.stability(&linear);
     ground.assembly.within_limits()?;
-    let page = || text::page(model.title(), &linear, arguments.state.at() != At::Start);
+    let page = || text::page(model.title(), &linear, stability.as_ref(), arguments.state.at() != At::Start);
+    let object = || object(&model, arguments.state.at(), &linear, stability.as_ref());
     match (&destination, arguments.format) {
         (Some(destination), _) => destination.write(&Contents {
-            json: &object(&model, arguments.state.at(), &linear),
+            json: &object(),
             csv: &csv(&linear),
             arrays: &of_linearization(&linear),
             texts: &names(&linear),
         }),
         (None, Some(MatrixFormat::Text) | None) => print(|out| write!(out, "{}", visible(&page()))),
         (None, Some(MatrixFormat::Csv)) => print(|out| write!(out, "{}", csv(&linear))),
-        (None, Some(MatrixFormat::Json)) => {
-            print(|out| writeln!(out, "{}", visible_json(&object(&model, arguments.state.at(), &linear))))
-        }
+        (None, Some(MatrixFormat::Json)) => print(|out| writeln!(out, "{}", visible_json(&object()))),
     }
 }
 
@@ -126,12 +126,13 @@ fn varied(model: &Model, name: &str, value: f64) -> Result<Model, CliError> {
 }
 
 /// The linearization as one JSON object.
-fn object(model: &Model, at: At, linear: &Linearization) -> Value {
+fn object(model: &Model, at: At, linear: &Linearization, stability: Option<&Stability>) -> Value {
     let mut all = Map::new();
     all.insert("model".to_owned(), json!(model.title()));
     all.insert("parameters".to_owned(), json::map(model.parameters()));
     all.insert("at".to_owned(), json!(at.word()));
     all.extend(json::members(linear));
+    all.insert("stability".to_owned(), json!(stability.map(stability_in_words)));
     Value::from(all)
 }
 

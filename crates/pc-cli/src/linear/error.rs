@@ -81,6 +81,9 @@ pub enum LinearError {
         /// The state.
         state: Vec<(String, f64)>,
     },
+    /// Outputs contain reactions that are not determined.
+    #[error("{0}\n  help: leave these outputs out, or one of the constraints that follow from others")]
+    ReactionsUndetermined(AnalysisError),
     /// There is no steady state for any value of the parameter.
     #[error("there is no steady state for any of the {values} values; for the first: {first}")]
     NoneSteady {
@@ -129,6 +132,7 @@ impl LinearError {
             }
             AnalysisError::NotSmooth { state } => LinearError::NotSmooth { state },
             AnalysisError::LeafUnknown { residual } => LinearError::LeafUnknown { residual },
+            AnalysisError::ReactionsUndetermined { .. } => LinearError::ReactionsUndetermined(error),
             AnalysisError::UnknownComponent { name, known } => {
                 let option = if of_linearization { "--hold" } else { "--box" };
                 LinearError::Component { option, name, known }
@@ -149,6 +153,7 @@ impl LinearError {
             | LinearError::Nonlinear
             | LinearError::LeafUnknown { .. }
             | LinearError::NotSmooth { .. }
+            | LinearError::ReactionsUndetermined(_)
             | LinearError::Branches { .. }
             | LinearError::Analysis(_) => exit_code::INCONSISTENT,
             LinearError::NotSteady { .. }

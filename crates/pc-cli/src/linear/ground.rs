@@ -2,7 +2,9 @@
 
 use std::convert::Infallible;
 
-use pc_analysis::{AnalysisError, Integrals, Leaf, Linearizer};
+use pc_analysis::{
+    AnalysisError, Integrals, Leaf, Linearization, Linearizer, Stability, SteadySearch, Verdict,
+};
 use pc_mech::{Equations, Expr, Graph, MechError, Neighbourhood};
 use pc_model::{Assembly, Model};
 use pc_nonholo::NonholoError;
@@ -66,6 +68,27 @@ impl<'g> Ground<'g> {
         let names = model.start_names();
         let state = self.linearizer.names().iter();
         state.map(|x| names.iter().position(|name| name == x)).collect()
+    }
+
+    /// The stability of a steady state, as `pc check` judges it: by the second variation and by integrals too where the
+    /// first approximation does not decide, and without cyclic coordinates. None where nothing is steady.
+    pub(crate) fn stability(&self, linear: &Linearization) -> Option<Stability> {
+        let verdict = linear.spectrum.verdict();
+        if !linear.is_steady || verdict != Verdict::Undecided {
+            return linear.is_steady.then_some(Stability::ByFirstApproximation(verdict));
+        }
+        let (equations, positions) = (&self.equations, self.assembly.held_positions());
+        let value =
+            |name: String| linear.state.iter().find(|(known, _)| *known == name).map(|&(_, value)| value);
+        let state: Option<Vec<f64>> =
+            equations.system().state().iter().map(|y| value(y.to_string())).collect();
+        let undecided = Stability::Undecided { second_variation: false };
+        let (Some(state), Ok(mut motion)) = (state, equations.compile()) else { return Some(undecided) };
+        let at = (linear.t, state.as_slice());
+        match SteadySearch::near(equations, &mut motion, at, self.integrals().list(), &positions) {
+            SteadySearch::Found(found) => Some(found.stability()),
+            _ => Some(undecided),
+        }
     }
 
     /// The integrals known or found.

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use pc_analysis::{Linearization, Verdict};
+use pc_analysis::{Linearization, Stability};
 use pc_mech::Matrix;
-use pc_print::{columns, eigenvalues_in_words, one_line};
+use pc_print::{columns, eigenvalues_in_words, one_line, stability_in_words};
 
 use crate::report::text::{labelled, short, small, wrapped};
 
@@ -21,7 +21,12 @@ pub(crate) fn rounded(value: f64) -> String {
 }
 
 /// The whole page; `moved` says whether the state was found from the start.
-pub(crate) fn page(title: &str, linear: &Linearization, moved: bool) -> String {
+pub(crate) fn page(
+    title: &str,
+    linear: &Linearization,
+    stability: Option<&Stability>,
+    moved: bool,
+) -> String {
     let mut text = format!("{}\n", one_line(title));
     let mut line = |label: &str, lines: &[String]| text += &labelled(label, LABEL, lines);
     let state = linear.state.iter().map(|(name, value)| format!("{name} = {}", rounded(*value)));
@@ -34,8 +39,8 @@ pub(crate) fn page(title: &str, linear: &Linearization, moved: bool) -> String {
     line("components", &wrapped(linear.components.iter().cloned(), WIDTH));
     let tolerance = linear.spectrum.tolerance().max(ZERO);
     line("eigenvalues", &wrapped(eigenvalues_in_words(linear.spectrum.eigenvalues(), tolerance), WIDTH));
-    if linear.is_steady {
-        line("stability", &[verdict(linear)]);
+    if let Some(stability) = stability {
+        line("stability", &[stability_in_words(stability)]);
     }
     modes(&mut text, linear);
     let (y, u, h) = (&linear.components, &linear.inputs, &linear.outputs);
@@ -75,27 +80,13 @@ pub(crate) fn page(title: &str, linear: &Linearization, moved: bool) -> String {
 fn place(linear: &Linearization, moved: bool) -> String {
     let kind = match (linear.is_steady, linear.cyclic.is_empty()) {
         (false, _) => return format!("the start, not steady: rates of norm {}", small(linear.residual)),
-        (true, true) if linear.cyclic.is_empty() => "steady",
-        (true, _) => "steady but for cyclic coordinates",
+        (true, true) => "steady",
+        (true, false) => "steady but for cyclic coordinates",
     };
     match rounded(linear.distance).as_str() {
         "0" if moved => format!("{kind}: the start itself"),
         "0" => format!("{kind}: the start"),
         _ => format!("{kind}, {} from the start", short(linear.distance, 3)),
-    }
-}
-
-fn verdict(linear: &Linearization) -> String {
-    match linear.spectrum.verdict() {
-        Verdict::Undecided => format!(
-            "undecided by the first approximation: of {} eigenvalues {} on the imaginary axis, and no real part is positive",
-            linear.components.len(),
-            match linear.spectrum.neutral() {
-                1 => "one is".to_owned(),
-                count => format!("{count} are"),
-            }
-        ),
-        verdict => format!("{verdict}, by the first approximation"),
     }
 }
 

@@ -43,7 +43,7 @@ impl Verification {
         Verification { second: Second::new(model, assembly), form, outcomes: Vec::new() }
     }
 
-    /// Whether one comparison takes too long, that is, more than about a tenth of the derivation.
+    /// Whether one comparison takes too long, that is, more than some milliseconds.
     pub fn is_long(&self, flow: &Flow) -> bool {
         self.second.as_ref().is_ok_and(|second| second.is_long(flow))
     }

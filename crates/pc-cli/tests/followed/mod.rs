@@ -28,7 +28,7 @@ pub(crate) struct Settings {
     pub(crate) t_end: f64,
     pub(crate) rtol: f64,
     pub(crate) atol: f64,
-    pub(crate) bdf: bool,
+    pub(crate) method: c_int,
 }
 
 /// Settings of a model in addition to its text.
@@ -89,7 +89,12 @@ fn read(text: &str) -> (Motion, Settings) {
         t_end: real("t_end"),
         rtol: real("rtol"),
         atol: real("atol"),
-        bdf: summary["method"] == "bdf",
+        method: match summary["method"].as_str().unwrap() {
+            "auto" => pc_method::PC_AUTO as c_int,
+            "bdf" => pc_method::PC_BDF as c_int,
+            "adams" => pc_method::PC_ADAMS as c_int,
+            other => panic!("{other}"),
+        },
     };
     (motion, settings)
 }
@@ -232,10 +237,9 @@ extern "C" fn note(
 /// The same motion by pc_solver_run, and the number of observables, which are its last columns. As
 /// in the program, the equations are not evaluated beyond the end.
 pub(crate) fn by_library(model: &str, asked: &Asked<'_>, settings: &Settings) -> (Motion, usize) {
-    let &Settings { t_start, t_end, rtol, atol, bdf } = settings;
-    let method = if bdf { pc_method::PC_BDF } else { pc_method::PC_ADAMS };
+    let &Settings { t_start, t_end, rtol, atol, method } = settings;
     let options = pc_solver_options {
-        method: method as c_int,
+        method,
         relative_tolerance: rtol,
         absolute_tolerance: atol,
         stop_time: t_end,

@@ -93,8 +93,9 @@ impl Event {
 ///
 /// An event occurs where its function passes through zero in its direction: where it changes its sign, or
 /// reaches zero and stays there. A function that touches zero, and returns to its side within the resolution
-/// of time, causes none. A function that is zero at the start, or after a reset, has to leave zero first. A
-/// change of sign by a reset is not a passage through zero.
+/// of time, causes none. A function that is zero at the start, or after its own reset, has to leave zero first. A
+/// function that the reset of another event carries through zero in its direction, or to zero where it stays,
+/// makes its event occur at the same time; its own reset does not make an event occur again.
 pub trait Events {
     /// The events, in the order in which simultaneous ones are handled.
     fn events(&self) -> &[Event];

@@ -5,6 +5,7 @@ use std::fmt;
 
 use crate::ode::lane_field::LaneField;
 use crate::ode::pattern::Pattern;
+use crate::ode::rate_jump::RateJump;
 use crate::taylor::coefficients::TaylorSeries;
 use crate::time_profile::profile::TimeDependence;
 
@@ -184,6 +185,12 @@ pub trait VectorField {
         false
     }
 
+    /// The surfaces on which f jumps as the state or, at a time that parameters move, as t passes them, as far as they
+    /// are known. A jump at a [break](VectorField::breaks) is none of these.
+    fn jumps(&self) -> &[RateJump] {
+        &[]
+    }
+
     /// Checks whether one motion connects `from` with `to`, both times and states, to which a step of an integrator
     /// led: a field may have places that no motion crosses.
     ///
@@ -271,6 +278,9 @@ impl<F: VectorField + ?Sized> VectorField for &mut F {
     }
     fn enter(&mut self, t: f64, end: f64) -> bool {
         (**self).enter(t, end)
+    }
+    fn jumps(&self) -> &[RateJump] {
+        (**self).jumps()
     }
     fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
         (**self).leads(from, to)

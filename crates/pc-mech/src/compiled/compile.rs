@@ -64,6 +64,7 @@ impl FirstOrder<'_> {
         } else {
             Form::Staged(Box::new(Staged::new(self, options)?))
         };
+        let differentiable = options.jacobian || options.jvp || options.parameter_jacobian;
         Ok(Motion {
             names: self.state.iter().map(Expr::to_string).collect(),
             coordinates: self.coordinates,
@@ -79,6 +80,7 @@ impl FirstOrder<'_> {
             kept: None,
             signals: Signals::default(),
             charts: Vec::new(),
+            jumps: if differentiable { self.jumps()? } else { Vec::new() },
         })
     }
 }

@@ -378,6 +378,10 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
         self.motion.enter(t, end)
     }
 
+    fn jumps(&self) -> &[pc_expr::RateJump] {
+        self.motion.jumps()
+    }
+
     fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
         self.motion.leads(from, to)
     }

@@ -1,7 +1,7 @@
 //! Compiled equations of motion: a vector field with its derivatives, and the quantities observed along it.
 
 use pc_algebra::Matrix;
-use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, VectorField};
+use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, RateJump, VectorField};
 
 use crate::compiled::chart::Chart;
 use crate::compiled::elimination::numeric::{OF_A_LOOP, Staged};
@@ -39,6 +39,8 @@ pub struct Motion {
     pub(super) signals: Signals,
     /// The conditions under which the state determines velocities.
     pub(super) charts: Vec<Chart>,
+    /// Where f jumps, if it has derivatives.
+    pub(super) jumps: Vec<RateJump>,
 }
 
 /// How f is computed.
@@ -289,6 +291,7 @@ impl Motion {
             parameters: Vec::new(),
             signals: Signals::default(),
             charts: Vec::new(),
+            jumps: inner.jumps.clone(),
             options: inner.options,
             observable_names: inner.observable_names.clone(),
             conserved: inner.conserved,

@@ -1,6 +1,6 @@
 //! A compiled motion as a vector field.
 
-use pc_expr::{Failure, LaneField, Pattern, TaylorSeries, TimeDependence, VectorField};
+use pc_expr::{Failure, LaneField, Pattern, RateJump, TaylorSeries, TimeDependence, VectorField};
 
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
@@ -209,6 +209,10 @@ impl VectorField for Motion {
             Form::InMomenta(motion) => motion.inner_mut().enter(t, end),
             Form::Unrolled(_) | Form::Staged(_) => self.signals.enter(t, end),
         }
+    }
+
+    fn jumps(&self) -> &[RateJump] {
+        &self.jumps
     }
 
     fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {

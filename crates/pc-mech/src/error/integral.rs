@@ -24,6 +24,12 @@ pub enum IntegralError {
         /// Its rate of change.
         rate: f64,
     },
+    /// A function to be kept that a motion keeps only where it does not jump.
+    #[error("`{name}` cannot be kept: it may jump along the motion, to another value than that at the start")]
+    Jumps {
+        /// The integral.
+        name: String,
+    },
     /// Newton's method found no state with the values of the [kept](crate::Motion::keep) integrals.
     #[error("no state with the values of the integrals was found near t = {t}{}", listed(state))]
     NotKept {

@@ -11,7 +11,7 @@ pub enum TreeError {
         body: String,
     },
     /// A parent that does not exist.
-    #[error("the body `{body}` hangs on `{parent}`, which there is not")]
+    #[error("the body `{body}` hangs on `{parent}`, but there is no body of that name")]
     NoParent {
         /// The body.
         body: String,
@@ -55,7 +55,7 @@ pub enum TreeError {
         symbol: String,
     },
     /// Coordinates or quasi-velocities of the tree that the system does not have.
-    #[error("`{name}`, which the joint of a body is moved by, is not among the {what} of the system")]
+    #[error("a joint uses `{name}`, which is not among the {what} of the system")]
     NotOfTheSystem {
         /// The coordinate or quasi-velocity.
         name: String,

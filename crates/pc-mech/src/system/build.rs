@@ -146,7 +146,8 @@ impl<'g> SystemBuilder<'g> {
             sums.forces.push(share.forces);
             let name = body.name().map_or_else(|| format!("body {number}"), str::to_owned);
             let (velocity, angular_velocity) = (share.velocity, share.angular_velocity);
-            sums.bodies.list.push(BodyVelocity { name, velocity, angular_velocity });
+            let in_lagrangian = share.in_lagrangian;
+            sums.bodies.list.push(BodyVelocity { name, velocity, angular_velocity, in_lagrangian });
         }
         Ok(())
     }

@@ -46,6 +46,7 @@ impl<'g> Motions<'_, 'g> {
                 name: body.name.clone(),
                 velocity: in_world.to_vec(),
                 angular_velocity: Some(apply_transpose(graph, &stand.rotation, &motion.omega).to_vec()),
+                in_lagrangian: Vec::new(),
             });
         }
         let forces = graph.substitute(&graph.gradient(graph.sum(power), eta), &values);

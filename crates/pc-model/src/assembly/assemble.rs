@@ -23,6 +23,7 @@ impl Model {
         let assembler =
             || Assembler { model: self, graph, scope: Scope::new(graph, self.document()) }.assemble();
         let assembly = self.document().stage(graph, "the mechanical system", assembler)?;
+        assembly.check_inertia()?;
         self.drawn(&assembly)?; // an error in a drawing is an error of the text
         Ok(assembly)
     }

@@ -24,6 +24,8 @@ impl MeaningError {
             | MeaningError::NotARotationAlong { .. }
             | MeaningError::QuaternionNotUnit { .. }
             | MeaningError::Massless { .. }
+            | MeaningError::NoInertia { .. }
+            | MeaningError::NoMass { .. }
             | MeaningError::NotHolonomic { .. }
             | MeaningError::StartOpen { .. }
             | MeaningError::StartVelocity { .. }
@@ -149,8 +151,17 @@ impl MeaningError {
                 "a turn by the angle a about the unit vector u has the quaternion cos(a/2), u*sin(a/2)".into()
             }
             MeaningError::Massless { .. } => "give it a mass, or make its joint `fixed`".into(),
+            MeaningError::NoInertia { body, .. } => format!(
+                "give `{body}` an `inertia`, or by `center` a place off the axis for a mass that is not 0, or make its joint `fixed`"
+            ),
+            MeaningError::NoMass { body, .. } => {
+                format!("give `{body}` a mass that is not 0, or make its joint `fixed`")
+            }
             MeaningError::BadTable { help, .. } => (*help).into(),
-            MeaningError::RateOfInput { .. } => "make it a state, whose rate is given in [states], or an input of its own".into(),
+            MeaningError::UnknownRate { what: "input", .. } => "make it a state, whose rate is given in [states], or an input of its own".into(),
+            MeaningError::UnknownRate { .. } => {
+                "accelerations and reactions can be observed, not differentiated: take differences of the rows of a run".into()
+            }
             MeaningError::ParameterNotFinite { .. } => "give the parameters in it other values".into(),
             MeaningError::SingularStart { is_massless: true, .. } => {
                 "a mass or moment of inertia that it moves is zero, as that of a point mass on the axis of its joint, which \

@@ -386,6 +386,26 @@ pub enum MeaningError {
         /// The body.
         body: String,
     },
+    /// A turn that no inertia resists.
+    #[error("nothing that the {kind} joint of `{body}` turns has inertia about {direction}")]
+    NoInertia {
+        /// The body.
+        body: String,
+        /// The kind of its joint.
+        kind: &'static str,
+        /// The axis.
+        direction: String,
+    },
+    /// A slide that no mass resists.
+    #[error("nothing that the {kind} joint of `{body}` moves along {direction} has mass")]
+    NoMass {
+        /// The body.
+        body: String,
+        /// The kind of its joint.
+        kind: &'static str,
+        /// The axis.
+        direction: String,
+    },
     /// A parameter that is an expression without a value.
     #[error("`{text}` is {value}")]
     ParameterNotFinite {
@@ -402,10 +422,12 @@ pub enum MeaningError {
         /// A correction.
         help: &'static str,
     },
-    /// d() of an input.
-    #[error("the rate of the input `{name}` is not known")]
-    RateOfInput {
-        /// The input.
+    /// d() of an input, an acceleration or a reaction.
+    #[error("the rate of the {what} `{name}` is not known")]
+    UnknownRate {
+        /// Which of these.
+        what: &'static str,
+        /// Its name.
         name: String,
     },
     /// A value that is not a number at the start.

@@ -108,6 +108,11 @@ impl JointKind {
         ("free", JointKind::Free),
     ];
 
+    /// Its word.
+    pub(crate) fn word(self) -> &'static str {
+        Self::ALL.iter().find(|(_, kind)| *kind == self).map_or("", |(word, _)| word)
+    }
+
     /// The number of its axes.
     pub fn axes(self) -> usize {
         match self {

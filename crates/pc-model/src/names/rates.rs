@@ -84,7 +84,7 @@ impl<'g> Scope<'g, '_> {
         let input = |input: &&crate::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
         if let Some(input) = self.document.inputs.iter().find(input) {
             let name = input.name.text.clone();
-            return Err(self.error(expression, span, |_| MeaningError::RateOfInput { name }));
+            return Err(self.error(expression, span, |_| MeaningError::UnknownRate { what: "input", name }));
         }
         let (x, velocities, eta) = (self.coordinates(), self.velocities(), self.quasi_velocities());
         let moves = |z: &Expr<'g>| value.depends_on(*z);
@@ -95,6 +95,11 @@ impl<'g> Scope<'g, '_> {
         let mut rates: Vec<_> = x.iter().copied().zip(velocities.iter().copied()).collect();
         rates.extend(velocities.iter().map(rate));
         rates.extend(eta.iter().filter(|eta| !velocities.contains(eta)).map(rate));
+        let accelerations = rates[x.len()..].iter().map(|&(_, rate)| rate);
+        if let Some((what, unknown)) = self.without_rate(value, accelerations) {
+            let name = unknown.to_string();
+            return Err(self.error(expression, span, |_| MeaningError::UnknownRate { what, name }));
+        }
         rates.push((self.time, Expr::ONE));
         for (z, state) in self.states().into_iter().zip(&self.document.states) {
             if !value.depends_on(z) {
@@ -112,5 +117,24 @@ impl<'g> Scope<'g, '_> {
             rates.push((z, self.resolve(&state.rate, Stage::Rate)?));
         }
         Ok(self.graph.directional(&[value], &rates)[0])
+    }
+
+    /// An acceleration or a reaction in a function: they are known along a motion, but not as functions of the state
+    /// that could be differentiated.
+    fn without_rate(
+        &self,
+        value: Expr<'g>,
+        accelerations: impl Iterator<Item = Expr<'g>>,
+    ) -> Option<(&'static str, Expr<'g>)> {
+        let own = [self.velocities(), self.quasi_velocities()].concat();
+        let mut accelerations = accelerations.filter(|rate| !own.contains(rate));
+        if let Some(acceleration) = accelerations.find(|&rate| value.depends_on(rate)) {
+            return Some(("acceleration", acceleration));
+        }
+        let is_reaction = |symbol: &Expr<'g>| {
+            let name = symbol.to_string();
+            self.is_reaction(&name) || self.is_resultant(&name)
+        };
+        self.graph.symbols_of(&[value]).into_iter().find(is_reaction).map(|reaction| ("reaction", reaction))
     }
 }

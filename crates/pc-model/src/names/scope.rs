@@ -351,13 +351,13 @@ impl<'g, 'd> Scope<'g, 'd> {
     }
 
     /// `λ_` before the name of a constraint.
-    fn is_reaction(&self, name: &str) -> bool {
+    pub(super) fn is_reaction(&self, name: &str) -> bool {
         let constraint = name.strip_prefix("λ_");
         constraint.is_some_and(|name| self.document.constraints.iter().any(|c| c.name.text == name))
     }
 
     /// Whether it is a component of the force or torque of a constraint on a body.
-    fn is_resultant(&self, name: &str) -> bool {
+    pub(super) fn is_resultant(&self, name: &str) -> bool {
         let of_body = |constraint: &str, body: &Body| {
             let turns = body.orientation.is_some();
             force_names(constraint, &body.name.text).iter().any(|known| known == name)

@@ -188,7 +188,7 @@ class System(_native.SystemCore):
     def _plan(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """The settings of an integration: those given, else those of the text, else the defaults."""
         written = self._model.simulation
-        plan: dict[str, Any] = {"method": "adams", "rtol": 1e-9, "atol": 1e-12}
+        plan: dict[str, Any] = {"method": "auto", "rtol": 1e-9, "atol": 1e-12}
         for name in ("method", "rtol", "atol", "max_step", "samples_per_step", "accumulation"):
             value = given.get(name)
             plan[name] = plan.get(name) if value is None and written[name] is None else (
@@ -247,7 +247,7 @@ class System(_native.SystemCore):
         times : array, optional
             The times of the rows instead.
         method : str, optional
-            ``"adams"``, ``"bdf"``, ``"dop853"``, ``"taylor"`` or ``"auto"``.
+            ``"auto"`` (the default), ``"adams"``, ``"bdf"``, ``"dop853"`` or ``"taylor"``.
         rtol, atol : float, optional
             Relative and absolute tolerance of a step.
         max_step : float, optional

@@ -270,16 +270,15 @@ fn steady_motion<'g>(
         return SteadySearch::Nonlinear;
     }
     let start = assembly.start_of(&system.state());
-    let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else {
-        return SteadySearch::near(equations, &mut { motion }, (assembly.t_start, &start), integrals, &[]);
+    let mut independent = match assembly.constraints.formulation() {
+        ConstraintFormulation::Multipliers(_) => match equations.compile() {
+            Ok(independent) => independent,
+            Err(_) => return SteadySearch::None,
+        },
+        ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => motion,
     };
-    let Ok(mut independent) = equations.compile() else { return SteadySearch::None };
-    let constraints = held.multipliers.constraints().iter();
-    let positions: Vec<(String, Expr<'g>)> = constraints
-        .filter(|constraint| constraint.is_holonomic(&assembly.system))
-        .map(|constraint| (constraint.name().to_owned(), constraint.expression()))
-        .collect();
-    SteadySearch::near(equations, &mut independent, (assembly.t_start, &start), integrals, &positions)
+    let at = (assembly.t_start, start.as_slice());
+    SteadySearch::near(equations, &mut independent, at, integrals, &assembly.held_positions())
 }
 
 /// The constraints, dropped ones last, each with its kind.

@@ -18,8 +18,7 @@ impl<F: VectorField> Cvode<F> {
         let end = self.stop_time.unwrap_or(f64::INFINITY.copysign(towards - self.step_time));
         let (t, next) = next_break(self.field().breaks(), self.step_time, end);
         let jumped = self.callbacks.field_mut().enter(t, end);
-        // Sensitivities cannot be reinitialised here: with them, error control handles the jump.
-        if jumped && self.direction.is_some() && self.sensitivity.is_none() {
+        if jumped && self.direction.is_some() {
             self.begin_anew()?;
         }
         // CVODES forgets a stop time that it has reached.
@@ -35,6 +34,8 @@ impl<F: VectorField> Cvode<F> {
     /// Reinitialises CVODES at its current state, without telling the field.
     fn begin_anew(&mut self) -> Result<(), SolveError> {
         let before = self.work_so_far();
+        let work = self.sensitivity_statistics();
+        let columns = self.sensitivities_at(self.step_time)?;
         let integrals = self.quadrature.as_ref().map(|_| self.quadratures()).transpose()?;
         self.work.as_mut_slice().copy_from_slice(self.step_state.as_slice());
         // SAFETY: the memory is initialised; CVODES copies the start from the vector, which has its
@@ -42,6 +43,9 @@ impl<F: VectorField> Cvode<F> {
         let code = unsafe { sys::CVodeReInit(self.memory.raw(), self.step_time, self.work.raw()) };
         self.context.check("CVodeReInit", code)?;
         self.begin_integrals_anew(integrals)?;
+        if let Some(columns) = columns {
+            self.begin_columns_anew(&columns, work)?;
+        }
         self.callbacks.begin_anew();
         self.earlier = before;
         self.earlier.current_time = self.step_time;

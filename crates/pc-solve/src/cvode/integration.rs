@@ -14,7 +14,8 @@ use crate::integration::observer::Observed;
 use crate::settings::options::Options;
 
 impl<F: VectorField> Integration<Cvode<F>> {
-    /// Starts at y(t0) = y0 by CVODES; `y0` is as long as `field` has components.
+    /// Starts at y(t0) = y0 by CVODES, by Adams' formulas unless the method is
+    /// [`Bdf`](crate::Method::Bdf); `y0` is as long as `field` has components.
     ///
     /// # Errors
     /// As for [`Cvode::new`].

@@ -11,12 +11,12 @@
 //! precision.
 //!
 //! **Fallback.** Lanes give complete motions only. A member for which f fails, or whose steps are
-//! too short or too many, is integrated again from its start by `Dop853`, whose result or error
-//! counts.
+//! too short or too many, is integrated again from its start by itself, and that result or error
+//! counts; so is one that turns out to be stiff by [`Method::Auto`](crate::Method::Auto).
 //!
 //! `plan` holds what all members share, if lanes can integrate it; `field` evaluates f on a tape;
 //! `step`, `start` and `dense` are the tapes of a `problem`, which `kernels` compiles and a `shelf`
-//! caches. An `octet` steps eight lanes; a `block` alternates between two of them, and fills their
+//! caches; `stiffness` counts suspect steps. An `octet` steps eight lanes; a `block` alternates between two of them, and fills their
 //! lanes with members from `waiting`.
 
 pub(crate) mod block;
@@ -30,4 +30,5 @@ mod problem;
 pub(crate) mod shelf;
 mod start;
 mod step;
+mod stiffness;
 mod waiting;

@@ -47,12 +47,13 @@ impl<F: VectorField> Dop853<F> {
         let mut length = planned.min(self.control.longest).max(self.control.shortest);
         let mut end = self.look_ahead(t + direction * length, limit, towards)?.or(limit);
         let mut refused = false;
+        let mut failed = None; // the last failure of the field in this step: mostly why it becomes too short
         loop {
             let to = t + direction * length;
             let near = |end: &f64| (to - end) * direction > -LEFT * length;
             let (to, ends) = end.filter(near).map_or((to, false), |end| (end, true));
             if to == t || !(length > 4.0 * f64::EPSILON * t.abs() || ends) {
-                return Err(self.failed(Reason::Stalled, None));
+                return Err(self.too_short(failed));
             }
             let refusal = match self.attempt(to) {
                 Ok(error) => {
@@ -86,12 +87,12 @@ impl<F: VectorField> Dop853<F> {
             }
             refused = true;
             let rounds = t + direction * length == t || length <= 4.0 * f64::EPSILON * t.abs();
+            let last = matches!(&refusal, Refusal::Failure(_, failure) if !failure.is_recoverable());
             if let Refusal::Failure(reason, failure) = refusal {
-                if !failure.is_recoverable() || rounds || length < self.control.shortest {
-                    return Err(self.failed(reason, Some(failure)));
-                }
-            } else if rounds || length < self.control.shortest {
-                return Err(self.too_short());
+                failed = Some((reason, failure));
+            }
+            if last || rounds || length < self.control.shortest {
+                return Err(self.too_short(failed));
             }
         }
     }
@@ -203,8 +204,11 @@ impl<F: VectorField> Dop853<F> {
         (100.0 * h).min(by_rates).min(farthest)
     }
 
-    /// The error when steps become too short.
-    fn too_short(&mut self) -> SolveError {
+    /// The error when steps become too short, or none can be made, because of what `failed`.
+    fn too_short(&mut self, failed: Option<(Reason, Failure)>) -> SolveError {
+        if let Some((reason, failure)) = failed {
+            return self.failed(reason, Some(failure));
+        }
         let dim = self.dim();
         match self.trial.y[..dim].iter().position(|value| !value.is_finite()) {
             None => self.failed(Reason::Stalled, None),

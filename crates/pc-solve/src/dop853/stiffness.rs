@@ -9,13 +9,13 @@
 //! accuracy limits their length [Hairer, Wanner 1996, IV.2].
 
 /// The boundary of stability on the negative real axis.
-const BOUNDARY: f64 = 6.1;
+pub(super) const BOUNDARY: f64 = 6.1;
 /// One in this many steps is examined while none is suspect.
 const EVERY: u64 = 20;
 /// Number of suspect steps that indicate stiffness …
-const SUSPECT: u32 = 15;
+pub(super) const SUSPECT: u32 = 15;
 /// … unless this many successive steps in between are not suspect.
-const CLEAR: u32 = 6;
+pub(super) const CLEAR: u32 = 6;
 
 /// The findings of the last steps.
 #[derive(Debug, Clone, Default)]

@@ -116,9 +116,9 @@ impl<'a> Ensemble<'a> {
     /// `make` returns the vector field of a member and its state at `t0`. It is called on the
     /// thread that integrates.
     ///
-    /// By [`Method::Dop853`](crate::Method::Dop853), members whose fields are
-    /// [programs](VectorField::lanes) that do not read time are integrated sixteen at a time, each
-    /// in a lane of a vector, as described for [`map_in_lanes`](Ensemble::map_in_lanes).
+    /// By [`Method::Auto`](crate::Method::Auto) and [`Method::Dop853`](crate::Method::Dop853),
+    /// members whose fields are [programs](VectorField::lanes) that do not read time are integrated
+    /// sixteen at a time, each in a lane of a vector, as described for [`map_in_lanes`](Ensemble::map_in_lanes).
     ///
     /// # Errors
     /// [`EnsembleError`] if threads cannot be started. An error of a member is its result.
@@ -226,7 +226,11 @@ impl<'a> Ensemble<'a> {
         let consume_all = |pool: &ThreadPool| {
             pool.in_place_scope(|scope| {
                 // One worker for each thread; work that is itself parallel cannot start another.
-                scope.spawn_broadcast(|_, _| worker(&queue, &stop));
+                scope.spawn_broadcast(|_, _| {
+                    // What panics outside the work of a member ends all; the scope passes it on.
+                    let _breaking = queue.breaking();
+                    worker(&queue, &stop);
+                });
                 // Ends the threads however this one ends.
                 let _closing = queue.closing();
                 for item in items {

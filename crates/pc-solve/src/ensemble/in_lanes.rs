@@ -31,12 +31,14 @@ impl Ensemble<'_> {
     /// motion was not completed there; it should check [`Stop`] regularly. All are called on the
     /// thread that integrates.
     ///
-    /// Lanes are used with [`Method::Dop853`](crate::Method::Dop853), for fields that do not read
-    /// time, without inequalities, a minimum step or a stop time. `begin` has to exclude events,
-    /// projections and breaks. Lanes use the method of [`Dop853`](crate::Dop853), but with fused
-    /// multiply-adds, so that the last digits differ, and without detection of stiffness. Each lane
-    /// does the same operations as it would alone: results depend neither on the number of threads
-    /// or lanes nor on the other members.
+    /// Lanes are used with [`Method::Auto`](crate::Method::Auto) and
+    /// [`Method::Dop853`](crate::Method::Dop853), for fields that do not read time, without
+    /// inequalities, a minimum step or a stop time. `begin` has to exclude events, projections and
+    /// breaks. Lanes use the method of [`Dop853`](crate::Dop853), but with fused multiply-adds, so
+    /// that the last digits differ. By `Auto` a member that turns out to be stiff is integrated
+    /// `alone`; `Dop853` does not look for stiffness here. Each lane does the same operations as it
+    /// would alone: results depend neither on the number of threads or lanes nor on the other
+    /// members.
     ///
     /// # Errors
     /// [`EnsembleError`] if threads cannot be started. A panic is the result of its member.
@@ -135,10 +137,11 @@ where
     L: Fn(u64, C, Trajectory) -> T,
     A: Fn(u64, C, &Stop<'_>) -> T,
 {
-    /// The kernels for the next member in a lane; none if there is no member left.
+    /// The kernels for the next member in a lane; none if there is no member left, or to stop.
     fn prepare(&mut self) -> Option<Arc<Kernels>> {
-        while let Some((member, known, field, start)) =
-            self.held.take().or_else(|| self.first(Source::Awaited))
+        while !self.stop.requested()
+            && let Some((member, known, field, start)) =
+                self.held.take().or_else(|| self.first(Source::Awaited))
         {
             match self.kernels_of(&field) {
                 Some(kernels) => {
@@ -209,11 +212,12 @@ where
         }
     }
 
-    /// Delivers the groups in progress, incomplete.
+    /// Delivers the groups in progress, incomplete, and ends.
     fn give_up(&mut self) {
         for open in self.open.drain(..) {
             self.queue.finish(open.number, open.results);
         }
+        self.queue.leave();
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
 
 use crate::ensemble::stop::Stop;
 
@@ -27,11 +28,14 @@ struct State<T> {
     wanted: u64,
     /// Results that wait for an earlier one.
     results: BTreeMap<u64, T>,
+    /// A worker panicked: what it had begun will not come.
+    broken: bool,
 }
 
 impl<'a, T> Queue<'a, T> {
     pub(super) fn new(members: Range<u64>, window: u64, stop: &'a Stop<'a>) -> Self {
-        let state = State { next: members.start, wanted: members.start, results: BTreeMap::new() };
+        let state =
+            State { next: members.start, wanted: members.start, results: BTreeMap::new(), broken: false };
         let state = Mutex::new(state);
         Queue { end: members.end, window, stop, state, finished: Condvar::new(), taken: Condvar::new() }
     }
@@ -71,7 +75,14 @@ impl<'a, T> Queue<'a, T> {
         self.finished.notify_all();
     }
 
-    /// Waits for the result of the member that comes next; none if it will never be begun.
+    /// Says that a thread ends: nothing may come any more for which [`take`](Queue::take) waits.
+    pub(super) fn leave(&self) {
+        let state = self.state();
+        self.finished.notify_all();
+        drop(state);
+    }
+
+    /// Waits for the result of the member that comes next; none if it will never come.
     pub(super) fn take(&self, member: u64) -> Option<T> {
         let mut state = self.state();
         loop {
@@ -80,7 +91,7 @@ impl<'a, T> Queue<'a, T> {
                 self.taken.notify_all();
                 return Some(result);
             }
-            if self.stop.requested() && state.next <= member {
+            if state.broken || self.stop.requested() && state.next <= member {
                 return None;
             }
             state = self.finished.wait(state).unwrap_or_else(PoisonError::into_inner);
@@ -90,6 +101,17 @@ impl<'a, T> Queue<'a, T> {
     /// Stops everything when dropped.
     pub(super) fn closing(&self) -> Closing<'_, 'a, T> {
         Closing(self)
+    }
+
+    /// Stops everything if it is dropped by a panic of this thread, which is a worker.
+    pub(super) fn breaking(&self) -> Breaking<'_, 'a, T> {
+        Breaking(self)
+    }
+
+    fn close(&self, state: MutexGuard<'_, State<T>>) {
+        self.stop.own.store(true, Ordering::Relaxed);
+        self.taken.notify_all();
+        drop(state);
     }
 
     fn state(&self) -> MutexGuard<'_, State<T>> {
@@ -102,9 +124,19 @@ pub(super) struct Closing<'q, 'a, T>(&'q Queue<'a, T>);
 
 impl<T> Drop for Closing<'_, '_, T> {
     fn drop(&mut self) {
-        let state = self.0.state();
-        self.0.stop.own.store(true, Ordering::Relaxed);
-        self.0.taken.notify_all();
-        drop(state);
+        self.0.close(self.0.state());
+    }
+}
+
+pub(super) struct Breaking<'q, 'a, T>(&'q Queue<'a, T>);
+
+impl<T> Drop for Breaking<'_, '_, T> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            let mut state = self.0.state();
+            state.broken = true;
+            self.0.finished.notify_all();
+            self.0.close(state);
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! Errors of a problem or an option.
 
+use pc_expr::RateJump;
+
 use crate::settings::inequality::Inequality;
 use crate::settings::method::Method;
 
@@ -12,7 +14,7 @@ pub enum InputError {
     NoComponents,
 
     /// A list with one number for each component has the wrong length.
-    #[error("{what}: {found} numbers for {expected} components")]
+    #[error("{what}: expected one number for each component ({expected}), found {found}")]
     Length {
         /// Which list.
         what: &'static str,
@@ -23,7 +25,7 @@ pub enum InputError {
     },
 
     /// A checkpoint of a motion with another number of events.
-    #[error("the checkpoint is of a motion with {found} events, not {expected}")]
+    #[error("the checkpoint belongs to another motion: its number of events is {found}, not {expected}")]
     EventCount {
         /// Number of events of the motion.
         expected: usize,
@@ -61,7 +63,7 @@ pub enum InputError {
     },
 
     /// An option that the method does not have.
-    #[error("{method} has no choice of {what}")]
+    #[error("{method} does not let you choose {what}: leave the choice out")]
     Explicit {
         /// The method.
         method: Method,
@@ -71,7 +73,7 @@ pub enum InputError {
 
     /// A feature of CVODES only, such as sensitivities, is requested from another method.
     #[error(
-        "{method} is no method of CVODES, which alone has sensitivities, adjoint gradients and integrals along a motion: choose Adams, BDF or auto"
+        "sensitivities, adjoint gradients and integrals along a motion are computed by CVODES, and {method} is not one of its methods: choose Adams, BDF or auto"
     )]
     NotCvode {
         /// The method.
@@ -79,7 +81,7 @@ pub enum InputError {
     },
 
     /// A method of CVODES, in a build without it.
-    #[error("{method} needs CVODES, which this build has been made without")]
+    #[error("{method} needs CVODES, which this build does not contain: choose DOP853 or Taylor")]
     NoCvode {
         /// The method.
         method: Method,
@@ -96,7 +98,7 @@ pub enum InputError {
 
     /// A checkpoint of an integration with another number of sensitivities.
     #[error(
-        "the checkpoint has {found} columns of sensitivities, but {expected} are requested: an integration with sensitivities must be resumed with the same ones"
+        "the checkpoint has {found} columns of sensitivities, but {expected} are requested: resume with the sensitivities that it was written with"
     )]
     Sensitivities {
         /// Columns requested.
@@ -106,7 +108,7 @@ pub enum InputError {
     },
 
     /// No functional to differentiate.
-    #[error("there is no functional")]
+    #[error("no functional is given: a gradient needs at least one")]
     NoFunctional,
 
     /// Integrals are read from an integration that has none, or requested from one that has begun.
@@ -117,9 +119,17 @@ pub enum InputError {
     #[error("the integration was begun without sensitivities")]
     NoSensitivities,
 
+    /// Derivatives of a motion are requested whose rates jump where it passes a surface, at a time that moves with
+    /// what it is differentiated by.
+    #[error(
+        "{0}: derivatives of the motion jump with it, which they would not show. Make the jump an event that switches a \
+         state, or smooth it, as tanh does"
+    )]
+    RateJump(RateJump),
+
     /// Derivatives by parameters are requested, with events whose derivatives by these are unknown.
     #[error(
-        "an event resets the state, but it is unknown how its function and its reset depend on the parameters of the sensitivities"
+        "an event resets the state, but does not say how its function and its reset depend on the parameters: sensitivities need these derivatives"
     )]
     EventParameters,
 
@@ -141,19 +151,19 @@ pub enum InputError {
     MaxSteps,
 
     /// A linear solver is chosen, and the fixed-point iteration uses none.
-    #[error("a linear solver is chosen, but the fixed-point iteration has no linear systems to solve")]
+    #[error(
+        "a linear solver is chosen, but the fixed-point iteration solves no linear systems: choose Newton's iteration, or no linear solver"
+    )]
     LinearSolverUnused,
 
     /// The sparse linear solver is chosen for a field without a zero pattern of ∂f/∂y.
     #[error(
-        "the sparse linear solver needs the zero pattern of the Jacobian, which the vector field does not have"
+        "the sparse linear solver needs the zero pattern of the Jacobian, which the vector field does not provide"
     )]
     NoPattern,
 
     /// The zero pattern of ∂f/∂y is not that of a square matrix of the field's dimension.
-    #[error(
-        "the zero pattern of the Jacobian has {rows} rows and {columns} columns for {expected} components"
-    )]
+    #[error("the zero pattern of the Jacobian is {rows} × {columns}, but must be {expected} × {expected}")]
     PatternSize {
         /// Its rows.
         rows: usize,
@@ -165,7 +175,7 @@ pub enum InputError {
 
     /// A band matrix has diagonals beyond its corners.
     #[error(
-        "a band of {lower} diagonals below the main one and {upper} above does not fit {components} components"
+        "a band of {lower} diagonals below the main one and {upper} above is too wide for a Jacobian of {components} × {components}"
     )]
     BandTooWide {
         /// Diagonals below the main one.
@@ -178,8 +188,8 @@ pub enum InputError {
 
     /// An entry of ∂f/∂y that may be nonzero lies outside the band chosen.
     #[error(
-        "the rate of {row} depends on {column}, outside of the band of {lower} diagonals below the main one and \
-         {upper} above"
+        "the rate of {row} depends on {column}, which lies outside the band of {lower} diagonals below the main one \
+         and {upper} above: widen the band"
     )]
     OutsideBand {
         /// Name of the component of f.
@@ -204,7 +214,9 @@ pub enum InputError {
     },
 
     /// Inequalities are given for a field with a projection, which would move the states again.
-    #[error("inequalities cannot be kept for a vector field that projects its states")]
+    #[error(
+        "inequalities cannot be imposed on a vector field that projects its states: the projection could violate them"
+    )]
     InequalitiesOfProjected,
 
     /// No output times are given.
@@ -212,7 +224,9 @@ pub enum InputError {
     NoTimes,
 
     /// The output times neither increase nor decrease throughout.
-    #[error("output time {time} (number {index} from 0) does not continue in one direction after {previous}")]
+    #[error(
+        "output times must increase throughout or decrease throughout: {time} (number {index} from 0) follows {previous}"
+    )]
     TimesNotMonotonic {
         /// Place in the list.
         index: usize,
@@ -223,14 +237,14 @@ pub enum InputError {
     },
 
     /// The target time is the current time.
-    #[error("the end time is the start time, t = {t}")]
+    #[error("the end time equals the start time, t = {t}")]
     EndIsStart {
         /// That time.
         t: f64,
     },
 
     /// A time lies against the direction of integration.
-    #[error("t = {requested} lies behind t = {current}")]
+    #[error("t = {requested} has already been passed: the integration has reached t = {current}")]
     Behind {
         /// The time requested.
         requested: f64,
@@ -248,7 +262,7 @@ pub enum InputError {
     },
 
     /// A time outside the span of a dense output.
-    #[error("t = {requested} lies outside the dense output, which goes from {start} to {end}")]
+    #[error("t = {requested} lies outside the dense output, which covers t = {start} to {end}")]
     OutsideSpan {
         /// The time requested.
         requested: f64,
@@ -259,7 +273,7 @@ pub enum InputError {
     },
 
     /// A time outside the last internal step, or beyond the next event in it.
-    #[error("t = {requested} lies outside the last step, which goes from t = {start} to {end}")]
+    #[error("t = {requested} lies outside the last step, which covers t = {start} to {end}")]
     OutsideStep {
         /// The time requested.
         requested: f64,
@@ -271,7 +285,7 @@ pub enum InputError {
 
     /// A derivative beyond the degree of the polynomial of the last step.
     #[error(
-        "the derivative of order {order} is requested, but the last step has derivatives up to order {highest}"
+        "the derivative of order {order} is requested, but within the last step derivatives are known up to order {highest}"
     )]
     DerivativeOrder {
         /// The order requested.
@@ -281,11 +295,11 @@ pub enum InputError {
     },
 
     /// Derivatives by parameters are requested from a vector field that has none.
-    #[error("the vector field has no derivative by its parameters")]
+    #[error("the vector field does not provide its derivatives by the parameters")]
     NoParameterJacobian,
 
     /// There is no such parameter.
-    #[error("the vector field has {len} parameters, but number {index} (from 0) is requested")]
+    #[error("there is no parameter number {index} (from 0): the number of parameters is {len}")]
     NoParameter {
         /// The number requested.
         index: usize,
@@ -294,7 +308,7 @@ pub enum InputError {
     },
 
     /// There is no such component.
-    #[error("the vector field has {dim} components, but number {index} (from 0) is requested")]
+    #[error("there is no component number {index} (from 0): the number of components is {dim}")]
     NoComponent {
         /// The number requested.
         index: usize,
@@ -303,7 +317,9 @@ pub enum InputError {
     },
 
     /// The number of Lyapunov exponents is out of range.
-    #[error("{count} exponents are requested, but a flow in {dim} dimensions has 1 to {dim}")]
+    #[error(
+        "the number of Lyapunov exponents is {count}, but must be from 1 to {dim}, the number of components"
+    )]
     Exponents {
         /// The number requested.
         count: usize,
@@ -312,10 +328,12 @@ pub enum InputError {
     },
 
     /// A restart of an integration with sensitivities, without the derivatives of the new state.
-    #[error("an integration with sensitivities cannot be restarted without those of the new state")]
+    #[error(
+        "an integration with sensitivities can be restarted only with the sensitivities of the new state"
+    )]
     Restart,
 
     /// Interpolation before the first step.
-    #[error("there is no last step to interpolate in")]
+    #[error("there is nothing to interpolate: no step has been made")]
     NoStep,
 }

@@ -43,7 +43,7 @@ pub enum NonFinite {
     },
 
     /// A component of (∂f/∂y) v.
-    #[error("the change of the rate of {component} in a direction is {value} at t = {t}")]
+    #[error("the derivative of the rate of {component} in a direction is {value} at t = {t}")]
     Product {
         /// Name of the component of f.
         component: String,
@@ -68,7 +68,7 @@ pub enum NonFinite {
 
     /// An entry of (∂f/∂y) s.
     #[error(
-        "the rate of {component} has a derivative along column {column} (from 0) that is {value} at t = {t}"
+        "the derivative of the rate of {component} along sensitivity number {column} (from 0) is {value} at t = {t}"
     )]
     Variation {
         /// Name of the component of f.
@@ -82,7 +82,7 @@ pub enum NonFinite {
     },
 
     /// A component written by a [preconditioner](crate::Preconditioner).
-    #[error("the preconditioner makes {component} {value} at t = {t}")]
+    #[error("the preconditioner sets {component} to {value} at t = {t}")]
     Preconditioned {
         /// Name of the component.
         component: String,

@@ -128,6 +128,16 @@ pub enum Reason {
         t: f64,
     },
 
+    /// Resets at one time set each other off without end.
+    Cascade {
+        /// The event that has occurred too often.
+        event: String,
+        /// How often it has occurred at that time.
+        occurrences: usize,
+        /// When they occurred.
+        t: f64,
+    },
+
     /// The rates before or after a reset, by which sensitivities jump, cannot be evaluated.
     Saltation {
         /// When it occurred.
@@ -168,6 +178,7 @@ impl Reason {
             | Reason::Accumulation { .. }
             | Reason::Grazing { .. }
             | Reason::Together { .. }
+            | Reason::Cascade { .. }
             | Reason::Saltation { .. } => None,
         }
     }
@@ -187,43 +198,43 @@ impl Reason {
             Reason::Cvode { code, message } => write!(f, "{code} after reaching t = {time}: {message}"),
             Reason::Steps { steps, t, last } => write!(
                 f,
-                "{steps} steps did not lead to the output at t = {t}: they reached t = {time}, the last of them {last:.1e} long"
+                "{steps} steps were not enough to reach the output at t = {t}: the last, of length {last:.1e}, ended at t = {time}"
             ),
             Reason::Ended(spent) => write!(f, "{spent}, after reaching t = {time}"),
             Reason::Adjoint(reason) => {
-                f.write_str("the adjoint equations, from the end back: ")?;
+                f.write_str("in the adjoint equations, integrated backwards from the end: ")?;
                 reason.write(time, f)
             }
             Reason::EndsEarly { event, t } => write!(
                 f,
-                "the motion ends with the event {event} at t = {t}: there are gradients of functionals only of motions to \
-                 a time that is given"
+                "the event {event} ends the motion at t = {t}: gradients are available only for motions that reach \
+                 their given end time"
             ),
-            Reason::Functional => write!(f, "the functional has no value at the end, t = {time}"),
+            Reason::Functional => write!(f, "the functional cannot be evaluated at the end, t = {time}"),
             Reason::Collapsed { vector } => write!(
                 f,
-                "tangent vector number {vector} (from 0) has lost its direction at t = {time}: shorter intervals keep \
-                 it"
+                "tangent vector number {vector} (from 0) is a combination of those before it, up to rounding, at \
+                 t = {time}: choose shorter intervals"
             ),
             Reason::Overflow { component, value, t } => {
                 write!(f, "{component} is {value} at t = {t}, after reaching t = {time}")
             }
             Reason::Projection { t } => write!(
                 f,
-                "the state at t = {t} cannot be projected to where it belongs, after reaching t = {time}"
+                "the state at t = {t} cannot be projected onto the surface where it must stay, after reaching t = {time}"
             ),
             Reason::Stalled => write!(f, "the steps have become too short to continue from t = {time}"),
             Reason::Unresolved { t } => write!(
                 f,
-                "the explicit time dependence turns faster near t = {t} than floating-point times can resolve: no step can follow it"
+                "near t = {t} the vector field changes with time faster than floating-point times can resolve: no step can follow it"
             ),
             Reason::Rates { t } => {
                 write!(f, "the rates at t = {t} cannot be computed, after reaching t = {time}")
             }
             Reason::Sliding { branch, t } => write!(
                 f,
-                "the motion reaches a corner or a jump of the field, {branch}, at t = {t} and does not cross it: a series \
-                 holds on one side only"
+                "the motion reaches a corner or a jump of the field, {branch}, at t = {t} and does not cross it: Taylor's \
+                 method cannot follow it there; choose another method"
             ),
             Reason::Event { event, t } => {
                 write!(f, "the event {event} cannot be evaluated at t = {t}, after reaching t = {time}")
@@ -231,19 +242,27 @@ impl Reason {
             Reason::Reset { event, t } => write!(f, "the event {event} cannot reset the state at t = {t}"),
             Reason::Grazing { event, t } => write!(
                 f,
-                "the function of the event {event} touches zero at t = {t}: the motion after it has no derivatives"
+                "the function of the event {event} touches zero at t = {t} without crossing it: the motion after it cannot be differentiated"
             ),
             Reason::Together { events, t } => write!(
                 f,
-                "the events {} occur together at t = {t}: the motion after them has no derivatives",
+                "the events {} occur together at t = {t}: the motion after them cannot be differentiated",
                 events.join(", ")
             ),
+            Reason::Cascade { event, occurrences, t } => write!(
+                f,
+                "the resets of events set each other off without end at t = {t}: the event {event} has occurred \
+                 {occurrences} times there"
+            ),
             Reason::Saltation { t } => {
-                write!(f, "the rates of the motion cannot be evaluated on both sides of the reset at t = {t}")
+                write!(
+                    f,
+                    "the rates before and after the reset at t = {t}, which sensitivities need, cannot be evaluated"
+                )
             }
             Reason::Accumulation { event, occurrences, t } => write!(
                 f,
-                "the event {event} occurs without end near t = {t:.5e} ({occurrences} times up to t = {time})"
+                "the event {event} occurs at ever shorter intervals near t = {t:.5e} ({occurrences} times up to t = {time})"
             ),
         }
     }

@@ -2,6 +2,7 @@
 
 use pc_expr::Direction;
 
+use crate::events::breaks::{Break, breaks};
 use crate::events::closer::look_closer;
 use crate::events::samples::{Look, Sample};
 
@@ -56,8 +57,8 @@ pub(crate) struct Crossing {
 /// The result of locating a passage.
 enum Located {
     Crossing(Crossing),
-    /// All functions are back on their side at this sample.
-    Touch(Sample),
+    /// No event up to this sample: functions are back on their sides, or have passed poles.
+    Clear(Sample),
 }
 
 /// A function that touches zero more often than this within one step is taken to pass through it.
@@ -85,6 +86,27 @@ impl Sides {
     ) -> Sides {
         let (sides, noise) = known.into_iter().unzip();
         Sides { directions, sides, noise }
+    }
+
+    /// Notes that the functions `events` are at zero, where they have just been located: until a
+    /// reset moves them from there by more than `noise` they are on no side. Those without noise
+    /// have jumped to the sides `beyond`.
+    pub(crate) fn arrive(&mut self, events: &[usize], noise: &[f64], beyond: &[f64]) {
+        for (&i, &side) in events.iter().zip(beyond) {
+            self.sides[i] = if noise[i] > 0.0 { 0.0 } else { side };
+            self.noise[i] = noise[i];
+        }
+    }
+
+    /// The functions that a jump of the state to these values carries from their sides to zero or
+    /// through it, in their directions, ascending.
+    pub(crate) fn carried(&self, values: &[f64]) -> Vec<usize> {
+        (0..values.len()).filter(|&i| self.crossed(i, values[i])).collect()
+    }
+
+    /// 1, −1, or 0 while the function is at zero.
+    pub(crate) fn side(&self, i: usize) -> f64 {
+        self.sides[i]
     }
 
     /// Sets the sides after a jump of the state. Functions within `noise` of zero take the side
@@ -144,6 +166,7 @@ impl Sides {
             return Ok(Passage::Clear(Sample { t: to, ..from }));
         }
         let mut left = from;
+        look.room.begin(&left);
         if let Some(crossing) = self.leave(&mut left, to, look)? {
             look.room.take_back(left);
             return Ok(Passage::Crossing(crossing));
@@ -173,6 +196,7 @@ impl Sides {
             samples.extend(hidden);
             samples.sort_by(|a, b| ((a.t - b.t) * length).total_cmp(&0.0));
         }
+        look.room.measure(&samples);
         let mut crossing = None;
         for right in samples.drain(..) {
             match crossing {
@@ -237,16 +261,21 @@ impl Sides {
     ) -> Result<Option<Crossing>, E> {
         let mut touches = 0;
         while self.any_crossed(&right.values) {
-            match self.locate(look.copy(left), look.copy(&right), touches < MOST_TOUCHES, look)? {
+            let (located, poles) =
+                self.locate(look.copy(left), look.copy(&right), touches < MOST_TOUCHES, look)?;
+            for (pole, side) in poles {
+                (self.sides[pole], self.noise[pole]) = (side, 0.0);
+            }
+            match located {
                 Located::Crossing(crossing) => {
                     look.room.take_back(right);
                     return Ok(Some(crossing));
                 }
-                Located::Touch(after) if (right.t - after.t) * (right.t - left.t) > 0.0 => {
+                Located::Clear(after) if (right.t - after.t) * (right.t - left.t) > 0.0 => {
                     look.room.take_back(std::mem::replace(left, after));
                 }
-                // It touches at `right`.
-                Located::Touch(_) => break,
+                // It touches, or has its pole, at `right`.
+                Located::Clear(_) => break,
             }
             touches += 1;
         }
@@ -300,16 +329,17 @@ impl Sides {
         Ok(found)
     }
 
-    /// Locates the first passage, or touch, between `a`, before it, and `b`, after it: by the
+    /// Locates the first passage, touch or pole between `a`, before it, and `b`, after it: by the
     /// Illinois method with the earliest secant of the functions, and by bisection where that is
-    /// slow.
+    /// slow. Also returns the functions that change their signs there by a pole, with their sides
+    /// beyond it.
     fn locate<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &self,
         mut a: Sample,
         mut b: Sample,
         touches: bool,
         look: &mut Look<'_, F>,
-    ) -> Result<Located, E> {
+    ) -> Result<(Located, Vec<(usize, f64)>), E> {
         let scale = a.t.abs().max(b.t.abs()).max(1e-3 * (b.t - a.t).abs());
         let tolerance = LOCATED * scale;
         let mut sides = self.clone();
@@ -355,22 +385,35 @@ impl Sides {
         let after = look.at(b.t + (SAME * scale).copysign(b.t - a.t))?;
         let seen = |i: usize| sides.crossed(i, b.values[i]) || sides.crossed(i, after.values[i]);
         let is_back = |i: usize| after.values[i] * sides.sides[i] > sides.noise[i];
-        let events: Vec<usize> =
+        let passing: Vec<usize> =
             (0..self.sides.len()).filter(|&i| seen(i) && !(touches && is_back(i))).collect();
+        let breaks = if passing.is_empty() {
+            vec![Break::None; self.sides.len()]
+        } else {
+            breaks(&a, &after, SAME * scale, look)
+        };
+        let side = |i: usize| if after.values[i] == 0.0 { 0.0 } else { 1.0_f64.copysign(after.values[i]) };
+        let (poles, events): (Vec<usize>, Vec<usize>) =
+            passing.into_iter().partition(|&i| breaks[i] == Break::Pole);
+        let poles: Vec<(usize, f64)> = poles.into_iter().map(|i| (i, side(i))).collect();
         if events.is_empty() {
             [a, b].into_iter().for_each(|sample| look.room.take_back(sample));
-            return Ok(Located::Touch(after));
+            return Ok((Located::Clear(after), poles));
         }
         let noise = (0..self.sides.len()).map(|i| {
             let near = [&a, &b, &after].map(|sample| sample.values[i].abs());
             let rounding = 16.0 * near.into_iter().fold(0.0, f64::max);
-            if events.contains(&i) { rounding } else { 0.0 }
+            // A function that jumps is on its other side at once.
+            if events.contains(&i) && breaks[i] == Break::None { rounding } else { 0.0 }
         });
         let noise: Vec<f64> = noise.collect();
-        let side = |&i: &usize| if after.values[i] == 0.0 { 0.0 } else { 1.0_f64.copysign(after.values[i]) };
-        let beyond = events.iter().map(side).collect();
-        [a, after].into_iter().for_each(|sample| look.room.take_back(sample));
-        Ok(Located::Crossing(Crossing { at: b, events, noise, beyond }))
+        let beyond = events.iter().map(|&i| side(i)).collect();
+        // Where all that jump have done so.
+        let jumps_later = |i: &usize| breaks[*i] == Break::Jump && !sides.crossed(*i, b.values[*i]);
+        let later = events.iter().any(jumps_later) || !poles.is_empty();
+        let (at, other) = if later { (after, b) } else { (b, after) };
+        [a, other].into_iter().for_each(|sample| look.room.take_back(sample));
+        Ok((Located::Crossing(Crossing { at, events, noise, beyond }), poles))
     }
 }
 

@@ -22,6 +22,10 @@ pub(crate) struct Look<'a, F> {
 pub(crate) struct Room {
     values: Vec<Vec<f64>>,
     pub(crate) samples: Vec<Sample>,
+    /// Where the search along a step begins.
+    pub(crate) start: f64,
+    /// The largest magnitude of each function in the samples of a step.
+    pub(crate) largest: Vec<f64>,
 }
 
 /// Number of samples allocated at the beginning.
@@ -32,7 +36,23 @@ impl Room {
     pub(crate) fn new(functions: usize) -> Room {
         let samples = if functions == 0 { 0 } else { ROOM };
         let values = (0..samples).map(|_| Vec::with_capacity(functions)).collect();
-        Room { values, samples: Vec::with_capacity(samples) }
+        let largest = Vec::with_capacity(functions);
+        Room { values, samples: Vec::with_capacity(samples), start: f64::NAN, largest }
+    }
+
+    /// Notes the first sample of a step.
+    pub(crate) fn begin(&mut self, sample: &Sample) {
+        self.start = sample.t;
+        self.largest.clear();
+        self.largest.extend(sample.values.iter().map(|value| value.abs()));
+    }
+
+    /// Notes the magnitudes of further samples of the step.
+    pub(crate) fn measure(&mut self, samples: &[Sample]) {
+        for sample in samples {
+            let largest = self.largest.iter_mut().zip(&sample.values);
+            largest.for_each(|(largest, value)| *largest = largest.max(value.abs()));
+        }
     }
 
     /// Recycles a sample.

@@ -41,6 +41,11 @@ use crate::integration::stepper::Stepper;
 /// zero: no event occurs. For one that reaches zero and stays there the event occurs on arrival,
 /// not on departure. This holds for the function as computed, with its rounding.
 ///
+/// An event whose function changes its sign in its direction by the reset of another event occurs at
+/// the same time, on the state after that reset, and so on until no further event is set off; more
+/// than 100 occurrences of one event at one time are an
+/// [error](crate::Reason::Cascade). Its own reset does not make an event occur again.
+///
 /// After a reset the functions of the events that caused it have to leave zero before these events
 /// can occur again: a function within the tolerances of zero counts as being on the side it moves
 /// to.

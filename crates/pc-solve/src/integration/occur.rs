@@ -1,11 +1,13 @@
 //! The effect of events on the state.
 
+use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
 use pc_expr::{Events, Failure, VectorField};
 
 use crate::error::{NonFinite, Reason, SolveError};
 use crate::events::events::Occurrence;
+use crate::events::root_finding::Sides;
 use crate::integration::checks::check_inequalities;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::stepper::Stepper;
@@ -14,9 +16,15 @@ use crate::integration::stepper::Stepper;
 /// tolerances of the state.
 const TOLERANCES: f64 = 10.0;
 
+/// An event that occurs more often than this at one time does so without end.
+const MOST_AT_ONCE: usize = 100;
+
 impl<S: Stepper, E: Events> Integration<S, E> {
     /// Applies the events at the front and reports them to `occurred`. Returns how the integration
     /// ends, if it does: by the first terminal event, else because `occurred` stops it.
+    ///
+    /// An event whose function is carried through zero, in its direction, by the reset of another
+    /// one occurs at the same time, after those that are due already.
     pub(crate) fn occur(
         &mut self,
         occurred: &mut impl FnMut(&Occurrence) -> ControlFlow<()>,
@@ -24,15 +32,22 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         let t = self.front.t;
         self.engine.stand_at(t);
         let mut state = self.front_state.clone();
-        let mut occurrences = Vec::with_capacity(self.due.len());
+        let mut occurrences: Vec<Occurrence> = Vec::with_capacity(self.due.len());
         let mut matrix = self.sensitivities_before(t)?;
-        for event in self.due.clone() {
+        let mut shifts = None;
+        let mut sides = self.sides.clone();
+        sides.arrive(&self.due, &self.noise, &self.beyond);
+        let mut values = None;
+        let mut queue = VecDeque::from(self.due.clone());
+        while let Some(event) = queue.pop_front() {
+            self.check_cascade(event, t, &occurrences)?;
             let state_before = state.clone();
-            if self.events.events()[event].resets() {
+            let resets = self.events.events()[event].resets();
+            if resets {
                 let mut after = state.clone();
                 self.reset(event, t, &mut after)?;
                 if !matrix.is_empty() {
-                    matrix = self.jump_of_sensitivities(event, t, &state, &after, &matrix)?;
+                    matrix = self.jump_of_sensitivities(event, t, (&state, &after), &matrix, &mut shifts)?;
                     // Resets of nearby states may have changed data kept in the field.
                     after.copy_from_slice(&state);
                     self.reset(event, t, &mut after)?;
@@ -41,17 +56,28 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             }
             let state_after = state.clone();
             occurrences.push(Occurrence { event, time: t, state_before, state_after });
+            if resets {
+                let reached = self.evaluate(t, &state)?;
+                for carried in sides.carried(&reached) {
+                    let is_new = carried != event && !queue.contains(&carried);
+                    if is_new && self.stays_beyond(carried, t, &state, &reached, &sides, &matrix)? {
+                        queue.push_back(carried);
+                    }
+                }
+                let noise = self.noise_after_reset(t, &state, &reached, &occurrences);
+                sides.jump(&reached, noise);
+                values = Some(reached);
+            }
         }
-        if occurrences.iter().any(|occurrence| self.events.events()[occurrence.event].resets()) {
-            let values = self.evaluate(t, &state)?;
-            self.engine.restart(t, &state, &matrix, self.direction)?;
-            (self.restarted, self.jumped) = (true, true);
-            let noise = self.noise_after_reset(t, &state, &values);
-            self.sides.jump(&values, noise);
-            self.front.values = values;
-            self.front_state = state;
-        } else {
-            self.sides.cross(&self.due, &self.front.values, &self.noise, &self.beyond);
+        match values {
+            Some(values) => {
+                self.engine.restart(t, &state, &matrix, self.direction)?;
+                (self.restarted, self.jumped) = (true, true);
+                self.sides = sides;
+                self.front.values = values;
+                self.front_state = state;
+            }
+            None => self.sides.cross(&self.due, &self.front.values, &self.noise, &self.beyond),
         }
         self.due.clear();
 
@@ -65,8 +91,11 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             }
         }
         let ending = terminal.or(stopped);
-        for occurrence in &occurrences {
+        for (k, occurrence) in occurrences.iter().enumerate() {
             let event = occurrence.event;
+            if occurrences[..k].iter().any(|earlier| earlier.event == event) {
+                continue; // its time is noted once
+            }
             let accumulates = self.histories[event].note(t, self.engine.limits().accumulation);
             if let (Some(t), None) = (accumulates, ending) {
                 let occurrences = self.histories[event].occurrences;
@@ -91,12 +120,64 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.columns()
     }
 
-    /// The magnitude above which each function differs from zero after a reset. For a function that
-    /// caused it and is near zero, |g| ≤ 10 Σᵢ |g(y + δᵢ) − g(y)| with the tolerances
+    /// An error if `event` has occurred too often at one time: resets that set each other off go on
+    /// for ever.
+    fn check_cascade(&mut self, event: usize, t: f64, occurrences: &[Occurrence]) -> Result<(), SolveError> {
+        let count = occurrences.iter().filter(|occurrence| occurrence.event == event).count();
+        if count < MOST_AT_ONCE {
+            return Ok(());
+        }
+        Err(self.failed(Reason::Cascade { event: self.name(event), occurrences: count, t }, None))
+    }
+
+    /// Whether a function that a reset has carried through zero, or to zero exactly, does not
+    /// return to its side at once: along the motion from there, to first order in time.
+    ///
+    /// An error where sensitivities would need to know whether nearby motions arrive at zero, too.
+    fn stays_beyond(
+        &mut self,
+        event: usize,
+        t: f64,
+        state: &[f64],
+        values: &[f64],
+        sides: &Sides,
+        matrix: &[f64],
+    ) -> Result<bool, SolveError> {
+        if values[event] != 0.0 {
+            return Ok(true);
+        }
+        let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
+        let mut rates = vec![f64::NAN; state.len()];
+        if let Err(failure) = self.engine.field_mut().rhs(t, state, &mut rates) {
+            return Err(self.failed(Reason::Rates { t }, Some(failure)));
+        }
+        let length = largest(&rates).max(1.0);
+        let size = largest(state).max(t.abs()).max(self.engine.least_size());
+        let step = f64::EPSILON.sqrt() * size / length * self.direction.unwrap_or(1.0);
+        let moved: Vec<f64> = state.iter().zip(&rates).map(|(y, rate)| y + step * rate).collect();
+        let next = self.evaluate(t + step, &moved)?[event];
+        if next * sides.side(event) > 0.0 {
+            return Ok(false);
+        }
+        if !matrix.is_empty() && self.events.events()[event].resets() {
+            return Err(self.failed(Reason::Grazing { event: self.name(event), t }, None));
+        }
+        Ok(true)
+    }
+
+    /// The magnitude above which each function differs from zero after a reset. For a function whose
+    /// event has occurred there and is near zero, |g| ≤ 10 Σᵢ |g(y + δᵢ) − g(y)| with the tolerances
     /// δᵢ = rtol |yᵢ| + atolᵢ of the state, this is 2 |g|.
-    fn noise_after_reset(&mut self, t: f64, state: &[f64], values: &[f64]) -> Vec<f64> {
-        let mut noise = std::mem::take(&mut self.noise);
-        if self.due.iter().all(|&event| values[event].abs() <= noise[event]) {
+    fn noise_after_reset(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        values: &[f64],
+        occurrences: &[Occurrence],
+    ) -> Vec<f64> {
+        let mut noise = self.noise.clone();
+        let occurred = occurrences.iter().map(|occurrence| occurrence.event);
+        if occurred.clone().all(|event| values[event].abs() <= noise[event]) {
             return noise;
         }
         let mut moved = state.to_vec();
@@ -111,7 +192,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             }
             moved[i] = state[i];
         }
-        for &event in &self.due {
+        for event in occurred {
             let value = values[event].abs();
             if value > noise[event] && value <= TOLERANCES * perturbation[event] {
                 noise[event] = 2.0 * value;

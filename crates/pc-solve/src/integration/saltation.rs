@@ -23,13 +23,16 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// 204, eqs. (37)–(43)]. The derivatives by parameters are those of the events; so are those by
     /// (t, y) if the events [have them](Events::has_derivatives), else they are central difference
     /// quotients along the columns and along the motion.
+    ///
+    /// An event that the reset of another one sets off occurs when that one does: `shifts`, once
+    /// known, are the τ of all resets at t, and S⁺ of each is S⁻ of the next.
     pub(crate) fn jump_of_sensitivities(
         &mut self,
         event: usize,
         t: f64,
-        before: &[f64],
-        after: &[f64],
+        (before, after): (&[f64], &[f64]),
         matrix: &[f64],
+        shifts: &mut Option<Vec<f64>>,
     ) -> Result<Vec<f64>, SolveError> {
         let dim = before.len();
         let projects = self.is_projected(event, t, before, after)?;
@@ -37,12 +40,13 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         let rates_after = self.rates_at(t, after)?;
         let (along, size, reset_along) =
             self.derivative_along(event, (t, before), (1.0, &rates_before), projects)?;
-        if along.abs() <= GRAZING * size {
+        if shifts.is_none() && along.abs() <= GRAZING * size {
             return Err(self.failed(Reason::Grazing { event: self.name(event), t }, None));
         }
         let parameters = self.engine.column_parameters().to_vec();
         let mut jumped = Vec::with_capacity(matrix.len());
-        for (column, parameter) in matrix.chunks_exact(dim).zip(parameters) {
+        let mut own_shifts = Vec::with_capacity(parameters.len());
+        for (k, (column, parameter)) in matrix.chunks_exact(dim).zip(parameters).enumerate() {
             let (mut change, _, mut reset) =
                 self.derivative_along(event, (t, before), (0.0, column), projects)?;
             if let Some(j) = parameter {
@@ -53,10 +57,12 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 }
                 reset.iter_mut().zip(&by_parameter).for_each(|(reset, by)| *reset += by);
             }
-            let shift = -change / along;
+            let shift = shifts.as_ref().map_or(-change / along, |shifts| shifts[k]);
+            own_shifts.push(shift);
             let entry = |i: usize| reset[i] + (reset_along[i] - rates_after[i]) * shift;
             jumped.extend((0..dim).map(entry));
         }
+        shifts.get_or_insert(own_shifts);
         Ok(jumped)
     }
 

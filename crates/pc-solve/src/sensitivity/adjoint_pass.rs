@@ -7,6 +7,7 @@ use std::rc::Rc;
 use pc_expr::{Event, Events, Failure, VectorField};
 
 use crate::cvode::cvode::Cvode;
+use crate::cvode::forward::sensitivities::check_passages;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::observer::Observed;
@@ -38,6 +39,10 @@ pub(crate) fn gradients<F: VectorField, E: Events, G: Functional>(
     let mut path = Path::new(field, &motion);
     let resets = events.events().iter().any(Event::resets);
     let by_parameters = path.field.has_parameter_jacobian() && path.field.parameters_len() > 0;
+    check_passages(&path.field, None)?;
+    if by_parameters {
+        (0..path.field.parameters_len()).try_for_each(|j| check_passages(&path.field, Some(j)))?;
+    }
     if resets && by_parameters && !events.has_parameter_derivatives() {
         return Err(InputError::EventParameters.into());
     }

@@ -37,12 +37,12 @@ impl Inequality {
 }
 
 impl fmt::Display for Inequality {
-    /// As an adjective of the component: `not negative`.
+    /// What the component must be: `zero or positive`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Inequality::Free => "any number",
-            Inequality::NotNegative => "not negative",
-            Inequality::NotPositive => "not positive",
+            Inequality::NotNegative => "zero or positive",
+            Inequality::NotPositive => "zero or negative",
             Inequality::Positive => "positive",
             Inequality::Negative => "negative",
         })

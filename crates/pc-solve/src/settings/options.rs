@@ -15,7 +15,9 @@ use crate::settings::tolerance::Tolerance;
 /// Method, tolerances and limits of an integration.
 ///
 /// A step is accepted if the root mean square of eᵢ/(rtol |yᵢ| + atolᵢ) over the components is at
-/// most 1, where e is the estimated local error. Values are checked when an integration starts.
+/// most 1, where e is the estimated local error. [`Method::Taylor`] chooses its step beforehand, so
+/// that the largest of these quotients for the terms left out of its series is about 1. Values are
+/// checked when an integration starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     pub(crate) method: Method,
@@ -38,10 +40,10 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// [`Method::Adams`], or [`Method::Dop853`] without the feature `cvode`, with the defaults of
+    /// [`Method::Auto`], or [`Method::Dop853`] without the feature `cvode`, with the defaults of
     /// [`Options::new`].
     fn default() -> Self {
-        Options::new(if cfg!(feature = "cvode") { Method::Adams } else { Method::Dop853 })
+        Options::new(if cfg!(feature = "cvode") { Method::Auto } else { Method::Dop853 })
     }
 }
 

@@ -1,5 +1,6 @@
 //! First integrals that a motion keeps.
 
+use pc_algebra::{discontinuities, may_jump};
 use pc_expr::{Backend, Evaluator, Expr, Program};
 
 use crate::compiled::failure::{EvaluationFailure, check_finite};
@@ -60,6 +61,7 @@ impl<'g> FirstOrder<'g> {
                 let known = known.iter().map(|(name, _)| name.clone()).collect();
                 return Err(IntegralError::Unknown { name: name.to_owned(), known }.into());
             };
+            self.check_without_jumps(name, *integral)?;
             functions.push(*integral);
         }
         let variables: Vec<Expr<'g>> = [self.time].iter().chain(&self.state).copied().collect();
@@ -81,6 +83,19 @@ impl<'g> FirstOrder<'g> {
             states: self.states,
             room,
         })
+    }
+
+    /// Checks that an integral does not jump along the motion, where its values would belong to other states. The energy
+    /// of a Lagrangian that does not jump is tried at the surfaces where it changes pieces; others must have no such.
+    fn check_without_jumps(&self, name: &str, integral: Expr<'g>) -> Result<(), MechError> {
+        let changing = [&[self.time], &self.varying[..], &self.state[..]].concat();
+        let mut numbers = self.parameters.clone();
+        numbers.retain(|(symbol, _)| !self.varying.contains(symbol));
+        let jumps = match name {
+            "energy" => !discontinuities(self.graph, &[integral], &changing, &numbers)?.is_empty(),
+            _ => may_jump(self.graph, integral, &changing, &numbers)?,
+        };
+        if jumps { Err(IntegralError::Jumps { name: name.to_owned() }.into()) } else { Ok(()) }
     }
 }
 

@@ -67,8 +67,7 @@ impl Motion {
     /// each step, it changes the state by at most the error of the step.
     ///
     /// An integral whose gradient depends on those before it, such as the energy at rest, is not kept there.
-    /// A quantity that jumps along the motion, such as the energy where a potential is a step, is not an
-    /// integral there, and keeping it changes the motion.
+    /// A quantity that may jump along the motion is refused: keeping it would change the motion.
     ///
     /// # Errors
     /// [`IntegralError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later;

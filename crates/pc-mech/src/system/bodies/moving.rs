@@ -15,6 +15,8 @@ pub(crate) struct Share<'g> {
     pub(crate) forces: Vec<Expr<'g>>,
     /// U(t, x), which is a term of L.
     pub(crate) force_function: Expr<'g>,
+    /// The components of the force that it is of.
+    pub(crate) in_lagrangian: Vec<bool>,
     /// ṙ
     pub(crate) velocity: Vec<Expr<'g>>,
     /// ω, if it turns.

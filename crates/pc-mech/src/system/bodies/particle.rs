@@ -75,9 +75,11 @@ impl<'g> Particle<'g> {
         let velocity = moving.combine(&displacements);
         let kinetic = self.mass * graph.dot(velocity.iter().copied(), velocity.iter().copied()) / 2.0;
         let (mut forces, mut force_function) = (vec![Expr::ZERO; moving.eta.len()], Expr::ZERO);
+        let mut in_lagrangian = Vec::new();
         if let Some(force) = &self.force {
             shape("the force on a body", force.len(), self.position.len())?;
             let force = moving.in_quasi_velocities(force);
+            in_lagrangian = vec![true; force.len()];
             // The whole force, or those of its components that have a force function.
             let parts = match self.force_function(&force, moving, &displacements) {
                 Some(function) => {
@@ -86,17 +88,18 @@ impl<'g> Particle<'g> {
                 }
                 None => (0..force.len()).map(|i| component(&force, i)).collect(),
             };
-            for part in parts {
+            for (i, part) in parts.into_iter().enumerate() {
                 match self.force_function(&part, moving, &displacements) {
                     Some(function) => force_function += function,
                     None => {
+                        in_lagrangian[i] = false;
                         let work = moving.work(&part, &displacements);
                         forces.iter_mut().zip(work).for_each(|(q, work)| *q += work);
                     }
                 }
             }
         }
-        Ok(Share { kinetic, forces, force_function, velocity, angular_velocity: None })
+        Ok(Share { kinetic, forces, force_function, in_lagrangian, velocity, angular_velocity: None })
     }
 
     /// U(t, x) with F · X_s r = X_s U, for a force that depends on the place alone. If F is homogeneous of

@@ -161,7 +161,8 @@ impl<'g> RigidBody<'g> {
 
     pub(crate) fn share(&self, moving: &Moving<'_, 'g>) -> Result<Share<'g>, MechError> {
         moving.check_at_rest("the inertia", &self.inertia.0)?;
-        let Share { kinetic, mut forces, force_function, velocity, .. } = self.centre.share(moving)?;
+        let Share { kinetic, mut forces, force_function, in_lagrangian, velocity, .. } =
+            self.centre.share(moving)?;
         let turning = match &self.orientation {
             Orientation::Rotation(rotation) => angular_velocities(rotation, moving)?,
             Orientation::AngularVelocity(omega) => affine_parts(omega, moving)?,
@@ -175,7 +176,7 @@ impl<'g> RigidBody<'g> {
             }
         }
         let (kinetic, angular_velocity) = (kinetic + rotational, Some(omega));
-        Ok(Share { kinetic, forces, force_function, velocity, angular_velocity })
+        Ok(Share { kinetic, forces, force_function, in_lagrangian, velocity, angular_velocity })
     }
 }
 

@@ -8,6 +8,8 @@ pub struct BodyVelocity<'g> {
     pub(crate) name: String,
     pub(crate) velocity: Vec<Expr<'g>>,
     pub(crate) angular_velocity: Option<Vec<Expr<'g>>>,
+    /// For each component of its force, whether its force function is a term of L.
+    pub(crate) in_lagrangian: Vec<bool>,
 }
 
 impl<'g> BodyVelocity<'g> {
@@ -24,6 +26,12 @@ impl<'g> BodyVelocity<'g> {
     /// ω(t, x, η), along the axes of its inertia; none of a particle.
     pub fn angular_velocity(&self) -> Option<&[Expr<'g>]> {
         self.angular_velocity.as_deref()
+    }
+
+    /// For each component of the force on it, whether its force function is a term of L; nothing for a body
+    /// without a force, or on a joint.
+    pub fn force_in_lagrangian(&self) -> &[bool] {
+        &self.in_lagrangian
     }
 }
 
@@ -42,6 +50,7 @@ impl<'g> Bodies<'g> {
             name: body.name.clone(),
             velocity: put(&body.velocity),
             angular_velocity: body.angular_velocity.as_deref().map(&put),
+            in_lagrangian: body.in_lagrangian.clone(),
         };
         Bodies { list: self.list.iter().map(moved).collect(), rest: put(&[self.rest])[0] }
     }

@@ -132,6 +132,15 @@ impl<F: VectorField> Cvode<F> {
     ) -> Result<(), SolveError> {
         let work = self.sensitivity_statistics();
         self.restart_alone(t, y, direction)?;
+        self.begin_columns_anew(matrix, work)
+    }
+
+    /// Reinitialises the columns of S, if there are any, after the state; `work` is that before.
+    pub(crate) fn begin_columns_anew(
+        &mut self,
+        matrix: &[f64],
+        work: SensitivityStatistics,
+    ) -> Result<(), SolveError> {
         let Some(forward) = &mut self.sensitivity else { return Ok(()) };
         forward.earlier = work;
         forward.matrix.copy_from_slice(matrix);

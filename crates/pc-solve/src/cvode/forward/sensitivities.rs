@@ -223,6 +223,7 @@ impl Sensitivities {
     pub(crate) fn validate(&self, field: &impl VectorField) -> Result<(), InputError> {
         let dim = field.dim();
         for column in &self.columns {
+            check_passages(field, column.parameter)?;
             if let Some(index) = column.parameter {
                 if !field.has_parameter_jacobian() {
                     return Err(InputError::NoParameterJacobian);
@@ -259,6 +260,15 @@ impl Sensitivities {
         }
         Ok(())
     }
+}
+
+/// Checks that the rates jump nowhere at a time that moves with a parameter or, for none, with the start.
+///
+/// # Errors
+/// [`InputError::RateJump`]
+pub(crate) fn check_passages(field: &impl VectorField, parameter: Option<usize>) -> Result<(), InputError> {
+    let moved = field.jumps().iter().find(|jump| jump.moves_with(parameter));
+    moved.map_or(Ok(()), |jump| Err(InputError::RateJump(jump.clone())))
 }
 
 /// The work for the columns, beyond that for the state.

@@ -86,7 +86,7 @@ impl<'a, N> Octet<'a, N> {
             next = 1;
         }
         let mut write = |row: usize, value: f64| self.frame[row].0[lanes.clone()].fill(value);
-        for row in [Row::Active, Row::Refused, Row::Steps, Row::Tries, Row::First] {
+        for row in [Row::Active, Row::Refused, Row::Steps, Row::Tries, Row::First, Row::Suspect, Row::Clear] {
             write(row as usize, 0.0);
         }
         write(Row::Time as usize, start);

@@ -19,6 +19,8 @@ pub(crate) struct Plan {
     /// The length of the first step, if given.
     pub(crate) first: Option<f64>,
     pub(crate) max_steps: u64,
+    /// Whether members that turn out to be stiff leave their lanes.
+    pub(crate) watches_stiffness: bool,
     pub(crate) deadline: Option<Deadline>,
 }
 
@@ -26,7 +28,7 @@ impl Plan {
     /// None if the input is invalid, which each member then reports alone, or if lanes do not
     /// support it: another method, inequalities, a minimum step, a stop time.
     pub(crate) fn new(start: f64, times: &[f64], options: &Options) -> Option<Plan> {
-        let more = options.method != Method::Dop853
+        let more = !matches!(options.method, Method::Auto | Method::Dop853)
             || !options.inequalities.is_empty()
             || options.min_step.is_some()
             || options.stop_time.is_some();
@@ -48,6 +50,7 @@ impl Plan {
                 longest: options.max_step,
                 first: options.initial_step,
                 max_steps: options.max_steps,
+                watches_stiffness: options.method == Method::Auto,
                 deadline: options.deadline.clone(),
             })
             // Other options are validated for the length of a state.
@@ -60,7 +63,7 @@ impl Plan {
     /// Whether both plans have the same tapes.
     pub(super) fn is_like(&self, other: &Plan) -> bool {
         let limits = |plan: &Plan| (plan.start, plan.end(), plan.direction, plan.relative, plan.max_steps);
-        let lengths = |plan: &Plan| (plan.longest, plan.first, plan.has_inside());
+        let lengths = |plan: &Plan| (plan.longest, plan.first, plan.has_inside(), plan.watches_stiffness);
         limits(self) == limits(other) && lengths(self) == lengths(other) && self.absolute == other.absolute
     }
 

@@ -10,6 +10,7 @@ use super::super::coefficients::{A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12, 
 use super::super::control::{GROWTH, SAFETY, SHRINKING};
 use super::field::{Health, advanced, sum, sums};
 use super::problem::Problem;
+use super::stiffness::Counters;
 
 /// The rows that a step reads and replaces, before those of y, ẏ and the member's constants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,10 +31,14 @@ pub(super) enum Row {
     Tries,
     /// The length of the first step with its sign; 0 before it.
     First,
+    /// Steps that seem to be limited by stability, where that is watched.
+    Suspect,
+    /// Successive steps since the last of them.
+    Clear,
 }
 
 /// The number of these rows.
-pub(super) const ROWS: usize = 8;
+pub(super) const ROWS: usize = 10;
 
 /// The results in separate rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +59,8 @@ const LEFT: f64 = 0.01;
 /// The tape of a step, with the results for states inside it if `inside`.
 pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
     let tape = &mut LaneTape::new();
-    let [t, length, due, active, refused, steps, tries, first] = std::array::from_fn(|_| tape.input());
+    let [t, length, due, active, refused, steps, tries, first, suspect, clear] =
+        std::array::from_fn(|_| tape.input());
     let dim = problem.dim();
     let (y, k1) = (tape.inputs(dim), tape.inputs(dim));
     let field = problem.field(tape);
@@ -72,8 +78,9 @@ pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
 
     // The stages.
     let mut health = Health::new(tape);
+    let mut argument = Vec::new(); // of the last stage
     let mut stage = |a: &[f64], k: &[&[LaneValue]], looked_at: bool| {
-        let argument = advanced(tape, &y, h, a, k);
+        argument = advanced(tape, &y, h, a, k);
         if looked_at {
             health.look(tape, &argument);
         }
@@ -144,7 +151,17 @@ pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
     let first_now = tape.select(is_first, h, first);
     let most_steps = tape.constant(problem.plan.max_steps as f64);
     let too_many = tape.binary(Binary::Less, most_steps, steps[1]);
-    let broken = tape.binary(Binary::Or, stalled, too_many);
+    let mut broken = tape.binary(Binary::Or, stalled, too_many);
+    if problem.plan.watches_stiffness {
+        let counters = Counters { suspect, clear };
+        let (counted, is_stiff) = counters.count(tape, h, [&y1, &argument], [&k13, &k12]);
+        let is_stiff = tape.binary(Binary::And, is_stiff, stands);
+        broken = tape.binary(Binary::Or, broken, is_stiff);
+        for (old, new) in [(suspect, counted.suspect), (clear, counted.clear)] {
+            let value = tape.select(stands, new, old);
+            tape.replace(old, value);
+        }
+    }
     let since_due = tape.subtract(t1, due);
     let since_due = tape.multiply(since_due, direction);
     let is_due = tape.binary(Binary::LessOrEqual, zero, since_due);

@@ -87,11 +87,10 @@ impl Emitter<'_> {
             }
         }
         self.at = lines.lines.len() as u32;
-        for (k, &value) in self.tape.outputs.iter().enumerate() {
-            let value = lines.value(value);
-            if matches!(self.tape.nodes[value as usize], Node::Input(_) | Node::Constant(_)) {
-                self.write((self.tape.inputs + k) as u32, value)?;
-            }
+        let passed = lines.passed(self.tape).count();
+        let mut last = lines.written_last(self.tape);
+        for (row, value) in last.by_ref().take(passed) {
+            self.write(row, value)?;
         }
         if self.tape.replaced.is_empty() {
             return Ok(None);
@@ -99,16 +98,17 @@ impl Emitter<'_> {
         // Inputs must not change if the lanes have to be computed again.
         let noting = lines.lines.iter().any(|line| matches!(line, Line::Note(..)));
         let leave = if noting { Some(self.assembler.leave_if_noted()?) } else { None };
-        for &(row, value) in &self.tape.replaced {
-            self.write(row, lines.value(value))?;
+        for (row, value) in last {
+            self.write(row, value)?;
         }
         Ok(leave)
     }
 
-    /// Writes a value to a row after the last line.
+    /// Writes a value to a row, in a line of its own.
     fn write(&mut self, row: u32, value: u32) -> Result<(), EncodeError> {
         self.registers.end_line(&[], self.at);
         let vector = self.registers.in_register(value, &mut self.assembler, self.at)?;
+        self.at += 1;
         self.assembler.store(row, vector)
     }
 

@@ -19,7 +19,8 @@ pub(super) struct Lines {
     /// For a value that equals another one in range ([`Node::Near`]), that other; else the value
     /// itself.
     same_as: Vec<u32>,
-    /// The lines that read each value; values written at the end are read by a line after the last.
+    /// The lines that read each value. Each value that is [written last](Lines::written_last) is read by a line of
+    /// its own after all others, so that it is kept until then.
     pub(super) uses: Vec<Vec<u32>>,
 }
 
@@ -52,9 +53,9 @@ impl Lines {
                 }
             }
         }
-        let end = result.lines.len() as u32;
-        for value in result.written_last(tape) {
-            uses[value as usize].push(end);
+        let end = result.lines.len();
+        for (at, (_, value)) in result.written_last(tape).enumerate() {
+            uses[value as usize].push((end + at) as u32);
         }
         Lines { uses, ..result }
     }
@@ -71,14 +72,16 @@ impl Lines {
         }
     }
 
-    /// The values written after the last line: to rows of inputs, and those that no line computes.
-    fn written_last(&self, tape: &LaneTape) -> Vec<u32> {
-        let replaced = tape.replaced.iter().map(|&(_, value)| self.value(value));
-        let passed = tape
-            .outputs
-            .iter()
-            .map(|&value| self.value(value))
-            .filter(|&value| matches!(tape.nodes[value as usize], Node::Input(_) | Node::Constant(_)));
-        passed.chain(replaced).collect()
+    /// The rows and values written after the last line: outputs that no line computes, then the inputs replaced.
+    pub(super) fn written_last<'t>(&'t self, tape: &'t LaneTape) -> impl Iterator<Item = (u32, u32)> + 't {
+        self.passed(tape).chain(tape.replaced.iter().map(|&(row, value)| (row, self.value(value))))
+    }
+
+    /// The rows and values of outputs that no line computes.
+    pub(super) fn passed<'t>(&'t self, tape: &'t LaneTape) -> impl Iterator<Item = (u32, u32)> + 't {
+        let outputs = tape.outputs.iter().enumerate();
+        outputs
+            .map(|(k, &value)| ((tape.inputs + k) as u32, self.value(value)))
+            .filter(|&(_, value)| matches!(tape.nodes[value as usize], Node::Input(_) | Node::Constant(_)))
     }
 }

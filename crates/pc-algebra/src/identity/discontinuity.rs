@@ -1,0 +1,188 @@
+//! Surfaces on which functions jump, found by their values on both sides.
+
+use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
+
+/// The points from which each surface is sought; their components have magnitudes between 10⁻² and 10².
+const TRIALS: u64 = 32;
+/// Newton's steps to a surface, enough to halve the distance to a double zero as often as numbers allow.
+const MOST_STEPS: usize = 60;
+/// A step that is this small against the point has arrived.
+const ARRIVED: f64 = 1e-12;
+/// How far from a surface values are compared, against the size of the point.
+const BESIDE: [f64; 3] = [1e-5, 1e-6, 1e-7];
+/// A jump is at least this part of the values, and the same at all distances up to a tenth.
+const LEAST: f64 = 1e-8;
+const SAME: f64 = 0.1;
+
+/// A surface on which a function jumps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Discontinuity<'g> {
+    /// Vanishes there.
+    pub surface: Expr<'g>,
+    /// The first of the functions that jumps, by its number.
+    pub function: usize,
+}
+
+/// The [seams](Graph::seams) on which functions jump as the `moving` symbols change; the symbols of `numbers` have these
+/// values, all others any.
+///
+/// Newton's steps lead to points of a seam. From the difference D(δ) of the values at the distances ±δ the part that
+/// grows as δ does is taken off, (D(qδ) − q D(δ))/(1 − q): what is left, is the same at each δ and is no rounding is a
+/// jump. At a corner or a root it falls with δ, at a pole it rises.
+///
+/// # Errors
+/// As [`Program::new`].
+///
+/// ```
+/// # use pc_algebra::discontinuities;
+/// # use pc_expr::Graph;
+/// let graph = Graph::new();
+/// let [x, a] = graph.symbols(["x", "a"]);
+/// let force = [x.abs(), (x - a).step(2.0, 0.0), 1.0 / x];
+/// let found = discontinuities(&graph, &force, &[x], &[(a, 0.5)])?;
+/// assert_eq!(found.iter().map(|at| (at.surface, at.function)).collect::<Vec<_>>(), [(x - a, 1)]);
+/// assert_eq!(discontinuities(&graph, &[(1.0 / x).atan()], &[x], &[])?.len(), 1);
+/// # Ok::<(), pc_expr::ExprError>(())
+/// ```
+pub fn discontinuities<'g>(
+    graph: &'g Graph,
+    functions: &[Expr<'g>],
+    moving: &[Expr<'g>],
+    numbers: &[(Expr<'g>, f64)],
+) -> Result<Vec<Discontinuity<'g>>, ExprError> {
+    let mut seams = graph.seams(functions);
+    seams.retain(|seam| moving.iter().any(|&symbol| seam.depends_on(symbol)));
+    if seams.is_empty() {
+        return Ok(Vec::new());
+    }
+    let symbols = graph.symbols_of(functions);
+    let inputs = Inputs { time: None, state: symbols.clone(), parameters: Vec::new() };
+    let evaluator = |outputs: &[Expr<'g>]| -> Result<Evaluator, ExprError> {
+        Ok(Evaluator::new(Program::new(graph, &inputs, outputs)?, Backend::Interpreter))
+    };
+    let mut values = evaluator(functions)?;
+    let number =
+        |symbol: Expr<'g>| numbers.iter().find(|(known, _)| *known == symbol).map(|&(_, value)| value);
+    let fixed: Vec<Option<f64>> = symbols.iter().map(|&symbol| number(symbol)).collect();
+    let mut found = Vec::new();
+    for surface in seams {
+        let moves = |&place: &usize| moving.contains(&symbols[place]) && surface.depends_on(symbols[place]);
+        let mut sides = Sides {
+            moving: (0..symbols.len()).filter(moves).collect(),
+            seam: evaluator(&[surface])?,
+            values: &mut values,
+        };
+        let function = (0..TRIALS).find_map(|trial| sides.jump(point(trial, &fixed)));
+        found.extend(function.map(|function| Discontinuity { surface, function }));
+    }
+    Ok(found)
+}
+
+/// Whether a function may jump as the `changing` symbols change: it contains a sign, a step or an angle of them, or has
+/// [discontinuities]. The symbols of `numbers` have these values.
+///
+/// # Errors
+/// As [`discontinuities`].
+pub fn may_jump<'g>(
+    graph: &'g Graph,
+    function: Expr<'g>,
+    changing: &[Expr<'g>],
+    numbers: &[(Expr<'g>, f64)],
+) -> Result<bool, ExprError> {
+    Ok(graph.applies(function, changing, |function| !function.is_continuous())
+        || !discontinuities(graph, &[function], changing, numbers)?.is_empty())
+}
+
+/// A point with the fixed components, number `trial` of a sequence.
+fn point(trial: u64, fixed: &[Option<f64>]) -> Vec<f64> {
+    let number = |place: usize| {
+        let bits = mixed(trial << 32 | place as u64);
+        let sign = if bits & 1 == 0 { 1.0 } else { -1.0 };
+        sign * 10f64.powf(4.0 * (bits >> 11) as f64 / (1u64 << 53) as f64 - 2.0)
+    };
+    fixed.iter().enumerate().map(|(place, value)| value.unwrap_or_else(|| number(place))).collect()
+}
+
+/// A seam between the pieces of some functions, with the places of the symbols that move across it.
+struct Sides<'a> {
+    moving: Vec<usize>,
+    seam: Evaluator,
+    values: &'a mut Evaluator,
+}
+
+impl Sides<'_> {
+    /// The first function that jumps where the seam is reached from this point.
+    fn jump(&mut self, from: Vec<f64>) -> Option<usize> {
+        let (point, normal) = self.reach(from)?;
+        let size = self.size(&point);
+        let mut sums = Vec::new();
+        let mut differences = |part: f64| -> Vec<f64> {
+            let [ahead, behind] = [part, -part]
+                .map(|part| at(self.values, &shifted(&point, &self.moving, &normal, part * size)));
+            sums = ahead.iter().zip(&behind).map(|(a, b)| a.abs() + b.abs()).collect();
+            ahead.iter().zip(&behind).map(|(a, b)| a - b).collect()
+        };
+        let [far, near, nearest] = BESIDE.map(&mut differences);
+        let without_slope = |far: f64, near: f64| {
+            let part = BESIDE[1] / BESIDE[0];
+            (near - part * far) / (1.0 - part)
+        };
+        (0..sums.len()).find(|&i| {
+            let (first, second) = (without_slope(far[i], near[i]), without_slope(near[i], nearest[i]));
+            let is_large = second.is_finite() && second.abs() > LEAST * sums[i];
+            is_large && (first - second).abs() <= SAME * second.abs()
+        })
+    }
+
+    /// A point of the seam and the unit vector across it, by Newton's steps with difference quotients.
+    fn reach(&mut self, mut point: Vec<f64>) -> Option<(Vec<f64>, Vec<f64>)> {
+        for _ in 0..MOST_STEPS {
+            let size = self.size(&point);
+            let value = at(&mut self.seam, &point)[0];
+            let step = f64::EPSILON.cbrt() * size;
+            let mut slopes = Vec::with_capacity(self.moving.len());
+            for &place in &self.moving {
+                let [ahead, behind] =
+                    [step, -step].map(|step| at(&mut self.seam, &shifted(&point, &[place], &[1.0], step))[0]);
+                slopes.push((ahead - behind) / (2.0 * step));
+            }
+            let steepness = slopes.iter().fold(0.0f64, |sum, slope| sum.hypot(*slope));
+            if !(value.is_finite() && steepness.is_finite() && steepness > 0.0) {
+                return None;
+            }
+            let normal: Vec<f64> = slopes.iter().map(|slope| slope / steepness).collect();
+            let distance = value / steepness;
+            if distance.abs() <= ARRIVED * size {
+                return Some((point, normal));
+            }
+            point = shifted(&point, &self.moving, &normal, -distance);
+        }
+        None
+    }
+
+    /// The size of the moving part of a point, 1 for one at the origin.
+    fn size(&self, point: &[f64]) -> f64 {
+        let largest = self.moving.iter().fold(0.0f64, |size, &place| size.max(point[place].abs()));
+        if largest > 0.0 { largest } else { 1.0 }
+    }
+}
+
+fn at(program: &mut Evaluator, point: &[f64]) -> Vec<f64> {
+    let mut outputs = vec![f64::NAN; program.program().outputs_len()];
+    program.eval(0.0, point, &[], &mut outputs);
+    outputs
+}
+
+fn shifted(point: &[f64], places: &[usize], direction: &[f64], distance: f64) -> Vec<f64> {
+    let mut there = point.to_vec();
+    places.iter().zip(direction).for_each(|(&place, slope)| there[place] += distance * slope);
+    there
+}
+
+/// The bits of a number, mixed (splitmix64).
+fn mixed(number: u64) -> u64 {
+    let mut z = number.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}

@@ -1,0 +1,24 @@
+//! The values of compiled expressions.
+
+use pc_expr::Evaluator;
+
+use crate::error::AnalysisError;
+
+/// The outputs of a program of (t, y, p), which takes the first of these parameters.
+///
+/// # Errors
+/// [`AnalysisError::Expr`] with the expression to blame, if one is not finite.
+pub(crate) fn values(
+    program: &mut Evaluator,
+    t: f64,
+    state: &[f64],
+    parameters: &[f64],
+) -> Result<Vec<f64>, AnalysisError> {
+    let parameters = &parameters[..program.program().parameters_len()];
+    let mut values = vec![0.0; program.program().outputs_len()];
+    program.eval(t, state, parameters, &mut values);
+    match values.iter().all(|value| value.is_finite()) {
+        true => Ok(values),
+        false => Err(program.blame(t, state, parameters).into()),
+    }
+}

@@ -1,0 +1,42 @@
+//! Jumps of a vector field.
+
+use std::fmt;
+
+/// A surface g(t, y, p) = 0 on which f jumps.
+///
+/// Where a motion passes it, derivatives of the motion by p and y₀ jump, too, if these move the passage:
+///
+///   s⁺ = s⁻ + (f⁻ − f⁺) ∂τ,   ∂τ the derivative of the time τ of the passage,
+///
+/// a term that no derivative of f contains.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RateJump {
+    /// The text of g.
+    pub surface: String,
+    /// The component of y whose rate jumps.
+    pub component: String,
+    /// Whether g depends on the state.
+    pub of_state: bool,
+    /// The parameters on which g depends, by their numbers, with their names.
+    pub parameters: Vec<(usize, String)>,
+}
+
+impl RateJump {
+    /// Whether this parameter moves the passage; for none, whether the start does.
+    pub fn moves_with(&self, parameter: Option<usize>) -> bool {
+        self.of_state || self.parameters.iter().any(|(j, _)| parameter == Some(*j))
+    }
+}
+
+impl fmt::Display for RateJump {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the rate of {} jumps where {} = 0, ", self.component, self.surface)?;
+        let names: Vec<String> = self.parameters.iter().map(|(_, name)| format!("`{name}`")).collect();
+        match (self.of_state, names.is_empty()) {
+            (true, true) => write!(f, "a surface of the state"),
+            (true, false) => write!(f, "a surface of the state that {} moves", names.join(", ")),
+            (false, true) => write!(f, "at a time of its own"),
+            (false, false) => write!(f, "at a time that {} moves", names.join(", ")),
+        }
+    }
+}

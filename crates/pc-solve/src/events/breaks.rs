@@ -1,0 +1,69 @@
+//! Jumps and poles of functions that change their signs.
+//!
+//! A place where a function changes its sign is bracketed to rounding. At the distances d, 8 d, …
+//! from there a continuous function grows, one that jumps stays what it is, and at a pole of order p
+//! it falls by 8ᵖ from each distance to the next, on both sides.
+
+use crate::events::samples::{Look, Sample};
+
+/// How a function changes its sign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Break {
+    /// Through zero, as far as the samples tell.
+    None,
+    /// By a jump.
+    Jump,
+    /// Through infinity.
+    Pole,
+}
+
+/// Ratio of successive distances.
+const RATIO: f64 = 8.0;
+/// Number of distances on each side.
+const DISTANCES: i32 = 4;
+/// A function falls by at least this factor from one distance to the next at a pole.
+const FALL: f64 = 1.5;
+/// A function that jumps varies on each side by at most this fraction of its jump.
+const STEADY: f64 = 1e-3;
+/// A jump is larger than this fraction of the function along the step, below which it may be
+/// rounding.
+const RESOLVED: f64 = 1e-6;
+
+/// How each function changes its sign between `a` and `b`, close to each other. Where the distances,
+/// in multiples of `rounding`, begin before the step, or a function fails, nothing is known.
+pub(crate) fn breaks<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
+    a: &Sample,
+    b: &Sample,
+    rounding: f64,
+    look: &mut Look<'_, F>,
+) -> Vec<Break> {
+    let (direction, start) = (b.t - a.t, look.room.start);
+    let mut side = |from: f64, sign: f64| -> Option<Vec<Sample>> {
+        let offset = |k: i32| (rounding * RATIO.powi(k)).copysign(sign * direction);
+        (1..=DISTANCES).map(|k| look.at(from + offset(k)).ok()).collect()
+    };
+    let farthest = rounding * RATIO.powi(DISTANCES);
+    let has_room = (a.t - start).abs() >= farthest;
+    let sides = if has_room { side(a.t, -1.0).zip(side(b.t, 1.0)) } else { None };
+    let Some((before, after)) = sides else { return vec![Break::None; a.values.len()] };
+    let kind = |i: usize| {
+        let values = |samples: &[Sample]| samples.iter().map(|sample| sample.values[i]).collect::<Vec<f64>>();
+        kind((a.values[i], &values(&before)), (b.values[i], &values(&after)), look.room.largest[i])
+    };
+    let kinds = (0..a.values.len()).map(kind).collect();
+    before.into_iter().chain(after).for_each(|sample| look.room.take_back(sample));
+    kinds
+}
+
+/// The same from the values at the bracket and at growing distances on each side of it.
+fn kind((a, before): (f64, &[f64]), (b, after): (f64, &[f64]), largest: f64) -> Break {
+    let falls = |values: &[f64]| {
+        values.windows(2).all(|pair| pair[0] * pair[1] > 0.0 && pair[0].abs() >= FALL * pair[1].abs())
+    };
+    if falls(before) && falls(after) && before[0] * after[0] < 0.0 {
+        return Break::Pole;
+    }
+    let jump = (b - a).abs();
+    let steady = |at: f64, values: &[f64]| values.iter().all(|value| (value - at).abs() <= STEADY * jump);
+    if jump > RESOLVED * largest && steady(a, before) && steady(b, after) { Break::Jump } else { Break::None }
+}
