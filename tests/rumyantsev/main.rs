@@ -21,7 +21,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-#[path = "../tests/holonomic/definition.rs"]
+#[path = "../tests/it/holonomic/definition.rs"]
 mod definition;
 mod equation_09_random_frames;
 mod equation_30_motions;

@@ -1,7 +1,7 @@
 //! Run times of a chain of 200 links with each linear solver: minimum and median of interleaved
 //! runs.
 
-#[path = "../tests/common/chain.rs"]
+#[path = "../tests/it/common/chain.rs"]
 mod chain;
 
 use std::error::Error;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-use crate::command::{announce_and_run, cargo, target_directory};
+use crate::command::{announce_and_run, build_as_for_tests, cargo, target_directory};
 use crate::error::Error;
 use crate::setup;
 
@@ -16,7 +16,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Error> {
 
 /// Half a minute of it, on the program of the tests.
 pub(crate) fn quick() -> Result<(), Error> {
-    announce_and_run(&mut cargo(&["build", "--workspace", "--bin", "pc", "--bin", "attack"]))?;
+    build_as_for_tests(&["--bin", "pc", "--bin", "attack"])?;
     announce_and_run(Command::new(built("debug")?).args(["--minutes", "0.5"]))
 }
 

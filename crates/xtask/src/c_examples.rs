@@ -6,7 +6,9 @@ use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{announce_and_run, built_program, cargo, succeeds, target_directory, workspace_root};
+use crate::command::{
+    announce_and_run, build_as_for_tests, built_program, cargo, succeeds, target_directory, workspace_root,
+};
 use crate::error::Error;
 use crate::tools::Machine;
 use crate::{c_fresh, c_interface, c_numbers, install, setup};
@@ -108,7 +110,7 @@ pub(crate) fn quick() -> Result<(), Error> {
     let (built, place) = (target_directory()?.join("debug"), target_directory()?.join("c-examples/quick"));
     let (shared, libraries, pc) = (built.join("deps/libpc.so"), place.join("lib"), built_program()?);
     if !shared.exists() {
-        announce_and_run(&mut cargo(&["build", "--package", "pc-capi", "--lib"]))?;
+        build_as_for_tests(&["--lib"])?;
     }
     let wrong = |source| Error::File { path: libraries.display().to_string(), source };
     fs::create_dir_all(&libraries).map_err(wrong)?;

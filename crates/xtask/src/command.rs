@@ -33,6 +33,15 @@ pub(crate) fn target_directory() -> Result<PathBuf, Error> {
     Ok(target.map_or_else(|| workspace_root().join("target"), Path::to_path_buf))
 }
 
+/// Builds some targets of the workspace as the tests do, so that neither builds anew what the other has built: with an example
+/// among the targets, dependencies have the features that they have for tests.
+///
+/// # Errors
+/// That of the build.
+pub(crate) fn build_as_for_tests(targets: &[&str]) -> Result<(), Error> {
+    announce_and_run(cargo(&["build", "--workspace", "--example", "header"]).args(targets))
+}
+
 /// The program `pc` of the last build for debugging; built where there is none.
 ///
 /// # Errors
@@ -40,7 +49,7 @@ pub(crate) fn target_directory() -> Result<PathBuf, Error> {
 pub(crate) fn built_program() -> Result<PathBuf, Error> {
     let program = target_directory()?.join("debug/pc");
     if !program.exists() {
-        announce_and_run(&mut cargo(&["build", "--package", "pc-cli", "--bin", "pc"]))?;
+        build_as_for_tests(&["--bin", "pc"])?;
     }
     Ok(program)
 }
@@ -92,6 +101,20 @@ pub(crate) fn announce_and_tee(command: &mut Command, mut sink: impl FnMut(&[u8]
     if status.success() { Ok(()) } else { Err(Error::Failed { command: line_of(command), status }) }
 }
 
+/// What a program prints, as text; its errors go to ours.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn text_of(command: &mut Command) -> Result<String, Error> {
+    let output = command.stderr(Stdio::inherit()).output();
+    let output = output.map_err(|source| Error::Start { program: program_of(command), source })?;
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        Err(Error::Failed { command: line_of(command), status: output.status })
+    }
+}
+
 /// Whether the program starts, runs and exits with 0, its output thrown away.
 pub(crate) fn succeeds(command: &mut Command) -> bool {
     command
@@ -112,7 +135,7 @@ pub(crate) fn line_of(command: &Command) -> String {
     line
 }
 
-fn program_of(command: &Command) -> String {
+pub(crate) fn program_of(command: &Command) -> String {
     let program = PathBuf::from(command.get_program());
     program.file_name().unwrap_or(program.as_os_str()).to_string_lossy().into_owned()
 }

@@ -4,8 +4,12 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 use std::process::{ExitCode, ExitStatus};
+use std::time::Duration;
 
 use crate::counts::Counts;
+
+/// The exit code of what this machine cannot do and the workspace does without.
+pub(crate) const SKIPPED: u8 = 77;
 
 /// A failure of a command of this program.
 #[derive(Debug)]
@@ -26,6 +30,8 @@ pub(crate) enum Error {
     File { path: String, source: io::Error },
     /// A program ran and failed.
     Failed { command: String, status: ExitStatus },
+    /// Something took longer than it may and was killed; what was at work then.
+    TimeLimit { what: String, limit: Duration, at_work: Vec<String> },
     /// Tests failed, or their programs did.
     Tests { counts: Counts, failure: Box<Error> },
     /// The installed library is not as it should be.
@@ -50,10 +56,16 @@ impl Error {
         Error::File { path: path.display().to_string(), source }
     }
 
-    /// 2 for a wrong command line, 1 for everything else.
+    /// That of something killed after `limit`.
+    pub(crate) fn time_limit(what: String, limit: Duration, at_work: Vec<String>) -> Error {
+        Error::TimeLimit { what, limit, at_work }
+    }
+
+    /// 2 for a wrong command line, [`SKIPPED`] for what cannot be done here, 1 for everything else.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
             Error::Usage { .. } => ExitCode::from(2),
+            Error::Unavailable { .. } => ExitCode::from(SKIPPED),
             _ => ExitCode::FAILURE,
         }
     }
@@ -76,6 +88,10 @@ impl fmt::Display for Error {
             }
             Error::File { path, source } => write!(f, "{path}: {source}"),
             Error::Failed { command, status } => write!(f, "`{command}` failed: {status}"),
+            Error::TimeLimit { what, limit, at_work } => {
+                write!(f, "`{what}` was killed after {} s", limit.as_secs())?;
+                if at_work.is_empty() { Ok(()) } else { write!(f, "; at work: {}", at_work.join(", ")) }
+            }
             Error::Tests { failure, .. } => failure.fmt(f),
             Error::Installed { wrong } => write!(f, "the installed library: {wrong}"),
             Error::Numbers { example, wrong } => write!(f, "the example {example}: {wrong}"),

@@ -33,12 +33,16 @@ use std::process::ExitCode;
 
 use error::Error;
 use install::Places;
+use test::Wanted;
 
 const USAGE: &str = "\
 usage: cargo xtask <command>
 
   demo             build `pc`, derive, integrate and plot a heavy top in target/demo
-  test [--quick]   format, lints, tests, documentation, licences, FMUs; --quick stops after the tests
+  test [--quick] [--since REV]
+                   format, lints, tests, documentation, licences, FMUs, the Python package, with the times of all at the end;
+                   --quick stops after the tests, --since tries only what can behave otherwise than at a revision of git
+  stage TITLE      one of the stages that `test` names, by itself
   bench [NAME…]    run the benchmarks, all of them or those named
   fuzz models|trees [--count N] [--seed S] [--model K]
                    run random models and compare them with independent computations; --model shows one of them
@@ -85,7 +89,11 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
             no_more(name, rest)?;
             demo::run()
         }
-        "test" => test::run(quick(name, rest)?),
+        "test" => test::run(&wanted(rest)?),
+        "stage" => match rest {
+            [title] => test::stage(title),
+            _ => Err(Error::Usage { message: "`stage` needs a TITLE".to_owned() }),
+        },
         "bench" => bench::run(rest),
         "book" => {
             no_more(name, rest)?;
@@ -130,6 +138,23 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
     }
 }
 
+/// What the words after `test` ask for.
+fn wanted(rest: &[String]) -> Result<Wanted, Error> {
+    let mut wanted = Wanted::default();
+    let mut words = rest.iter();
+    while let Some(word) = words.next() {
+        match word.as_str() {
+            "--quick" => wanted.quick = true,
+            "--since" => {
+                let needed = || Error::Usage { message: "`--since` needs a revision of git".to_owned() };
+                wanted.since = Some(words.next().ok_or_else(needed)?.clone());
+            }
+            other => return Err(Error::Usage { message: format!("`test` does not take `{other}`") }),
+        }
+    }
+    Ok(wanted)
+}
+
 fn quick(name: &str, rest: &[String]) -> Result<bool, Error> {
     match rest {
         [] => Ok(false),
@@ -159,9 +184,11 @@ mod tests {
         assert_eq!(message_of(&["tset"]), "there is no command `tset`");
         assert_eq!(message_of(&["demo", "--fast"]), "`demo` does not take `--fast`");
         assert_eq!(message_of(&["test", "--fast"]), "`test` does not take `--fast`");
+        assert_eq!(message_of(&["test", "--since"]), "`--since` needs a revision of git");
+        assert_eq!(message_of(&["stage"]), "`stage` needs a TITLE");
         assert_eq!(message_of(&["install"]), "`install` needs `--prefix DIR`");
         assert_eq!(message_of(&["uninstall", "--prefix", "a", "b"]), "`uninstall` does not take `b`");
-        assert_eq!(message_of(&["test", "--quick", "x"]), "`test --quick` does not take `x`");
+        assert_eq!(message_of(&["test", "--quick", "x"]), "`test` does not take `x`");
     }
 
     #[test]

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
-use crate::command::{cargo, line_of};
+use crate::command::{cargo, text_of};
 use crate::error::Error;
 
 /// How files with licences begin, in lower case.
@@ -51,7 +50,7 @@ pub(crate) fn of_dependencies(package: &str) -> Result<String, Error> {
 fn dependencies(package: &str) -> Result<BTreeMap<String, String>, Error> {
     let tree = ["tree", "--locked", "--package", package, "--edges", "normal,no-proc-macro"];
     let mut command = cargo(&tree);
-    let listed = output(command.args(["--prefix", "none", "--no-dedupe", "--format", "{p}|{l}"]))?;
+    let listed = text_of(command.args(["--prefix", "none", "--no-dedupe", "--format", "{p}|{l}"]))?;
     let from_registry = |line: &str| {
         let (package, licence) = line.split_once('|')?;
         let mut words = package.split(' ');
@@ -63,7 +62,7 @@ fn dependencies(package: &str) -> Result<BTreeMap<String, String>, Error> {
 
 /// The directories of all crates of the workspace's dependencies, by their names.
 fn places() -> Result<BTreeMap<String, PathBuf>, Error> {
-    let metadata = output(&mut cargo(&["metadata", "--locked", "--format-version", "1"]))?;
+    let metadata = text_of(&mut cargo(&["metadata", "--locked", "--format-version", "1"]))?;
     let manifests = metadata.split("\"manifest_path\":\"").skip(1).filter_map(|rest| rest.split('"').next());
     let directories = manifests.filter_map(|manifest| Path::new(manifest).parent());
     let named = |directory: &Path| Some((directory.file_name()?.to_str()?.to_owned(), directory.to_owned()));
@@ -82,15 +81,6 @@ fn texts_in(directory: &Path) -> Result<Vec<String>, Error> {
     files.sort();
     let read = |file: &PathBuf| fs::read_to_string(file).map_err(|source| Error::of_file(file, source));
     files.iter().map(read).collect()
-}
-
-fn output(command: &mut Command) -> Result<String, Error> {
-    let output = command.output().map_err(|source| Error::Start { program: "cargo".to_owned(), source })?;
-    if !output.status.success() {
-        eprint!("{}", String::from_utf8_lossy(&output.stderr));
-        return Err(Error::Failed { command: line_of(command), status: output.status });
-    }
-    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 #[cfg(test)]

@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::command::{announce_and_run, built_program, cargo, target_directory, workspace_root};
+use crate::command::{
+    announce_and_run, build_as_for_tests, built_program, cargo, target_directory, workspace_root,
+};
 use crate::error::Error;
 use crate::notices::of_dependencies;
 use crate::python_environment::{Environment, remove};
@@ -43,9 +45,7 @@ pub(crate) fn run() -> Result<(), Error> {
 /// # Errors
 /// That of the first program that fails, and [`Error::Unavailable`], as there.
 pub(crate) fn quick() -> Result<(), Error> {
-    // With an example among the targets, dependencies have the features that they have for tests: those are not built again.
-    let as_for_tests = ["build", "--workspace", "--lib", "--bin", "pc", "--example", "header"];
-    announce_and_run(&mut cargo(&as_for_tests))?;
+    build_as_for_tests(&["--lib", "--bin", "pc"])?;
     let place = target_directory()?.join("python");
     let (built, requirements) = (place.join("built"), package().join("tests/requirements.txt"));
     let listed = fs::read_to_string(&requirements).map_err(|source| Error::of_file(&requirements, source))?;

@@ -1,110 +1,128 @@
 //! `cargo xtask test`: everything that has to hold before a change goes in.
+//!
+//! `stage` lists what is done, each part in a process group of its own with its own limit; `programs` builds and runs the test
+//! programs, `libtest` follows what they say, `limited` kills what takes too long, by the times in `usual`; `touched` finds what a
+//! change concerns, and `report` is the last page.
 
-use std::process::Command;
+mod libtest;
+mod limited;
+mod programs;
+mod report;
+mod stage;
+mod touched;
+mod usual;
+
+use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
-use crate::cargo_tools::CargoTool;
-use crate::command::{announce_and_run, announce_and_tee, cargo};
-use crate::counts::{Counter, Counts};
+use crate::counts::Counts;
 use crate::error::Error;
-use crate::{attack, book, c_examples, fmu, setup};
+use report::{Report, Verdict, seconds};
+pub(crate) use stage::run_alone as stage;
+use stage::{AFTER, BEFORE, Stage};
 
-const DENY: CargoTool = CargoTool { name: "cargo-deny", version: "~0.20" };
+/// Which of the tests are wanted.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(crate) struct Wanted {
+    /// Nothing after the test programs.
+    pub(crate) quick: bool,
+    /// Only what can behave otherwise than at this revision.
+    pub(crate) since: Option<String>,
+}
 
-/// Runs the stages in order and stops at the first that fails.
+/// Runs the stages in order and stops at the first that fails; a failure of one test program does not keep the others from
+/// running.
 ///
-/// The last line on standard output is the sum over all test binaries; `quick` stops after the tests.
-pub(crate) fn run(quick: bool) -> Result<(), Error> {
-    let start = Instant::now();
-    stage("set-up", setup::everything)?;
-    cargo_stage("format", &mut cargo(&["fmt", "--all", "--check"]))?;
-    cargo_stage("lints", &mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
-    let without_sundials =
-        ["clippy", "-p", "pc-solve", "--lib", "--no-default-features", "--", "-D", "warnings"];
-    cargo_stage("lints without SUNDIALS", &mut cargo(&without_sundials))?;
-    let counts = tests()?;
-    let mut without = Vec::new();
-    if !quick {
-        stage("attack", attack::quick)?;
-        stage("C examples", c_examples::quick)?;
-        let mut doc = cargo(&["doc", "--workspace", "--no-deps"]);
-        cargo_stage("documentation", doc.env("RUSTDOCFLAGS", "-D warnings"))?;
-        stage("book", book::run)?;
-        stage("licences", licences)?;
-        without.extend(stage_if_possible("FMUs", fmu::quick)?);
+/// The last lines are the stages with their times, the slowest tests, and the sum over all tests.
+///
+/// # Errors
+/// That of the first stage that fails.
+pub(crate) fn run(wanted: &Wanted) -> Result<(), Error> {
+    let touched = wanted.since.as_deref().map(touched::since).transpose()?;
+    let mut work = Work { report: Report::default(), counts: Counts::default(), touched };
+    let outcome = work.everything(wanted.quick);
+    print!("{}", work.report);
+    outcome?;
+    if wanted.since.is_none() && work.counts.executed() == 0 {
+        return Err(Error::NoTests);
     }
-    println!("\nall of it: {}", seconds(start.elapsed()));
-    for missing in without {
-        println!("skipped: {missing}");
-    }
-    println!("{counts}");
+    println!("{}", work.counts);
     Ok(())
 }
 
-/// Unit, integration and documentation tests of all crates; a failure in one does not keep the others from running.
-fn tests() -> Result<Counts, Error> {
-    let mut counter = Counter::default();
-    let mut command = cargo(&["test", "--workspace", "--no-fail-fast"]);
-    let outcome = stage("tests", || announce_and_tee(&mut command, |piece| counter.feed(piece)));
-    let counts = counter.finish();
-    match outcome {
-        Err(failure) => Err(Error::Tests { counts, failure: Box::new(failure) }),
-        Ok(()) if counts.executed() == 0 => Err(Error::NoTests),
-        Ok(()) => Ok(counts),
+/// What is done so far.
+struct Work {
+    report: Report,
+    counts: Counts,
+    /// The packages that are tried; all of them where none are named.
+    touched: Option<BTreeSet<String>>,
+}
+
+impl Work {
+    fn everything(&mut self, quick: bool) -> Result<(), Error> {
+        BEFORE.iter().try_for_each(|stage| self.stage(stage))?;
+        let tests = self.tests();
+        let documentation = self.stage(&stage::DOCUMENTATION_TESTS);
+        tests.and(documentation)?;
+        if quick { Ok(()) } else { AFTER.iter().try_for_each(|stage| self.stage(stage)) }
     }
-}
 
-/// Licences, sources and duplicates of the dependencies, by `deny.toml`.
-///
-/// Advisories are left out: they need a database from the network and change without a change of ours.
-fn licences() -> Result<(), Error> {
-    if !DENY.is_available()? {
-        return Ok(());
+    /// Whether packages are tried; everything concerns a stage without packages.
+    fn concerns(&self, packages: &[&str]) -> bool {
+        let Some(touched) = &self.touched else { return true };
+        packages.is_empty() || packages.iter().any(|&package| touched.contains(package))
     }
-    announce_and_run(&mut cargo(&["deny", "check", "--hide-inclusion-graph", "licenses", "bans", "sources"]))
-}
 
-fn cargo_stage(title: &str, command: &mut Command) -> Result<(), Error> {
-    stage(title, || announce_and_run(command))
-}
-
-/// Header, work, time; the time of a failed stage as well.
-fn stage(title: &str, work: impl FnOnce() -> Result<(), Error>) -> Result<(), Error> {
-    println!("\n== {title}");
-    let start = Instant::now();
-    let outcome = work();
-    let verdict = match &outcome {
-        Ok(()) => "passed",
-        Err(Error::Unavailable { .. }) => "skipped",
-        Err(_) => "failed",
-    };
-    println!("== {title} {verdict} in {}", seconds(start.elapsed()));
-    outcome
-}
-
-/// A stage that needs what a machine need not have: then it is said what is missing.
-fn stage_if_possible(title: &str, work: impl FnOnce() -> Result<(), Error>) -> Result<Option<String>, Error> {
-    match stage(title, work) {
-        Ok(()) => Ok(None),
-        Err(Error::Unavailable { what }) => Ok(Some(format!("{title}: {what}"))),
-        Err(error) => Err(error),
+    fn stage(&mut self, stage: &Stage) -> Result<(), Error> {
+        if !self.concerns(stage.packages) {
+            self.report.stage(stage.title, Verdict::Untouched, Duration::ZERO);
+            return Ok(());
+        }
+        println!("\n== {}", stage.title);
+        let start = Instant::now();
+        let outcome = stage.run(|line| self.counts.add_line(line));
+        let verdict = match &outcome {
+            Ok(()) => Verdict::Passed,
+            Err(Error::Unavailable { .. }) => Verdict::Skipped,
+            Err(_) => Verdict::Failed,
+        };
+        self.over(stage.title, verdict, start);
+        match outcome {
+            Err(Error::Unavailable { what }) => {
+                self.report.skipped.push(format!("{}: {what}", stage.title));
+                Ok(())
+            }
+            outcome => outcome,
+        }
     }
-}
 
-fn seconds(time: Duration) -> String {
-    format!("{:.1} s", time.as_secs_f64())
-}
+    /// The test programs, one after the other; each uses all processors.
+    fn tests(&mut self) -> Result<(), Error> {
+        let title = "build of everything";
+        println!("\n== {title}");
+        let start = Instant::now();
+        let built = programs::build(usual::limit(stage::BUILD));
+        self.over(title, if built.is_ok() { Verdict::Passed } else { Verdict::Failed }, start);
+        let mut first = None;
+        for program in
+            built?.into_iter().filter(|program| self.concerns(&[program.package()])).collect::<Vec<_>>()
+        {
+            let start = Instant::now();
+            let run = programs::run(&program, &mut self.counts)?;
+            let verdict = if run.failure.is_none() { Verdict::Passed } else { Verdict::Failed };
+            self.over(&program.name, verdict, start);
+            self.report.tests(run.tests);
+            if let Some(failure) = run.failure {
+                println!("== {failure}");
+                first = first.or(Some(failure));
+            }
+        }
+        first.map_or(Ok(()), |failure| Err(Error::Tests { counts: self.counts, failure: Box::new(failure) }))
+    }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_missing_is_said_and_what_is_wrong_fails() {
-        let unavailable = || Err(Error::Unavailable { what: "no Python".to_owned() });
-        let said = stage_if_possible("FMUs", unavailable).unwrap();
-        assert_eq!(said.as_deref(), Some("FMUs: no Python"));
-        assert_eq!(stage_if_possible("FMUs", || Ok(())).unwrap(), None);
-        assert!(stage_if_possible("FMUs", || Err(Error::NoTests)).is_err());
+    fn over(&mut self, title: &str, verdict: Verdict, start: Instant) {
+        let took = start.elapsed();
+        println!("== {title} {verdict} in {}", seconds(took));
+        self.report.stage(title, verdict, took);
     }
 }

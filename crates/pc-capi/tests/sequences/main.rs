@@ -7,7 +7,7 @@
 
 mod callbacks;
 mod calls;
-#[path = "../common/mod.rs"]
+#[path = "../it/common/mod.rs"]
 mod common;
 mod counting;
 mod handles;

@@ -1,0 +1,691 @@
+//! Forces by functions of the program, compared with the same forces in the text, and functions
+//! that fail.
+
+use std::ffi::{CStr, c_int, c_void};
+use std::ptr;
+use std::slice;
+use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+
+use crate::common::{At, Model, ROD, Refusal, System, c, call, taken};
+use ::pc_model::Builtin;
+use pc::pc_form::{PC_CANONICAL, PC_POINCARE};
+use pc::pc_status::*;
+use pc::*;
+
+type Write = fn(f64, &[f64], &mut [f64], usize) -> c_int;
+
+/// The target of `user`: functions that also receive the number of the call, with counts of calls.
+struct Law {
+    force: Write,
+    slopes: Option<Write>,
+    calls: AtomicUsize,
+    destroyed: AtomicUsize,
+}
+
+impl Law {
+    fn new(force: Write) -> Law {
+        Law { force, slopes: None, calls: AtomicUsize::new(0), destroyed: AtomicUsize::new(0) }
+    }
+
+    fn destroyed(&self) -> usize {
+        self.destroyed.load(SeqCst)
+    }
+
+    /// Sets it as the force of a system; `destroy` only counts its calls.
+    fn set(&self, system: &System) -> Result<(), Refusal> {
+        let slopes: pc_force_jacobian = self.slopes.map(|_| slopes as _);
+        // SAFETY: a live system, and functions that take the law, which lives longer.
+        call(|error| unsafe {
+            pc_system_set_force(system.0, Some(force), slopes, self.user(), Some(destroy), error)
+        })
+    }
+
+    fn user(&self) -> *mut c_void {
+        ptr::from_ref(self).cast_mut().cast()
+    }
+}
+
+unsafe extern "C" fn force(
+    t: f64,
+    y: *const f64,
+    n: usize,
+    q: *mut f64,
+    e: usize,
+    user: *mut c_void,
+) -> c_int {
+    // SAFETY: a law, and arrays as long as said.
+    let (law, y, q) =
+        unsafe { (&*user.cast::<Law>(), slice::from_raw_parts(y, n), slice::from_raw_parts_mut(q, e)) };
+    (law.force)(t, y, q, law.calls.fetch_add(1, SeqCst))
+}
+
+unsafe extern "C" fn slopes(
+    t: f64,
+    y: *const f64,
+    n: usize,
+    dq: *mut f64,
+    e: usize,
+    user: *mut c_void,
+) -> c_int {
+    // SAFETY: a law, and arrays as long as said.
+    let (law, y, dq) =
+        unsafe { (&*user.cast::<Law>(), slice::from_raw_parts(y, n), slice::from_raw_parts_mut(dq, e)) };
+    law.slopes.map_or(-7, |slopes| slopes(t, y, dq, 0))
+}
+
+unsafe extern "C" fn destroy(user: *mut c_void) {
+    // SAFETY: a law.
+    unsafe { &*user.cast::<Law>() }.destroyed.fetch_add(1, SeqCst);
+}
+
+const PENDULUM: &str = "
+[coordinates]
+\"θ\" = 0.5
+[quasi_velocities]
+\"θ'\" = 0.25
+[lagrangian]
+kinetic = \"2*θ'^2\"
+potential = \"-10*cos(θ)\"
+";
+
+fn text_of(name: &str) -> String {
+    match name {
+        "pendulum" => PENDULUM.to_owned(),
+        "rod" => ROD.to_owned(),
+        name => Builtin::named(name).unwrap().text.to_owned(),
+    }
+}
+
+fn declare(model: &Model, on: &[&str]) {
+    for on in on {
+        let on = c(on);
+        // SAFETY: a live model and a text.
+        call(|error| unsafe { pc_model_add_external_force(model.0, on.as_ptr(), error) }).unwrap();
+    }
+}
+
+/// The model with reactions among the outputs, and external forces on these quasi-velocities.
+fn forced(name: &str, on: &[&str], form: pc_form) -> System {
+    let model = Model::text(&text_of(name)).unwrap();
+    // SAFETY: a live model.
+    call(|error| unsafe { pc_model_observe_reactions(model.0, 1, error) }).unwrap();
+    declare(&model, on);
+    model.system(form).unwrap()
+}
+
+/// The same with the forces in the text.
+fn written(name: &str, forces: &[(&str, &str)], form: pc_form) -> System {
+    let lines: String = forces.iter().map(|(on, value)| format!("\"{on}\" = \"{value}\"\n")).collect();
+    let model = Model::text(&format!("{}\n[forces]\n{lines}", text_of(name))).unwrap();
+    // SAFETY: a live model.
+    call(|error| unsafe { pc_model_observe_reactions(model.0, 1, error) }).unwrap();
+    model.system(form).unwrap()
+}
+
+fn count(system: &System, count: extern "C" fn(Option<&pc_system>) -> usize) -> usize {
+    // SAFETY: a live system.
+    count(unsafe { system.0.as_ref() })
+}
+
+fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
+        let off = (found - expected).abs() / expected.abs().max(1.0);
+        assert!(off < tolerance, "{what}, entry {i}: {found} against {expected}");
+    }
+}
+
+/// A few dozen roundings of numbers of order ten.
+const ROUNDING: f64 = 1e-12;
+/// √ε times curvatures of order ten: the error of difference quotients.
+const QUOTIENT: f64 = 1e-6;
+
+/// A model, the form, the forces in the text, and the same forces as a function.
+type Case = (&'static str, pc_form, &'static [(&'static str, &'static str)], Write);
+
+fn cases() -> Vec<Case> {
+    vec![
+        ("pendulum", PC_POINCARE, &[("θ", "cos(t)*θ' - 3*sin(θ)")], |t, y, q, _| {
+            q[0] = t.cos() * y[1] - 3.0 * y[0].sin();
+            0
+        }),
+        // p = 4 θ'
+        ("pendulum", PC_CANONICAL, &[("θ", "cos(t)*θ' - 3*sin(θ)")], |t, y, q, _| {
+            q[0] = t.cos() * y[1] / 4.0 - 3.0 * y[0].sin();
+            0
+        }),
+        // Constraints make quasi-velocities vanish; the state is X, Y, ψ, θ, φ, ω1, ω2, ω3.
+        ("tilted-disk", PC_POINCARE, &[("ω3", "θ - ω3/8"), ("ω1", "ω2*sin(t)")], |t, y, q, _| {
+            q.copy_from_slice(&[y[3] - y[7] / 8.0, y[6] * t.sin()]);
+            0
+        }),
+        ("tilted-disk", PC_CANONICAL, &[("ω3", "θ"), ("ω1", "sin(ψ)")], |_, y, q, _| {
+            q.copy_from_slice(&[y[3], y[2].sin()]);
+            0
+        }),
+        // Multipliers; the state is X, Y, φ, θ and their velocities.
+        ("vertical-disk", PC_POINCARE, &[("θ", "cos(φ)"), ("φ", "1 - φ'"), ("X", "Y'")], |_, y, q, _| {
+            q.copy_from_slice(&[y[2].cos(), 1.0 - y[6], y[5]]);
+            0
+        }),
+        ("vertical-disk", PC_CANONICAL, &[("θ", "cos(φ)"), ("X", "Y")], |_, y, q, _| {
+            q.copy_from_slice(&[y[2].cos(), y[1]]);
+            0
+        }),
+        ("rod", PC_POINCARE, &[("y", "z*x'"), ("x", "1")], |_, y, q, _| {
+            q.copy_from_slice(&[y[2] * y[3], 1.0]);
+            0
+        }),
+    ]
+}
+
+fn label(&(name, ref form, ..): &Case) -> String {
+    format!("{name} in form {}", if matches!(form, PC_POINCARE) { "poincare" } else { "canonical" })
+}
+
+/// The same forces, as a function and in the text.
+fn pair(&(name, ref form, forces, write): &Case) -> (System, System, Law) {
+    let on: Vec<&str> = forces.iter().map(|&(on, _)| on).collect();
+    let form = || if matches!(form, PC_POINCARE) { PC_POINCARE } else { PC_CANONICAL };
+    (forced(name, &on, form()), written(name, forces, form()), Law::new(write))
+}
+
+/// Reactions, outputs and all else that contains accelerations depend on the forces too.
+#[test]
+fn a_force_of_a_function_is_that_of_the_text() {
+    for case in &cases() {
+        let ((system, text, law), what) = (pair(case), label(case));
+        law.set(&system).unwrap();
+        let (t, mut y) = text.start();
+        assert_eq!((t, &y), (system.start().0, &system.start().1), "{what}");
+        let t = t + 0.7;
+        y.iter_mut().enumerate().for_each(|(i, y)| *y += 0.01 * (i as f64 + 1.0));
+        let n = y.len();
+        let observables = count(&text, pc_system_observable_count);
+        assert_eq!(observables, count(&system, pc_system_observable_count), "{what}");
+        let reactions = count(&text, pc_system_reaction_count);
+        let mut functions: Vec<(At, usize)> = vec![(pc_system_rhs, n), (pc_system_observe, observables)];
+        if reactions > 0 {
+            functions.push((pc_system_reactions, reactions));
+        }
+        for (function, length) in functions {
+            let (found, expected) = (system.at(function, t, &y, length), text.at(function, t, &y, length));
+            assert_close(&found.unwrap(), &expected.unwrap(), ROUNDING, &what);
+        }
+        let jacobian = system.at(pc_system_jacobian, t, &y, n * n).unwrap();
+        assert_close(&jacobian, &text.at(pc_system_jacobian, t, &y, n * n).unwrap(), QUOTIENT, &what);
+        // The pattern is full, and the product is the sum of the columns.
+        assert_eq!(jacobian, system.at(pc_system_sparse_jacobian, t, &y, n * n).unwrap(), "{what}");
+        let (v, mut product) = (vec![1.0; n], vec![0.0; n]);
+        call(|error| unsafe {
+            // SAFETY: a live system and arrays as said.
+            pc_system_jvp(system.0, t, y.as_ptr(), n, v.as_ptr(), n, product.as_mut_ptr(), n, error)
+        })
+        .unwrap();
+        let sums: Vec<f64> = (0..n).map(|i| (0..n).map(|j| jacobian[i + j * n]).sum()).collect();
+        assert_close(&product, &sums, ROUNDING, &what);
+        // The residual of the rates vanishes.
+        let (rates, mut residual) = (system.at(pc_system_rhs, t, &y, n).unwrap(), vec![1.0; n]);
+        call(|error| unsafe {
+            // SAFETY: a live system and arrays as said.
+            pc_system_residual(system.0, t, y.as_ptr(), n, rates.as_ptr(), n, residual.as_mut_ptr(), n, error)
+        })
+        .unwrap();
+        assert_close(&residual, &vec![0.0; n], ROUNDING, &what);
+        drop(system);
+        assert_eq!(law.destroyed(), 1);
+    }
+}
+
+fn solver(system: &System, method: pc_method) -> Result<*mut pc_solver, Refusal> {
+    let (mut solver, mut options) = (ptr::null_mut(), std::mem::MaybeUninit::<pc_solver_options>::uninit());
+    call(|error| unsafe {
+        // SAFETY: a live system, options set up by the library, a place for the solver.
+        pc_solver_options_init(options.as_mut_ptr(), size_of::<pc_solver_options>());
+        (*options.as_mut_ptr()).method = method as c_int;
+        (*options.as_mut_ptr()).relative_tolerance = 1e-10;
+        (*options.as_mut_ptr()).absolute_tolerance = 1e-12;
+        pc_solver_new(system.0, options.as_ptr(), 0.0, ptr::null(), 0, &raw mut solver, error)
+    })?;
+    Ok(solver)
+}
+
+fn advance(solver: *mut pc_solver, t: f64, n: usize) -> Result<Vec<f64>, Refusal> {
+    let mut y = vec![0.0; n];
+    // SAFETY: a live solver and room as said.
+    call(|error| unsafe { pc_solver_advance(solver, t, y.as_mut_ptr(), n, error) })?;
+    Ok(y)
+}
+
+fn reached(solver: *mut pc_solver) -> f64 {
+    let mut t = f64::NAN;
+    // SAFETY: a live solver and a place for a number.
+    call(|error| unsafe { pc_solver_time(solver, &raw mut t, error) }).unwrap();
+    t
+}
+
+#[test]
+fn integrations_agree_and_states_stay_projected() {
+    for case in &cases() {
+        for method in [pc_method::PC_ADAMS, pc_method::PC_BDF] {
+            let ((system, text, law), what) = (pair(case), label(case));
+            law.set(&system).unwrap();
+            let n = system.dim();
+            let ends = [&system, &text].map(|system| {
+                let solver = solver(
+                    system,
+                    if matches!(method, pc_method::PC_ADAMS) {
+                        pc_method::PC_ADAMS
+                    } else {
+                        pc_method::PC_BDF
+                    },
+                )
+                .unwrap();
+                let end = advance(solver, 1.0, n).unwrap();
+                // SAFETY: ours, freed once.
+                unsafe { pc_solver_free(solver) };
+                end
+            });
+            // Both have the errors of tolerances of 1e-10 in a few hundred steps.
+            assert_close(&ends[0], &ends[1], 1e-7, &what);
+        }
+    }
+}
+
+/// ∂q/∂y of a function is used as it is, whole or not at all.
+#[test]
+fn derivatives_are_those_of_the_function() {
+    let jacobian = |slopes: Write| {
+        let system = forced("pendulum", &["θ"], PC_POINCARE);
+        let mut law = Law::new(|t, y, q, _| {
+            q[0] = t.cos() * y[1] - 3.0 * y[0].sin();
+            0
+        });
+        law.slopes = Some(slopes);
+        law.set(&system).unwrap();
+        let outcome = system.at(pc_system_jacobian, 0.7, &[0.4, -0.3], 4);
+        assert_eq!(law.calls.load(SeqCst), 1); // the force itself, no quotients
+        outcome
+    };
+    let expected = written("pendulum", &[("θ", "cos(t)*θ' - 3*sin(θ)")], PC_POINCARE);
+    let expected = expected.at(pc_system_jacobian, 0.7, &[0.4, -0.3], 4).unwrap();
+    let exact = jacobian(|t, y, dq, _| {
+        dq.copy_from_slice(&[-3.0 * y[0].cos(), t.cos()]);
+        0
+    });
+    assert_close(&exact.unwrap(), &expected, 1e-15, "exact");
+    let refusal = jacobian(|_, _, dq, _| {
+        dq[0] = 1.0; // the other entries stay unwritten
+        0
+    });
+    let refusal = refusal.unwrap_err();
+    assert_eq!(refusal.status, PC_EVALUATION);
+    let expected = "the derivative by `θ'` of the external force on `θ'` is NaN at t = 0.7";
+    assert!(refusal.message.starts_with(expected), "{}", refusal.message);
+    let refusal = jacobian(|_, _, _, _| -3).unwrap_err();
+    assert!(refusal.message.ends_with("the function of its derivatives returned -3"), "{}", refusal.message);
+}
+
+#[test]
+fn without_a_force_function_rates_fail_but_the_energy_is_known() {
+    let system = forced("tilted-disk", &["ω3"], PC_POINCARE);
+    let (t, y) = system.start();
+    let said = "the external force on `ω3` failed at t = 0: no function has been set for it; pc_system_set_force sets one";
+    for (function, length) in [(pc_system_rhs as At, 8), (pc_system_jacobian, 64), (pc_system_reactions, 2)] {
+        let refusal = system.at(function, t, &y, length).unwrap_err();
+        assert_eq!((refusal.status, refusal.message.as_str()), (PC_EVALUATION, said));
+    }
+    let text = Model::text(&text_of("tilted-disk")).unwrap().system(PC_POINCARE).unwrap();
+    let energy = |system: &System| {
+        let mut energy = 0.0;
+        // SAFETY: a live system and arrays as said.
+        call(|error| unsafe { pc_system_energy(system.0, t, y.as_ptr(), y.len(), &raw mut energy, error) })
+            .unwrap();
+        energy
+    };
+    assert_eq!(energy(&system), energy(&text));
+    system.at(pc_system_mass_matrix, t, &y, 9).unwrap();
+    let refusal = solver(&system, pc_method::PC_ADAMS).and_then(|solver| {
+        let outcome = advance(solver, 1.0, 8);
+        // SAFETY: ours, freed once.
+        unsafe { pc_solver_free(solver) };
+        outcome
+    });
+    let refusal = refusal.unwrap_err();
+    assert_eq!(refusal.status, PC_INTEGRATION);
+    assert!(refusal.message.ends_with(said), "{}", refusal.message);
+    let mut kernel = ptr::null_mut();
+    let mut ydot = [0.0; 8];
+    // SAFETY: a live system, a place for the kernel, arrays of its dimension; freed once.
+    unsafe {
+        call(|error| pc_kernel_new(system.0, &raw mut kernel, error)).unwrap();
+        assert_eq!(pc_kernel_rhs(t, y.as_ptr(), ydot.as_mut_ptr(), kernel.cast()), -1);
+        pc_kernel_free(kernel);
+    }
+}
+
+#[test]
+fn names_and_numbers_of_the_forces_are_known() {
+    let system = forced("vertical-disk", &["φ", "X", "φ"], PC_POINCARE);
+    // SAFETY: a live system, or null.
+    unsafe {
+        assert_eq!(pc_system_force_count(system.0.as_ref()), 2);
+        let name = |i| CStr::from_ptr(pc_system_force_name(system.0.as_ref(), i)).to_str().unwrap();
+        assert_eq!([name(0), name(1)], ["φ'", "X'"]);
+        assert!(
+            pc_system_force_name(system.0.as_ref(), 2).is_null() && pc_system_force_name(None, 0).is_null()
+        );
+        assert_eq!(pc_system_force_count(None), 0);
+        assert_eq!(pc_system_parameter_count(system.0.as_ref()), 4); // forces are no parameters
+    }
+    let model = Model::text(&text_of("tilted-disk")).unwrap();
+    declare(&model, &["u2"]);
+    let said = "no external force can act on `u2`; one can on ω1, ω2, ω3, u, v";
+    // SAFETY: a live model.
+    let refusal = call(|error| unsafe { pc_model_check(model.0, error) }).unwrap_err();
+    assert_eq!((refusal.status, refusal.message.as_str()), (PC_NOT_FOUND, said));
+    assert_eq!(model.system(PC_POINCARE).err().unwrap().status, PC_NOT_FOUND);
+    for (model, on) in [(ptr::null_mut(), c("u")), (model.0, c("u"))] {
+        let on = if model.is_null() { on.as_ptr() } else { ptr::null() };
+        // SAFETY: a live model or null, a text or null.
+        let refusal = call(|error| unsafe { pc_model_add_external_force(model, on, error) }).unwrap_err();
+        assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
+    }
+}
+
+/// Returns 1 at the first call after t = 1, so that the step is tried again.
+#[test]
+fn a_recoverable_failure_of_a_force_shortens_the_step() {
+    static FAILED: AtomicUsize = AtomicUsize::new(0);
+    let system = forced("pendulum", &["θ"], PC_POINCARE);
+    let law = Law::new(|t, _, q, _| {
+        q[0] = t;
+        c_int::from(t > 1.0 && FAILED.fetch_add(1, SeqCst) == 0)
+    });
+    law.set(&system).unwrap();
+    let (solver_, expected) =
+        (solver(&system, pc_method::PC_ADAMS).unwrap(), written("pendulum", &[("θ", "t")], PC_POINCARE));
+    let found = advance(solver_, 2.0, 2).unwrap();
+    assert!(FAILED.load(SeqCst) > 1);
+    let whole = solver(&expected, pc_method::PC_ADAMS).unwrap();
+    assert_close(&found, &advance(whole, 2.0, 2).unwrap(), 1e-8, "the step tried again");
+    // SAFETY: ours, freed once.
+    unsafe {
+        pc_solver_free(solver_);
+        pc_solver_free(whole);
+    }
+}
+
+#[test]
+fn a_force_that_gives_up_leaves_the_state_reached() {
+    /// Returns `code` after t = 1, and no force before.
+    fn after_one(t: f64, q: &mut [f64], code: c_int) -> c_int {
+        q[0] = 0.0;
+        if t > 1.0 { code } else { 0 }
+    }
+    let laws: [(Write, &str); 3] = [
+        (|t, _, q, _| after_one(t, q, -2), "its function returned -2"),
+        (|t, _, q, _| after_one(t, q, 3), "its function returned 3"),
+        (
+            |t, _, q, _| {
+                q[0] = if t > 1.0 { f64::NAN } else { 0.0 };
+                0
+            },
+            "the external force on `θ'` is NaN",
+        ),
+    ];
+    for (write, said) in laws {
+        let system = forced("pendulum", &["θ"], PC_POINCARE);
+        let law = Law::new(write);
+        law.set(&system).unwrap();
+        let solver = solver(&system, pc_method::PC_ADAMS).unwrap();
+        let refusal = advance(solver, 3.0, 2).unwrap_err();
+        assert_eq!(refusal.status, PC_INTEGRATION, "{said}");
+        assert!(refusal.message.contains(said), "{}", refusal.message);
+        // A fatal code ends it within a step; a recoverable one only once steps are as short as
+        // possible.
+        let t = reached(solver);
+        assert!(t <= 1.0 && t > 0.8, "{said}: {t}");
+        // SAFETY: ours, freed once.
+        unsafe { pc_solver_free(solver) };
+    }
+    // A force that is not written is NaN.
+    let (system, law) = (forced("pendulum", &["θ"], PC_POINCARE), Law::new(|_, _, _, _| 0));
+    law.set(&system).unwrap();
+    let refusal = system.at(pc_system_rhs, 0.0, &[0.1, 0.2], 2).unwrap_err();
+    let said = "the external force on `θ'` is NaN at t = 0, θ = 0.1, θ' = 0.2";
+    assert_eq!((refusal.status, refusal.message.as_str()), (PC_EVALUATION, said));
+    let mut kernel = ptr::null_mut();
+    let (y, mut ydot) = ([0.1, 0.2], [0.0; 2]);
+    // SAFETY: a live system, a place for the kernel, arrays of its dimension; freed once.
+    unsafe {
+        call(|error| pc_kernel_new(system.0, &raw mut kernel, error)).unwrap();
+        assert_eq!(pc_kernel_rhs(0.0, y.as_ptr(), ydot.as_mut_ptr(), kernel.cast()), 1);
+        pc_kernel_free(kernel);
+    }
+}
+
+fn constant(_: f64, _: &[f64], q: &mut [f64], _: usize) -> c_int {
+    q.fill(2.0);
+    0
+}
+
+#[test]
+fn user_data_of_a_force_is_freed_once() {
+    let system = forced("pendulum", &["θ"], PC_POINCARE);
+    let (first, second) = (Law::new(constant), Law::new(constant));
+    first.set(&system).unwrap();
+    let (mut copy, mut kernel) = (ptr::null_mut(), ptr::null_mut());
+    // SAFETY: a live system and places for handles.
+    call(|error| unsafe { pc_system_clone(system.0, &raw mut copy, error) }).unwrap();
+    // SAFETY: a live system and a place for the handle.
+    call(|error| unsafe { pc_kernel_new(system.0, &raw mut kernel, error) }).unwrap();
+    let solver = solver(&system, pc_method::PC_ADAMS).unwrap();
+    second.set(&system).unwrap();
+    assert_eq!((first.destroyed(), second.destroyed()), (0, 0));
+    drop(system);
+    assert_eq!((first.destroyed(), second.destroyed()), (0, 1));
+    let (y, mut ydot) = ([0.0, 0.0], [0.0; 2]);
+    // SAFETY: live handles, freed once each.
+    unsafe {
+        pc_system_free(copy);
+        advance(solver, 0.1, 2).unwrap();
+        pc_solver_free(solver);
+        assert_eq!(first.destroyed(), 0);
+        assert_eq!(pc_kernel_rhs(0.0, y.as_ptr(), ydot.as_mut_ptr(), kernel.cast()), 0);
+        assert_eq!(ydot, [0.0, 0.5]);
+        pc_kernel_free(kernel);
+    }
+    assert_eq!((first.destroyed(), second.destroyed()), (1, 1));
+}
+
+#[test]
+fn user_data_of_a_refused_force_is_freed_too() {
+    let (unforced, system) = (System::of("euler-top"), forced("pendulum", &["θ"], PC_POINCARE));
+    let law = Law::new(constant);
+    let refusal = law.set(&unforced).unwrap_err();
+    let said = "an external force is not available for this system: the model declares none; \
+                pc_model_add_external_force does";
+    assert_eq!((refusal.status, refusal.message.as_str(), law.destroyed()), (PC_UNSUPPORTED, said, 1));
+    // SAFETY: null, or a live system; functions that take the law.
+    let refused = |system: *mut pc_system, function: pc_force_function| unsafe {
+        call(|error| pc_system_set_force(system, function, None, law.user(), Some(destroy), error))
+            .unwrap_err()
+    };
+    assert_eq!(refused(ptr::null_mut(), Some(force)).message, "system is a null pointer");
+    assert_eq!(refused(system.0, None).message, "function is a null pointer");
+    assert_eq!(law.destroyed(), 3);
+    // Without `destroy` nothing is freed, and `user` may be null.
+    unsafe extern "C" fn zero(
+        _: f64,
+        _: *const f64,
+        _: usize,
+        q: *mut f64,
+        _: usize,
+        _: *mut c_void,
+    ) -> c_int {
+        // SAFETY: room for one number.
+        unsafe { q.write(0.0) };
+        0
+    }
+    // SAFETY: a live system and a function that does not look at its user.
+    call(|error| unsafe { pc_system_set_force(system.0, Some(zero), None, ptr::null_mut(), None, error) })
+        .unwrap();
+    system.at(pc_system_rhs, 0.0, &[0.0, 0.0], 2).unwrap();
+}
+
+/// Data of a function that uses its own system and a copy.
+struct Inside {
+    own: *mut pc_system,
+    copy: *mut pc_system,
+    statuses: std::sync::Mutex<Vec<pc_status>>,
+    law: Law,
+}
+
+unsafe extern "C" fn look(
+    t: f64,
+    y: *const f64,
+    n: usize,
+    q: *mut f64,
+    _: usize,
+    user: *mut c_void,
+) -> c_int {
+    let (mut energy, mut ydot) = (f64::NAN, [0.0; 2]);
+    // SAFETY: what the test made.
+    unsafe {
+        let inside = &*user.cast::<Inside>();
+        let statuses = [
+            pc_system_rhs(inside.own, t, y, n, ydot.as_mut_ptr(), 2, ptr::null_mut()),
+            pc_system_set_force(
+                inside.own,
+                Some(force),
+                None,
+                inside.law.user(),
+                Some(destroy),
+                ptr::null_mut(),
+            ),
+            pc_system_energy(inside.copy, t, y, n, &raw mut energy, ptr::null_mut()),
+        ];
+        pc_system_free(inside.own); // has no effect, since the system is in use
+        inside.statuses.lock().unwrap().extend(statuses);
+        q.write(energy);
+    }
+    0
+}
+
+#[test]
+fn a_function_may_use_other_handles() {
+    let system = forced("pendulum", &["θ"], PC_POINCARE);
+    let mut copy = ptr::null_mut();
+    let statuses = std::sync::Mutex::new(Vec::new());
+    let mut inside = Inside { own: system.0, copy, statuses, law: Law::new(constant) };
+    let user = (&raw mut inside).cast::<c_void>();
+    // SAFETY: live systems, functions that take what they are given.
+    unsafe {
+        call(|error| pc_system_set_force(system.0, Some(look), None, user, None, error)).unwrap();
+        // The copy has the same function, but its energy does not call it.
+        call(|error| pc_system_clone(system.0, &raw mut copy, error)).unwrap();
+        (*user.cast::<Inside>()).copy = copy;
+    }
+    let rates = system.at(pc_system_rhs, 0.0, &[0.0, 1.0], 2).unwrap();
+    assert_eq!(rates, [1.0, (2.0 - 10.0) / 4.0]); // E = 2 θ'² − 10 cos θ
+    assert_eq!(*inside.statuses.lock().unwrap(), [PC_BUSY, PC_BUSY, PC_OK]);
+    assert_eq!(inside.law.destroyed(), 1);
+    // SAFETY: ours, freed once.
+    unsafe { pc_system_free(copy) };
+}
+
+#[test]
+fn copies_share_a_function_on_several_threads() {
+    struct Handle(*mut pc_system);
+    // SAFETY: a handle may go from thread to thread.
+    unsafe impl Send for Handle {}
+    let (system, law) = (forced("pendulum", &["θ"], PC_POINCARE), Law::new(constant));
+    law.set(&system).unwrap();
+    let copies: Vec<Handle> = (0..4)
+        .map(|_| {
+            let mut copy = ptr::null_mut();
+            // SAFETY: a live system and a place for the copy.
+            call(|error| unsafe { pc_system_clone(system.0, &raw mut copy, error) }).unwrap();
+            Handle(copy)
+        })
+        .collect();
+    drop(system);
+    std::thread::scope(|scope| {
+        for handle in copies {
+            scope.spawn(move || {
+                let Handle(copy) = { handle };
+                let system = System(copy);
+                for i in 0..1000 {
+                    let rates = system.at(pc_system_rhs, 0.0, &[0.0, f64::from(i)], 2).unwrap();
+                    assert_eq!(rates, [f64::from(i), 0.5]);
+                }
+            });
+        }
+    });
+    assert_eq!((law.calls.load(SeqCst), law.destroyed()), (4000, 1));
+}
+
+const TWO_SPRINGS: &str = "
+[coordinates]
+x = 1.0
+y = 0.0
+[quasi_velocities]
+\"y'\" = 1.0
+[lagrangian]
+kinetic = \"(x'^2 + y'^2)/2\"
+potential = \"(x^2 + y^2)/2\"
+[integrals]
+area = \"x*y' - y*x'\"
+along = \"x'*x' + x*x\"
+";
+
+/// The springs with a kept integral and a force.
+fn keeping(integral: &str, on: &str) -> Result<System, Refusal> {
+    let (model, name) = (Model::text(TWO_SPRINGS).unwrap(), c(integral));
+    declare(&model, &[on]);
+    // SAFETY: a live model and a text.
+    call(|error| unsafe { pc_model_keep(model.0, name.as_ptr(), error) }).unwrap();
+    model.system(PC_POINCARE)
+}
+
+#[test]
+fn only_integrals_that_forces_do_not_change_are_kept() {
+    for (kept, on) in [("energy", "x"), ("area", "y"), ("along", "x")] {
+        let refusal = keeping(kept, on).err().unwrap();
+        assert!(refusal.message.contains(kept), "{}", refusal.message);
+    }
+    let (system, law) = (keeping("along", "y").unwrap(), Law::new(constant));
+    law.set(&system).unwrap();
+    // From another start, the value there is kept to rounding, far better than the tolerance.
+    let (mut solver, y, mut options) =
+        (ptr::null_mut(), [0.3, 0.0, 0.4, 0.0], std::mem::MaybeUninit::uninit());
+    call(|error| unsafe {
+        // SAFETY: a live system, options set up by the library, a place for the solver.
+        pc_solver_options_init(options.as_mut_ptr(), size_of::<pc_solver_options>());
+        (*options.as_mut_ptr()).relative_tolerance = 1e-5;
+        pc_solver_new(system.0, options.as_ptr(), 0.0, y.as_ptr(), 4, &raw mut solver, error)
+    })
+    .unwrap();
+    let end = advance(solver, 20.0, 4).unwrap();
+    let along = system.at(pc_system_observe, 20.0, &end, 3).unwrap()[1];
+    // The integral is kept at the ends of steps; interpolation between them has the error of a
+    // step.
+    assert!((along - 0.25).abs() < 1e-5, "{along}");
+    // SAFETY: ours, freed once.
+    unsafe { pc_solver_free(solver) };
+}
+
+#[test]
+fn the_source_takes_forces_as_parameters() {
+    let system = forced("pendulum", &["θ"], PC_POINCARE);
+    let (name, mut header, mut source) = (c("pendulum"), ptr::null_mut(), ptr::null_mut());
+    call(|error| unsafe {
+        // SAFETY: a live system, a text, places for texts.
+        pc_system_emit_c(system.0, name.as_ptr(), f64::NAN, &raw mut header, &raw mut source, error)
+    })
+    .unwrap();
+    let (header, source) = (taken(header), taken(source));
+    assert!(header.contains("Q_θ'"), "{header}");
+    assert!(source.contains("Q_theta"), "{source}");
+}

@@ -1,0 +1,34 @@
+//! Tests of the C interface, called from Rust as from C, one module a topic.
+
+#![expect(clippy::unwrap_used, unsafe_code, reason = "a test that cannot go on fails")]
+
+#[macro_use]
+mod common;
+mod abi;
+mod bracket;
+mod builder;
+mod builder_keys;
+mod checkpoint;
+mod ensemble;
+mod events;
+mod forces;
+mod forms;
+#[path = "../../examples/header/generate.rs"]
+mod generate;
+mod header;
+mod hold_start;
+#[path = "../../examples/header/interface.rs"]
+mod interface;
+mod limits;
+mod misuse;
+mod numbers;
+mod own_events;
+mod owned_observer;
+mod parts;
+mod refused;
+mod sensitivities;
+mod stacks;
+mod states_and_inputs;
+mod theory;
+mod threads;
+mod verify;

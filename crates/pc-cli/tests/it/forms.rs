@@ -1,0 +1,183 @@
+//! The forms of the equations on the command line: printed, run, written as source, and refused.
+
+use std::process::{Command, Output};
+
+fn pc(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pc")).args(arguments).output().expect("pc runs")
+}
+
+fn said(arguments: &[&str]) -> String {
+    let output = pc(arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+#[track_caller]
+fn refused(arguments: &[&str], code: i32, message: &str) {
+    let output = pc(arguments);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{error}");
+    assert!(error.contains(message), "{error}");
+    assert!(output.stdout.is_empty(), "{error}");
+}
+
+#[test]
+fn forms_are_printed_under_their_names() {
+    let sleigh = "chaplygin-sleigh";
+    for (form, more, heading, equation) in [
+        ("reduced", "", "Euler–Poincaré equations", "  ω' (J + m a²) = -m a v ω\n"),
+        ("lie-poisson", "", "Lie–Poisson equations", "  p_ω' = -a p_v p_ω/(J + m a²)\n"),
+        ("orthonormal", "", "Poincaré's equations in an orthonormal frame", "  diag(1, 1)\n"),
+        ("hamel", "p=v+2*ω", "Hamel's equations", "Quasi-velocities\n  p = v + 2 ω\n"),
+    ] {
+        let mut arguments = vec!["derive", sleigh, "--form", form];
+        arguments.extend((!more.is_empty()).then_some(more));
+        let text = said(&arguments);
+        assert!(text.contains(heading), "{text}");
+        let alike = |text: &str| text.replace("m a² + J", "J + m a²");
+        assert!(alike(&text).contains(equation), "{text}");
+        let page = said(&[&arguments[..], &["--format", "latex"]].concat());
+        assert!(page.contains("\\paragraph{Equations.}\n\\begin{align*}"), "{page}");
+        let object = said(&[&arguments[..], &["--format", "json"]].concat());
+        let object: serde_json::Value = serde_json::from_str(&object).expect("JSON");
+        if form == "hamel" {
+            assert_eq!(object["quasi_velocity_definitions"]["p"], "v + 2*ω");
+        }
+        assert_eq!(object["quasi_velocities"].as_array().map(Vec::len), Some(2));
+    }
+}
+
+/// All forms have the columns of the model, except the coordinates that a reduced form lacks; each
+/// run is compared with a second derivation.
+#[test]
+fn runs_show_the_columns_of_the_model() {
+    let sleigh = ["run", "chaplygin-sleigh", "--samples", "3"];
+    let header = |more: &[&str]| {
+        let output = pc(&[&sleigh, more].concat());
+        let summary = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(summary.contains("by a second derivation, which agrees"), "{summary}");
+        let table = String::from_utf8(output.stdout).expect("UTF-8");
+        let last: Vec<f64> =
+            table.lines().last().expect("rows").split(',').map(|x| x.parse().expect("a number")).collect();
+        let names: Vec<String> =
+            table.lines().next().expect("a head").split(',').map(str::to_owned).collect();
+        (names, last)
+    };
+    let (names, end) = header(&[]);
+    let of = |name: &str| end[names.iter().position(|known| known == name).expect("a column")];
+    for (more, first) in [
+        (&["--form", "reduced"][..], "v"),
+        (&["--form", "lie-poisson"], "v"),
+        (&["--form", "orthonormal"], "X"),
+        (&["--form", "hamel", "p=v+2*ω"], "X"),
+    ] {
+        let (own, last) = header(more);
+        assert_eq!(own[1], first, "{own:?}");
+        for (name, value) in own.iter().zip(last) {
+            let expected = if name == "p" { of("v") + 2.0 * of("ω") } else { of(name) };
+            // Errors of about 1e-9 per step.
+            assert!((value - expected).abs() < 1e-6, "{more:?}: {name} is {value}, not {expected}");
+        }
+    }
+}
+
+#[test]
+fn source_is_written_in_forms_and_without_a_jacobian() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().to_str().expect("UTF-8");
+    for (more, has) in [
+        (&["--form", "reduced"][..], "y[0]  v\n"),
+        (&["--form", "orthonormal"], "y[3]  η1\n"),
+        (&["--form", "hamel", "p=v+2*ω", "--no-jacobian"], "y[3]  p\n"),
+    ] {
+        said(&[&["emit", "chaplygin-sleigh", "--lang", "c", "-o", path], more].concat());
+        let files = std::fs::read_dir(path).expect("a directory").flatten();
+        let texts: Vec<String> = files.filter_map(|file| std::fs::read_to_string(file.path()).ok()).collect();
+        let text = texts.concat();
+        assert!(text.contains(has), "{text}");
+        assert_eq!(text.contains("_jacobian("), !more.contains(&"--no-jacobian"), "{text}");
+    }
+}
+
+#[test]
+fn senseless_requests_are_refused() {
+    let sleigh = "chaplygin-sleigh";
+    refused(&["derive", sleigh, "p=v"], 2, "`p` is a definition, which only --form hamel takes");
+    refused(&["derive", sleigh, "--form", "hamel"], 4, "no quasi-velocities are given");
+    refused(&["derive", sleigh, "--form", "hamel", "p"], 2, "write NAME=EXPR");
+    refused(&["derive", sleigh, "--form", "hamel", "v=ω"], 3, "already the name of a quasi-velocity");
+    refused(&["derive", sleigh, "--form", "hamel", "p=v^2"], 3, "is not linear in the velocities");
+    refused(&["derive", sleigh, "--form", "hamel", "p=v+1"], 3, "is not linear in the velocities");
+    refused(&["derive", sleigh, "--form", "hamel", "p=v", "q=2*v"], 4, "`q` depends on those before it");
+    refused(
+        &["derive", sleigh, "--form", "hamel", "p=v", "q=ω", "r=v-ω"],
+        4,
+        "`r` is one quasi-velocity too many",
+    );
+    refused(&["run", sleigh, "--form", "voronets"], 2, "not supported yet");
+    refused(
+        &["emit", sleigh, "--lang", "c", "-o", "/nowhere", "--form", "canonical"],
+        2,
+        "not supported yet",
+    );
+    refused(&["run", "vertical-disk", "--form", "orthonormal"], 4, "choose these with --independent");
+    refused(&["derive", "vertical-disk", "--independent", "φ'"], 4, "cannot be the independent");
+    refused(&["derive", sleigh, "--independent", "v"], 4, "cannot be the independent");
+    refused(&["derive", "relativistic-particle", "--form", "orthonormal"], 4, "L is not quadratic");
+}
+
+/// A planet whose file gives the velocities along and across the radius as quasi-velocities.
+const PLANET: &str = "[coordinates]\nr = 1.0\n\"φ\" = 0.0\n[quasi_velocities]\n\"φ'\" = 1.1\n[lagrangian]\n\
+                      kinetic = \"(r'^2 + r^2*φ'^2)/2\"\npotential = \"-1/r\"\n[simulation]\nt_end = 1.0\nsamples = 2\n";
+
+fn file(directory: &tempfile::TempDir, text: &str) -> String {
+    let path = directory.path().join("model.toml");
+    std::fs::write(&path, text).expect("written");
+    path.display().to_string()
+}
+
+/// `derive` and `run` take `form` and `hamel` of a file; the command line has precedence.
+#[test]
+fn a_file_says_its_form() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path =
+        file(&directory, &format!("{PLANET}form = \"hamel\"\nhamel = {{ u = \"r'\", v = \"r*φ'\" }}\n"));
+    let text = said(&["derive", &path]);
+    assert!(text.contains("Hamel's equations") && text.contains("  v' = -u v/r\n"), "{text}");
+    assert!(said(&["derive", &path, "--form", "canonical"]).contains("canonical equations"));
+    let other = said(&["derive", &path, "--form", "hamel", "v=2*φ'"]);
+    assert!(other.contains("v = 2 φ'") && !other.contains("u = r'"), "{other}");
+    let table = said(&["run", &path]);
+    assert!(table.starts_with("t,r,φ,r',φ',energy,u,v\n"), "{table}");
+    // r φ' at the end
+    let end: Vec<f64> =
+        table.lines().last().expect("rows").split(',').map(|x| x.parse().expect("a number")).collect();
+    assert!((end[7] - end[1] * end[4]).abs() < 1e-12, "{table}");
+    let reduced = file(&directory, &format!("{PLANET}form = \"reduced\"\n"));
+    assert!(said(&["derive", &reduced]).contains("Poincaré's equations, reduced"));
+    for (more, message) in [
+        ("form = \"hamel\"\n", "add `hamel = { v = \"r*θ'\" }`"),
+        ("hamel = { v = \"r*φ'\" }\n", "`hamel` has no effect without `form`"),
+        ("form = \"hamel\"\nhamel = { r = \"r*φ'\" }\n", "`r` is already the name of a coordinate"),
+        ("form = \"hamel\"\nhamel = { v = \"r*φ'^2\" }\n", "model.toml:13:16:"),
+        ("form = \"lagrange\"\n", "lagrange"),
+    ] {
+        refused(&["derive", &file(&directory, &format!("{PLANET}{more}"))], 3, message);
+    }
+}
+
+/// `independent` of a file has the effect of `--independent`, which has precedence.
+#[test]
+fn a_file_says_its_independent_velocities() {
+    let text = include_str!("../../../pc-model/models/carriage.toml");
+    let directory = tempfile::tempdir().expect("a directory");
+    let path =
+        file(&directory, &text.replace("[simulation]\n", "[simulation]\nindependent = [\"x'\", \"φ'\"]\n"));
+    assert_eq!(said(&["derive", &path]), said(&["derive", "carriage", "--independent", "x',φ'"]));
+    let other = ["--independent", "ψ1',ψ2'"];
+    assert_eq!(
+        said(&[&["derive", path.as_str()][..], &other].concat()),
+        said(&[&["derive", "carriage"][..], &other].concat())
+    );
+    assert_ne!(said(&["derive", &path]), said(&[&["derive", "carriage"][..], &other].concat()));
+}

@@ -1,0 +1,242 @@
+//! `pc import`: robots in URDF move like the same models written by hand, and errors are shown with
+//! their place.
+
+use std::process::Command;
+
+use pc_cli::import::model_of_urdf;
+use pc_mech::{Graph, VectorField};
+use pc_model::{Document, Flow, Model, Source, Variables};
+
+fn robot(name: &str) -> String {
+    let path = format!("{}/../../tests/robots/{name}.urdf", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path).unwrap()
+}
+
+fn imported(name: &str, floats: bool) -> (String, Vec<String>) {
+    let source = Source::new(format!("{name}.urdf"), robot(name));
+    model_of_urdf(&source, floats).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn flow(text: &str) -> Flow {
+    let document =
+        Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let (model, graph) = (Model::new(document), Graph::new());
+    let assembly = model.assemble(&graph).unwrap_or_else(|error| panic!("{error}"));
+    Flow::new(&model, &assembly, Variables::QuasiVelocities).unwrap()
+}
+
+fn rates(flow: &mut Flow, state: &[f64]) -> Vec<f64> {
+    let mut rates = vec![f64::NAN; state.len()];
+    flow.motion.rhs(0.0, state, &mut rates).unwrap();
+    rates
+}
+
+#[track_caller]
+fn alike(one: &[f64], two: &[f64]) {
+    assert_eq!(one.len(), two.len());
+    let apart = one.iter().zip(two).map(|(a, b)| (a - b).abs() / a.abs().max(1.0)).fold(0.0, f64::max);
+    // Rounding of a few hundred operations, with a mass matrix of condition number 1e4.
+    assert!(apart < 1e-10, "{apart}\n{one:?}\n{two:?}");
+}
+
+type Matrix = [[String; 3]; 3];
+
+fn matrix(rows: [[&str; 3]; 3]) -> Matrix {
+    rows.map(|row| row.map(|entry| format!("({entry})")))
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let entry = |i: usize, j: usize| {
+        (0..3).map(|l| format!("{}*{}", a[i][l], b[l][j])).collect::<Vec<_>>().join(" + ")
+    };
+    std::array::from_fn(|i| std::array::from_fn(|j| format!("({})", entry(i, j))))
+}
+
+fn place(origin: &[String; 3], r: &Matrix, arm: [&str; 3]) -> [String; 3] {
+    std::array::from_fn(|i| {
+        let parts: Vec<String> = (0..3).map(|j| format!("{}*({})", r[i][j], arm[j])).collect();
+        format!("{} + {}", origin[i], parts.join(" + "))
+    })
+}
+
+fn body(name: &str, mass: f64, position: &[String; 3], inertia: &str, r: &Matrix) -> String {
+    let list =
+        |texts: &[String]| texts.iter().map(|text| format!("\"{text}\"")).collect::<Vec<_>>().join(", ");
+    format!(
+        "[bodies.{name}]\nmass = {mass:?}\nposition = [{}]\ninertia = {inertia}\nrotation = [{}]\n",
+        list(position),
+        list(&r.concat())
+    )
+}
+
+/// The arm by positions: inertias along their principal axes, the elbow by Rodrigues' formula,
+/// rotations by roll, pitch and yaw.
+fn arm_by_hand() -> String {
+    let a = matrix([["cos(a)", "-sin(a)", "0"], ["sin(a)", "cos(a)", "0"], ["0", "0", "1"]]);
+    let yaw = matrix([["cos(0.2)", "sin(0.2)", "0"], ["-sin(0.2)", "cos(0.2)", "0"], ["0", "0", "1"]]);
+    let pitch = matrix([["cos(0.1)", "0", "sin(0.1)"], ["0", "1", "0"], ["-sin(0.1)", "0", "cos(0.1)"]]);
+    let roll = matrix([["1", "0", "0"], ["0", "0", "-1"], ["0", "1", "0"]]);
+    let elbow = matrix([
+        ["cos(e)", "-0.8*sin(e)", "0.6*sin(e)"],
+        ["0.8*sin(e)", "cos(e) + 0.36*(1 - cos(e))", "0.48*(1 - cos(e))"],
+        ["-0.6*sin(e)", "0.48*(1 - cos(e))", "cos(e) + 0.64*(1 - cos(e))"],
+    ]);
+    let forearm = product(&a, &product(&yaw, &product(&pitch, &product(&roll, &elbow))));
+    let skew = matrix([["cos(0.3)", "-sin(0.3)", "0"], ["sin(0.3)", "cos(0.3)", "0"], ["0", "0", "1"]]);
+    let shoulder = ["0".to_owned(), "0".to_owned(), "0.5".to_owned()];
+    let at_elbow = place(&shoulder, &a, ["0.5", "0", "0"]);
+    let finger = "[1e-4, 1e-4, 1e-4]";
+    let bodies = [
+        body(
+            "upper",
+            2.0,
+            &place(&shoulder, &a, ["0.25", "0", "0.01"]),
+            "[0.01, 0.05, 0.06, 0.002, 0.001, 0]",
+            &product(&a, &skew),
+        ),
+        body("forearm", 1.0, &place(&at_elbow, &forearm, ["0.2", "0", "0"]), "[0.002, 0.02, 0.02]", &forearm),
+        body("left", 0.1, &place(&at_elbow, &forearm, ["0.45", "0.02 + l", "0"]), finger, &forearm),
+        body("right", 0.1, &place(&at_elbow, &forearm, ["0.45", "-0.02 - r", "0"]), finger, &forearm),
+    ];
+    format!(
+        "[coordinates]\na = 0\ne = 0\nl = 0\nr = 0.01\n[gravity]\nacceleration = [0, 0, -9.81]\n\
+         [constraints]\nfollows = \"r - l - 0.01\"\n[forces]\na = \"-0.7*a'\"\n{}",
+        bodies.concat()
+    )
+}
+
+#[test]
+fn an_arm_moves_as_by_hand() {
+    let (text, left_out) = imported("arm", false);
+    assert_eq!(
+        left_out,
+        [
+            "one <transmission> is left out",
+            "2 <gazebo> are left out",
+            "the dry friction 0.1 of the joint `shoulder-pan` is left out"
+        ]
+    );
+    for remark in [
+        "# mesh: package://arm/meshes/upper.stl\n",
+        "# limits of the joint elbow: lower -2, upper 2, effort 30, velocity 3\n",
+        "# the link upper arm\n",
+    ] {
+        assert_eq!(text.matches(remark).count(), 1, "{text}");
+    }
+    let (mut urdf, mut hand) = (flow(&text), flow(&arm_by_hand()));
+    assert_eq!(urdf.names[..4], ["shoulder_pan", "elbow", "left_finger", "right_finger"]);
+    assert_eq!(urdf.start, hand.start);
+    for state in [
+        [0.0, 0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.0],
+        [0.7, -1.1, 0.02, 0.03, 0.5, -1.3, 0.2, 0.2],
+        [-2.0, 2.5, 0.03, 0.04, 1.5, 2.3, -0.1, -0.1],
+    ] {
+        alike(&rates(&mut urdf, &state), &rates(&mut hand, &state));
+    }
+}
+
+#[test]
+fn a_rover_moves_as_by_hand() {
+    let hand = "[gravity]\nacceleration = [0, 0, -9.81]\n\
+        [bodies.hull]\njoint = { kind = \"free\" }\nmass = 20\ncenter = [0, 0, 0.1]\ninertia = [1, 2, 2.5]\n\
+        [bodies.axle]\nparent = \"hull\"\njoint = { kind = \"revolute\", axis = [0, 1, 0], at = [0.5, 0.3, 0] }\nmass = 1\n\
+        inertia = [0.01, 0.02, 0.01]\n\
+        [bodies.probe]\nparent = \"hull\"\njoint = { kind = \"free\", at = [0, 0, 1] }\nmass = 0.5\ninertia = [0.01, 0.01, 0.01]\n\
+        [bodies.plate]\nparent = \"hull\"\nmass = 0.5\ninertia = [0.01, 0.01, 0.02]\n\
+        joint = { kind = \"planar\", axis = [0, 0, 1], at = [0, 0, 0.4], rotation = [0, -1, 0, 1, 0, 0, 0, 0, 1] }\n";
+    let (mut urdf, mut hand) = (flow(&imported("rover", true).0), flow(hand));
+    assert_eq!(urdf.start, hand.start);
+    let mut state = urdf.start.clone();
+    for (i, component) in state.iter_mut().enumerate() {
+        // The components of quaternions, 3 to 6 and 11 to 14, stay unchanged.
+        if !(3..7).contains(&i) && !(11..15).contains(&i) {
+            *component += (i as f64 + 1.0).sin();
+        }
+    }
+    alike(&rates(&mut urdf, &state), &rates(&mut hand, &state));
+    // A fixed hull has no coordinates.
+    assert_eq!(flow(&imported("rover", false).0).start.len(), urdf.start.len() - 13);
+}
+
+#[test]
+fn the_program_writes_what_the_library_makes() {
+    let directory = tempfile::tempdir().unwrap();
+    let output = directory.path().join("arm.toml");
+    let path = format!("{}/../../tests/robots/arm.urdf", env!("CARGO_MANIFEST_DIR"));
+    let run =
+        Command::new(env!("CARGO_BIN_EXE_pc")).args(["import", &path, "-o"]).arg(&output).output().unwrap();
+    assert!(run.status.success());
+    assert!(String::from_utf8(run.stderr).unwrap().starts_with("note: one <transmission> is left out\n"));
+    let printed = Command::new(env!("CARGO_BIN_EXE_pc")).args(["import", &path]).output().unwrap();
+    assert_eq!(std::fs::read(&output).unwrap(), printed.stdout);
+    assert_eq!(String::from_utf8(printed.stdout).unwrap(), imported("arm", false).0);
+    std::fs::write(&output, "<robot>").unwrap();
+    let refused = Command::new(env!("CARGO_BIN_EXE_pc")).arg("import").arg(&output).output().unwrap();
+    assert_eq!(refused.status.code(), Some(3));
+}
+
+const LINK: &str = "<link name=\"a\"><inertial><mass value=\"1\"/>\n<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>\n";
+
+/// A text that occurs in the robot, and the message.
+const REFUSED: &[(&str, &str)] = &[
+    (
+        "<robot><link name='a'></robot>",
+        "r.urdf:1:23: not valid XML: expected 'link' tag, not 'robot' at 1:23\n    <robot><link name='a'></robot>\n                          ^\n  help: URDF is XML, its root is <robot>",
+    ),
+    (
+        "<sdf/>",
+        "r.urdf:1:1: <sdf>: the root is <sdf>\n    <sdf/>\n    ^^^^\n  help: the root of URDF is <robot>",
+    ),
+    (
+        "<robot/>",
+        "r.urdf:1:1: <robot>: there is no <link>\n    <robot/>\n    ^^^^^^\n  help: a robot has links and joints between them",
+    ),
+    (
+        "<robot>\nLINK<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>",
+        "r.urdf:4:1: <joint j>: its child, the link `b`, is not there\n    <joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>\n    ^^^^^^\n  help: declare the link, or correct its name",
+    ),
+    (
+        "<robot>\nLINK<joint name=\"j\" type=\"screw\"><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>",
+        "r.urdf:4:23: <joint j>: there is no joint of type `screw`\n    <joint name=\"j\" type=\"screw\"><parent link=\"a\"/><child link=\"b\"/></joint>\n                          ^^^^^\n  help: the types are fixed, revolute, continuous, prismatic, floating, planar",
+    ),
+    (
+        "<robot>\nLINK<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"a\"/><axis xyz=\"0 0 0\"/></joint>\n</robot>",
+        "r.urdf:4:79: <joint j>: the axis has length 0\n    …pe=\"revolute\"><parent link=\"a\"/><child link=\"a\"/><axis xyz=\"0 0 0\"/></joint>\n                                                                 ^^^^^\n  help: give it a direction, such as `0 0 1`",
+    ),
+    (
+        "<robot>\nLINK<link name=\"b\"/>\n</robot>",
+        "r.urdf:4:1: <link b>: `a` and `b` hang on nothing: there are two roots\n    <link name=\"b\"/>\n    ^^^^^\n  help: join them by a joint",
+    ),
+    (
+        "<robot>\nLINK<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"a\"/></joint>\n</robot>",
+        "r.urdf:2:1: <link a>: every link hangs on another: there is no root\n    <link name=\"a\"><inertial><mass value=\"1\"/>\n    ^^^^^\n  help: one link is the child of no joint",
+    ),
+    (
+        "<robot>\nLINK<link name=\"b\"/>\n<joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>",
+        "r.urdf:4:1: <link b>: the link `b` can move, and neither it nor what hangs on it has mass\n    <link name=\"b\"/>\n    ^^^^^\n  help: give it an <inertial>, or make its joint `fixed`",
+    ),
+    (
+        "<robot>\nLINK<joint name=\"j\" type=\"fixed\"><origin xyz=\"0 1\"/><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>",
+        "r.urdf:4:43: <origin>: `0 1` is not three numbers\n    <joint name=\"j\" type=\"fixed\"><origin xyz=\"0 1\"/><parent link=\"a\"/><child link=\"b\"/></joint>\n                                              ^^^\n  help: write three numbers with spaces between them, such as `0 0 1`",
+    ),
+    (
+        "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n<xacro:macro name=\"m\"/>\n</robot>",
+        "r.urdf:2:1: <macro m>: it is a macro of xacro\n    <xacro:macro name=\"m\"/>\n    ^^^^^^^^^^^^\n  help: expand the macros first: `xacro robot.xacro > robot.urdf`",
+    ),
+];
+
+#[test]
+fn what_is_wrong_is_shown_where_it_stands() {
+    let mut complaints = Vec::new();
+    for (text, message) in REFUSED {
+        let source = Source::new("r.urdf", text.replace("LINK", LINK));
+        match model_of_urdf(&source, false) {
+            Ok((text, _)) => complaints.push(format!("{message}\nis accepted:\n{text}")),
+            Err(error) if error.to_string().trim_end() != *message => {
+                complaints.push(format!("{error}\ninstead of\n{message}"));
+            }
+            Err(_) => {}
+        }
+    }
+    assert!(complaints.is_empty(), "{}", complaints.join("\n\n"));
+}

@@ -1,0 +1,588 @@
+//! Bodies joined by joints against the same bodies placed by hand, with positions and rotations written out.
+
+use pc_expr::{Backend, Evaluator, Inputs, Program};
+use pc_mech::{
+    CompileOptions, Expr, Graph, Joint, Matrix, RigidBody, System, SystemBuilder, Tree, TreeBody,
+    TreeElimination, TreeError, VectorField,
+};
+use proptest::prelude::*;
+use proptest::test_runner::{RngSeed, TestRunner};
+
+/// A joint by its number, with its axes.
+#[derive(Clone, Debug)]
+struct Hung {
+    kind: usize,
+    axes: [[f64; 3]; 2],
+    parent: Option<usize>,
+    place: [f64; 3],
+    /// Rotation vector of the joint's axes in the parent.
+    tilt: [f64; 3],
+    mass: f64,
+    centre: [f64; 3],
+    /// Points of unit mass, which give the inertia of a body.
+    spread: [[f64; 3]; 3],
+}
+
+const KINDS: usize = 9;
+
+fn coordinate_axis(i: usize, sign: f64) -> [f64; 3] {
+    std::array::from_fn(|j| if i == j { sign } else { 0.0 })
+}
+
+fn axis() -> impl Strategy<Value = [f64; 3]> {
+    let small = -2.0..2.0f64;
+    let any = (small.clone(), small.clone(), 0.5..2.0f64).prop_map(|(x, y, z)| [x, y, z]);
+    prop_oneof![
+        ((0..3usize), prop::bool::ANY).prop_map(|(i, s)| coordinate_axis(i, if s { 1.0 } else { -1.0 })),
+        any
+    ]
+}
+
+fn body(index: usize) -> impl Strategy<Value = Hung> {
+    let vector = || prop::array::uniform3(-1.0..1.0f64);
+    let tilt = prop_oneof![Just([0.0; 3]), vector()];
+    let parts = (0..KINDS, axis(), axis(), 0..=index, vector(), tilt);
+    (parts, 0.5..2.0f64, vector(), prop::array::uniform3(vector())).prop_map(
+        |((kind, first, second, parent, place, tilt), mass, centre, spread)| Hung {
+            kind,
+            // Two axes of a universal joint are not parallel.
+            axes: [
+                first,
+                if cross(first, second).iter().all(|c| c.abs() < 0.2) {
+                    [first[1], first[2], first[0] + 0.1]
+                } else {
+                    second
+                },
+            ],
+            parent: parent.checked_sub(1),
+            place,
+            tilt,
+            mass,
+            centre,
+            spread,
+        },
+    )
+}
+
+fn tree_of(count: usize) -> impl Strategy<Value = Vec<Hung>> {
+    (0..count).map(body).collect::<Vec<_>>()
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Σ (r²δ − r rᵀ) over the points: [xx, yy, zz, xy, yz, xz].
+fn inertia(points: &[[f64; 3]]) -> [f64; 6] {
+    let entry = |i: usize, j: usize| -> f64 {
+        let square = |r: &[f64; 3]| r.iter().map(|c| c * c).sum::<f64>();
+        points.iter().map(|r| if i == j { square(r) } else { 0.0 } - r[i] * r[j]).sum()
+    };
+    [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(0, 2)]
+}
+
+type Rows<'g> = [[Expr<'g>; 3]; 3];
+
+fn identity<'g>() -> Rows<'g> {
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { Expr::ONE } else { Expr::ZERO }))
+}
+
+fn times<'g>(a: &Rows<'g>, b: &Rows<'g>) -> Rows<'g> {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).fold(Expr::ZERO, |s, x| s + x))
+    })
+}
+
+fn on<'g>(a: &Rows<'g>, v: [Expr<'g>; 3]) -> [Expr<'g>; 3] {
+    std::array::from_fn(|i| (0..3).map(|k| a[i][k] * v[k]).fold(Expr::ZERO, |s, x| s + x))
+}
+
+/// Rodrigues' formula: 1 + sin φ ê + (1 − cos φ) ê².
+fn turn<'g>(axis: [f64; 3], angle: Expr<'g>) -> Rows<'g> {
+    let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let [x, y, z] = axis.map(|c| if length == 0.0 { Expr::ZERO } else { Expr::from(c / length) });
+    let hat = [[Expr::ZERO, -z, y], [z, Expr::ZERO, -x], [-y, x, Expr::ZERO]];
+    let square = times(&hat, &hat);
+    let one = identity();
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| one[i][j] + angle.sin() * hat[i][j] + (1.0 - angle.cos()) * square[i][j])
+    })
+}
+
+fn quaternion<'g>(q: &[Expr<'g>]) -> Rows<'g> {
+    let [a, b, c, d] = [q[0], q[1], q[2], q[3]];
+    let s = |x: Expr<'g>| x.square();
+    [
+        [s(a) + s(b) - s(c) - s(d), 2.0 * (b * c - a * d), 2.0 * (b * d + a * c)],
+        [2.0 * (b * c + a * d), s(a) - s(b) + s(c) - s(d), 2.0 * (c * d - a * b)],
+        [2.0 * (b * d - a * c), 2.0 * (c * d + a * b), s(a) - s(b) - s(c) + s(d)],
+    ]
+}
+
+fn normed(axis: [f64; 3]) -> [f64; 3] {
+    let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
+    axis.map(|c| c / length)
+}
+
+impl Hung {
+    fn tilted<'g>(&self) -> Rows<'g> {
+        let angle = self.tilt.iter().map(|c| c * c).sum::<f64>().sqrt();
+        turn(self.tilt, angle.into())
+    }
+
+    fn joint<'g>(&self) -> Joint<'g> {
+        let [first, second] = self.axes;
+        let joint = match self.kind {
+            0 => Joint::fixed(),
+            1 => Joint::revolute(first),
+            2 => Joint::prismatic(first),
+            3 => Joint::screw(first, 0.3),
+            4 => Joint::cylindrical(first),
+            5 => Joint::universal(first, second),
+            6 => Joint::planar(coordinate_axis(2, 1.0)),
+            7 => Joint::spherical(),
+            _ => Joint::free(),
+        };
+        let rows = self.tilted();
+        joint.at(self.place).rotated(&Matrix::from_fn(3, 3, |i, j| rows[i][j]))
+    }
+
+    fn sizes(&self) -> (usize, usize) {
+        [(0, 0), (1, 1), (1, 1), (1, 1), (2, 2), (2, 2), (3, 3), (4, 3), (7, 6)][self.kind]
+    }
+
+    /// Displacement and rotation in the axes of the joint.
+    fn moved<'g>(&self, x: &[Expr<'g>]) -> ([Expr<'g>; 3], Rows<'g>) {
+        let [first, second] = self.axes.map(normed);
+        let along = |length: Expr<'g>| first.map(|c| length * c);
+        let zero = [Expr::ZERO; 3];
+        match self.kind {
+            0 => (zero, identity()),
+            1 => (zero, turn(first, x[0])),
+            2 => (along(x[0]), identity()),
+            3 => (along(0.3 * x[0]), turn(first, x[0])),
+            4 => (along(x[0]), turn(first, x[1])),
+            5 => (zero, times(&turn(first, x[0]), &turn(second, x[1]))),
+            6 => ([x[0], x[1], Expr::ZERO], turn([0.0, 0.0, 1.0], x[2])),
+            7 => (zero, quaternion(&x[0..4])),
+            _ => ([x[0], x[1], x[2]], quaternion(&x[3..7])),
+        }
+    }
+}
+
+const GRAVITY: [f64; 3] = [0.3, -0.2, -9.81];
+
+const LOAD: [f64; 3] = [0.5, -0.25, 0.125];
+const TORQUE: [f64; 3] = [-0.1, 0.2, 0.3];
+
+fn tree<'g>(graph: &'g Graph, bodies: &[Hung], loaded: bool) -> Tree<'g> {
+    let hung = bodies.iter().enumerate().map(|(i, body)| {
+        let hung = TreeBody::new(format!("b{i}"), body.joint())
+            .mass(body.mass)
+            .centre(body.centre)
+            .inertia(inertia(&body.spread));
+        let hung = if loaded { hung.force(LOAD).torque(TORQUE) } else { hung };
+        match body.parent {
+            Some(parent) => hung.on(format!("b{parent}")),
+            None => hung,
+        }
+    });
+    Tree::new(graph, hung).unwrap()
+}
+
+fn names(list: &[Expr<'_>]) -> Vec<String> {
+    list.iter().map(Expr::to_string).collect()
+}
+
+/// A system that moves according to the joints of a tree.
+fn started<'g>(graph: &'g Graph, tree: &Tree<'g>, loaded: bool) -> SystemBuilder<'g> {
+    let velocities = tree.velocities();
+    let system = System::builder(graph)
+        .coordinates(names(&tree.coordinates()))
+        .quasi_velocities(names(&tree.quasi_velocities()))
+        .kinematics(|_, _, _| velocities);
+    if loaded { system.gravity(|_| GRAVITY.map(Expr::from)) } else { system }
+}
+
+fn hung<'g>(graph: &'g Graph, bodies: &[Hung], loaded: bool) -> System<'g> {
+    let tree = tree(graph, bodies, loaded);
+    started(graph, &tree, loaded).tree(tree).build().unwrap()
+}
+
+/// The system of the tree, and the same bodies placed by hand.
+fn systems<'g>(graph: &'g Graph, bodies: &[Hung]) -> (System<'g>, System<'g>) {
+    let tree = tree(graph, bodies, true);
+    let start = || started(graph, &tree, true);
+    let x = tree.coordinates();
+    let mut by_hand = start();
+    let mut placed: Vec<([Expr<'g>; 3], Rows<'g>)> = Vec::new();
+    let mut next = 0;
+    for body in bodies {
+        let (place, rotation) = body.parent.map_or(([Expr::ZERO; 3], identity()), |parent| placed[parent]);
+        let (way, turned) = body.moved(&x[next..]);
+        next += body.sizes().0;
+        let tilted = body.tilted();
+        let offset = on(&tilted, way);
+        let offset = on(&rotation, std::array::from_fn(|i| offset[i] + body.place[i]));
+        let place: [Expr<'g>; 3] = std::array::from_fn(|i| place[i] + offset[i]);
+        let rotation = times(&times(&rotation, &tilted), &turned);
+        placed.push((place, rotation));
+        let centre = on(&rotation, body.centre.map(Expr::from));
+        let centre: [Expr<'g>; 3] = std::array::from_fn(|i| place[i] + centre[i]);
+        by_hand = by_hand.rigid_body(|_, _, _| {
+            RigidBody::rotating(
+                body.mass,
+                centre,
+                inertia(&body.spread),
+                Matrix::from_fn(3, 3, |i, j| rotation[i][j]),
+            )
+            .force(LOAD)
+            .torque(TORQUE)
+        });
+    }
+    (hung(graph, bodies, true), by_hand.build().unwrap())
+}
+
+/// A state with unit quaternions.
+fn state(bodies: &[Hung], numbers: &[f64]) -> Vec<f64> {
+    let mut y: Vec<f64> = Vec::new();
+    for body in bodies {
+        let first = y.len();
+        y.extend(&numbers[first..first + body.sizes().0]);
+        let quaternion = match body.kind {
+            7 => first..first + 4,
+            8 => first + 3..first + 7,
+            _ => continue,
+        };
+        y[quaternion.start] += 0.5;
+        let norm = y[quaternion.clone()].iter().map(|q| q * q).sum::<f64>().sqrt();
+        y[quaternion].iter_mut().for_each(|q| *q /= norm);
+    }
+    let k: usize = bodies.iter().map(|body| body.sizes().1).sum();
+    let first = y.len();
+    y.extend(&numbers[first..first + k]);
+    y
+}
+
+/// The largest difference of two lists, relative to the largest number in them.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    let largest = a.iter().chain(b).fold(1.0f64, |largest, x| largest.max(x.abs()));
+    a.iter().zip(b).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs())) / largest
+}
+
+/// Random trees of `count` bodies, with numbers for their states.
+fn trees(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
+    let config = ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(20),
+        failure_persistence: None,
+        max_shrink_iters: 0, // smaller numbers give masses without inertia
+        ..ProptestConfig::default()
+    };
+    let strategy = (tree_of(count), prop::collection::vec(-1.0..1.0f64, 20 * count));
+    let outcome = TestRunner::new(config).run(&strategy, |(bodies, numbers)| {
+        prop_assume!(bodies.iter().any(|body| body.kind != 0));
+        check(&bodies, &numbers);
+        Ok(())
+    });
+    outcome.unwrap();
+}
+
+/// The condition of mass matrices of a few bodies, times rounding.
+const ROUNDING: f64 = 1e-10;
+
+#[test]
+fn bodies_hung_by_joints_move_as_those_placed_by_hand() {
+    trees(16, 3, |bodies, numbers| {
+        let graph = Graph::new();
+        let (hung, placed) = systems(&graph, bodies);
+        let y = state(bodies, numbers);
+        let rates = |system: &System<'_>, elimination: TreeElimination| -> Vec<f64> {
+            let options = CompileOptions::default().jacobian(false).elimination(elimination);
+            system.poincare().unwrap().compile_for(options).unwrap().rates(0.0, &y).unwrap()
+        };
+        let placed = rates(&placed, TreeElimination::Whole);
+        for elimination in [TreeElimination::ByJoints, TreeElimination::Whole, TreeElimination::Shorter] {
+            let hung = rates(&hung, elimination);
+            assert!(difference(&hung, &placed) < ROUNDING, "{elimination:?}: {hung:?}\n{placed:?}");
+        }
+    });
+}
+
+/// A direction along which quaternions keep their norm: off the spheres the two derivations are different
+/// functions.
+fn along_spheres(bodies: &[Hung], y: &[f64], numbers: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut direction: Vec<f64> = numbers.take(y.len()).collect();
+    let mut first = 0;
+    for body in bodies {
+        let quaternion = match body.kind {
+            7 => first..first + 4,
+            8 => first + 3..first + 7,
+            _ => 0..0,
+        };
+        first += body.sizes().0;
+        let q = &y[quaternion.clone()];
+        let across: f64 = q.iter().zip(&direction[quaternion.clone()]).map(|(q, v)| q * v).sum();
+        direction[quaternion.clone()].iter_mut().zip(q).for_each(|(v, q)| *v -= across * q);
+    }
+    direction
+}
+
+#[test]
+fn joint_after_joint_is_the_whole_tree_at_once() {
+    trees(12, 3, |bodies, numbers| {
+        let graph = Graph::new();
+        let system = hung(&graph, bodies, true);
+        let equations = system.poincare().unwrap();
+        let y = state(bodies, numbers);
+        let direction = along_spheres(bodies, &y, numbers.iter().rev().copied());
+        let derivatives = |elimination: TreeElimination| {
+            let options = CompileOptions::default().jvp(true).elimination(elimination);
+            let mut motion = equations.compile_for(options).unwrap();
+            let n = y.len();
+            let (mut jacobian, mut product) = (vec![0.0; n * n], vec![0.0; n]);
+            motion.jacobian(0.0, &y, &mut jacobian).unwrap();
+            motion.jvp(0.0, &y, &direction, &mut product).unwrap();
+            let by_columns =
+                (0..n).map(|i| (0..n).map(|j| jacobian[j * n + i] * direction[j]).sum()).collect();
+            (motion.rates(0.0, &y).unwrap(), product, by_columns)
+        };
+        let (by_joints, whole) =
+            (derivatives(TreeElimination::ByJoints), derivatives(TreeElimination::Whole));
+        assert!(difference(&by_joints.0, &whole.0) < ROUNDING);
+        let products: [Vec<f64>; 4] = [by_joints.1, by_joints.2, whole.1, whole.2];
+        assert!(products.iter().all(|product| difference(product, &products[0]) < ROUNDING));
+    });
+}
+
+/// Values of expressions of (x, η, η̇).
+fn values(system: &System<'_>, expressions: &[Expr<'_>], y: &[f64], accelerations: &[f64]) -> Vec<f64> {
+    let inputs = Inputs {
+        time: Some(system.frame().time()),
+        state: system.state().into_iter().chain(system.accelerations()).collect(),
+        parameters: Vec::new(),
+    };
+    let program = Program::new(system.graph(), &inputs, expressions).unwrap();
+    let mut values = vec![0.0; expressions.len()];
+    let state = [y, accelerations].concat();
+    Evaluator::new(program, Backend::Interpreter).eval(0.0, &state, &[], &mut values);
+    values
+}
+
+#[test]
+fn inverse_dynamics_inverts_forward_dynamics() {
+    // Enough links that both go from body to body.
+    trees(12, 8, |bodies, numbers| {
+        let graph = Graph::new();
+        let system = hung(&graph, bodies, true);
+        let equations = system.poincare().unwrap();
+        let y = state(bodies, numbers);
+        let rates =
+            equations.compile_for(CompileOptions::default().jacobian(false)).unwrap().rates(0.0, &y).unwrap();
+        let n = system.frame().coordinates().len();
+        let found = equations.inverse_dynamics();
+        let missing = values(&system, &found, &y, &rates[n..]);
+        let other: Vec<f64> = rates[n..].iter().map(|rate| rate + 1.0).collect();
+        let taken = values(&system, &found, &y, &other);
+        // Relative to the forces for unit accelerations.
+        let size = taken.iter().fold(1.0f64, |size, force| size.max(force.abs()));
+        assert!(missing.iter().all(|force| force.abs() < 1e-11 * size), "{missing:?} of {size}");
+    });
+}
+
+#[test]
+fn a_free_tree_keeps_its_momenta_and_its_energy() {
+    trees(16, 5, |bodies, numbers| {
+        let mut bodies = bodies.to_vec();
+        // One tree, with a free base.
+        for (i, body) in bodies.iter_mut().enumerate() {
+            body.parent = body.parent.or(i.checked_sub(1));
+        }
+        bodies[0].kind = 8;
+        let graph = Graph::new();
+        let system = hung(&graph, &bodies, false);
+        let y = state(&bodies, numbers);
+        let motion = system.poincare().unwrap().compile_for(CompileOptions::default().jacobian(false));
+        let rates = motion.unwrap().rates(0.0, &y).unwrap();
+        let tree = tree(&graph, &bodies, false);
+        let motions = tree.motions();
+        let mut kept = vec![Expr::ZERO; 7];
+        for body in tree.bodies() {
+            let linear = motions.momentum(body.name()).unwrap();
+            let angular = motions.angular_momentum(body.name()).unwrap();
+            for (kept, part) in kept.iter_mut().zip(linear.into_iter().chain(angular)) {
+                *kept += part;
+            }
+            kept[6] += motions.kinetic_energy(body.name()).unwrap();
+        }
+        let n = system.frame().coordinates().len();
+        let x = system.frame().coordinates().iter().copied().zip(tree.velocities());
+        let eta = system.quasi_velocities().iter().copied().zip(system.accelerations());
+        let along: Vec<_> = x.chain(eta).collect();
+        let change = values(&system, &graph.directional(&kept, &along), &y, &rates[n..]);
+        // Relative to the accelerations that would change it.
+        let size = rates.iter().fold(1.0f64, |size, rate| size.max(rate.abs()));
+        assert!(change.iter().all(|rate| rate.abs() < ROUNDING * size), "{change:?} of {size}");
+    });
+}
+
+/// Whether a body is fixed to the world.
+fn is_fixed(bodies: &[Hung], i: usize) -> bool {
+    bodies[i].kind == 0 && bodies[i].parent.is_none_or(|parent| is_fixed(bodies, parent))
+}
+
+#[test]
+fn joint_reactions_change_the_momenta() {
+    trees(8, 4, |bodies, numbers| {
+        let graph = Graph::new();
+        let system = hung(&graph, bodies, true);
+        let y = state(bodies, numbers);
+        let motion = system.poincare().unwrap().compile_for(CompileOptions::default().jacobian(false));
+        let rates = motion.unwrap().rates(0.0, &y).unwrap();
+        let tree = tree(&graph, bodies, true);
+        let motions = tree.motions();
+        let n = system.frame().coordinates().len();
+        let x = system.frame().coordinates().iter().copied().zip(tree.velocities());
+        let eta = system.quasi_velocities().iter().copied().zip(system.accelerations());
+        let along: Vec<_> = x.chain(eta).collect();
+        // The total momentum is changed by weights, loads and the reactions of the joints at the world.
+        let mut change = [Expr::ZERO; 3];
+        let mut borne = [Expr::ZERO; 3];
+        let fixed = |i: usize| is_fixed(bodies, i);
+        for (i, body) in tree.bodies().iter().enumerate().filter(|(i, _)| !fixed(*i)) {
+            let rate = graph.directional(&motions.momentum(body.name()).unwrap(), &along);
+            for c in 0..3 {
+                change[c] += rate[c];
+                borne[c] += bodies[i].mass * GRAVITY[c] + LOAD[c];
+            }
+        }
+        for reaction in system.joint_reactions() {
+            let i = tree.bodies().iter().position(|body| body.name() == reaction.body()).unwrap();
+            // Bodies that hang on the world, or on a body fixed to it.
+            if bodies[i].parent.is_none_or(fixed) {
+                let rotation = motions.rotation(reaction.body()).unwrap();
+                for c in 0..3 {
+                    borne[c] += graph.dot(rotation.row(c).to_vec(), reaction.force().iter().copied());
+                }
+            }
+        }
+        let change = values(&system, &change, &y, &rates[n..]);
+        let borne = values(&system, &borne, &y, &rates[n..]);
+        assert!(difference(&change, &borne) < ROUNDING, "{change:?} {borne:?}");
+    });
+}
+
+#[test]
+fn a_pendulum_pulls_at_its_joint() {
+    let graph = Graph::new();
+    let [m, l, g] = graph.symbols(["m", "l", "g"]);
+    let bob = TreeBody::new("bob", Joint::revolute([0.0, 1.0, 0.0])).mass(m).centre([0.into(), 0.into(), -l]);
+    let pendulum = System::builder(&graph)
+        .coordinates(["bob"])
+        .gravity(|_| [0.into(), 0.into(), -g])
+        .tree(Tree::new(&graph, [bob]).unwrap())
+        .build()
+        .unwrap();
+    let [angle, rate] = graph.symbols(["bob", "bob'"]);
+    let tension = m * (g * angle.cos() + l * rate.square());
+    assert_eq!(pendulum.joint_reactions()[0].force()[2], tension);
+    assert_eq!(pendulum.joint_reactions()[0].moment()[1], pendulum.poincare().unwrap().inverse_dynamics()[0]);
+}
+
+/// A mass point on a ball joint, and one on a hinge at it: if all are on one line, no inertia resists a
+/// rotation about it.
+#[test]
+fn a_state_in_which_a_joint_loses_its_inertia_is_refused() {
+    let graph = Graph::new();
+    let line = [0.3, 0.0, -1.1]; // no axis of the frame, so that all diagonal entries of the inertia are positive
+    let ball = TreeBody::new("ball", Joint::spherical()).mass(2).centre(line);
+    let hinge =
+        TreeBody::new("hinge", Joint::revolute([0.0, 1.0, 0.0]).at(line)).on("ball").mass(0.7).centre(line);
+    let tree = Tree::new(&graph, [ball, hinge]).unwrap();
+    let system = started(&graph, &tree, true).tree(tree).build().unwrap();
+    let options = CompileOptions::default().jacobian(false).elimination(TreeElimination::ByJoints);
+    let mut motion = system.poincare().unwrap().compile_for(options).unwrap();
+    let mut rates = |angle: f64| motion.rates(0.0, &[0.6, 0.0, 0.8, 0.0, angle, 0.1, 0.2, 0.3, 0.4]);
+    for straight in [0.0, 1e-9, std::f64::consts::PI, 2.0 * std::f64::consts::PI] {
+        let error = rates(straight).unwrap_err().to_string();
+        assert!(error.contains("mass matrix is singular"), "{straight}: {error}");
+    }
+    assert!(rates(1.0).is_ok());
+}
+
+/// Where gravity depends on the place, L contains its gradient, and the world has no acceleration.
+#[test]
+fn gravity_may_change_from_place_to_place() {
+    let graph = Graph::new();
+    let weight = TreeBody::new("z", Joint::prismatic([0.0, 0.0, 1.0])).mass(2);
+    let z = graph.symbol("z");
+    let system = System::builder(&graph)
+        .coordinates(["z"])
+        .gravity(|_| [Expr::ZERO, Expr::ZERO, -z])
+        .tree(Tree::new(&graph, [weight]).unwrap())
+        .build()
+        .unwrap();
+    let options = CompileOptions::default().elimination(TreeElimination::ByJoints);
+    let mut motion = system.poincare().unwrap().compile_for(options).unwrap();
+    // L = z'²  - 2 z · z, so that z'' = -2 z.
+    assert_eq!(motion.rates(0.0, &[0.25, 0.5]).unwrap(), [0.5, -0.5]);
+}
+
+/// A tree without its cyclic coordinates moves as before.
+#[test]
+fn a_tree_without_its_cyclic_coordinates_moves_as_before() {
+    let graph = Graph::new();
+    let bodies: Vec<Hung> = (0..6)
+        .map(|i| Hung {
+            kind: if i == 0 { 8 } else { 1 },
+            axes: [coordinate_axis(i % 3, 1.0); 2],
+            parent: (i > 0).then(|| (i - 1) / 2),
+            place: [0.3, -0.2, 0.1 * i as f64],
+            tilt: [0.0; 3],
+            mass: 1.0,
+            centre: [0.1, 0.2, -0.3],
+            spread: [[0.5, 0.0, 0.1], [0.0, 0.4, 0.0], [0.1, 0.2, 0.6]],
+        })
+        .collect();
+    let system = hung(&graph, &bodies, false);
+    let reduced = system.reduced().unwrap();
+    let (n, kept) = (system.frame().coordinates().len(), reduced.frame().coordinates().len());
+    assert_eq!((n, kept), (12, 5), "a free body has no place and no attitude");
+    let y = state(&bodies, &(0..40).map(|i| (0.7 * f64::from(i)).sin()).collect::<Vec<_>>());
+    let rates = |system: &System<'_>, y: &[f64]| {
+        let options = CompileOptions::default().jacobian(false);
+        system.poincare().unwrap().compile_for(options).unwrap().rates(0.0, y).unwrap()
+    };
+    let whole = rates(&system, &y);
+    let (of_reduced, of_whole) = (rates(&reduced, &y[n - kept..]), &whole[n - kept..]);
+    assert!(difference(&of_reduced, of_whole) < ROUNDING, "{of_reduced:?} {of_whole:?}");
+}
+
+#[test]
+fn invalid_trees_are_refused() {
+    let graph = Graph::new();
+    let body = |name: &str| TreeBody::new(name, Joint::revolute([0.0, 0.0, 1.0]));
+    let error = |bodies: Vec<TreeBody<'_>>| Tree::new(&graph, bodies).unwrap_err().to_string();
+    assert_eq!(error(vec![body("a"), body("a")]), "there are two bodies called `a`");
+    assert_eq!(
+        error(vec![body("a").on("b")]),
+        "the body `a` hangs on `b`, but there is no body of that name"
+    );
+    assert_eq!(
+        error(vec![body("a").on("c"), body("b").on("a"), body("c").on("b")]),
+        "bodies hang on each other in a circle: a on c on b"
+    );
+    assert_eq!(
+        error(vec![TreeBody::new("a", Joint::prismatic([0.0; 3]))]),
+        "the axis (0, 0, 0) of the joint of `a` has no direction"
+    );
+    let named = Joint::spherical().named(["q"], ["ω"]);
+    assert_eq!(
+        error(vec![TreeBody::new("a", named)]),
+        "the joint of `a` has 4 coordinates; 1 names are given"
+    );
+    let tree = Tree::new(&graph, [body("a").mass(1)]).unwrap();
+    let outcome = System::builder(&graph).coordinates(["b"]).tree(tree).build();
+    let missing = TreeError::NotOfTheSystem { name: "a".to_owned(), what: "coordinates" };
+    assert_eq!(outcome.unwrap_err(), missing.into());
+}

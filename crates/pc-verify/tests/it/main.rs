@@ -1,0 +1,8 @@
+//! Tests of the second derivation, one module a topic.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod builtin;
+mod forces;
+mod large;
+mod resultants;

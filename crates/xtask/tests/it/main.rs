@@ -1,0 +1,7 @@
+//! Tests of the source text of this workspace, one module a topic.
+
+mod imports;
+mod interface;
+#[path = "source/modules.rs"]
+mod modules;
+mod pages;

@@ -1,0 +1,119 @@
+//! The length of print-outs and the operations of right-hand sides do not grow, of any model in any form.
+//!
+//! What they are is kept in a table. Where they have become less, or models are new, it is written anew by
+//!
+//! ```sh
+//! KEEP_COSTS=1 cargo test -p pc-tests --test it kept_costs
+//! ```
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use pc_mech::Graph;
+use pc_model::{BUILTIN, Document, Model, Source};
+use pc_print::{Form, Layout, Page, page};
+
+const FORMS: [(&str, Form); 7] = [
+    ("poincare", Form::Poincare),
+    ("canonical", Form::Canonical),
+    ("lagrange", Form::Lagrange),
+    ("voronets", Form::Voronets),
+    ("reduced", Form::Reduced),
+    ("lie-poisson", Form::LiePoisson),
+    ("orthonormal", Form::Orthonormal),
+];
+
+/// What is kept of a page: its characters, those of its longest line, and the operations with parameters free and bound.
+const KEPT: [&str; 4] = ["characters", "longest line", "operations, parameters free", "operations, bound"];
+
+type Costs = BTreeMap<(String, String), [usize; 4]>;
+
+fn tests(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+fn documents() -> Vec<(String, Document)> {
+    let mut files: Vec<PathBuf> =
+        fs::read_dir(tests("mechanisms")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    let read = |path: PathBuf| {
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let document = Document::parse(Source::new(&name, fs::read_to_string(&path).unwrap())).unwrap();
+        (name, document)
+    };
+    let builtin = BUILTIN.iter().map(|model| (model.name.to_owned(), model.document().unwrap()));
+    builtin.chain(files.into_iter().map(read)).collect()
+}
+
+/// Operations are said in lines such as `parameters free   24 = 2 add + …`.
+fn operations(text: &str, of: &str) -> usize {
+    let line = text.lines().find_map(|line| line.trim_start().strip_prefix(of)).unwrap();
+    line.split_whitespace().next().unwrap().parse().unwrap()
+}
+
+fn measured() -> Costs {
+    let mut costs = Costs::new();
+    for (name, document) in documents() {
+        let model = Model::new(document);
+        for (form, of) in FORMS {
+            let graph = Graph::new();
+            let assembly = model.assemble(&graph).unwrap();
+            let Ok(text) = page(of, Page::Text, &Layout::default(), &name, &assembly) else { continue };
+            let longest = text.lines().map(|line| line.chars().count()).max().unwrap();
+            let (free, bound) =
+                (operations(&text, "parameters free "), operations(&text, "parameters bound"));
+            costs.insert((name.clone(), form.to_owned()), [text.chars().count(), longest, free, bound]);
+        }
+    }
+    costs
+}
+
+fn written(costs: &Costs) -> String {
+    let mut table =
+        format!("{:32} {:12} {:>6} {:>4} {:>5} {:>5}\n", "model", "form", "chars", "line", "free", "bound");
+    for ((name, form), [characters, longest, free, bound]) in costs {
+        writeln!(table, "{name:32} {form:12} {characters:>6} {longest:>4} {free:>5} {bound:>5}").unwrap();
+    }
+    table
+}
+
+fn read(table: &str) -> Costs {
+    let row = |line: &str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let number = |i: usize| words[i].parse().unwrap();
+        ((words[0].to_owned(), words[1].to_owned()), [number(2), number(3), number(4), number(5)])
+    };
+    table.lines().skip(1).map(row).collect()
+}
+
+#[test]
+fn neither_pages_nor_operations_grow() {
+    let path = tests("kept-costs.txt");
+    let found = measured();
+    if std::env::var_os("KEEP_COSTS").is_some() {
+        fs::write(&path, written(&found)).unwrap();
+    }
+    let table = fs::read_to_string(&path).unwrap();
+    let kept = read(&table);
+    assert_eq!(written(&kept), table, "the table is not as it was written");
+    let mut grown = String::new();
+    for (place @ (name, form), costs) in &found {
+        let Some(before) = kept.get(place) else {
+            writeln!(grown, "{name}, {form}: not in the table").unwrap();
+            continue;
+        };
+        for ((what, now), before) in KEPT.iter().zip(costs).zip(before) {
+            if now > before {
+                writeln!(grown, "{name}, {form}: {what} {before} -> {now}").unwrap();
+            } else if now < before {
+                eprintln!("less, to be kept: {name}, {form}: {what} {before} -> {now}");
+            }
+        }
+    }
+    for (name, form) in kept.keys().filter(|place| !found.contains_key(place)) {
+        writeln!(grown, "{name}, {form}: is no more").unwrap();
+    }
+    assert!(grown.is_empty(), "\n{grown}");
+}
