@@ -284,7 +284,7 @@ fn differentials<'g>(
     integrals: &[(String, Expr<'g>)],
 ) -> Result<Vec<Vec<f64>>, ExprError> {
     let graph = system.graph();
-    let symbols = [system.frame().coordinates(), system.quasi_velocities()].concat();
+    let symbols = system.state();
     let (kept, cyclic): (Vec<Expr<'g>>, Vec<Expr<'g>>) =
         symbols.iter().partition(|y| found.components.contains(&y.to_string()));
     let at: Vec<(Expr<'g>, f64)> = symbols.into_iter().zip(found.state.iter().copied()).collect();

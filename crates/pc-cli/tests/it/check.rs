@@ -2,6 +2,7 @@
 
 use std::process::{Command, Output};
 
+use crate::each_model::{answer, each};
 use serde_json::{Value, json};
 
 const LAGRANGE: &str = "\
@@ -146,11 +147,11 @@ fn a_check_in_print() {
 
 #[test]
 fn every_check_fits_on_a_screen() {
-    for model in pc_model::BUILTIN {
-        let text = check(model.name);
+    each(pc_model::BUILTIN, |model| {
+        let text = String::from_utf8(answer(&["check", model.name]).stdout).expect("UTF-8");
         assert!(text.lines().count() <= 30, "{text}");
         assert!(text.lines().all(|line| line.chars().count() <= 130), "{text}");
-    }
+    });
 }
 
 #[test]

@@ -49,6 +49,15 @@ fn jumps_on_surfaces_of_the_state_are_refused() {
     insta::assert_snapshot!(said, @"the rate of x' jumps where x' = 0, a surface of the state: derivatives of the motion jump with it, which they would not show. Make the jump an event that switches a state, or smooth it, as tanh does");
 }
 
+/// In momenta, the velocity in a dry friction is a function of the state.
+#[test]
+fn jumps_at_velocities_are_refused_in_momenta_too() {
+    let model = point("k = 0.3", "1", "0", "-x - k*sign(x')");
+    let arguments = ["run", "--form", "canonical", "--sensitivities", "k", "--method", "bdf"];
+    let said = refusal("momenta", &model, &arguments, "the rate");
+    assert!(said.starts_with("the rate of p_x jumps where x' = 0, a surface of the state: "), "{said}");
+}
+
 #[test]
 fn jumps_at_times_are_refused_for_what_moves_them() {
     let model = point("c = 0.37\nk = 2.0", "0", "0", "step(t - c, k, 0)");

@@ -11,6 +11,7 @@ mod checkpoint;
 mod command_line_page;
 mod compare;
 mod constraints;
+mod each_model;
 mod equations;
 mod events;
 mod files;

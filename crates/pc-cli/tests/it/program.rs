@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::each_model::{answer, each};
+use pc_model::Builtin;
+
 const HEADER: &str = "t,γ1,γ2,γ3,ω1,ω2,ω3,area,norm,spin,energy";
 
 /// A mass that falls into a centre of attraction, where its speed becomes infinite.
@@ -404,10 +407,12 @@ fn models_and_algebras_are_listed() {
     let text = stdout(&run(&["models"]));
     let names: Vec<&str> = text.lines().filter_map(|line| line.split_whitespace().next()).collect();
     assert!(names.contains(&"heavy-top-lagrange") && names.contains(&"euler-top"));
-    for name in names {
-        let output = run(&["check", name]);
-        assert_eq!(code(&output), 0, "{name}: {}", stderr(&output));
-    }
+    let all: Vec<&str> = Builtin::all().map(|model| model.name).collect();
+    assert!(names.iter().all(|name| all.contains(name)) && names.len() == all.len());
+    each(Builtin::all(), |model| {
+        let output = answer(&["check", model.name]);
+        assert_eq!(code(&output), 0, "{}: {}", model.name, stderr(&output));
+    });
     let text = stdout(&run(&["models", "--algebras"]));
     assert!(text.contains("so3") && text.contains("[X1,X2] = X3"));
 }

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use crate::each_model::each;
 use pc_expr::parse::parse;
 use pc_model::BUILTIN;
 use serde_json::Value;
@@ -70,7 +71,7 @@ fn a_free_body_for_programs() {
 /// theory.
 #[test]
 fn all_models_have_a_theory() {
-    for builtin in BUILTIN {
+    each(BUILTIN, |builtin| {
         let object: Value = serde_json::from_str(&said(&[builtin.name, "--format", "json"])).expect("JSON");
         let sections = object.as_object().expect("an object");
         let mut formulas = 0;
@@ -92,7 +93,7 @@ fn all_models_have_a_theory() {
         let text = said(&[builtin.name]);
         // Sums are broken into lines; other formulas are not.
         assert!(text.lines().all(|line| line.chars().count() < 400), "{}", builtin.name);
-    }
+    });
 }
 
 /// The lines of a section.

@@ -2,7 +2,10 @@
 
 use std::io::Write;
 use std::process::{Command, Stdio};
+use std::sync::Mutex;
 
+use crate::each_model::each;
+use pc_model::Builtin;
 use serde_json::Value;
 
 fn check(model: &str) -> String {
@@ -92,25 +95,26 @@ fn json(arguments: &[&str]) -> Option<Value> {
 /// state, with a quaternion, constraints and cyclic coordinates or without.
 #[test]
 fn check_and_linearize_agree_on_stability() {
-    let mut agreeing = Vec::new();
-    for model in pc_model::Builtin::all() {
-        let Some(check) = json(&["check", model.name, "--format", "json"]) else { continue };
+    let agreeing = Mutex::new(Vec::new());
+    each(Builtin::all(), |model| {
+        let Some(check) = json(&["check", model.name, "--format", "json"]) else { return };
         let steady = &check["steady_motion"];
         let linearize = ["linearize", model.name, "--format", "json", "--cyclic", "drop"];
-        let Some(linear) = (if steady.is_null() { None } else { json(&linearize) }) else { continue };
+        let Some(linear) = (if steady.is_null() { None } else { json(&linearize) }) else { return };
         let values = steady["state"].as_object().expect("names and values");
         let is_near = |(name, value): (&String, &Value)| {
             let (one, other) = (value.as_f64().unwrap_or(f64::NAN), linear["state"][name].as_f64());
             other.is_some_and(|other| (one - other).abs() <= 1e-7 * (1.0 + one.abs()))
         };
         if !values.iter().all(is_near) {
-            continue; // another member of the family
+            return; // another member of the family
         }
         let count = |of: &Value| of["eigenvalues"].as_array().map(Vec::len);
         assert_eq!(count(steady), count(&linear), "{}", model.name);
         assert_eq!(steady["verdict"], linear["stability"], "{}", model.name);
-        agreeing.push(model.name);
-    }
+        agreeing.lock().expect("no claim panics while it holds the lock").push(model.name);
+    });
+    let agreeing = agreeing.into_inner().expect("no claim panicked");
     let known =
         ["reaction-wheels", "whipple-bicycle", "slider-crank-loop", "heavy-top-quaternion", "tilted-disk"];
     assert!(known.iter().all(|name| agreeing.contains(name)), "{agreeing:?}");

@@ -17,7 +17,9 @@ impl<'g> FirstOrder<'g> {
             self.names.iter().cloned().chain(self.state.iter().map(Expr::to_string)).collect();
         let flowing = self.state.iter().zip(&self.rates).filter(|(_, rate)| !rate.is_zero());
         let flowing: Vec<Expr<'g>> = flowing.map(|(&symbol, _)| symbol).collect();
-        let passing = [&[self.time], &self.varying[..], &flowing[..]].concat();
+        // In momenta, velocities are unknowns: functions of the state that change along the motion.
+        let moving = [&flowing[..], &self.unknowns[..]].concat();
+        let passing = [&[self.time], &self.varying[..], &moving[..]].concat();
         let mut numbers = self.parameters.clone();
         numbers.retain(|&(symbol, value)| value != 0.0 && !self.varying.contains(&symbol));
         let rate_jump = |found: pc_algebra::Discontinuity<'g>| {
@@ -28,7 +30,7 @@ impl<'g> FirstOrder<'g> {
             RateJump {
                 surface: found.surface.to_string(),
                 component: names[found.function].clone(),
-                of_state: flowing.iter().any(in_it),
+                of_state: moving.iter().any(in_it),
                 parameters: parameters.map(|(j, (symbol, _))| (j, symbol.to_string())).collect(),
             }
         };

@@ -167,7 +167,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
 
     /// The magnitude above which each function differs from zero after a reset. For a function whose
     /// event has occurred there and is near zero, |g| ≤ 10 Σᵢ |g(y + δᵢ) − g(y)| with the tolerances
-    /// δᵢ = rtol |yᵢ| + atolᵢ of the state, this is 2 |g|.
+    /// δᵢ = rtol |yᵢ| + atolᵢ of the state, this is 2 |g|. A function that has jumped there is on its other side, however
+    /// near the state is to the jump.
     fn noise_after_reset(
         &mut self,
         t: f64,
@@ -176,7 +177,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         occurrences: &[Occurrence],
     ) -> Vec<f64> {
         let mut noise = self.noise.clone();
-        let occurred = occurrences.iter().map(|occurrence| occurrence.event);
+        let jumped = |event: &usize| self.due.contains(event) && self.noise[*event] == 0.0;
+        let occurred = occurrences.iter().map(|occurrence| occurrence.event).filter(|event| !jumped(event));
         if occurred.clone().all(|event| values[event].abs() <= noise[event]) {
             return noise;
         }

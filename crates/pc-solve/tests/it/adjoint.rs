@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use crate::offers::{Circle, Formulas, OFFERS, Offer, Offering, Oscillator, Pendulum, precise};
 use pc_solve::{
     AdjointOptions, Code, Failure, Functional, Gradient, Method, NonFinite, NonlinearSolver, Options, Reason,
-    Sensitivities, SolveError, VectorField, adjoint_gradient, from_fn, solve_with_sensitivities,
+    Sensitivities, SolveError, VectorField, adjoint_gradient, solve_with_sensitivities,
 };
 
 /// G = ∫ (φ̇² + p₀ cos(t) φ) dt + φ(T)² φ̇(T) + p₁ φ̇(T) of the pendulum.
@@ -174,7 +174,7 @@ fn fields_without_parameters() {
             Ok(y[0])
         }
     }
-    let decay = from_fn(1, |_t, y: &[f64], rate: &mut [f64]| {
+    let decay = pc_solve::from_fn(1, |_t, y: &[f64], rate: &mut [f64]| {
         rate[0] = -y[0] * y[0];
         Ok(())
     });
@@ -206,7 +206,7 @@ fn fields_with_a_projection() {
         }
     }
     // The same in terms of the angle φ from the horizontal: x ż = φ̇ cos² φ.
-    let by_angle = from_fn(3, |_t, y: &[f64], rate: &mut [f64]| {
+    let by_angle = pc_solve::from_fn(3, |_t, y: &[f64], rate: &mut [f64]| {
         rate.copy_from_slice(&[y[1], -y[0].cos(), y[1] * y[0].cos().powi(2)]);
         Ok(())
     });

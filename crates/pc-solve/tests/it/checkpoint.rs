@@ -2,9 +2,10 @@
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Checkpoint, CheckpointError, Code, Failure, Integration, Method, NoEvents, Options, SolveError,
-    Trajectory, VectorField, from_fn, solve, solve_checkpointed,
+    Trajectory, VectorField, solve, solve_checkpointed,
 };
 
 /// Van der Pol's equation with μ = 20, and its Jacobian.

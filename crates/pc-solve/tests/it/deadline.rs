@@ -2,10 +2,11 @@
 
 use std::time::{Duration, Instant};
 
+use crate::boxed::from_fn;
 use pc_expr::{Cancel, Limits};
 use pc_solve::{
     Deadline, FixedStep, Integration, Options, Reason, RungeKutta4, SolveError, SolveFailure, Spent,
-    VectorField, from_fn, solve,
+    VectorField, solve,
 };
 
 /// ẏ₁ = y₂, ẏ₂ = −y₁, which cancels the integration after some time.

@@ -3,9 +3,10 @@
 use std::cell::Cell;
 use std::ops::ControlFlow::{Break, Continue};
 
+use crate::boxed::from_fn;
 use pc_solve::{
     DenseOutput, Ending, Event, Failure, FnEvents, InputError, Integration, Method, Options, Segment, Solve,
-    VectorField, from_fn,
+    VectorField,
 };
 
 fn oscillator() -> impl VectorField {

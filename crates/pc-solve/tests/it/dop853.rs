@@ -5,9 +5,10 @@ use std::cell::Cell;
 use std::num::NonZeroU64;
 use std::ops::ControlFlow::Continue;
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Checkpoint, Dop853, Event, Failure, FnEvents, Inequality, InputError, Integration, LinearSolver, Method,
-    NonlinearSolver, Options, Reason, Sensitivities, Solve, SolveError, VectorField, from_fn, solve,
+    NonlinearSolver, Options, Reason, Sensitivities, Solve, SolveError, VectorField, solve,
     solve_checkpointed, solve_with_sensitivities,
 };
 

@@ -5,9 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-use pc_solve::{
-    Ending, Ensemble, Failure, MemberError, Options, Stop, VectorField, from_fn, member_stream, solve,
-};
+use crate::boxed::from_fn;
+use pc_solve::{Ending, Ensemble, Failure, MemberError, Options, Stop, VectorField, member_stream, solve};
 use rand_chacha::rand_core::Rng;
 
 /// Why a member cannot be made.

@@ -2,11 +2,12 @@
 
 use std::ops::ControlFlow::Continue;
 
+use crate::boxed::from_fn;
 use crate::fields::field;
 use pc_expr::{Failure, ProgramField};
 use pc_solve::{
     Ending, Event, FnEvents, Integration, Method, Occurrence, Options, Reason, Sensitivities, Solution,
-    Solve, SolveError, from_fn,
+    Solve, SolveError,
 };
 
 /// A point at speed 1 with a register: y = (x, n).
@@ -225,5 +226,27 @@ fn jumps_are_passed_once_and_poles_are_none() {
         let reset =
             events().with_reset(Event::new("a"), |_, y| Ok(sign(y[0] - 0.3) * (y[0] - 1.5)), set(1.0));
         assert_found(&run(reset), &[(0, 0.3), (0, 1.5)], method);
+    }
+}
+
+/// x = cos t falls through zero, where the function jumps and a reset leaves x as it is, and rises through it again.
+#[test]
+fn a_jump_with_a_reset_is_passed_again_from_the_other_side() {
+    let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
+    for method in Method::ALL {
+        let circle = from_fn(3, |_t, y: &[f64], ydot: &mut [f64]| {
+            (ydot[0], ydot[1], ydot[2]) = (-y[1], y[0], 0.0);
+            Ok(())
+        });
+        let count = |_: f64, y: &mut [f64]| {
+            y[2] += 1.0;
+            Ok(())
+        };
+        let events = FnEvents::new().with_reset(Event::new("a"), move |_, y| Ok(sign(y[0])), count);
+        let options = Options::new(method).max_step(0.1);
+        let motion = Solve::new(circle, 0.0, &[1.0, 0.0, 0.0]).method(options).events(events);
+        let expected: Vec<(usize, f64)> =
+            (0..3).map(|k| (0, (f64::from(k) + 0.5) * std::f64::consts::PI)).collect();
+        assert_found(&motion.run(&[9.0]).unwrap(), &expected, method);
     }
 }

@@ -2,10 +2,11 @@
 use std::num::NonZeroU64;
 use std::ops::ControlFlow::{self, Break, Continue};
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Checkpoint, CheckpointError, Code, Cvode, Ending, Event, Failure, FnEvents, InputError, Integration,
     Method, NoEvents, Observed, Occurrence, Options, Reason, Solution, Solve, SolveError, SolveFailure,
-    VectorField, from_fn, solve_checkpointed,
+    VectorField, solve_checkpointed,
 };
 
 type Rates = fn(f64, &[f64], &mut [f64]);

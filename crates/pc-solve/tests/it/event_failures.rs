@@ -4,9 +4,10 @@ use std::cell::Cell;
 use std::ops::ControlFlow::Continue;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Cvode, Event, Failure, FnEvents, Integration, IntegrationError, Options, Reason, Solve, SolveError,
-    VectorField, from_fn,
+    VectorField,
 };
 
 #[derive(Debug, thiserror::Error)]

@@ -2,9 +2,10 @@
 
 use std::ops::ControlFlow::{Break, Continue};
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Cvode, DenseOutput, Ending, Event, FnEvents, InputError, Integration, Observed, Occurrence, Options,
-    Segment, SolveError, VectorField, from_fn,
+    Segment, SolveError, VectorField,
 };
 
 /// A ball that falls from height 1 with acceleration 1 and bounces without loss: at √2, 3√2, …

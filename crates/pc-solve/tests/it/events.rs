@@ -3,11 +3,12 @@
 use std::cell::RefCell;
 use std::ops::ControlFlow::{Break, Continue};
 
+use crate::boxed::from_fn;
 use crate::fields;
 use pc_expr::ProgramField;
 use pc_solve::{
     Accumulation, Code, Cvode, Ending, Event, Events, Failure, FnEvents, Integration, Method, Observed,
-    Occurrence, Options, Reason, Solve, SolveError, VectorField, from_fn,
+    Occurrence, Options, Reason, Solve, SolveError, VectorField,
 };
 
 /// Tolerances at which the error of the integration is below that required of the times.
@@ -16,7 +17,7 @@ fn sharp(method: Method) -> Options {
 }
 
 fn field(rates: fn(f64, &[f64]) -> Vec<f64>, dim: usize) -> impl VectorField + Clone {
-    from_fn(dim, move |t, y: &[f64], ydot: &mut [f64]| {
+    pc_solve::from_fn(dim, move |t, y: &[f64], ydot: &mut [f64]| {
         ydot.copy_from_slice(&rates(t, y));
         Ok(())
     })

@@ -3,9 +3,10 @@
 use std::cell::Cell;
 use std::error::Error;
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Code, Failure, Integration, Method, NonFinite, NonlinearSolver, Options, Reason, SolveError,
-    SolveFailure, Trajectory, from_fn, solve,
+    SolveFailure, Trajectory, solve,
 };
 
 #[derive(Debug, PartialEq, thiserror::Error)]

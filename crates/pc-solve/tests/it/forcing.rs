@@ -3,8 +3,9 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::boxed::from_fn;
 use pc_expr::{Expr, Graph, Inputs, Interpreter, Kernel, Program, TimeDependence};
-use pc_solve::{Failure, Method, Options, Reason, SolveError, Trajectory, VectorField, from_fn, solve};
+use pc_solve::{Failure, Method, Options, Reason, SolveError, Trajectory, VectorField, solve};
 
 /// ẍ = −x + F(t, x), compiled.
 struct Spring {

@@ -3,10 +3,11 @@
 
 use std::ops::ControlFlow::Continue;
 
+use crate::boxed::from_fn;
 use pc_solve::{
     AdjointOptions, Event, Events, Failure, FnEvents, Functional, InputError, Integration, Krylov,
     LinearSolver, Method, Options, Pattern, Reason, Sensitivities, SolveError, VectorField, adjoint_gradient,
-    adjoint_gradients, adjoint_gradients_with_events, from_fn,
+    adjoint_gradients, adjoint_gradients_with_events,
 };
 
 fn sharp(method: Method) -> Options {

@@ -1,8 +1,8 @@
 //! Components that keep their sign.
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Code, Inequality, Integration, LinearSolver, Method, NonlinearSolver, Options, Pattern, SolveError,
-    from_fn,
 };
 
 /// The least y over the ends of steps of ẏ = −100 y.

@@ -1,11 +1,11 @@
 //! Invalid input.
 
-use pc_solve::{Failure, FnField, Integration, Method, Options, VectorField, from_fn, solve};
+use pc_solve::{Failure, FnField, Integration, Method, Options, VectorField, solve};
 
 type Rhs = fn(f64, &[f64], &mut [f64]) -> Result<(), Failure>;
 
 fn drift(dim: usize) -> FnField<Rhs> {
-    from_fn(dim, |_t, _y, ydot| {
+    pc_solve::from_fn(dim, |_t, _y, ydot| {
         ydot.fill(1.0);
         Ok(())
     })

@@ -2,9 +2,10 @@
 
 use std::ops::ControlFlow::Continue;
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Event, Failure, FnEvents, InputError, Integrals, Integration, Method, NonFinite, Options, Sensitivities,
-    SolveError, VectorField, from_fn, solve, solve_with_integrals,
+    SolveError, VectorField, solve, solve_with_integrals,
 };
 
 fn decay() -> impl VectorField {

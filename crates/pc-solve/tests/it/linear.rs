@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Failure, FnField, InputError, Integration, Krylov, LinearSolver, Method, NonlinearSolver, Options,
-    Pattern, Preconditioner, Side, SolveError, Statistics, VectorField, from_fn, solve,
+    Pattern, Preconditioner, Side, SolveError, Statistics, VectorField, solve,
 };
 
 /// Heat in a rod of n cells: ẏᵢ = κ (yᵢ₋₁ − 2 yᵢ + yᵢ₊₁), y₀ = yₙ₊₁ = 0.

@@ -2,8 +2,9 @@
 
 use std::cell::Cell;
 
+use crate::boxed::from_fn;
 use pc_solve::{
-    Failure, LyapunovOptions, Method, Options, Reason, SolveError, VectorField, from_fn, lyapunov_exponents,
+    Failure, LyapunovOptions, Method, Options, Reason, SolveError, VectorField, lyapunov_exponents,
 };
 
 fn tolerance(tolerance: f64) -> Options {

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod adjoint;
+mod boxed;
 mod breaks;
 mod chain;
 mod checkpoint;

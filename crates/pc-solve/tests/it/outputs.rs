@@ -3,9 +3,10 @@
 use std::cell::Cell;
 use std::ops::ControlFlow::{self, Break, Continue};
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Cvode, Ending, Failure, InputError, Integration, Method, NonlinearSolver, Observed, Options, Solve,
-    SolveError, VectorField, from_fn, solve,
+    SolveError, VectorField, solve,
 };
 
 fn pendulum(_t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
@@ -304,7 +305,7 @@ fn a_solver_moves_between_threads() {
     let run =
         |mut cvode: Integration<Cvode<_>>| std::thread::spawn(move || cvode.state_at(10.0).unwrap().to_vec());
     let cvode = |phase: f64| {
-        let field = from_fn(1, move |t: f64, _y: &[f64], ydot: &mut [f64]| {
+        let field = pc_solve::from_fn(1, move |t: f64, _y: &[f64], ydot: &mut [f64]| {
             ydot[0] = (t + phase).cos();
             Ok(())
         });

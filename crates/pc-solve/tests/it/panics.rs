@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
-use pc_solve::{Failure, Integration, Method, Observed, Options, VectorField, from_fn, solve};
+use crate::boxed::from_fn;
+use pc_solve::{Failure, Integration, Method, Observed, Options, VectorField, solve};
 
 /// ẏ = 1, which panics or fails after some time, and counts its drops.
 struct Fragile {

@@ -1,6 +1,7 @@
 //! Fields whose states lie on a surface: a pendulum in Cartesian coordinates.
 
-use pc_solve::{Failure, Method, Options, Reason, SolveError, VectorField, from_fn, solve};
+use crate::boxed::from_fn;
+use pc_solve::{Failure, Method, Options, Reason, SolveError, VectorField, solve};
 
 /// A pendulum of unit length under unit gravity: ṙ = v, v̇ = g − (g·r + |v|²) r/|r|², which does
 /// not return to the circle by itself.

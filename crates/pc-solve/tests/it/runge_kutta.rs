@@ -4,10 +4,11 @@
 use std::num::NonZeroU64;
 use std::ops::ControlFlow::Continue;
 
+use crate::boxed::from_fn;
 use pc_expr::Failure;
 use pc_solve::{
     Checkpoint, Ending, Event, FixedStep, FnEvents, InputError, Integration, Reason, RungeKutta4, Solve,
-    SolveError, VectorField, from_fn, solve_checkpointed,
+    SolveError, VectorField, solve_checkpointed,
 };
 
 /// y = (cos t, −sin t).

@@ -2,10 +2,11 @@
 
 use std::ops::ControlFlow;
 
+use crate::boxed::from_fn;
 use crate::offers::{Circle, Formulas, OFFERS, Offer, Offering, Oscillator, Pendulum, derivative, precise};
 use pc_solve::{
-    Correction, Integration, Method, NonlinearSolver, Options, Sensitivities, SensitivityStatistics, from_fn,
-    solve, solve_with_sensitivities,
+    Correction, Integration, Method, NonlinearSolver, Options, Sensitivities, SensitivityStatistics, solve,
+    solve_with_sensitivities,
 };
 
 const OSCILLATOR: Oscillator = Oscillator { damping: 0.15, frequency: 1.3 };

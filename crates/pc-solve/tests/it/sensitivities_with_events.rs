@@ -3,9 +3,10 @@
 
 use std::ops::ControlFlow::Continue;
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Checkpoint, Correction, DenseOutput, Event, FnEvents, InputError, Integration, Method, Options, Reason,
-    Segment, Sensitivities, SolveError, VectorField, from_fn, solve_dense_with_sensitivities,
+    Segment, Sensitivities, SolveError, VectorField, solve_dense_with_sensitivities,
     solve_with_sensitivities,
 };
 

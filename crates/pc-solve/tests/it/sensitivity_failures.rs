@@ -5,9 +5,10 @@ use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
+use crate::boxed::from_fn;
 use pc_solve::{
     Code, Failure, Integration, Method, NonFinite, Options, Sensitivities, SensitivityTrajectory, SolveError,
-    SolveFailure, VectorField, from_fn, solve_with_sensitivities,
+    SolveFailure, VectorField, solve_with_sensitivities,
 };
 
 type Value = fn(f64) -> Result<f64, Failure>;

@@ -2,7 +2,8 @@
 
 use std::cell::Cell;
 
-use pc_solve::{Failure, Method, NonlinearSolver, Options, VectorField, from_fn, solve};
+use crate::boxed::from_fn;
+use pc_solve::{Failure, Method, NonlinearSolver, Options, VectorField, solve};
 
 fn robertson_rhs(_t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
     ydot[0] = -0.04 * y[0] + 1e4 * y[1] * y[2];

@@ -3,11 +3,12 @@
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 
+use crate::boxed::from_fn;
 use crate::fields::{field, heavy_top, oscillator, top_integrals, top_start};
 use pc_expr::ProgramField;
 use pc_solve::{
     Checkpoint, DenseOutput, InputError, Integration, Method, NoEvents, Options, Reason, SolveError,
-    Statistics, Taylor, from_fn, solve_checkpointed,
+    Statistics, Taylor, solve_checkpointed,
 };
 
 fn options(tolerance: f64) -> Options {

@@ -88,7 +88,10 @@ impl<'g> FirstOrder<'g> {
     /// Checks that an integral does not jump along the motion, where its values would belong to other states. The energy
     /// of a Lagrangian that does not jump is tried at the surfaces where it changes pieces; others must have no such.
     fn check_without_jumps(&self, name: &str, integral: Expr<'g>) -> Result<(), MechError> {
-        let changing = [&[self.time], &self.varying[..], &self.state[..]].concat();
+        // A state whose rate is zero changes by events alone, which begin the motion anew with the values after them.
+        let flowing = self.state.iter().zip(&self.rates).filter(|(_, rate)| !rate.is_zero());
+        let flowing: Vec<Expr<'g>> = flowing.map(|(&symbol, _)| symbol).collect();
+        let changing = [&[self.time], &self.varying[..], &self.unknowns[..], &flowing[..]].concat();
         let mut numbers = self.parameters.clone();
         numbers.retain(|(symbol, _)| !self.varying.contains(symbol));
         let jumps = match name {
