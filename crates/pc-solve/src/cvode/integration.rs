@@ -98,7 +98,7 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
     ) -> Result<Ending, SolveError> {
         let values = RefCell::new(Vec::new());
         let mut observer = Observed::new(|t, y: &[f64]| output(t, y, &values.borrow()));
-        self.run_through(times, &mut observer, |integration| {
+        self.run_through(times, &mut observer, &mut |integration| {
             *values.borrow_mut() = integration.engine.integrals_here()?;
             Ok(())
         })

@@ -27,7 +27,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// one occurs at the same time, after those that are due already.
     pub(crate) fn occur(
         &mut self,
-        occurred: &mut impl FnMut(&Occurrence) -> ControlFlow<()>,
+        occurred: &mut dyn FnMut(&Occurrence) -> ControlFlow<()>,
     ) -> Result<Option<Ending>, SolveError> {
         let t = self.front.t;
         self.engine.stand_at(t);

@@ -52,15 +52,15 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// # Errors
     /// As for [`run`](Integration::run).
     pub fn run_observed(&mut self, times: &[f64], mut observer: impl Observer) -> Result<Ending, SolveError> {
-        self.run_through(times, &mut observer, |_| Ok(()))
+        self.run_through(times, &mut observer, &mut |_| Ok(()))
     }
 
     /// The same, calling `arrived` before each output.
     pub(crate) fn run_through(
         &mut self,
         times: &[f64],
-        observer: &mut impl Observer,
-        mut arrived: impl FnMut(&mut Self) -> Result<(), SolveError>,
+        observer: &mut dyn Observer,
+        arrived: &mut dyn FnMut(&mut Self) -> Result<(), SolveError>,
     ) -> Result<Ending, SolveError> {
         let end = self.check_times(times)?;
         for &t in times {
@@ -104,7 +104,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         &mut self,
         t: f64,
         end: f64,
-        observer: &mut impl Observer,
+        observer: &mut dyn Observer,
     ) -> Result<Option<Ending>, SolveError> {
         let mut steps = 0;
         while !self.is_before_front(t) {

@@ -11,6 +11,10 @@ use crate::integration::integration::{Ending, Integration};
 use crate::integration::observer::{Observed, Observer};
 use crate::integration::stepper::Stepper;
 
+/// What receives the start and the end of a part of a motion with the states there, from an integration at that end.
+pub(crate) type Piece<'a, I> =
+    dyn FnMut(&mut I, (f64, &[f64]), (f64, &[f64])) -> Result<ControlFlow<()>, SolveError> + 'a;
+
 impl<S: Stepper, E: Events> Integration<S, E> {
     /// Takes one step towards `towards`, possibly beyond it, or the part of a step before the next
     /// event, and reports events at its end to `occurred`.
@@ -68,7 +72,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
     ) -> Result<Ending, SolveError> {
         let mut observer = Observed::new(|_, _: &[f64]| ControlFlow::Continue(())).occurrences(occurred);
-        self.run_in_pieces(end, &mut observer, |integration, from, to| {
+        self.run_in_pieces(end, &mut observer, &mut |integration, from, to| {
             Ok(segment(integration.segment(from, to)?))
         })
     }
@@ -78,8 +82,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     pub(crate) fn run_in_pieces(
         &mut self,
         end: f64,
-        observer: &mut impl Observer,
-        mut piece: impl FnMut(&mut Self, (f64, &[f64]), (f64, &[f64])) -> Result<ControlFlow<()>, SolveError>,
+        observer: &mut dyn Observer,
+        piece: &mut Piece<'_, Self>,
     ) -> Result<Ending, SolveError> {
         self.check_times(&[end])?;
         let mut steps = 0;

@@ -83,7 +83,7 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
     ) -> Result<Ending, SolveError> {
         let matrix = std::cell::RefCell::new(Vec::new());
         let output = |t: f64, y: &[f64]| output(t, y, &matrix.borrow());
-        self.run_through(times, &mut Observed::new(output).occurrences(occurred), |integration| {
+        self.run_through(times, &mut Observed::new(output).occurrences(occurred), &mut |integration| {
             *matrix.borrow_mut() = integration.engine.columns()?;
             Ok(())
         })
@@ -111,7 +111,7 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
     ) -> Result<Ending, SolveError> {
         let mut observer = Observed::new(|_, _: &[f64]| ControlFlow::Continue(())).occurrences(occurred);
-        self.run_in_pieces(end, &mut observer, |integration, from, to| {
+        self.run_in_pieces(end, &mut observer, &mut |integration, from, to| {
             let of_state = integration.segment(from, to)?;
             Ok(segments(of_state, integration.engine.segment_of_sensitivities(from.0, to.0)?))
         })
