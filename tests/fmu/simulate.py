@@ -43,7 +43,8 @@ class Disagreement(Exception):
 
 def pc(program, *arguments):
     """Runs pc."""
-    outcome = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=False)
+    command = [program, *map(str, arguments)]
+    outcome = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
     if outcome.returncode != 0:
         raise Disagreement(f"pc {' '.join(map(str, arguments))}: {outcome.stderr}")
 

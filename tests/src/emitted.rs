@@ -5,9 +5,12 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Write as _;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
 
 use pc_mech::{EmitOptions, EmittedFile, Equations, Language, MechError};
 
@@ -186,25 +189,40 @@ pub fn fresh_directory(path: PathBuf) -> PathBuf {
     path
 }
 
+/// Far more than a compiler or a driver takes on the slowest machine: what takes longer hangs.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// How a process ends that is given `input`; one that hangs is killed.
+fn ended(mut child: Child, input: &[u8]) -> io::Result<Output> {
+    let (stdin, id) = (child.stdin.take(), child.id().to_string());
+    let (end, ends) = mpsc::channel::<()>();
+    thread::scope(|scope| {
+        scope.spawn(|| stdin.map(|mut stdin| stdin.write_all(input)));
+        scope.spawn(move || {
+            if ends.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                let _ = Command::new("kill").args(["-KILL", &id]).status();
+            }
+        });
+        let output = child.wait_with_output();
+        drop(end);
+        output
+    })
+}
+
 /// Runs a command with `input`, and answers what it prints.
 ///
 /// # Panics
-/// If it fails, or says anything on standard error: a compiler must not even warn.
+/// If it fails or hangs, or says anything on standard error: a compiler must not even warn.
 pub fn execute(command: &mut Command, input: &[u8]) -> Vec<u8> {
-    let mut child = command
+    let child = command
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap_or_else(|error| panic!("{command:?} does not run: {error}"));
-    let stdin = child.stdin.take();
-    let output = std::thread::scope(|scope| {
-        scope.spawn(|| stdin.map(|mut stdin| stdin.write_all(input)));
-        child.wait_with_output()
-    });
-    let output = output.unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let output = ended(child, input).unwrap_or_else(|error| panic!("{command:?}: {error}"));
     let message = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{command:?} fails:\n{message}");
+    assert!(output.status.success(), "{command:?} fails, {}:\n{message}", output.status);
     assert!(message.is_empty(), "{command:?} says:\n{message}");
     output.stdout
 }

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import csv
+import faulthandler
 import io
 import os
 import pathlib
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +34,23 @@ def regular_states(system: chetaev.System, count: int, size: float = 1e-3) -> np
     return system.y0[:, None] + size * noise
 
 
+@pytest.fixture(scope="session")
+def terminal(request: pytest.FixtureRequest) -> Iterator[int]:
+    """A descriptor of standard error as it is where nothing is captured."""
+    with request.config.pluginmanager.getplugin("capturemanager").global_and_fixture_disabled():
+        descriptor = os.dup(2)
+    yield descriptor
+    os.close(descriptor)
+
+
+@pytest.fixture(autouse=True)
+def patience(terminal: int) -> Iterator[None]:
+    """Ends everything with a look at all threads where a test hangs, in whatever it hangs."""
+    faulthandler.dump_traceback_later(1800, exit=True, file=terminal)
+    yield
+    faulthandler.cancel_dump_traceback_later()
+
+
 @pytest.fixture
 def program() -> Callable[..., dict[str, npt.NDArray[np.float64]]]:
     """Runs the program `pc`, and gives the columns that it writes."""
@@ -41,7 +59,7 @@ def program() -> Callable[..., dict[str, npt.NDArray[np.float64]]]:
         pytest.skip("PC_PROGRAM does not say where the program is")
 
     def run(*arguments: str) -> dict[str, npt.NDArray[np.float64]]:
-        done = subprocess.run([path, *arguments], capture_output=True, text=True, check=True)
+        done = subprocess.run([path, *arguments], capture_output=True, text=True, check=True, timeout=600)
         written = done.stdout
         if "-o" in arguments:
             written = pathlib.Path(arguments[arguments.index("-o") + 1]).read_text(encoding="utf-8")

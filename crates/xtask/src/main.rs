@@ -46,7 +46,7 @@ usage: cargo xtask <command>
   bench [NAME…]    run the benchmarks, all of them or those named
   fuzz models|trees [--count N] [--seed S] [--model K]
                    run random models and compare them with independent computations; --model shows one of them
-  attack [--minutes N] [--seed S]
+  attack [--minutes N | --count N] [--seed S]
                    run the program on hostile models, files and checkpoints, and kill it; 10 minutes unless told
   book             make target/book of the pages in docs by mdbook, which is fetched from PyPI unless it is installed
   header           write include/pc.h from the sources of the C interface

@@ -13,13 +13,14 @@ const KNOWN: &[i32] = &[0, 2, 3, 4, 5, 6, 130];
 /// Address space of a run in KiB: its limit on expressions, and what machine code, threads and tables may take beside it.
 const ADDRESS_SPACE: u64 = 6 << 20;
 
+/// After which it is called hanging: no machine is so slow.
+const PATIENCE: Duration = Duration::from_secs(600);
+
 /// The program with a directory of its own to work in.
 #[derive(Clone, Debug)]
 pub struct Victim {
     program: PathBuf,
     directory: PathBuf,
-    /// After which it is called hanging.
-    patience: Duration,
 }
 
 /// What is wrong, and how to see it again.
@@ -54,14 +55,7 @@ impl Ended {
 impl Victim {
     /// `program` in `directory`, which exists.
     pub fn new(program: &Path, directory: &Path) -> Victim {
-        let patience = Duration::from_secs(10);
-        Victim { program: program.to_path_buf(), directory: directory.to_path_buf(), patience }
-    }
-
-    /// The same with other patience.
-    #[must_use]
-    pub fn patient(&self, patience: Duration) -> Victim {
-        Victim { patience, ..self.clone() }
+        Victim { program: program.to_path_buf(), directory: directory.to_path_buf() }
     }
 
     /// A file in its directory.
@@ -96,7 +90,7 @@ impl Victim {
         let command = format!("pc {}", arguments.join(" "));
         let ended = Ended { code: status.and_then(|status| status.code()), said, command };
         Ok(match status {
-            None => Err(ended.finding(format!("still running after {} s", self.patience.as_secs()))),
+            None => Err(ended.finding(format!("still running after {} s", PATIENCE.as_secs()))),
             Some(status) => judged(status, ended),
         })
     }
@@ -109,7 +103,7 @@ impl Victim {
             if let Some(status) = child.try_wait()? {
                 return Ok(Some(status));
             }
-            if begin.elapsed() > self.patience {
+            if begin.elapsed() > PATIENCE {
                 child.kill()?;
                 child.wait()?;
                 return Ok(None);

@@ -1,7 +1,8 @@
-//! The attack: `cargo xtask attack [--minutes N] [--seed S]`.
+//! The attack: `cargo xtask attack [--minutes N | --count N] [--seed S]`.
 //!
 //! It runs the program `pc` that lies beside it on giants, on what is no file, on damaged checkpoints and with kills, and on
-//! changed models for the rest of the time. It ends with 1 if anything was found.
+//! changed models for the rest of the time. With `--count` it makes so many rounds of a fixed number of attempts, the same on each
+//! machine. It ends with 1 if anything was found.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -12,27 +13,87 @@ use pc_tests::attack::victim::{Finding, Victim};
 use pc_tests::attack::{damage, giants, kills, places, texts};
 use pc_tests::fuzz::random::Random;
 
-const USAGE: &str = "usage: attack [--minutes N] [--seed S]";
-/// What each command may take: its limits are to hold before patience ends.
+const USAGE: &str = "usage: attack [--minutes N | --count N] [--seed S]";
+/// What each command may take.
 const LIMITS: &[&str] = &["--limit-time", "3", "--limit-memory", "500M"];
 /// The shares of the time of damaged checkpoints and of kills; the rest is for changed models.
 const SHARE: f64 = 0.15;
 /// Kills a minute, however long they take: what goes wrong between two writes seldom does.
 const KILLS: f64 = 100.0;
+/// The attempts of a round: damaged checkpoints, kills, changed models.
+const ROUND: [usize; 3] = [20, 10, 20];
+
+/// How much is attempted.
+#[derive(Clone, Copy, Debug)]
+enum Amount {
+    Time(Duration),
+    Rounds(usize),
+}
+
+impl Amount {
+    /// The amount and the seed of a command line.
+    fn of(words: &[String]) -> Option<(Amount, u64)> {
+        let number = |name: &str| match words.iter().position(|word| word == name) {
+            None => Some(None),
+            Some(i) => words.get(i + 1)?.parse::<f64>().ok().map(Some),
+        };
+        let amount = match (number("--minutes")?, number("--count")?) {
+            (Some(_), Some(_)) => return None,
+            (None, Some(rounds)) => Amount::Rounds(rounds as usize),
+            (minutes, None) => {
+                Amount::Time(Duration::try_from_secs_f64(60.0 * minutes.unwrap_or(10.0)).ok()?)
+            }
+        };
+        words.len().is_multiple_of(2).then_some((amount, number("--seed")?.unwrap_or(1.0) as u64))
+    }
+
+    /// The commands for giant `number`: a single one where all of them would take too long.
+    fn commands(self, number: usize) -> &'static [&'static [&'static str]] {
+        match self {
+            Amount::Time(time) if time >= Duration::from_secs(60) => COMMANDS,
+            _ => &COMMANDS[number % COMMANDS.len()..][..1],
+        }
+    }
+
+    /// A part of it: `round` attempts a round, or as many as there is time for, at least `least`.
+    fn part(self, round: usize, least: usize, end: impl FnOnce(Duration) -> Instant) -> Part {
+        match self {
+            Amount::Time(time) => Part { least, end: Some(end(time)) },
+            Amount::Rounds(rounds) => Part { least: round * rounds, end: None },
+        }
+    }
+
+    /// The least number of kills in a time.
+    fn kills(self) -> usize {
+        match self {
+            Amount::Time(time) if time >= Duration::from_secs(60) => {
+                (KILLS * time.as_secs_f64() / 60.0) as usize
+            }
+            _ => 1,
+        }
+    }
+}
+
+/// How long a part goes on.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    least: usize,
+    end: Option<Instant>,
+}
+
+impl Part {
+    fn goes_on(self, count: usize) -> bool {
+        count < self.least || self.end.is_some_and(|end| Instant::now() < end)
+    }
+}
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let number = |name: &str, default: f64| match words.iter().position(|word| word == name) {
-        None => Some(default),
-        Some(i) => words.get(i + 1)?.parse().ok(),
-    };
-    let (Some(minutes), Some(seed), true) =
-        (number("--minutes", 10.0), number("--seed", 1.0), words.len().is_multiple_of(2))
-    else {
+    let Some((amount, seed)) = Amount::of(&words) else {
         eprintln!("attack: {USAGE}");
         return ExitCode::from(2);
     };
-    match attack(Duration::from_secs_f64(60.0 * minutes), seed as u64) {
+    match attack(amount, seed) {
         Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
         Err(error) => {
@@ -43,7 +104,7 @@ fn main() -> ExitCode {
 }
 
 /// The number of findings.
-fn attack(time: Duration, seed: u64) -> io::Result<usize> {
+fn attack(amount: Amount, seed: u64) -> io::Result<usize> {
     let begin = Instant::now();
     let program = beside()?;
     // Each attack has choices of its own: how many there was time for does not change those of the others.
@@ -74,18 +135,9 @@ fn attack(time: Duration, seed: u64) -> io::Result<usize> {
     for (number, giant) in all.iter().enumerate() {
         let name = format!("{}.toml", giant.name);
         fs::write(victim.file(&name), &giant.text)?;
-        let commands = match time < Duration::from_secs(60) {
-            true => &COMMANDS[number % COMMANDS.len()..][..1],
-            false => COMMANDS,
-        };
-        for command in commands {
+        for command in amount.commands(number) {
             count += 1;
-            findings.extend(
-                victim
-                    .patient(Duration::from_secs(30))
-                    .run(&[&[command[0], &name], &command[1..], LIMITS].concat())?
-                    .err(),
-            );
+            findings.extend(victim.run(&[&[command[0], &name], &command[1..], LIMITS].concat())?.err());
         }
     }
     tell("giants", count, &findings);
@@ -93,19 +145,17 @@ fn attack(time: Duration, seed: u64) -> io::Result<usize> {
 
     let victim = room("damage")?;
     let (mut findings, mut count) = (Vec::new(), 0);
-    let end = begin.elapsed() + time.mul_f64(SHARE);
-    while count == 0 || begin.elapsed() < end {
+    let part = amount.part(ROUND[0], 1, |time| Instant::now() + time.mul_f64(SHARE));
+    while part.goes_on(count) {
         findings.extend(damage::damage(&victim, 20, &mut of_damage)?);
         count += 20;
     }
     tell("damaged checkpoints", count, &findings);
 
     let (mut findings, mut count) = (Vec::new(), 0);
-    let end = begin.elapsed() + time.mul_f64(SHARE);
-    let minutes = time.as_secs_f64() / 60.0;
-    let least = if minutes < 1.0 { 1 } else { (KILLS * minutes) as usize };
-    while count < least || begin.elapsed() < end {
-        let victim = room(&format!("kills{count}"))?.patient(Duration::from_secs(60));
+    let part = amount.part(ROUND[1], amount.kills(), |time| Instant::now() + time.mul_f64(SHARE));
+    while part.goes_on(count) {
+        let victim = room(&format!("kills{count}"))?;
         findings.extend(kills::kills(&victim, 10, &mut of_kills)?);
         count += 10;
     }
@@ -113,7 +163,8 @@ fn attack(time: Duration, seed: u64) -> io::Result<usize> {
 
     let victim = room("texts")?;
     let (mut findings, mut count) = (Vec::new(), 0);
-    while count < 20 || begin.elapsed() < time {
+    let part = amount.part(ROUND[2], 20, |time| begin + time);
+    while part.goes_on(count) {
         fs::write(victim.file("changed.toml"), texts::changed(&mut of_texts))?;
         let command = COMMANDS[of_texts.below(COMMANDS.len())];
         let arguments = [&[command[0], "changed.toml"], &command[1..], LIMITS].concat();

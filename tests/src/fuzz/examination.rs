@@ -1,6 +1,6 @@
 //! One specimen, examined: what was found, what was refused.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::mpsc;
 use std::thread;
@@ -71,6 +71,7 @@ pub fn examine_specimen(specimen: &Specimen, thoroughness: Thoroughness) -> Exam
 pub(super) fn bounded(limit: Duration, work: impl FnOnce() -> Examined + Send + 'static) -> Examined {
     let (sender, receiver) = mpsc::channel();
     let work = move || {
+        IS_EXAMINING.set(true);
         // Nobody listens any more where the limit has passed.
         let _ = sender.send(panic::catch_unwind(AssertUnwindSafe(work)).map_err(|_| last_panic()));
     };
@@ -160,12 +161,18 @@ fn examine_texts(
 }
 
 thread_local! {
+    /// Whether the thread examines a specimen.
+    static IS_EXAMINING: Cell<bool> = const { Cell::new(false) };
     static LAST_PANIC: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Has panics noted, with their places, instead of printed.
+/// Has panics of specimens noted, with their places; the hook before is that of all others.
 pub fn note_panics() {
-    panic::set_hook(Box::new(|panic| {
+    let others = panic::take_hook();
+    panic::set_hook(Box::new(move |panic| {
+        if !IS_EXAMINING.get() {
+            return others(panic);
+        }
         let message = panic.payload_as_str().unwrap_or("a panic without words");
         let place = panic.location().map_or_else(String::new, |place| format!(" at {place}"));
         LAST_PANIC.with_borrow_mut(|last| *last = format!("{message}{place}"));
@@ -184,7 +191,7 @@ mod tests {
     use crate::fuzz::report::Report;
     use crate::fuzz::specimen::{Coordinate, Frame};
 
-    const SHORT: Thoroughness = Thoroughness { emitted: false, limit: Duration::from_secs(60) };
+    const SHORT: Thoroughness = Thoroughness { emitted: false, limit: Duration::from_secs(3600) };
 
     /// Two masses on a line in quasi-velocities, one of which is said to be another than it is.
     fn with_definition(first: &str) -> Specimen {
@@ -232,7 +239,7 @@ mod tests {
             count: 8,
             threads: 1,
             emitted_every: 0,
-            limit: Duration::from_secs(60),
+            limit: Duration::from_secs(3600),
         };
         let one = campaign.run(|_, _| ());
         let several = Campaign { threads: 3, ..campaign }.run(|_, _| ());

@@ -3,8 +3,9 @@
 use std::ffi::{c_int, c_void};
 use std::mem::ManuallyDrop;
 use std::ptr;
-use std::sync::Barrier;
+use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
+use std::time::Duration;
 
 use crate::common::{Model, System, call};
 use pc::*;
@@ -171,38 +172,49 @@ fn parameters_that_make_m_singular_are_detected_after_a_change() {
     }
 }
 
+/// More than a thread that does not hang waits for another one.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// What an observer tells the other thread, and what it hears from it.
+struct Line {
+    observes: Sender<()>,
+    refused: Receiver<()>,
+}
+
 extern "C" fn wait(_t: f64, _y: *const f64, _length: usize, user: *mut c_void) -> c_int {
-    // SAFETY: the barrier that `a_handle_in_use_is_busy_for_others` passes.
-    let barrier = unsafe { &*user.cast::<Barrier>() };
-    barrier.wait(); // the other thread calls now
-    barrier.wait(); // … and has been refused
-    0
+    // SAFETY: the line that `a_handle_in_use_is_busy_for_others` passes, which this thread alone has.
+    let line = unsafe { &*user.cast::<Line>() };
+    let met = line.observes.send(()).is_ok() && line.refused.recv_timeout(PATIENCE).is_ok();
+    c_int::from(!met)
 }
 
 #[test]
 fn a_handle_in_use_is_busy_for_others() {
     let system = System::of("euler-top");
-    let (mut solver, barrier) = (ptr::null_mut(), Barrier::new(2));
+    let mut solver = ptr::null_mut();
     // SAFETY: a live system and a place for the handle.
     let new =
         |error| unsafe { pc_solver_new(system.0, ptr::null(), 0.0, ptr::null(), 0, &raw mut solver, error) };
     call(new).unwrap();
     let solver = Sent(solver);
     thread::scope(|scope| {
-        let (solver, barrier) = (&solver, &barrier);
+        let solver = &solver;
+        let (observes, observed) = mpsc::channel();
+        let (refuse, refused) = mpsc::channel();
+        let line = Line { observes, refused };
         scope.spawn(move || {
-            let user = ptr::from_ref(barrier).cast_mut().cast();
+            let user = ptr::from_ref(&line).cast_mut().cast();
             // SAFETY: a live solver, one time, and what the observer expects.
             let run = |error| unsafe { pc_solver_run(solver.0, [1.0].as_ptr(), 1, Some(wait), user, error) };
             call(run).unwrap();
         });
-        barrier.wait();
+        observed.recv_timeout(PATIENCE).expect("the observer is called");
         let mut y = [0.0; 3];
         // SAFETY: a live solver and room as said.
         let refused =
             call(|error| unsafe { pc_solver_advance(solver.0, 2.0, y.as_mut_ptr(), 3, error) }).unwrap_err();
         assert_eq!(refused.status, pc_status::PC_BUSY);
-        barrier.wait();
+        refuse.send(()).expect("the observer waits");
     });
     let mut y = [0.0; 3];
     // SAFETY: a live solver and room as said; it is freed once.

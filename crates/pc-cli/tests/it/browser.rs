@@ -4,18 +4,23 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, ExitStatus, Output, Stdio};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
+
+use crate::patience::send;
 
 /// Widths of the page.
 const WIDTHS: [u32; 2] = [1280, 400];
 /// Frames that are compared, among SAMPLES.
 const FRAMES: [usize; 3] = [0, 250, 600];
 const SAMPLES: &str = "601";
-/// A page on two slow cores takes a few seconds.
-const PATIENCE: Duration = Duration::from_secs(180);
+/// A page on two slow cores takes a few seconds: a browser that takes longer hangs.
+const PATIENCE: Duration = Duration::from_secs(1800);
+/// Held while a browser runs: one at a time has the memory and the processors for itself.
+static BROWSER: Mutex<()> = Mutex::new(());
 
 /// A Chromium, by the variable `CHROMIUM` or on the path.
 fn chromium() -> Option<PathBuf> {
@@ -27,6 +32,37 @@ fn chromium() -> Option<PathBuf> {
         ["chromium", "chromium-browser", "google-chrome"].map(|name| directory.join(name)).into_iter()
     };
     std::env::split_paths(&path).flat_map(all).find(|file| file.is_file())
+}
+
+/// A browser with all processes that it starts, which are killed with it.
+struct Browser(Child);
+
+impl Browser {
+    fn start(command: &mut Command) -> Browser {
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(command, 0);
+        Browser(command.spawn().expect("Chromium starts"))
+    }
+
+    /// How it ends; none if it hangs.
+    fn ended(&mut self) -> Option<ExitStatus> {
+        let start = Instant::now();
+        while start.elapsed() < PATIENCE {
+            if let Some(status) = self.0.try_wait().expect("a child") {
+                return Some(status);
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        None
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        send("-KILL", &format!("-{}", self.0.id()));
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
 }
 
 /// Runs headless Chromium on a page, in a separate directory.
@@ -42,18 +78,10 @@ fn browse(chromium: &Path, directory: &Path, more: &[&str], page: &Path) -> Outp
         .stdin(Stdio::null());
     let (out, err) = (directory.join("out"), directory.join("err"));
     command.stdout(fs::File::create(&out).expect("a file")).stderr(fs::File::create(&err).expect("a file"));
-    let mut child = command.spawn().expect("Chromium starts");
-    let start = Instant::now();
-    let status = loop {
-        if let Some(status) = child.try_wait().expect("a child") {
-            break status;
-        }
-        if start.elapsed() > PATIENCE {
-            let _ = child.kill();
-            panic!("Chromium does not end: {}", fs::read_to_string(err).unwrap_or_default());
-        }
-        std::thread::sleep(Duration::from_millis(20));
-    };
+    let _alone = BROWSER.lock().unwrap_or_else(PoisonError::into_inner);
+    let status = Browser::start(&mut command).ended().unwrap_or_else(|| {
+        panic!("Chromium does not end: {}", fs::read_to_string(&err).unwrap_or_default());
+    });
     Output { status, stdout: fs::read(out).expect("a file"), stderr: fs::read(err).expect("a file") }
 }
 

@@ -2,8 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::Duration;
+
+use crate::patience::{Reaped, ended, started, until};
 
 fn pc(arguments: &[String]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
@@ -65,40 +68,55 @@ impl Run {
 }
 
 /// Signals `child` once `path` differs from `before`, unless the child ends first.
-fn signalled(mut child: Child, signal: &str, path: &Path, before: &[u8]) -> Output {
-    let start = Instant::now();
-    while fs::read(path).ok().is_none_or(|bytes| bytes == before)
-        && child.try_wait().expect("a child").is_none()
-    {
-        assert!(start.elapsed() < Duration::from_secs(60), "nothing happens");
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    // The child may have ended in the meantime.
-    let _ = Command::new("kill").args([signal, &child.id().to_string()]).stderr(Stdio::null()).status();
-    child.wait_with_output().expect("pc ends")
+#[cfg(unix)]
+fn signalled(mut child: Reaped, signal: &str, path: &Path, before: &[u8]) -> Output {
+    let is_other = || fs::read(path).is_ok_and(|bytes| bytes != before);
+    until("another checkpoint", || is_other() || child.has_ended());
+    child.signal(signal);
+    ended(child)
 }
 
-const TOP: [&str; 8] = ["--t-end", "60000", "--samples", "40", "--every", "100", "--rtol", "1e-8"];
+/// Begins the run and continues it, ended by a signal each time; how often a signal came before its end.
+#[cfg(unix)]
+fn kills(run: &Run, signals: &[&str]) -> u32 {
+    let (mut how, mut kills, mut before) = ("--checkpoint", 0, Vec::new());
+    for signal in signals {
+        let child = started(&mut pc(&run.arguments("b.json", how, "b.check", &[])));
+        let output = signalled(child, signal, &run.at("b.check"), &before);
+        if output.status.code() == Some(130) {
+            assert!(stderr(&output).contains("--resume"), "{}", stderr(&output));
+        }
+        kills += u32::from(!output.status.success());
+        before = fs::read(run.at("b.check")).expect("a checkpoint");
+        how = "--resume";
+    }
+    kills
+}
+
+/// A run of the model to ever later ends, until `least` signals come before its end and it gives the same bytes all the same; then
+/// its bytes.
+#[cfg(unix)]
+#[track_caller]
+fn killed_often(model: &str, options: &[&str], t_end: f64, signals: &[&str], least: u32) -> (Run, Vec<u8>) {
+    for k in 0..8 {
+        let t_end = (t_end * f64::from(1 << k)).to_string();
+        let run = Run::new(model, &[options, &["--t-end", &t_end]].concat());
+        let undisturbed = run.whole("a.json", "--checkpoint", "a.check", &[]);
+        let kills = kills(&run, signals);
+        assert!(run.whole("b.json", "--resume", "b.check", &[]) == undisturbed);
+        if kills >= least {
+            return (run, undisturbed);
+        }
+    }
+    panic!("{model}: all runs are over too soon for this test");
+}
 
 #[cfg(unix)]
 #[test]
 fn a_run_killed_again_and_again_gives_the_same_bytes() {
-    let run = Run::new("heavy-top-lagrange", &TOP);
-    let undisturbed = run.whole("a.json", "--checkpoint", "a.check", &[]);
-    let (mut how, mut kills, mut before) = ("--checkpoint", 0, Vec::new());
-    for signal in ["-KILL", "-TERM", "-INT", "-KILL", "-KILL", "-TERM", "-KILL", "-INT"] {
-        let child = pc(&run.arguments("b.json", how, "b.check", &[])).spawn().expect("pc starts");
-        let output = signalled(child, signal, &run.at("b.check"), &before);
-        let interrupted = output.status.code() == Some(130);
-        kills += u32::from(!output.status.success());
-        if interrupted {
-            assert!(stderr(&output).contains("--resume"), "{}", stderr(&output));
-        }
-        before = fs::read(run.at("b.check")).expect("a checkpoint");
-        how = "--resume";
-    }
-    assert!(kills >= 4, "the run is over too soon for this test: {kills}");
-    assert!(run.whole("b.json", "--resume", "b.check", &[]) == undisturbed);
+    let options = ["--samples", "40", "--every", "100", "--rtol", "1e-8"];
+    let signals = ["-KILL", "-TERM", "-INT", "-KILL", "-KILL", "-TERM", "-KILL", "-INT"];
+    let (run, undisturbed) = killed_often("heavy-top-lagrange", &options, 60_000.0, &signals, 4);
     // From the last checkpoint of a complete run, with another place for the next ones.
     let again =
         run.whole("b.json", "--resume", "a.check", &["--checkpoint", run.at("c").to_str().expect("UTF-8")]);
@@ -140,7 +158,7 @@ fn a_resumed_run_depends_only_on_the_checkpoint() {
         ];
         let run = Run::new(model, &options);
         let undisturbed = run.whole("a.csv", "--checkpoint", "a.check", &[]);
-        let child = pc(&run.arguments("b.csv", "--checkpoint", "b.check", &[])).spawn().expect("pc starts");
+        let child = started(&mut pc(&run.arguments("b.csv", "--checkpoint", "b.check", &[])));
         let first = signalled(child, "-INT", &run.at("b.check"), &[]);
         assert!(
             run.whole("b.csv", "--resume", "b.check", &[]) == undisturbed,
@@ -212,17 +230,23 @@ fn foreign_checkpoints_are_refused() {
 /// before two are seen, and is then repeated.
 fn seen(run: &Run, output: &str) -> (Vec<Vec<u8>>, Vec<u8>) {
     let mut all: Vec<Vec<u8>> = Vec::new();
+    let look = |all: &mut Vec<Vec<u8>>| {
+        let now = fs::read(run.at("seen.check")).unwrap_or_default();
+        if !now.is_empty() && all.last() != Some(&now) {
+            all.push(now);
+        }
+    };
     for _ in 0..20 {
         let arguments = run.arguments(output, "--checkpoint", "seen.check", &[]);
-        let mut child = pc(&arguments).spawn().expect("pc starts");
         all.clear();
-        while child.try_wait().expect("a child").is_none() {
-            let now = fs::read(run.at("seen.check")).unwrap_or_default();
-            if !now.is_empty() && all.last() != Some(&now) {
-                all.push(now);
-            }
+        let _ = fs::remove_file(run.at("seen.check"));
+        let mut child = started(&mut pc(&arguments));
+        while !child.has_ended() {
+            look(&mut all);
+            thread::sleep(Duration::from_millis(1));
         }
-        let output_of = child.wait_with_output().expect("pc ends");
+        look(&mut all);
+        let output_of = ended(child);
         assert!(output_of.status.success(), "{}", stderr(&output_of));
         if all.len() > 1 {
             break;
@@ -261,19 +285,8 @@ fn a_run_with_events_gives_the_same_bytes_from_each_checkpoint() {
 #[cfg(unix)]
 #[test]
 fn a_run_with_events_killed_again_and_again_gives_the_same_bytes() {
-    let run =
-        Run::new("bouncing-ball", &["--set", "e=1", "--t-end", "3000", "--samples", "40", "--every", "97"]);
-    let undisturbed = run.whole("a.json", "--checkpoint", "a.check", &[]);
-    let (mut how, mut kills, mut before) = ("--checkpoint", 0, Vec::new());
-    for signal in ["-KILL", "-INT", "-TERM", "-KILL"] {
-        let child = pc(&run.arguments("b.json", how, "b.check", &[])).spawn().expect("pc starts");
-        let output = signalled(child, signal, &run.at("b.check"), &before);
-        kills += u32::from(!output.status.success());
-        before = fs::read(run.at("b.check")).expect("a checkpoint");
-        how = "--resume";
-    }
-    assert!(kills >= 2, "the run is over too soon for this test: {kills}");
-    assert!(run.whole("b.json", "--resume", "b.check", &[]) == undisturbed);
+    let options = ["--set", "e=1", "--samples", "40", "--every", "97"];
+    killed_often("bouncing-ball", &options, 3000.0, &["-KILL", "-INT", "-TERM", "-KILL"], 2);
 }
 
 #[test]

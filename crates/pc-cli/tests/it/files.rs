@@ -6,10 +6,15 @@
 use std::fs::{self, File, Permissions};
 use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, chown, symlink};
 use std::os::unix::net::UnixListener;
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, ExitStatus, Output, Stdio};
+use std::sync::mpsc;
+use std::thread;
 
 use tempfile::TempDir;
+
+use crate::patience::{PATIENCE, Reaped, ended, started, until};
 
 /// A directory, with another one for temporary files.
 struct Place(TempDir, TempDir);
@@ -41,12 +46,7 @@ impl Place {
             .args(["-c", &format!("{before}; exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_pc")])
             .args(arguments);
         command.current_dir(self.0.path()).env("TMPDIR", self.1.path()).stdin(Stdio::null());
-        command.output().expect("a shell")
-    }
-
-    /// Whether there is a non-empty file of this name.
-    fn has_bytes(&self, name: &str) -> bool {
-        fs::metadata(self.at(name)).is_ok_and(|found| found.len() > 0)
+        ended(started(command.stdout(Stdio::piped()).stderr(Stdio::piped())))
     }
 
     /// The names of the files in the directory, and of the temporary files.
@@ -69,8 +69,26 @@ fn said(output: &Output) -> String {
 
 #[track_caller]
 fn ends(command: &mut Command, code: i32, message: &str) {
-    let output = command.output().expect("pc starts");
+    let output = ended(started(command.stderr(Stdio::piped())));
     assert_eq!((output.status.code(), said(&output).as_str()), (Some(code), message));
+}
+
+fn status(command: &mut Command) -> ExitStatus {
+    ended(started(command)).status
+}
+
+/// What `work` with a FIFO gives, which waits for the other end: for as long as `pc` may still come to it.
+#[track_caller]
+fn met<T: Send + 'static>(pc: &mut Reaped, work: impl FnOnce() -> T + Send + 'static) -> T {
+    let (sender, receiver) = mpsc::channel();
+    thread::spawn(move || sender.send(work()));
+    let mut done = None;
+    until("the other end of the FIFO", || {
+        done = receiver.try_recv().ok();
+        done.is_some() || pc.has_ended()
+    });
+    // What it has written may still be on its way.
+    done.or_else(|| receiver.recv_timeout(PATIENCE / 10).ok()).expect("pc opens the FIFO")
 }
 
 /// The table of a run on standard output.
@@ -107,8 +125,8 @@ fn only_regular_files_are_replaced() {
         "null.csv",
         "it is not a regular file",
     );
-    assert!(place.pc(&run("-o", "null.csv")).status().expect("pc").success(), "written through");
-    assert!(place.pc(&run("--checkpoint", "/dev/null")).status().expect("pc").code() == Some(2));
+    assert!(status(&mut place.pc(&run("-o", "null.csv"))).success(), "written through");
+    assert!(status(&mut place.pc(&run("--checkpoint", "/dev/null"))).code() == Some(2));
     for device in [place.at("null.csv"), "/dev/null".into()] {
         assert!(fs::metadata(device).expect("still there").file_type().is_char_device());
     }
@@ -119,9 +137,10 @@ fn only_regular_files_are_replaced() {
 fn a_fifo_is_written_directly() {
     let place = Place::new();
     assert!(Command::new("mkfifo").arg(place.at("a.csv")).status().expect("mkfifo").success());
-    let mut child = place.pc(&["run", "euler-top", "-o", "a.csv"]).stderr(Stdio::null()).spawn().expect("pc");
-    let read = fs::read(place.at("a.csv")).expect("a FIFO");
-    assert!(child.wait().expect("pc").success());
+    let mut child = started(place.pc(&["run", "euler-top", "-o", "a.csv"]).stderr(Stdio::null()));
+    let fifo = place.at("a.csv");
+    let read = met(&mut child, || fs::read(fifo)).expect("a FIFO");
+    assert!(ended(child).status.success());
     assert!(read == table(&place, &[]));
     assert!(fs::metadata(place.at("a.csv")).expect("still there").file_type().is_fifo());
 }
@@ -213,15 +232,14 @@ fn a_result_whose_directory_has_gone_is_kept_elsewhere() {
     fs::create_dir(place.at("gone")).expect("a directory");
     assert!(Command::new("mkfifo").arg(place.at("model")).status().expect("mkfifo").success());
     let model = place.name("model");
-    let child =
-        place.pc(&["run", &model, "-o", "gone/a.json"]).stderr(Stdio::piped()).spawn().expect("pc starts");
+    let mut child = started(place.pc(&["run", &model, "-o", "gone/a.json"]).stderr(Stdio::piped()));
     // This opens once pc reads the FIFO, after it has examined the place of the result.
-    let mut fifo = File::create(&model).expect("a FIFO");
+    let mut fifo = met(&mut child, || File::create(model)).expect("a FIFO");
     fs::remove_dir_all(place.at("gone")).expect("removed");
     let text = "[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n[simulation]\nt_end = 1.0\n";
     std::io::Write::write_all(&mut fifo, text.as_bytes()).expect("written");
     drop(fifo);
-    let output = child.wait_with_output().expect("pc ends");
+    let output = ended(child);
     let kept = place.entries().1.pop().expect("a file");
     let file = place.1.path().join(&kept);
     let message = format!(
@@ -264,9 +282,11 @@ fn files_of_a_killed_run_are_removed_by_the_next_one() {
         fs::write(place.at(name), "t,").expect("written");
     }
     let other = File::open(place.at(in_use)).expect("a file");
-    other.lock().expect("the lock of a live run");
+    other.try_lock().expect("the lock of a live run");
     assert!(place.pc(&["run", "euler-top", "-o", "a.csv"]).status().expect("pc").success());
     assert_eq!(place.entries().0, [in_use, of_somebody, of_another, "a.csv"]);
+    // A process of another test that is just being started has the descriptor, too.
+    other.unlock().expect("unlocked");
     drop(other);
     // A name of the greatest length.
     let long = format!("{}.csv", "x".repeat(251));
@@ -385,21 +405,14 @@ fn rows_written_during_the_run_are_kept_on_a_full_disk() {
 #[test]
 fn leftovers_of_a_run_killed_while_writing_are_removed_by_the_next_one() {
     let place = Place::new();
-    let run = ["run", "euler-top", "--samples", "9000000", "-o", "a.csv"];
     fs::write(place.at("a.csv"), "old").expect("written");
-    let mut before = place.entries().0;
     for _ in 0..5 {
-        let mut child = place.pc(&run).stderr(Stdio::null()).spawn().expect("pc starts");
-        let start = std::time::Instant::now();
-        // Wait until a new file contains rows: an empty one only tries the directory.
-        while !place.entries().0.iter().any(|name| !before.contains(name) && place.has_bytes(name)) {
-            assert!(start.elapsed().as_secs() < 60, "nothing happens");
-            std::thread::sleep(std::time::Duration::from_millis(2));
-        }
-        child.kill().expect("killed");
-        assert!(!child.wait().expect("ended").success());
-        before = place.entries().0;
-        assert!(before.len() == 2 && before[0].ends_with(".part"), "{before:?}");
+        // The system kills it when its new file passes the limit on sizes.
+        let output = place.shell("ulimit -c 0; ulimit -f 16", &[&MANY[..], &["-o", "a.csv"]].concat());
+        assert!(output.status.signal().is_some(), "{}: {}", output.status, said(&output));
+        let names = place.entries().0;
+        assert!(names.len() == 2 && names[0].ends_with(".part"), "{names:?}");
+        assert!(fs::metadata(place.at(&names[0])).expect("a part").len() > 0, "it has rows");
         assert_eq!(fs::read(place.at("a.csv")).expect("the old one"), b"old");
     }
     assert!(place.pc(&["run", "euler-top", "-o", "a.csv"]).status().expect("pc").success());

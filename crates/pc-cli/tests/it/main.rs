@@ -32,6 +32,7 @@ mod models;
 mod new;
 mod numbers;
 mod options_of_run;
+mod patience;
 mod plots;
 mod print;
 mod program;

@@ -3,7 +3,8 @@
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
+
+use crate::patience::{ended, started, until};
 
 use crate::each_model::{answer, each};
 use pc_model::Builtin;
@@ -377,22 +378,20 @@ fn a_closed_pipe_is_reported_by_the_exit_code_alone() {
 #[test]
 fn ctrl_c_writes_the_rows_reached() {
     let directory = tempfile::tempdir().expect("a directory");
-    let path = directory.path().join("a.json");
-    let mut child = pc()
-        .args(["run", "euler-top", "--t-end", "1e9", "--samples", "1000000", "-o"])
-        .arg(&path)
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("pc starts");
-    std::thread::sleep(Duration::from_millis(700));
-    let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(interrupt.expect("kill").success());
-    let start = Instant::now();
-    while child.try_wait().expect("a child").is_none() {
-        assert!(start.elapsed() < Duration::from_secs(20), "still running");
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    let output = child.wait_with_output().expect("pc ends");
+    let (path, checkpoint) = (directory.path().join("a.json"), directory.path().join("a.check"));
+    let mut run = pc();
+    run.args(["run", "euler-top", "--t-end", "1e9", "--samples", "1000000", "-o"]).arg(&path);
+    let mut child = started(run.arg("--checkpoint").arg(&checkpoint).stderr(Stdio::piped()));
+    // The first checkpoint is that of the start, the second one shows that the motion is under way.
+    let mut first = None;
+    until("a second checkpoint", || {
+        let now = std::fs::read(&checkpoint).ok();
+        let changed = first.is_some() && now != first;
+        first = first.take().or(now);
+        changed || child.has_ended()
+    });
+    child.signal("-INT");
+    let output = ended(child);
     let text = stderr(&output);
     assert_eq!(code(&output), 130, "{text}");
     assert!(text.contains("interrupted at t = "), "{text}");

@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use crate::sweeps::{Place, killed};
+use crate::sweeps::Place;
 
 /// A blade on ice, pushed off its mass centre.
 const SLEIGH: &str = r#"
@@ -115,7 +115,7 @@ fn shards_that_do_not_belong_together_are_named() {
     assert!(fs::read(place.at(whole)).expect("a shard") == bytes, "the same shard");
     // A shard that is being written.
     let held = fs::File::open(place.at(two)).expect("a file");
-    held.lock().expect("locked");
+    held.try_lock().expect("locked");
     refuses(&[one, two, whole], &["another sweep is writing", two]);
     held.unlock().expect("unlocked");
     assert!(merged(&place, "a.csv", &[one, two, whole]) == place.swept("whole.csv", &GRID));
@@ -130,11 +130,11 @@ fn killed_shards_continue_where_they_were() {
     let undisturbed = place.swept("whole.csv", &RANDOM);
     let mut kills = 0;
     for shard in ["1/2", "2/2"] {
-        let journal = place.at(&format!("a.csv.shard-{}-of-2", &shard[..1]));
+        let journal = format!("a.csv.shard-{}-of-2", &shard[..1]);
         let arguments = sweep("a.csv", &RANDOM, shard);
         // Each time later than before, and at another place of a record.
         for bytes in (0..10).map(|i| 700 + 977 * i) {
-            if !killed(&place, &arguments, &journal, bytes) {
+            if !place.killed(&arguments, &journal, bytes) {
                 break;
             }
             kills += 1;

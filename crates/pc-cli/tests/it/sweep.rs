@@ -1,11 +1,12 @@
 //! `pc sweep`: the same bytes, even after interruptions.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
 
+use crate::patience::{ended, started, until};
 use crate::random::SplitMix64;
+use crate::sweeps;
 
 /// A blade on ice, with a constraint that makes a quasi-velocity vanish.
 const SLEIGH: &str = r#"
@@ -122,6 +123,11 @@ impl Place {
 
     fn journal(&self, name: &str) -> PathBuf {
         self.at(&format!("{name}.partial"))
+    }
+
+    /// Whether the sweep of `MANY` was killed when its journal had grown by `bytes`.
+    fn killed(&self, name: &str, bytes: u64) -> bool {
+        sweeps::killed(self.0.path(), &strs(&self.sweep(name, &MANY)), &self.journal(name), bytes)
     }
 }
 
@@ -366,34 +372,16 @@ fn wrong_usage_suggests_a_correction() {
 /// So many members that the sweep lasts long enough to be killed.
 const MANY: [&str; 6] = ["--samples", "600", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
 
-/// Kills the sweep as soon as its journal has grown by `bytes`, or after `patience`; returns
-/// whether it was still at work.
-fn killed(place: &Place, name: &str, bytes: u64, patience: Duration) -> bool {
-    let length = |path: &Path| fs::metadata(path).map_or(0, |metadata| metadata.len());
-    let before = length(&place.journal(name));
-    let arguments = place.sweep(name, &MANY);
-    let mut child = pc(&strs(&arguments)).stderr(Stdio::null()).spawn().expect("pc starts");
-    let start = Instant::now();
-    while length(&place.journal(name)) < before + bytes && start.elapsed() < patience {
-        if child.try_wait().expect("a child").is_some() {
-            return false;
-        }
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    child.kill().expect("killed");
-    !child.wait().expect("a child").success()
-}
-
 #[test]
 fn a_sweep_killed_again_and_again_gives_the_same_bytes() {
     let place = Place::new(SLEIGH);
     let undisturbed = place.swept("whole.csv", &MANY);
     let mut kills = 0;
-    // Random moments with a fixed seed, some before the journal is begun.
+    // Random places with a fixed seed, the first of them in the header of the journal.
     let mut random = SplitMix64::new(12_345);
-    for _ in 0..12 {
-        let patience = Duration::from_millis(20 + random.next_bits() % 60);
-        kills += u32::from(killed(&place, "a.csv", 1 + random.next_bits() % 6000, patience));
+    for k in 0..12 {
+        let bytes = if k == 0 { 1 } else { 1 + random.next_bits() % 6000 };
+        kills += u32::from(place.killed("a.csv", bytes));
     }
     assert!(kills >= 3, "the sweep is over too soon for this test: {kills}");
     let resumed = place.swept("a.csv", &MANY);
@@ -405,7 +393,7 @@ fn a_sweep_killed_again_and_again_gives_the_same_bytes() {
 
 /// The journal of a sweep that was killed.
 fn torn(place: &Place) -> Vec<u8> {
-    assert!(killed(place, "a.csv", 20_000, Duration::from_secs(30)), "still at work");
+    assert!(place.killed("a.csv", 20_000), "still at work");
     fs::read(place.journal("a.csv")).expect("a journal")
 }
 
@@ -455,8 +443,18 @@ fn the_journal_of_another_sweep_is_refused_with_the_difference() {
         assert_eq!(fs::read(place.journal("a.csv")).expect("a file"), foreign, "it is left as it was");
     }
     let held = fs::File::create(place.journal("b.csv")).expect("a file");
-    held.lock().expect("locked");
+    held.try_lock().expect("locked");
     ends(&strs(&place.sweep("b.csv", &MANY)), 2, &["another sweep is writing"]);
+}
+
+/// What comes of a sweep that is interrupted once its journal is long enough, unless it ends before.
+#[cfg(unix)]
+fn interrupted(place: &Place) -> Output {
+    let mut child = started(pc(&strs(&place.sweep("a.csv", &MANY))).stderr(Stdio::piped()));
+    let length = || fs::metadata(place.journal("a.csv")).map_or(0, |metadata| metadata.len());
+    until("the journal grows", || length() >= 10_000 || child.has_ended());
+    child.signal("-INT");
+    ended(child)
 }
 
 #[cfg(unix)]
@@ -464,16 +462,15 @@ fn the_journal_of_another_sweep_is_refused_with_the_difference() {
 fn ctrl_c_keeps_finished_members() {
     let place = Place::new(SLEIGH);
     let undisturbed = place.swept("whole.csv", &MANY);
-    let arguments = place.sweep("a.csv", &MANY);
-    let child = pc(&strs(&arguments)).stderr(Stdio::piped()).spawn().expect("pc starts");
-    let start = Instant::now();
-    while fs::metadata(place.journal("a.csv")).map_or(0, |metadata| metadata.len()) < 10_000 {
-        assert!(start.elapsed() < Duration::from_secs(30), "nothing happens");
-        std::thread::sleep(Duration::from_millis(1));
+    let mut output = interrupted(&place);
+    // On a busy machine a sweep may end before it is interrupted.
+    for _ in 0..20 {
+        if output.status.code() != Some(0) {
+            break;
+        }
+        fs::remove_file(place.at("a.csv")).expect("a table");
+        output = interrupted(&place);
     }
-    let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(interrupt.expect("kill").success());
-    let output = child.wait_with_output().expect("pc ends");
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
     assert!(stderr(&output).contains("of 600 members; the same command continues from there"));
     assert!(!place.at("a.csv").exists());

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::sweeps::{Place, killed};
+use crate::sweeps::Place;
 use serde_json::Value;
 
 /// λ² = Ω² cos 2θ − g cos θ at an equilibrium; without one for a pull of more than g.
@@ -122,8 +122,7 @@ fn what_was_killed_goes_on_and_gives_the_same_bytes() {
         let undisturbed = place.swept("whole.csv", &options);
         let sweep = [&["sweep", "model.toml", "-o", "a.csv"][..], &options].concat();
         // Never at the same place of a record.
-        let kills =
-            (0..4).filter(|i| killed(&place, &sweep, &place.at("a.csv.partial"), step + 77 * i)).count();
+        let kills = (0..4).filter(|i| place.killed(&sweep, "a.csv.partial", step + 77 * i)).count();
         assert!(kills >= 1, "{options:?} is over too soon for this test");
         // Unless the last one came to its end before it could be killed.
         let is_left = place.at("a.csv.partial").exists();
@@ -216,7 +215,7 @@ fn options_that_say_nothing_are_refused() {
     assert_eq!(fs::read_dir(place.at("")).expect("a directory").count(), 1, "nothing is left");
     // What another sweep has left is not gone on with.
     let cut = ["sweep", "model.toml", "-o", "a.csv", "--vary", "g=1:2:300"];
-    assert!(killed(&place, &[&cut[..], &["--of", "check"]].concat(), &place.at("a.csv.partial"), 3000));
+    assert!(place.killed(&[&cut[..], &["--of", "check"]].concat(), "a.csv.partial", 3000));
     place.ends(&[&cut[..], &["--of", "linearize"]].concat(), 2, &["--of check, where now it is linearize"]);
 }
 

@@ -276,6 +276,6 @@ fn a_theory_of_many_coordinates_ends() {
         potential.join(" + ")
     );
     fs::write(&path, text).expect("written");
-    let said = said(&[&path.display().to_string(), "--limit-time", "120"]);
+    let said = said(&[&path.display().to_string()]);
     assert!(said.contains("Jacobi's identity proved"), "{said}");
 }

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
+
+use crate::patience::{ended, started};
 
 /// A directory with a model in it.
 pub(crate) struct Place(tempfile::TempDir);
@@ -17,6 +18,11 @@ impl Place {
 
     pub(crate) fn at(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
+    }
+
+    /// As [`killed`], with the journal `name`.
+    pub(crate) fn killed(&self, arguments: &[&str], name: &str, bytes: u64) -> bool {
+        killed(self.0.path(), arguments, &self.at(name), bytes)
     }
 
     pub(crate) fn pc(&self, arguments: &[&str]) -> Command {
@@ -45,19 +51,16 @@ impl Place {
     }
 }
 
-/// Kills the process as soon as its journal has grown by `bytes`; whether it was killed before its end.
-pub(crate) fn killed(place: &Place, arguments: &[&str], journal: &Path, bytes: u64) -> bool {
-    let length = || fs::metadata(journal).map_or(0, |metadata| metadata.len());
-    let before = length();
-    let mut child = place.pc(arguments).stderr(Stdio::null()).spawn().expect("pc starts");
-    let start = Instant::now();
-    while length() < before + bytes {
-        if child.try_wait().expect("a child").is_some() {
-            return false;
-        }
-        assert!(start.elapsed() < Duration::from_secs(60), "nothing happens");
-        std::thread::sleep(Duration::from_micros(200));
-    }
-    let _ = child.kill();
-    child.wait().expect("ended").code().is_none()
+/// Runs `pc` in `directory` until its journal has grown by `bytes`, up to a block more; whether it was killed before its end.
+///
+/// The system itself kills it, where a file passes the limit on sizes: in the midst of a record, at the same byte on each machine.
+pub(crate) fn killed(directory: &Path, arguments: &[&str], journal: &Path, bytes: u64) -> bool {
+    let length = fs::metadata(journal).map_or(0, |metadata| metadata.len());
+    let limits = format!("ulimit -c 0; ulimit -f {}", (length + bytes) / 512 + 1);
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &format!("{limits}; exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_pc")]).args(arguments);
+    shell.current_dir(directory).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    let status = ended(started(&mut shell)).status;
+    assert!(status.success() || status.code().is_none(), "it neither ends well nor is killed: {status}");
+    status.code().is_none()
 }
