@@ -14,10 +14,10 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Error> {
     announce_and_run(Command::new(built("release")?).args(arguments))
 }
 
-/// Some rounds of it, on the program of the tests: half a minute on a machine of two cores.
+/// Some rounds of it, on the program of the tests: half a minute on two cores.
 pub(crate) fn quick() -> Result<(), Error> {
     build_as_for_tests(&["--bin", "pc", "--bin", "attack"])?;
-    announce_and_run(Command::new(built("debug")?).args(["--count", "1"]))
+    announce_and_run(Command::new(built("debug")?).args(["--count", "6"]))
 }
 
 fn built(profile: &str) -> Result<PathBuf, Error> {

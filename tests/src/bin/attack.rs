@@ -21,7 +21,7 @@ const SHARE: f64 = 0.15;
 /// Kills a minute, however long they take: what goes wrong between two writes seldom does.
 const KILLS: f64 = 100.0;
 /// The attempts of a round: damaged checkpoints, kills, changed models.
-const ROUND: [usize; 3] = [20, 10, 20];
+const ROUND: [usize; 3] = [40, 10, 4];
 
 /// How much is attempted.
 #[derive(Clone, Copy, Debug)]

@@ -108,7 +108,8 @@ impl Group {
         use std::os::unix::process::CommandExt;
         let leader = command.process_group(0).spawn()?;
         // Its input ends with us, by whatever we end; the signals that a terminal sends to our group do not end it.
-        let watch = format!("trap '' INT TERM HUP; read -r _; kill -KILL -- -{}", leader.id());
+        // After a signal by its own letters, such as -KILL, dash does not know `--`.
+        let watch = format!("trap '' INT TERM HUP; read -r _; kill -s KILL -- -{}", leader.id());
         let guardian = Command::new("sh")
             .args(["-c", &watch])
             .stdin(Stdio::piped())
