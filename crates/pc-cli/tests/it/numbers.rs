@@ -57,7 +57,8 @@ fn every_model(canonical: bool) {
     for model in models.iter().filter(|model| !is_a_tree(model)) {
         let motion = compare(model, &Asked { canonical, ..Asked::default() }, &[]);
         assert_eq!(motion.ending, "completed", "{model}");
-        assert!(motion.work[0] > 10, "{model}: {:?}", motion.work);
+        // Of the seventh order, a step goes far.
+        assert!(motion.work[0] > 5, "{model}: {:?}", motion.work);
     }
 }
 

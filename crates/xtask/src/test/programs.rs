@@ -45,6 +45,7 @@ pub(crate) fn build(limit: Duration) -> Result<Vec<TestProgram>, Error> {
     fs::create_dir_all(&place).map_err(wrong)?;
     let output = File::create(&list).map_err(wrong)?;
     let mut command = cargo(&["build", "--workspace", "--lib", "--bins", "--tests", "--examples"]);
+    command.args(["--message-format", "json-render-diagnostics"]);
     println!("{}", line_of(&command));
     let ending = limited::run(&mut command, limit, Some(output.into()), |line, _| println!("{line}"))?;
     match ending {

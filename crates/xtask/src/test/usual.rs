@@ -8,8 +8,15 @@ const LEAST: Duration = Duration::from_secs(60);
 /// Beyond this many times its usual time a stage has stopped working: slow machines and work beside it take less.
 const FACTOR: u32 = 5;
 
-/// Seconds that the test programs take on two cores which do nothing else; those that are not named take no time.
-const PROGRAMS: [(&str, u64); 1] = [("pc-tests it", 300)];
+/// Seconds that the test programs take on two cores which do nothing else; those that are not named take less than twelve.
+const PROGRAMS: [(&str, u64); 6] = [
+    ("pc-cli it", 300),
+    ("pc-expr it", 15),
+    ("pc-model it", 20),
+    ("pc-report pages", 90),
+    ("pc-solve it", 60),
+    ("pc-tests it", 350),
+];
 
 /// The limit of what usually takes some seconds.
 pub(crate) fn limit(usual: u64) -> Duration {
