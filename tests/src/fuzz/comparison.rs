@@ -14,8 +14,9 @@ use super::text::SHOWN;
 /// Relative to a number or to 1: some hundred times the tolerance of the integration, which has a few dozen steps.
 const TOLERANCE: f64 = 1e-9;
 
-/// How much larger the error of a motion may be than what tolerances a hundred times as large change in it.
-const GROWTH: f64 = 3.0;
+/// How much larger the error of a motion may be than what tolerances a hundred times as large change in it: over a corner, the
+/// error of a step of high order depends on where in it the corner falls, more than on the tolerance.
+const GROWTH: f64 = 10.0;
 
 /// A column that looser tolerances change by so much, relative to its size or to 1, is not resolved and judges nothing.
 const RESOLVED: f64 = 1e-5;
