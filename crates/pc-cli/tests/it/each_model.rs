@@ -3,20 +3,23 @@
 use std::collections::HashMap;
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, LazyLock, Mutex, OnceLock};
 use std::thread;
 
 use pc_model::Builtin;
 
-/// Answers by the arguments, each given by one process however many tests ask.
-static ANSWERS: Mutex<Option<HashMap<Vec<String>, Arc<OnceLock<Output>>>>> = Mutex::new(None);
+/// Answers by the arguments.
+type Answers = HashMap<Vec<String>, Arc<OnceLock<Output>>>;
+
+/// Each given by one process, however many tests ask.
+static ANSWERS: LazyLock<Mutex<Answers>> = LazyLock::new(Mutex::default);
 
 /// What `pc` answers to these arguments.
 pub(crate) fn answer(arguments: &[&str]) -> Output {
     let key: Vec<String> = arguments.iter().map(|&argument| argument.to_owned()).collect();
     let place = {
         let mut answers = ANSWERS.lock().expect("no test panics while it holds the lock");
-        Arc::clone(answers.get_or_insert_default().entry(key).or_default())
+        Arc::clone(answers.entry(key).or_default())
     };
     let ask = || Command::new(env!("CARGO_BIN_EXE_pc")).args(arguments).output().expect("pc runs");
     place.get_or_init(ask).clone()
