@@ -110,21 +110,21 @@ fn a_motion_resumes_from_any_of_its_checkpoints_with_the_same_bits() {
 fn checkpoints_change_the_motion_within_its_tolerance() {
     let times = [1.0, 5.0, 10.0];
     let angle = |t: f64| std::f64::consts::FRAC_PI_4 + t + 1.0 - t.cos();
-    let (motion, checkpoints) = undisturbed(|| Turning, &times, &Options::default(), 20);
+    let (motion, checkpoints) = undisturbed(|| Turning, &times, &Options::new(Method::Adams), 20);
     assert!(checkpoints.len() > 5);
     for (t, y) in motion.iter() {
         // Local errors of 1e-9 in a few hundred steps, which do not grow.
         assert!((y[0] - angle(t).cos()).abs() < 1e-6 && (y[1] - angle(t).sin()).abs() < 1e-6);
         assert!((y[0].hypot(y[1]) - 1.0).abs() < 4.0 * f64::EPSILON, "projected at an output in a step");
     }
-    let plain = solve(Turning, 0.0, &[0.5_f64.sqrt(); 2], &times, &Options::default()).unwrap();
+    let plain = solve(Turning, 0.0, &[0.5_f64.sqrt(); 2], &times, &Options::new(Method::Adams)).unwrap();
     assert!(motion.statistics().steps > plain.statistics().steps, "orders grow again after each");
 }
 
 #[test]
 fn a_stopped_motion_leaves_its_last_checkpoint() {
     let times: Vec<f64> = (0..100).map(|i| 0.3 * f64::from(i)).collect();
-    let options = Options::default();
+    let options = Options::new(Method::Adams);
     let (motion, _) = undisturbed(|| Turning, &times, &options, 30);
     let (mut steps, mut last) = (0, None);
     let from = Checkpoint::start(0.0, &[2.0_f64.sqrt().recip(); 2]);
@@ -160,7 +160,7 @@ fn a_failure_ends_a_motion_with_checkpoints_as_it_ends_one_without() {
     };
     for steps in [20, 100] {
         let from = Checkpoint::start(0.0, &[1.0]);
-        let options = Options::default().max_steps(1_000_000);
+        let options = Options::new(Method::Adams).max_steps(1_000_000);
         let failure = solve_checkpointed(
             &options,
             || (field(), NoEvents),
@@ -176,7 +176,7 @@ fn a_failure_ends_a_motion_with_checkpoints_as_it_ends_one_without() {
         assert!((t - 1.0).abs() < 1e-6, "{t}");
     }
     let from = Checkpoint::start(0.0, &[1.0]);
-    let options = Options::default().max_steps(35);
+    let options = Options::new(Method::Adams).max_steps(35);
     let times = [0.01, 0.9];
     let failure =
         solve_checkpointed(&options, || (field(), NoEvents), from, &times, every(10), |_, _| (), GO_ON)
@@ -188,7 +188,7 @@ fn a_failure_ends_a_motion_with_checkpoints_as_it_ends_one_without() {
     );
     let wrong = Checkpoint::start(0.0, &[1.0, 2.0]);
     let failure = solve_checkpointed(
-        &Options::default(),
+        &Options::new(Method::Adams),
         || (field(), NoEvents),
         wrong,
         &[1.0],
@@ -210,7 +210,7 @@ fn numbers_keep_their_bits() {
 
 #[test]
 fn damaged_bytes_are_refused() {
-    let mut cvode = Integration::new(Turning, 0.0, &[1.0, 0.0], &Options::default()).unwrap();
+    let mut cvode = Integration::new(Turning, 0.0, &[1.0, 0.0], &Options::new(Method::Adams)).unwrap();
     cvode.state_at(1.0).unwrap();
     let bytes = cvode.checkpoint().to_bytes("model");
     assert_eq!(Checkpoint::from_bytes(&bytes).unwrap().0.state(), cvode.state());
@@ -244,7 +244,7 @@ fn the_step_limit_is_that_of_a_run_without_checkpoints() {
         })
     };
     // Steps of at most 0.01: about 50 between outputs, a few more after a restart.
-    let options = |most| Options::default().max_step(0.01).max_steps(most);
+    let options = |most| Options::new(Method::Adams).max_step(0.01).max_steps(most);
     for steps in [50, 60, 70, 79] {
         let run = |most| {
             let from = Checkpoint::start(0.0, &[1.0, 0.0]);

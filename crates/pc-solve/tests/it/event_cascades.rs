@@ -243,7 +243,7 @@ fn a_jump_with_a_reset_is_passed_again_from_the_other_side() {
             Ok(())
         };
         let events = FnEvents::new().with_reset(Event::new("a"), move |_, y| Ok(sign(y[0])), count);
-        let options = Options::new(method).max_step(0.1);
+        let options = Options::new(method).relative_tolerance(1e-12).absolute_tolerance(1e-14);
         let motion = Solve::new(circle, 0.0, &[1.0, 0.0, 0.0]).method(options).events(events);
         let expected: Vec<(usize, f64)> =
             (0..3).map(|k| (0, (f64::from(k) + 0.5) * std::f64::consts::PI)).collect();

@@ -144,7 +144,7 @@ fn a_motion_with_events_resumes_from_any_checkpoint_with_the_same_bits() {
 /// Checkpoints change times within the tolerance only.
 #[test]
 fn checkpoints_leave_occurrences_where_they_are() {
-    let options = Options::default().relative_tolerance(1e-12).absolute_tolerance(1e-14);
+    let options = Options::new(Method::Adams).relative_tolerance(1e-12).absolute_tolerance(1e-14);
     for (parts, y0) in [(BALL, &[1.0, 0.0][..]), (BLOCK, &[-1.0, 0.0, 1.0]), (WATCHED, &[1.0, 0.0, 0.0])] {
         let plain = Solve::new(field(parts.0, y0.len()), 0.0, y0)
             .method(&options)
@@ -167,7 +167,7 @@ fn checkpoints_leave_occurrences_where_they_are() {
 fn occurrences_accumulate_over_checkpoints() {
     let failure = |steps| {
         let from = Checkpoint::start(0.0, &[1.0, 0.0]);
-        *solve(BALL, from, &[1.0, 100.0], &Options::default(), steps, |_, _| ()).unwrap_err()
+        *solve(BALL, from, &[1.0, 100.0], &Options::new(Method::Adams), steps, |_, _| ()).unwrap_err()
     };
     let reason = |failure: SolveFailure<Solution>| match failure.error {
         SolveError::Integration(error) => (error.reason, failure.reached),
@@ -191,7 +191,7 @@ fn occurrences_accumulate_over_checkpoints() {
 /// Where an observer stops it: between events, just after one, and at one still to be applied.
 #[test]
 fn an_integration_resumes_from_any_time() {
-    let options = Options::default();
+    let options = Options::new(Method::Adams);
     let start = |parts: Parts, y0: &[f64]| {
         Integration::new(field(parts.0, y0.len()), 0.0, y0, &options)
             .unwrap()
@@ -260,7 +260,8 @@ fn zeros_of(values: [f64; 5]) -> [Vec<f64>; 2] {
         })
     };
     // One step to the end.
-    let (still, options) = (|| field(|_, _, ydot| ydot.fill(0.0), 1), Options::default().initial_step(1.0));
+    let (still, options) =
+        (|| field(|_, _, ydot| ydot.fill(0.0), 1), Options::new(Method::Adams).initial_step(1.0));
     let start = || Integration::new(still(), 0.0, &[1.0], &options).unwrap().with_events(events()).unwrap();
     let (mut found, mut hybrid) = ([Vec::new(), Vec::new()], start());
     let mut to = |hybrid: &mut Integration<Cvode<_>, _>, t, part: usize| {
@@ -299,7 +300,7 @@ fn functions_near_zero_stay_on_their_sides() {
 
 #[test]
 fn a_stopped_or_failed_motion_leaves_its_last_checkpoint() {
-    let (times, options) = ([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0], Options::default());
+    let (times, options) = ([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0], Options::new(Method::Adams));
     let whole = solve(BALL, Checkpoint::start(0.0, &[1.0, 0.0]), &times, &options, 10, |_, _| ()).unwrap();
     for stop in [3, 25, 57, whole.trajectory.statistics().steps] {
         let (mut steps, mut last) = (0, None);
@@ -346,7 +347,7 @@ fn a_stopped_or_failed_motion_leaves_its_last_checkpoint() {
 /// The limit applies to the steps from one output to the next, across events.
 #[test]
 fn the_step_limit_is_that_of_a_motion_without_checkpoints() {
-    let options = |most| Options::default().max_step(0.01).max_steps(most);
+    let options = |most| Options::new(Method::Adams).max_step(0.01).max_steps(most);
     let (y0, times) = ([1.0, 0.0, 0.0], [20.0]);
     // 2000 steps, and some hundred more after the restarts.
     for steps in [20, 100] {
@@ -364,7 +365,7 @@ fn the_step_limit_is_that_of_a_motion_without_checkpoints() {
 /// the next is longer.
 #[test]
 fn a_step_of_length_zero_is_not_a_leg() {
-    let (from, options) = (Checkpoint::start(1e6, &[1.0]), Options::default().initial_step(1e-11));
+    let (from, options) = (Checkpoint::start(1e6, &[1.0]), Options::new(Method::Adams).initial_step(1e-11));
     let (mut kept, mut idle, mut last) = (Vec::new(), 0, 1e6);
     let step = |t, _: &[f64]| {
         idle += u32::from(t == last);
@@ -388,7 +389,7 @@ fn a_step_of_length_zero_is_not_a_leg() {
 fn checkpoints_of_other_motions_are_refused() {
     let mut kept = Vec::new();
     let keep = |checkpoint: &Checkpoint, _| kept.push(checkpoint.clone());
-    let (options, times) = (Options::default(), [5.0]);
+    let (options, times) = (Options::new(Method::Adams), [5.0]);
     solve(BALL, Checkpoint::start(0.0, &[1.0, 0.0]), &times, &options, 20, keep).unwrap();
     let from = kept.pop().unwrap();
     assert!(!from.occurrences().is_empty());
@@ -429,7 +430,7 @@ fn nothing_happens_beyond_the_last_output() {
         || FnEvents::new().with(Event::new("end").terminal(true), |t, _| Ok(t - 1.1)),
     );
     for steps in [1, 2, 3, 30] {
-        let options = Options::default().initial_step(0.4).stop_time(10.0);
+        let options = Options::new(Method::Adams).initial_step(0.4).stop_time(10.0);
         let motion =
             solve(parts, Checkpoint::start(0.0, &[1.0]), &[1.0], &options, steps, |_, _| ()).unwrap();
         assert_eq!(motion.trajectory.times(), [1.0], "{steps}");

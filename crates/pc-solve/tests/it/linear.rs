@@ -290,8 +290,8 @@ fn the_linear_solver_is_chosen_by_size_and_pattern() {
     assert_eq!(chosen(60, rod(60), &bdf).unwrap(), Some(LinearSolver::Sparse));
     assert_eq!(chosen(60, Some(Pattern::full(60, 60)), &bdf).unwrap(), Some(LinearSolver::Dense));
     assert_eq!(chosen(60, None, &bdf).unwrap(), Some(LinearSolver::Dense));
-    assert_eq!(chosen(60, rod(60), &Options::default()).unwrap(), None);
-    let newton = Options::default().nonlinear_solver(NonlinearSolver::Newton);
+    assert_eq!(chosen(60, rod(60), &Options::new(Method::Adams)).unwrap(), None);
+    let newton = Options::new(Method::Adams).nonlinear_solver(NonlinearSolver::Newton);
     assert_eq!(chosen(60, rod(60), &newton).unwrap(), Some(LinearSolver::Sparse));
 
     let refusal = |n, pattern, solver| {
@@ -325,7 +325,8 @@ fn the_linear_solver_is_chosen_by_size_and_pattern() {
         refusal(2, None, LinearSolver::Krylov(Krylov::default().tolerance(f64::NAN))),
         "the tolerance of the Krylov solver is NaN"
     );
-    let unused = chosen(2, None, &Options::default().linear_solver(LinearSolver::Dense)).unwrap_err();
+    let unused =
+        chosen(2, None, &Options::new(Method::Adams).linear_solver(LinearSolver::Dense)).unwrap_err();
     assert!(matches!(unused, SolveError::Input(InputError::LinearSolverUnused)));
 }
 
