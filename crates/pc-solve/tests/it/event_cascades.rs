@@ -233,20 +233,18 @@ fn jumps_are_passed_once_and_poles_are_none() {
 #[test]
 fn a_jump_with_a_reset_is_passed_again_from_the_other_side() {
     let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
-    for method in Method::ALL {
-        let circle = from_fn(3, |_t, y: &[f64], ydot: &mut [f64]| {
-            (ydot[0], ydot[1], ydot[2]) = (-y[1], y[0], 0.0);
-            Ok(())
-        });
-        let count = |_: f64, y: &mut [f64]| {
-            y[2] += 1.0;
-            Ok(())
-        };
-        let events = FnEvents::new().with_reset(Event::new("a"), move |_, y| Ok(sign(y[0])), count);
-        let options = Options::new(method).relative_tolerance(1e-12).absolute_tolerance(1e-14);
-        let motion = Solve::new(circle, 0.0, &[1.0, 0.0, 0.0]).method(options).events(events);
-        let expected: Vec<(usize, f64)> =
-            (0..3).map(|k| (0, (f64::from(k) + 0.5) * std::f64::consts::PI)).collect();
-        assert_found(&motion.run(&[9.0]).unwrap(), &expected, method);
-    }
+    let circle = from_fn(3, |_t, y: &[f64], ydot: &mut [f64]| {
+        (ydot[0], ydot[1], ydot[2]) = (-y[1], y[0], 0.0);
+        Ok(())
+    });
+    let count = |_: f64, y: &mut [f64]| {
+        y[2] += 1.0;
+        Ok(())
+    };
+    let events = FnEvents::new().with_reset(Event::new("a"), move |_, y| Ok(sign(y[0])), count);
+    let options = Options::new(Method::Adams).max_step(0.1);
+    let motion = Solve::new(circle, 0.0, &[1.0, 0.0, 0.0]).method(options).events(events);
+    let expected: Vec<(usize, f64)> =
+        (0..3).map(|k| (0, (f64::from(k) + 0.5) * std::f64::consts::PI)).collect();
+    assert_found(&motion.run(&[9.0]).unwrap(), &expected, Method::Adams);
 }
