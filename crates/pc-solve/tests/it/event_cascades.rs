@@ -246,5 +246,8 @@ fn a_jump_with_a_reset_is_passed_again_from_the_other_side() {
     let motion = Solve::new(circle, 0.0, &[1.0, 0.0, 0.0]).method(options).events(events);
     let expected: Vec<(usize, f64)> =
         (0..3).map(|k| (0, (f64::from(k) + 0.5) * std::f64::consts::PI)).collect();
-    assert_found(&motion.run(&[9.0]).unwrap(), &expected, Method::Adams);
+    let found = motion.run(&[9.0]).unwrap().occurrences;
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    // x passes zero with speed 1: its error at the default tolerances is that of the times.
+    assert!(found.iter().zip(&expected).all(|(found, (_, t))| (found.time - t).abs() < 1e-6), "{found:?}");
 }
