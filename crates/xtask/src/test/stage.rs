@@ -27,12 +27,12 @@ pub(crate) const BUILD: u64 = 500;
 
 /// What comes before the test programs.
 pub(crate) const BEFORE: [Stage; 4] = [
-    Stage { title: "set-up", usual: 60, packages: &[], work: setup::everything },
+    Stage { title: "set-up", usual: 120, packages: &[], work: setup::everything },
     Stage { title: "format", usual: 5, packages: &[], work: format },
     Stage { title: "lints", usual: 160, packages: &[], work: lints },
     Stage {
         title: "lints without SUNDIALS",
-        usual: 20,
+        usual: 40,
         packages: &["pc-solve"],
         work: lints_without_sundials,
     },
@@ -40,17 +40,17 @@ pub(crate) const BEFORE: [Stage; 4] = [
 
 /// The examples in the documentation.
 pub(crate) const DOCUMENTATION_TESTS: Stage =
-    Stage { title: "documentation tests", usual: 120, packages: &[], work: documentation_tests };
+    Stage { title: "documentation tests", usual: 150, packages: &[], work: documentation_tests };
 
 /// What comes after them, and is made of what they have built.
 pub(crate) const AFTER: [Stage; 7] = [
     Stage { title: "attack", usual: 170, packages: &["pc-cli"], work: attack::quick },
     Stage { title: "C examples", usual: 120, packages: &["pc-capi"], work: c_examples::quick },
-    Stage { title: "documentation", usual: 30, packages: &[], work: documentation },
-    Stage { title: "book", usual: 10, packages: &[], work: book::run },
+    Stage { title: "documentation", usual: 110, packages: &[], work: documentation },
+    Stage { title: "book", usual: 30, packages: &[], work: book::run },
     Stage { title: "licences", usual: 200, packages: &[], work: licences },
     Stage { title: "FMUs", usual: 60, packages: &["pc-cli"], work: fmu::quick },
-    Stage { title: "Python package", usual: 120, packages: &["pc-python"], work: python::quick },
+    Stage { title: "Python package", usual: 200, packages: &["pc-python"], work: python::quick },
 ];
 
 impl Stage {
