@@ -244,7 +244,10 @@ fn a_force_that_no_step_can_follow_is_refused() {
             let failure = run(1.0).unwrap_err();
             let SolveError::Integration(error) = &failure.error else { panic!("{}", failure.error) };
             assert!(matches!(error.reason, Reason::Unresolved { .. }), "{error}");
-            assert!(error.time - from < 1e-3 && error.to_string().starts_with("near t = "), "{error}");
+            assert!(
+                error.time - from < 1e-3 && error.to_string().contains("faster than floating-point times"),
+                "{error}"
+            );
             // x = cos(t − t_0), to the tolerance of some hundred steps.
             let motion = run(1e-20).unwrap();
             assert!((motion.state(0)[0] - 10.0_f64.cos()).abs() < 1e-6, "{method} {:?}", motion.state(0));
