@@ -66,7 +66,7 @@ int main()
         options.relative_tolerance = 1e-11;
         std::array<double, DIM> y{}, fallen{};
         pc::solver solver(steered, options);
-        right = right && solver.advance(20.0, y) == PC_OK && calls > 1000;
+        right = right && solver.advance(20.0, y) == PC_OK && calls > 500;
         pc::solver(left_alone, options).advance(0.8, fallen);
         std::cout << "left alone it leans by " << fallen[THETA] - half_pi << " after 0.8; steered by "
                   << y[THETA] - half_pi << " after 20\n";
