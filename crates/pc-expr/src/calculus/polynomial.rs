@@ -19,17 +19,28 @@ pub struct Polynomial<'g> {
 }
 
 impl<'g> Polynomial<'g> {
-    /// The polynomial written out in another graph, not nested, coefficients in front of their monomials;
-    /// monomials with the same coefficient are collected behind it where that is shorter.
-    pub fn expanded<'h>(&self, from: &'g Graph, into: &'h Graph) -> Expr<'h> {
-        let terms = self.terms.iter().map(|(exponents, coefficient)| {
-            let monomial = self.variables.iter().zip(exponents).fold(Expr::ONE, |product, (z, &e)| {
-                product * into.symbol(&z.symbol_name().unwrap_or_default()).powi(e as i32)
-            });
-            (from.typeset(&[*coefficient], into)[0], monomial)
-        });
-        let terms: Vec<(Atom, Atom)> = terms.map(|(c, z)| (c.atom_in(into), z.atom_in(into))).collect();
-        into.expr(into.with(|dag| dag.collected_by_coefficient(&terms)))
+    /// Polynomials written out in another graph, not nested, coefficients in front of their monomials; monomials with
+    /// the same coefficient are collected behind it where that is shorter.
+    ///
+    /// What several coefficients contain is typeset once.
+    pub fn expanded<'h>(polynomials: &[Self], from: &'g Graph, into: &'h Graph) -> Vec<Expr<'h>> {
+        let coefficients: Vec<Expr<'g>> =
+            polynomials.iter().flat_map(|polynomial| &polynomial.terms).map(|&(_, c)| c).collect();
+        let mut coefficients = from.typeset(&coefficients, into).into_iter();
+        let mut expanded = |polynomial: &Self| {
+            let monomials = polynomial.terms.iter().map(|(exponents, _)| polynomial.monomial(exponents, into));
+            let terms: Vec<(Atom, Atom)> =
+                monomials.zip(coefficients.by_ref()).map(|(z, c)| (c.atom_in(into), z.atom_in(into))).collect();
+            into.expr(into.with(|dag| dag.collected_by_coefficient(&terms)))
+        };
+        polynomials.iter().map(&mut expanded).collect()
+    }
+
+    /// z_1^e_1 z_2^e_2 … in another graph.
+    fn monomial<'h>(&self, exponents: &[u32], into: &'h Graph) -> Expr<'h> {
+        self.variables.iter().zip(exponents).fold(Expr::ONE, |product, (z, &e)| {
+            product * into.symbol(&z.symbol_name().unwrap_or_default()).powi(e as i32)
+        })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::common::{Bounded, trees};
 use pc_expr::parse::{Ast, AstKind, Factor, Sign, parse};
-use pc_expr::{Expr, Folding, Function, Graph, Scalar, Side, Style};
+use pc_expr::{Expr, Folding, Function, Graph, Polynomial, Scalar, Side, Style};
 use proptest::prelude::*;
 
 /// The value of a syntax tree.
@@ -243,7 +243,7 @@ fn monomials_of_one_coefficient_are_collected() {
     page.symbols(["e", "j", "u", "x", "y", "z"]);
     let written = |expression: Expr<'_>| {
         let polynomial = graph.polynomial(expression, &[u, x, y, z]).unwrap();
-        polynomial.expanded(&graph, &page).display(Style::Book)
+        Polynomial::expanded(&[polynomial], &graph, &page)[0].display(Style::Book)
     };
     assert_eq!(written(j * e.sin() * u * (x + y - z)), "j u sin(e) (x + y - z)");
     assert_eq!(written(j * e.sin() * u * (x + y) + j * e.cos() * u * z), "j u z cos(e) + j u sin(e) (x + y)");

@@ -1,6 +1,6 @@
 //! The equations as a book prints them: sums of products of quasi-velocities with collected coefficients.
 
-use pc_expr::{Expr, Folding, Graph, Style};
+use pc_expr::{Expr, Folding, Graph, Polynomial, Style};
 
 use crate::equations::poincare::Equations;
 use crate::system::system::System;
@@ -53,18 +53,22 @@ pub(crate) fn sums_of_products<'g, 'p>(
 ) -> Vec<Option<Expr<'p>>> {
     let graph = system.graph();
     let parameters: Vec<Expr<'g>> = system.parameters.iter().map(|&(symbol, _)| symbol).collect();
-    let mut is_ordered = false;
-    let mut written = |&expression: &Expr<'g>| {
-        let mut polynomial = graph.polynomial(expression, variables)?;
-        for (_, coefficient) in &mut polynomial.terms {
-            *coefficient = graph.shorten(&[*coefficient], &parameters)[0];
-        }
-        if !std::mem::replace(&mut is_ordered, true) {
-            for symbol in parameters.iter().chain(system.frame.coordinates()).chain(variables) {
-                page.symbol(&symbol.symbol_name().unwrap_or_default());
+    let polynomials: Vec<Option<Polynomial<'g>>> = expressions
+        .iter()
+        .map(|&expression| {
+            let mut polynomial = graph.polynomial(expression, variables)?;
+            for (_, coefficient) in &mut polynomial.terms {
+                *coefficient = graph.shorten(&[*coefficient], &parameters)[0];
             }
+            Some(polynomial)
+        })
+        .collect();
+    if polynomials.iter().any(Option::is_some) {
+        for symbol in parameters.iter().chain(system.frame.coordinates()).chain(variables) {
+            page.symbol(&symbol.symbol_name().unwrap_or_default());
         }
-        Some(polynomial.expanded(graph, page))
-    };
-    expressions.iter().map(&mut written).collect()
+    }
+    let known: Vec<Polynomial<'g>> = polynomials.iter().flatten().cloned().collect();
+    let mut written = Polynomial::expanded(&known, graph, page).into_iter();
+    polynomials.iter().map(|polynomial| polynomial.as_ref().and_then(|_| written.next())).collect()
 }
