@@ -28,9 +28,12 @@ impl<'g> Polynomial<'g> {
             polynomials.iter().flat_map(|polynomial| &polynomial.terms).map(|&(_, c)| c).collect();
         let mut coefficients = from.typeset(&coefficients, into).into_iter();
         let mut expanded = |polynomial: &Self| {
-            let monomials = polynomial.terms.iter().map(|(exponents, _)| polynomial.monomial(exponents, into));
-            let terms: Vec<(Atom, Atom)> =
-                monomials.zip(coefficients.by_ref()).map(|(z, c)| (c.atom_in(into), z.atom_in(into))).collect();
+            let monomials =
+                polynomial.terms.iter().map(|(exponents, _)| polynomial.monomial(exponents, into));
+            let terms: Vec<(Atom, Atom)> = monomials
+                .zip(coefficients.by_ref())
+                .map(|(z, c)| (c.atom_in(into), z.atom_in(into)))
+                .collect();
             into.expr(into.with(|dag| dag.collected_by_coefficient(&terms)))
         };
         polynomials.iter().map(&mut expanded).collect()
