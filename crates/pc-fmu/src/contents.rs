@@ -260,8 +260,10 @@ fn kept<'g>(
             }
         }
     }
-    for (name, square) in assembly.system.tree().iter().flat_map(|tree| tree.norms()) {
-        kept.push(Kept { name, function: square - 1.0, is_constraint: true });
+    for q in assembly.system.unit_quaternions() {
+        let name = format!("|{}|²", q[0].to_string().trim_end_matches('0'));
+        let function = graph.sum(q.iter().map(|q| q.square())) - 1.0;
+        kept.push(Kept { name, function, is_constraint: true });
     }
     for name in model.kept() {
         let integral = system.integrals().iter().find(|(known, _)| known == name).map(|&(_, f)| f);

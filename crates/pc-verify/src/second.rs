@@ -1,5 +1,6 @@
 //! The second derivation of a model, by the names of the first.
 
+use pc_mech::Expr;
 use pc_model::{Assembly, Flow, Model};
 use pc_print::Form;
 
@@ -47,6 +48,8 @@ pub struct Second {
     /// Whether the first derivation has the energy of independent velocities, y·η − L, and not that of all.
     pub(crate) has_free_energy: bool,
     external: Vec<String>,
+    /// The places of the quaternions of joints among the coordinates.
+    quaternions: Vec<[usize; 4]>,
 }
 
 /// The number of points at which ranks are evaluated.
@@ -117,15 +120,32 @@ impl Second {
         });
         let is_free = assembly.constraints.held().is_none();
         let has_free_energy = is_free && pc_print::energy_remark(assembly).is_some();
-        Ok(Second { derivation, columns, start, has_free_energy, external: model.external_forces() })
+        let coordinates = assembly.system.frame().coordinates();
+        let place = |q: &Expr<'_>| coordinates.iter().position(|x| x == q).unwrap_or_default(); // is among them
+        let quaternions =
+            assembly.system.unit_quaternions().iter().map(|q| q.each_ref().map(place)).collect();
+        Ok(Second {
+            derivation,
+            columns,
+            start,
+            has_free_energy,
+            external: model.external_forces(),
+            quaternions,
+        })
     }
 
-    /// The place with these coordinates, columns and first-order states.
+    /// The place with these coordinates, columns and first-order states. Quaternions are divided by their lengths: both
+    /// derivations hold for rotations, and differ in how they go on elsewhere.
     pub(crate) fn place(&self, t: f64, row: &[f64]) -> Result<Place, Irregular> {
         let (x, eta) = row.split_at(self.start.x.len());
         let (eta, z) = eta.split_at(eta.len() - self.start.z.len());
-        let w = self.derivation.velocities_of(t, x, eta)?;
-        Ok(Place { t, x: x.to_vec(), w, z: z.to_vec() })
+        let mut x = x.to_vec();
+        for places in &self.quaternions {
+            let length = places.iter().fold(0.0f64, |length, &i| length.hypot(x[i]));
+            places.iter().for_each(|&i| x[i] /= length);
+        }
+        let w = self.derivation.velocities_of(t, &x, eta)?;
+        Ok(Place { t, x, w, z: z.to_vec() })
     }
 
     #[cfg(test)]

@@ -148,7 +148,7 @@ impl Plan<'_> {
     fn lane(&self, member: usize) -> Option<(LaneField, Vec<f64>)> {
         let mut prototype = self.prototype.lock().unwrap_or_else(PoisonError::into_inner);
         let (field, events) = &mut *prototype;
-        if !events.events().is_empty() || field.has_projection() || !field.breaks().is_empty() {
+        if !events.events().is_empty() || !field.breaks().is_empty() {
             return None;
         }
         if let Some(all) = self.parameters {
@@ -189,7 +189,7 @@ fn row(all: &[f64], member: usize, length: usize) -> &[f64] {
 /// Integrates many members through the times, each from its own state, with its own parameters,
 /// as a single solver would: the numbers are the same for any number of threads. The events
 /// of the model are followed. By PC_AUTO and PC_DOP853, members of a model without events,
-/// projection, tables and explicit dependence on time are integrated side by side in vectors:
+/// constraints, kept integrals, tables and explicit dependence on time are integrated side by side in vectors:
 /// their last digits may differ from those of a solver, within the tolerances. By PC_AUTO
 /// members that turn out to be stiff are integrated by themselves.
 ///

@@ -51,4 +51,5 @@ mod sweep_of;
 mod sweeps;
 mod theory;
 mod time_limits;
+mod unit_quaternions;
 mod verdicts;

@@ -13,6 +13,8 @@ pub struct LaneField {
     pub parameters: Vec<f64>,
     /// Which states are regular.
     pub watched: Watched,
+    /// Places in the state of quaternions, which are divided by their lengths at the end of each step.
+    pub unit_quaternions: Vec<[usize; 4]>,
 }
 
 /// The pivots that must not vanish: the smallest of those independent of the state, and the places of the

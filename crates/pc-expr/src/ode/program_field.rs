@@ -84,6 +84,7 @@ impl VectorField for ProgramField {
             program: Arc::clone(self.rates.program()),
             parameters: self.parameters.clone(),
             watched: Watched::NOTHING,
+            unit_quaternions: Vec::new(),
         })
     }
 

@@ -164,7 +164,7 @@ pub trait VectorField {
     }
 
     /// f as a program for many states at once, with the present parameters; `None` if f is more than a
-    /// program, or is interpreted.
+    /// program, is interpreted, or has a [projection](VectorField::has_projection) other than to unit quaternions.
     fn lanes(&mut self) -> Option<LaneField> {
         None
     }

@@ -78,6 +78,7 @@ impl FirstOrder<'_> {
             constraints: Vec::new(),
             surface: None,
             kept: None,
+            quaternions: self.quaternions.clone(),
             signals: Signals::default(),
             charts: Vec::new(),
             jumps: if differentiable { self.jumps()? } else { Vec::new() },

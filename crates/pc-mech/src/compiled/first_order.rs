@@ -10,6 +10,7 @@ use pc_expr::{Expr, Graph, Inputs, Pattern, Program, Substitution, SymbolPlaces}
 use crate::compiled::elimination::columns::{SparseColumn, nonzeros};
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::options::TreeElimination;
+use crate::compiled::projection::unit_quaternions::UnitQuaternions;
 use crate::equations::poincare::Equations;
 use crate::tree::equations::TreeEquations;
 
@@ -56,6 +57,8 @@ pub(crate) struct FirstOrder<'g> {
     /// Functions of t, y and w, with their names; the first `conserved` should not change along a motion.
     pub(crate) observables: Vec<(String, Expr<'g>)>,
     pub(crate) conserved: usize,
+    /// The quaternions among the coordinates.
+    pub(crate) quaternions: UnitQuaternions,
 }
 
 /// The left side of p(t, y, w) = r(t, y), not linear in w.
@@ -237,6 +240,7 @@ impl<'g> Equations<'g> {
             collected_by: system.collecting_order(),
             observables: system.integrals.iter().chain([&energy]).chain(&system.outputs).cloned().collect(),
             conserved: system.integrals.len() + 1,
+            quaternions: UnitQuaternions::of(system),
         }
     }
 }

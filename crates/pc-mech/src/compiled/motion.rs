@@ -14,6 +14,7 @@ use crate::compiled::options::{CompileOptions, TreeElimination};
 use crate::compiled::point::Point;
 use crate::compiled::projection::constraint_manifold::Surface;
 use crate::compiled::projection::integrals::KeptIntegrals;
+use crate::compiled::projection::unit_quaternions::UnitQuaternions;
 use crate::error::MechError;
 use crate::system::signals::Signals;
 use crate::system::system::System;
@@ -36,6 +37,7 @@ pub struct Motion {
     pub(super) constraints: Vec<String>,
     pub(super) surface: Option<Box<Surface>>,
     pub(super) kept: Option<Box<KeptIntegrals>>,
+    pub(super) quaternions: UnitQuaternions,
     pub(super) signals: Signals,
     /// The conditions under which the state determines velocities.
     pub(super) charts: Vec<Chart>,
@@ -298,6 +300,7 @@ impl Motion {
             constraints: inner.constraints.clone(),
             surface: None,
             kept: None,
+            quaternions: inner.quaternions.clone(),
             form: Form::InMomenta(Box::new(motion)),
         }
     }

@@ -8,12 +8,23 @@ use crate::compiled::motion::{Form, Motion};
 use crate::compiled::point::Point;
 use crate::error::{EvaluationError, FrameError, MechError};
 
+/// The square of a long step takes this often to be a rounding.
+const MOST_RETURNS: usize = 4;
+
 impl Motion {
-    /// Projects to the constraints by the shortest way in the kinetic metric, then along them to the
-    /// integrals.
+    /// Projects to unit quaternions, then to the constraints by the shortest way in the kinetic metric, then along them
+    /// to the integrals.
     fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), EvaluationFailure> {
+        self.quaternions.normalise(y);
         if let Some(surface) = &mut self.surface {
             surface.project(t, y, &self.parameters)?;
+            // A step along the constraints leaves the unit sphere by its square.
+            for _ in 0..MOST_RETURNS {
+                if !self.quaternions.normalise(y) {
+                    break;
+                }
+                surface.project(t, y, &self.parameters)?;
+            }
         }
         if let Some(kept) = &mut self.kept {
             kept.project(t, y, &self.parameters)?;
@@ -134,7 +145,7 @@ impl VectorField for Motion {
 
     fn has_projection(&self) -> bool {
         let inner = self.in_quasi_velocities();
-        inner.surface.is_some() || inner.kept.is_some()
+        inner.surface.is_some() || inner.kept.is_some() || !inner.quaternions.is_empty()
     }
 
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
@@ -175,11 +186,15 @@ impl VectorField for Motion {
     }
 
     fn lanes(&mut self) -> Option<LaneField> {
-        if !self.signals.is_empty() || !self.charts.is_empty() || self.has_projection() {
+        let on_surface = self.surface.is_some() || self.kept.is_some();
+        if !self.signals.is_empty() || !self.charts.is_empty() || on_surface {
             return None;
         }
         match &mut self.form {
-            Form::Unrolled(unrolled) => unrolled.lanes(self.names.len(), &self.parameters),
+            Form::Unrolled(unrolled) => {
+                let lanes = unrolled.lanes(self.names.len(), &self.parameters)?;
+                Some(LaneField { unit_quaternions: self.quaternions.places().to_vec(), ..lanes })
+            }
             Form::Staged(_) | Form::InMomenta(_) => None,
         }
     }

@@ -9,6 +9,7 @@ use crate::compiled::first_order::{FirstOrder, Implicit};
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::motion::Motion;
 use crate::compiled::options::CompileOptions;
+use crate::compiled::projection::unit_quaternions::UnitQuaternions;
 use crate::equations::book::{expanded, sums_of_products};
 use crate::equations::legendre::{Inverse, Legendre};
 use crate::error::{LagrangianError, MechError, shape};
@@ -364,6 +365,7 @@ impl<'g> Canonical<'g> {
             collected_by: self.momenta.iter().copied().chain(parameters).collect(),
             observables: Vec::new(),
             conserved: 0,
+            quaternions: UnitQuaternions::of(system),
         }
     }
 

@@ -63,6 +63,7 @@ impl<'g> SystemBuilder<'g> {
         graph.check(&self.states.iter().map(|&(_, rate)| rate).collect::<Vec<_>>())?;
         graph.check(&frame.b().nonzero_entries())?;
         graph.check(frame.b0())?;
+        let unit_quaternions = self.tree.as_ref().map(Tree::quaternions).unwrap_or_default();
         let acceleration = self.gravity.unwrap_or_default();
         let gravity = std::array::from_fn(|i| acceleration.get(i).copied().unwrap_or(Expr::ZERO));
         Ok(System {
@@ -79,6 +80,7 @@ impl<'g> SystemBuilder<'g> {
             outputs: self.outputs,
             bodies,
             gravity,
+            unit_quaternions,
             tree,
         })
     }

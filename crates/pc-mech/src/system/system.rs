@@ -30,6 +30,8 @@ pub struct System<'g> {
     pub(crate) bodies: Bodies<'g>,
     /// The acceleration of gravity, filled up by zeros.
     pub(crate) gravity: [Expr<'g>; 3],
+    /// The quaternions of joints, each of four coordinates.
+    pub(crate) unit_quaternions: Vec<[Expr<'g>; 4]>,
     /// The bodies joined by joints of which it consists, if nothing else in it has inertia.
     pub(crate) tree: Option<Box<TreeSystem<'g>>>,
 }
@@ -87,6 +89,12 @@ impl<'g> System<'g> {
     /// The bodies joined by joints, of a system that has no other inertia.
     pub fn tree(&self) -> Option<&Tree<'g>> {
         self.tree.as_ref().map(|tree| &tree.tree)
+    }
+
+    /// The quaternions of its joints, each of four coordinates with |q| = 1. The frame keeps |q|, and motions are
+    /// [projected](pc_expr::VectorField::project) to it.
+    pub fn unit_quaternions(&self) -> &[[Expr<'g>; 4]] {
+        &self.unit_quaternions
     }
 
     /// The [tree](System::tree), if its equations are too long to be written out whole: they are derived, compiled and

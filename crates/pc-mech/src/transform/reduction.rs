@@ -67,7 +67,9 @@ impl<'g> System<'g> {
         let known = |list: &[(String, Expr<'g>)]| -> Vec<(String, Expr<'g>)> {
             list.iter().filter(|(_, f)| !dropped.iter().any(|&x| f.depends_on(x))).cloned().collect()
         };
+        let is_left = |q: &&[Expr<'g>; 4]| !q.iter().any(|x| dropped.contains(x));
         Ok(System {
+            unit_quaternions: self.unit_quaternions.iter().filter(is_left).copied().collect(),
             frame,
             structure,
             states,

@@ -34,6 +34,7 @@ impl<'g> System<'g> {
             outputs: named(&self.outputs),
             bodies: self.bodies.map(all),
             gravity: self.gravity.map(put),
+            unit_quaternions: self.unit_quaternions.iter().map(|q| q.map(put)).collect(),
             tree: Some(Box::new(tree)),
         }
     }

@@ -106,14 +106,13 @@ impl<'g> Tree<'g> {
         self.declared().flat_map(|link| self.links[link].hinge.quasi_velocities()).collect()
     }
 
-    /// |q|² of each quaternion, which are 1.
-    pub fn norms(&self) -> Vec<(String, Expr<'g>)> {
-        let quaternions = self.declared().filter_map(|link| match &self.links[link].hinge {
-            Hinge::Ball { quaternion, .. } | Hinge::Free { quaternion, .. } => Some(quaternion),
+    /// The quaternions of the joints that have one, |q| = 1.
+    pub fn quaternions(&self) -> Vec<[Expr<'g>; 4]> {
+        let quaternion = |link: usize| match &self.links[link].hinge {
+            Hinge::Ball { quaternion, .. } | Hinge::Free { quaternion, .. } => Some(*quaternion),
             Hinge::Turn { .. } | Hinge::Slide { .. } => None,
-        });
-        let norm = |q: &[Expr<'g>; 4]| self.graph.sum(q.iter().map(|q| q.square()));
-        quaternions.map(|q| (format!("|{}|²", q[0].to_string().trim_end_matches('0')), norm(q))).collect()
+        };
+        self.declared().filter_map(quaternion).collect()
     }
 
     /// The bodies, as they were declared.

@@ -54,9 +54,9 @@ impl<'g> Assembler<'g, '_> {
         let document = self.model.document();
         let parameters: Vec<(Expr<'g>, f64)> =
             self.model.parameters().map(|(name, value)| (self.graph.symbol(name), value)).collect();
-        let given = self.given_start(&parameters)?;
+        let mut given = self.given_start(&parameters)?;
         self.check_rotations(&parameters)?;
-        self.check_quaternions(&given.values)?;
+        self.normalise_quaternions(&mut given.values)?;
         let t_start = document.simulation.t_start.as_ref().map_or(0.0, |t| t.value);
         let mut constraints = self.constraints()?;
         let mut at = parameters.clone();

@@ -87,12 +87,13 @@ impl<'g> Assembler<'g, '_> {
         Err(self.model.document().error(&place, MeaningError::NotARotation { defect, determinant }))
     }
 
-    /// Checks that quaternions have length 1 at the start; `start` are the values of the coordinates.
-    pub(super) fn check_quaternions(&self, start: &[f64]) -> Result<(), ModelError> {
+    /// Makes the length of quaternions 1 at the start, where it differs from 1 by the rounding of what is written; `start`
+    /// begins with the values of the coordinates.
+    pub(super) fn normalise_quaternions(&self, start: &mut [f64]) -> Result<(), ModelError> {
         let document = self.model.document();
         let mut first = 0;
         for body in &document.tree {
-            let own = &start[first..first + body.joint.coordinates.len()];
+            let own = &mut start[first..first + body.joint.coordinates.len()];
             if let Some(scalar) = body.joint.kind.quaternion() {
                 let length = own[scalar..].iter().fold(0.0, |length: f64, q| length.hypot(*q));
                 if (length - 1.0).abs() > OFF {
@@ -100,8 +101,9 @@ impl<'g> Assembler<'g, '_> {
                     let fault = MeaningError::QuaternionNotUnit { body: body.name.text.clone(), length };
                     return Err(document.error(&place, fault));
                 }
+                own[scalar..].iter_mut().for_each(|q| *q /= length);
             }
-            first += own.len();
+            first += body.joint.coordinates.len();
         }
         Ok(())
     }

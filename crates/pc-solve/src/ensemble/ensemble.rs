@@ -160,7 +160,7 @@ impl<'a> Ensemble<'a> {
         let begin = |member| {
             let mut made = make(member);
             let lane = made.as_mut().ok().and_then(|(field, start)| {
-                let lanes = field.lanes().filter(|_| !field.has_projection() && field.breaks().is_empty());
+                let lanes = field.lanes().filter(|_| field.breaks().is_empty());
                 lanes.map(|lanes| (lanes, start.clone()))
             });
             (made, lane)

@@ -207,7 +207,8 @@ impl VectorField for Watching {
     fn lanes(&mut self) -> Option<LaneField> {
         let watched = Watched { pivots: 1, smallest: f64::INFINITY, largest: 0.0, vanishing: 1e-6 };
         let parameters = self.field.parameters().to_vec();
-        Some(LaneField { program: Arc::clone(&self.program), parameters, watched })
+        let unit_quaternions = Vec::new();
+        Some(LaneField { program: Arc::clone(&self.program), parameters, watched, unit_quaternions })
     }
 }
 

@@ -198,7 +198,7 @@ impl Unrolled {
             Some(prologue) => (Arc::clone(prologue.rest()), prologue.numbers(p).to_vec()),
             None => (Arc::clone(self.rates.program()), p.to_vec()),
         };
-        Some(LaneField { program, parameters, watched })
+        Some(LaneField { program, parameters, watched, unit_quaternions: Vec::new() })
     }
 
     pub(crate) fn machine_code(&mut self, dim: usize) -> Option<MachineCode> {

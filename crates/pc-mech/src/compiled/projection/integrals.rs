@@ -55,7 +55,7 @@ impl<'g> FirstOrder<'g> {
         held: &[Expr<'g>],
     ) -> Result<KeptIntegrals, MechError> {
         let known = &self.observables[..self.conserved];
-        let mut functions = held.to_vec();
+        let mut functions = [held, &self.norms()].concat();
         for name in names.iter().map(AsRef::as_ref) {
             let Some((_, integral)) = known.iter().find(|(known, _)| known == name) else {
                 let known = known.iter().map(|(name, _)| name.clone()).collect();
@@ -83,6 +83,14 @@ impl<'g> FirstOrder<'g> {
             states: self.states,
             room,
         })
+    }
+
+    /// |q|² − 1 of each quaternion.
+    fn norms(&self) -> Vec<Expr<'g>> {
+        let norm = |places: &[usize; 4]| {
+            self.graph.sum(places.iter().map(|&i| self.state[i].square()).chain([Expr::from(-1.0)]))
+        };
+        self.quaternions.places().iter().map(norm).collect()
     }
 
     /// Checks that an integral does not jump along the motion, where its values would belong to other states. The energy

@@ -3,7 +3,7 @@
 use pc_expr::{Fused, LaneTape, LaneValue};
 
 use super::super::coefficients::{A14, A15, A16, D};
-use super::field::{Health, advanced, sum};
+use super::field::{Health, advanced, normalise, sum};
 use super::problem::Problem;
 
 /// Terms of the polynomial.
@@ -55,18 +55,22 @@ pub(super) fn polynomial(problem: &Problem<'_>) -> LaneTape {
 }
 
 /// Reads the terms and the fraction s of the step; writes y there.
-pub(super) fn value(dim: usize) -> LaneTape {
+pub(super) fn value(problem: &Problem<'_>) -> LaneTape {
     let tape = &mut LaneTape::new();
+    let dim = problem.dim();
     let terms: [Vec<LaneValue>; TERMS] = std::array::from_fn(|_| tape.inputs(dim));
     let s = tape.input();
     let one = tape.constant(1.0);
     let rest = tape.subtract(one, s);
     // r₁ + s (r₂ + (1−s) (r₃ + …
-    for i in 0..dim {
-        let mut value = terms[TERMS - 1][i];
+    let mut y = terms[TERMS - 1].clone();
+    for (i, value) in y.iter_mut().enumerate() {
         for j in (0..TERMS - 1).rev() {
-            value = tape.multiply_add(value, if j % 2 == 0 { s } else { rest }, terms[j][i]);
+            *value = tape.multiply_add(*value, if j % 2 == 0 { s } else { rest }, terms[j][i]);
         }
+    }
+    normalise(tape, problem.unit_quaternions, &mut y);
+    for value in y {
         tape.output(value);
     }
     std::mem::take(tape)

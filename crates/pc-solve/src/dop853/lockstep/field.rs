@@ -140,3 +140,17 @@ pub(super) fn advanced(
     }
     sums
 }
+
+/// q/|q| for the quaternions at these places of a state.
+pub(super) fn normalise(tape: &mut LaneTape, quaternions: &[[usize; 4]], y: &mut [LaneValue]) {
+    for places in quaternions {
+        let mut square = tape.constant(0.0);
+        for &i in places {
+            square = tape.multiply_add(y[i], y[i], square);
+        }
+        let norm = tape.square_root(square);
+        for &i in places {
+            y[i] = tape.binary(Binary::Divide, y[i], norm);
+        }
+    }
+}

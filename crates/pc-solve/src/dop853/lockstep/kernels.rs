@@ -46,7 +46,16 @@ impl Kernels {
         }
         let absolute = plan.absolute(dim)?;
         let (numbers, rest) = program.factored();
-        let problem = Problem { plan, numbers: &numbers, program: &rest, pivots, vanishing, absolute };
+        let unit_quaternions = &field.unit_quaternions;
+        let problem = Problem {
+            plan,
+            numbers: &numbers,
+            program: &rest,
+            pivots,
+            vanishing,
+            absolute,
+            unit_quaternions,
+        };
         let has_inside = plan.has_inside();
         let tape = step(&problem, has_inside);
         if tape.operations() > LONGEST {
@@ -57,7 +66,9 @@ impl Kernels {
             None => Some(LaneKernel::new(tape)),
         };
         let inside = match has_inside {
-            true => Some(Inside { polynomial: kernel(polynomial(&problem))?, value: kernel(value(dim))? }),
+            true => {
+                Some(Inside { polynomial: kernel(polynomial(&problem))?, value: kernel(value(&problem))? })
+            }
             false => None,
         };
         Some(Kernels {
@@ -83,18 +94,21 @@ pub(super) struct Key {
     program: Arc<Program>,
     pivots: usize,
     vanishing: f64,
+    unit_quaternions: Vec<[usize; 4]>,
 }
 
 impl Key {
     pub(super) fn of(field: &LaneField) -> Key {
         let (pivots, vanishing) = (field.watched.pivots, field.watched.vanishing);
-        Key { program: Arc::clone(&field.program), pivots, vanishing }
+        let unit_quaternions = field.unit_quaternions.clone();
+        Key { program: Arc::clone(&field.program), pivots, vanishing, unit_quaternions }
     }
 
     pub(super) fn is_of(&self, field: &LaneField) -> bool {
         let (a, b) = (&self.program, &field.program);
         let bits = |program: &Program| program.constants().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
         (self.pivots, self.vanishing) == (field.watched.pivots, field.watched.vanishing)
+            && self.unit_quaternions == field.unit_quaternions
             && (Arc::ptr_eq(a, b)
                 || (a.state_len(), a.parameters_len()) == (b.state_len(), b.parameters_len())
                     && a.outputs() == b.outputs()

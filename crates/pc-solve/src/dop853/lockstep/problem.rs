@@ -14,6 +14,7 @@ pub(super) struct Problem<'a> {
     pub(super) pivots: usize,
     pub(super) vanishing: f64,
     pub(super) absolute: Vec<f64>,
+    pub(super) unit_quaternions: &'a [[usize; 4]],
 }
 
 impl<'a> Problem<'a> {

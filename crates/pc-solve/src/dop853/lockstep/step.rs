@@ -8,7 +8,7 @@ use pc_expr::{Binary, Fused, LaneTape, LaneValue};
 
 use super::super::coefficients::{A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12, B, B3, E5};
 use super::super::control::{GROWTH, SAFETY, SHRINKING};
-use super::field::{Health, advanced, sum, sums};
+use super::field::{Health, advanced, normalise, sum, sums};
 use super::problem::Problem;
 use super::stiffness::Counters;
 
@@ -101,8 +101,9 @@ pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
     let k12 = stage(&A12, &[&k1, &k4, &k5, &k6, &k7, &k8, &k9, &k10, &k11], true);
     let used: [&[LaneValue]; 8] = [&k1, &k6, &k7, &k8, &k9, &k10, &k11, &k12];
     let [slope, fifth] = sums(tape, [&B, &E5], &used);
-    let y1: Vec<LaneValue> =
+    let mut y1: Vec<LaneValue> =
         y.iter().zip(&slope).map(|(&y, &slope)| tape.multiply_add(slope, h, y)).collect();
+    normalise(tape, problem.unit_quaternions, &mut y1);
     health.look(tape, &y1);
     let k13 = field.rates(tape, &y1, &mut health);
     health.look(tape, &k13);

@@ -1,0 +1,55 @@
+//! Unit quaternions among the coordinates.
+
+use pc_expr::Expr;
+
+use crate::system::system::System;
+
+/// |q|² this close to 1 is that of components rounded to the nearest numbers. Moving a state for less would add noise to
+/// the differences from which an integrator predicts the motion.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
+/// The places of quaternions in a state; each has |q| = 1.
+///
+/// The frame of a joint keeps |q|, but an integrator only to its tolerance, and where |q| is not 1 a quaternion stands for
+/// no rotation.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct UnitQuaternions {
+    places: Vec<[usize; 4]>,
+}
+
+impl UnitQuaternions {
+    /// Those of a system, whose coordinates come first in its state.
+    pub(crate) fn of(system: &System<'_>) -> UnitQuaternions {
+        let x = system.frame.coordinates();
+        let place = |component: &Expr<'_>| x.iter().position(|x| x == component);
+        let places = |q: &[Expr<'_>; 4]| {
+            let [a, b, c, d] = q.each_ref().map(place);
+            Some([a?, b?, c?, d?])
+        };
+        UnitQuaternions { places: system.unit_quaternions.iter().filter_map(places).collect() }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    pub(crate) fn places(&self) -> &[[usize; 4]] {
+        &self.places
+    }
+
+    /// q/|q|; returns whether that changes any. One without a direction is left to the equations, which have no values
+    /// there.
+    #[inline]
+    pub(crate) fn normalise(&self, y: &mut [f64]) -> bool {
+        let mut changed = false;
+        for &places in &self.places {
+            let square: f64 = places.iter().map(|&i| y[i] * y[i]).sum();
+            if (square - 1.0).abs() > ROUNDED && square.is_normal() {
+                let norm = square.sqrt();
+                places.iter().for_each(|&i| y[i] /= norm);
+                changed = true;
+            }
+        }
+        changed
+    }
+}
