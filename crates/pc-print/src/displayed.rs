@@ -15,9 +15,8 @@ use crate::part::{Heading, Part, Parts, Row};
 use crate::sheet::{Balance, Brackets, Sheet};
 use crate::text::{LEFT_OUT, no_brackets};
 use crate::theory;
-use crate::theory::description::{Section, Side};
+use crate::theory::description::{Section, Side, Theory};
 use crate::theory::options::TheoryOptions;
-use crate::theory::page::described;
 use crate::words::short;
 
 /// Formulas under each other.
@@ -249,17 +248,16 @@ fn notes(sheet: &Sheet<'_>, part: &Part<'_>) -> Vec<String> {
     }
 }
 
-/// The [theory](crate::theory()) of a model, part by part.
+/// The [theory](Theory) of a model, part by part.
 ///
 /// # Errors
-/// As for [`theory`](crate::theory()).
+/// As for [`Theory::of`].
 pub fn displayed_theory<'g>(
     model: &Model,
     assembly: &Assembly<'g>,
     options: &TheoryOptions,
 ) -> Result<Vec<DisplayedTheory>, ModelError> {
-    let found = described(model, assembly, options)?;
-    assembly.within_limits()?;
+    let found = Theory::of(model, assembly, options)?;
     let set = |formulas: &[(Side<'g>, Side<'g>)]| {
         let row = |(left, right): &(Side<'g>, Side<'g>)| mathml::row(&left.mathml, &right.mathml);
         let rows: Vec<String> = formulas.iter().map(row).collect();

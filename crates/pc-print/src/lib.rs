@@ -2,7 +2,7 @@
 //!
 //! A [`page`](page()) is the output of `pc derive` and of `pc_system_print` of the C interface. Its parts are public,
 //! too: the [`Derived`] equations in each [`Form`], the [`Sheet`] of their printed expressions, and the
-//! [cost](Operations) of a right-hand side. The [`theory`](theory()) is the output of `pc theory` and
+//! [cost](Operations) of a right-hand side. The [`Theory`] is the output of `pc theory` and
 //! `pc_system_theory`.
 //!
 //! An [`Assembly`](pc_model::Assembly) becomes text. Read `form` and `derived` first, the equations with
@@ -62,10 +62,10 @@ pub use operations::{Operations, counted};
 pub use page::{Page, page};
 pub use sheet::{Balance, Bracket, Brackets, Sheet, recognised};
 pub use theory::bracket_of::bracket_of;
+pub use theory::description::Theory;
 pub use theory::integrals::integrals_of;
 pub use theory::measure::reducing_multiplier;
 pub use theory::options::TheoryOptions;
-pub use theory::page::theory;
 pub use theory::steady::{eigenvalues_in_words, stability_in_words};
 pub use visible::{one_line, visible, visible_json};
 pub use words::{assignments, labelled, short, small, wrapped};

@@ -6,7 +6,7 @@ use pc_expr::{Cancel, Limits};
 use pc_mech::{EmitOptions, Language};
 use pc_model::document::{EquationForm, Method};
 use pc_model::{Assembly, Builtin, Document, Model, Variables, deep};
-use pc_print::{Form, Layout, Page, TheoryOptions, displayed_equations, page, theory};
+use pc_print::{Form, Layout, Page, Theory, TheoryOptions, displayed_equations, page};
 use pc_report::Check;
 use pc_verify::{Options, VerifyError, verify};
 use pyo3::prelude::*;
@@ -286,7 +286,10 @@ impl ModelCore {
     ) -> PyResult<String> {
         let language = self::language(language)?;
         let options = TheoryOptions { degree, functions };
-        self.assembled(py, move |model, assembly| Ok(theory(model, assembly, language, &options)?))
+        self.assembled(
+            py,
+            move |model, assembly| Ok(Theory::of(model, assembly, &options)?.printed(language)),
+        )
     }
 
     /// Source of the equations: names of files with their texts.

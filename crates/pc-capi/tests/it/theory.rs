@@ -53,9 +53,9 @@ fn formats_are_those_of_the_equations() {
     let model = ::pc_model::Model::new(::pc_model::Builtin::named("euler-top").unwrap().document().unwrap());
     let graph = model.graph();
     let assembly = model.assemble(&graph).unwrap();
-    let expected = [pc_print::Page::Text, pc_print::Page::Latex, pc_print::Page::Json]
-        .map(|page| pc_print::theory(&model, &assembly, page, &pc_print::TheoryOptions::default()).unwrap());
-    assert_eq!([text, latex, json], expected);
+    let theory = pc_print::Theory::of(&model, &assembly, &pc_print::TheoryOptions::default()).unwrap();
+    let pages = [pc_print::Page::Text, pc_print::Page::Latex, pc_print::Page::Json];
+    assert_eq!([text, latex, json], pages.map(|page| theory.printed(page)));
 }
 
 #[test]

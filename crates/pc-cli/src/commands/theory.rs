@@ -1,6 +1,6 @@
 //! `pc theory`: what can be said of the motions of a model, printed.
 
-use pc_print::{TheoryOptions, theory};
+use pc_print::{Theory, TheoryOptions};
 
 use crate::args::input;
 use crate::args::options::TheoryArguments;
@@ -19,6 +19,6 @@ pub fn command(arguments: &TheoryArguments) -> Result<(), CliError> {
     say_dropped(&assembly);
     say_moved(&assembly);
     let options = TheoryOptions { degree: arguments.degree, functions: arguments.functions.clone() };
-    let page = theory(&model, &assembly, arguments.format.into(), &options)?;
+    let page = Theory::of(&model, &assembly, &options)?.printed(arguments.format.into());
     print(|out| write!(out, "{page}"))
 }

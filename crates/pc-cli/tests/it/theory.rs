@@ -6,7 +6,8 @@ use std::process::{Command, Output};
 
 use crate::each_model::each;
 use pc_expr::parse::parse;
-use pc_model::BUILTIN;
+use pc_model::{BUILTIN, Model};
+use pc_print::{Page, Theory, TheoryOptions};
 use serde_json::Value;
 
 fn run(arguments: &[&str], directory: &Path) -> Output {
@@ -72,7 +73,11 @@ fn a_free_body_for_programs() {
 #[test]
 fn all_models_have_a_theory() {
     each(BUILTIN, |builtin| {
-        let object: Value = serde_json::from_str(&said(&[builtin.name, "--format", "json"])).expect("JSON");
+        let model = Model::new(builtin.document().expect("a model"));
+        let graph = model.graph();
+        let assembly = model.assemble(&graph).expect("assembled");
+        let theory = Theory::of(&model, &assembly, &TheoryOptions::default()).expect("a theory");
+        let object: Value = serde_json::from_str(&theory.printed(Page::Json)).expect("JSON");
         let sections = object.as_object().expect("an object");
         let mut formulas = 0;
         for entry in sections.values().filter_map(Value::as_array).flatten() {
@@ -87,13 +92,32 @@ fn all_models_have_a_theory() {
             assert_eq!(verdict == "disproved", entry["margin"].is_number(), "{}: {entry}", builtin.name);
         }
         assert!(formulas > 1, "{}", builtin.name);
-        let latex = said(&[builtin.name, "--format", "latex"]);
+        let latex = theory.printed(Page::Latex);
         let count = |c: char| latex.chars().filter(|&other| other == c).count();
         assert_eq!(count('{'), count('}'), "{}", builtin.name);
-        let text = said(&[builtin.name]);
+        let text = theory.printed(Page::Text);
         // Sums are broken into lines; other formulas are not.
         assert!(text.lines().all(|line| line.chars().count() < 400), "{}", builtin.name);
     });
+}
+
+/// What the program prints is what the library does.
+#[test]
+fn the_program_prints_the_theory() {
+    let model = Model::new(
+        BUILTIN
+            .iter()
+            .find(|model| model.name == "vertical-disk")
+            .expect("there")
+            .document()
+            .expect("a model"),
+    );
+    let graph = model.graph();
+    let assembly = model.assemble(&graph).expect("assembled");
+    let theory = Theory::of(&model, &assembly, &TheoryOptions::default()).expect("a theory");
+    for (name, page) in [("text", Page::Text), ("latex", Page::Latex), ("json", Page::Json)] {
+        assert_eq!(said(&["vertical-disk", "--format", name]), theory.printed(page));
+    }
 }
 
 /// The lines of a section.

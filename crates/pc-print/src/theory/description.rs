@@ -4,9 +4,11 @@ use pc_mech::{Expr, Identity, Style};
 
 use crate::mathml;
 
-/// The results on a model, part by part.
+/// What can be said of the motions of a model without integrating them: momenta and their brackets, Casimirs, integrals and
+/// the displacements to which they belong, invariant measure, Chaplygin's multiplier, Hamilton–Jacobi's equation, steady
+/// motions, Routh's reduction. Each claim is proved, disproved or open.
 #[derive(Clone, Debug)]
-pub(crate) struct Theory<'g> {
+pub struct Theory<'g> {
     pub(crate) title: String,
     pub(crate) sections: Vec<Section<'g>>,
 }

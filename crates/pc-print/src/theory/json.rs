@@ -5,9 +5,9 @@ use serde_json::{Map, Value, json};
 use crate::theory::description::{Entry, Theory, Verdict};
 
 /// Sections by their keys, each a list of entries.
-pub(crate) fn written(theory: &Theory<'_>, title: &str) -> Value {
+pub(crate) fn written(theory: &Theory<'_>) -> Value {
     let mut object = Map::new();
-    object.insert("model".to_owned(), json!(title));
+    object.insert("model".to_owned(), json!(theory.title));
     let names = theory.sections.iter().flat_map(|section| &section.names);
     let names: Vec<Value> =
         names.map(|(name, value)| json!({ "name": name.text, "value": value.text })).collect();

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use crate::latex::aligned;
 use crate::theory::description::{Entry, Section, Theory, in_text};
 use crate::theory::folded::folded_outside;
+use crate::visible::one_line;
 use crate::words::short;
 
 /// The most characters of a line of source, about the width of a page.
@@ -12,7 +13,7 @@ const WIDTH: usize = 140;
 
 /// A display for each section, with a comment above it; words without formulas are comments below it.
 pub(crate) fn written(theory: &Theory<'_>) -> String {
-    let mut page = format!("% {}: theory (needs amsmath)\n", theory.title);
+    let mut page = format!("% {}: theory (needs amsmath)\n", one_line(&theory.title));
     for section in &theory.sections {
         // Writing to a string cannot fail.
         let _ = write!(page, "\n% {}\n", section.title);

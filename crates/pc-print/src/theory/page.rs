@@ -7,66 +7,62 @@ use crate::theory::description::{Section, Theory};
 use crate::theory::ground::Ground;
 use crate::theory::options::TheoryOptions;
 use crate::theory::{action, brackets, integrals, json, latex, measure, names, routh, steady, text};
-use crate::visible::{one_line, visible, visible_json};
+use crate::visible::{visible, visible_json};
 
-/// What can be said of the motions of a model without integrating them, printed: momenta and their brackets,
-/// Casimirs, integrals and the displacements to which they belong, invariant measure, Chaplygin's multiplier,
-/// Hamilton–Jacobi's equation, steady motions, Routh's reduction. Each claim is proved, disproved or open.
-///
-/// # Errors
-/// [`ModelError`] if the equations cannot be derived, or a function cannot be read.
-///
-/// ```
-/// use pc_mech::Graph;
-/// use pc_model::{Document, Model, Source};
-/// use pc_print::{Page, TheoryOptions, theory};
-///
-/// let text = "[parameters]\na = 2.0\n[coordinates]\nx = 1.0\ny = 0.5\n[lagrangian]\n\
-///             kinetic = \"(x'^2 + y'^2)/2\"\npotential = \"x^2 + a*y^2\"";
-/// let model = Model::new(Document::parse(Source::new("oscillator.toml", text))?);
-/// let graph = Graph::new();
-/// let printed = theory(&model, &model.assemble(&graph)?, Page::Text, &TheoryOptions::default())?;
-/// assert!(printed.contains("2 a y² + y'² = const   (proved)"), "{printed}");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn theory<'g>(
-    model: &Model,
-    assembly: &Assembly<'g>,
-    page: Page,
-    options: &TheoryOptions,
-) -> Result<String, ModelError> {
-    let theory = described(model, assembly, options)?;
-    assembly.within_limits()?;
-    Ok(match page {
-        Page::Text => visible(&text::written(&theory)).into_owned(),
-        Page::Latex => latex::written(&theory),
-        Page::Json => visible_json(&json::written(&theory, model.title())) + "\n",
-    })
-}
+impl<'g> Theory<'g> {
+    /// What can be said of the motions of a model.
+    ///
+    /// # Errors
+    /// [`ModelError`] if the equations cannot be derived, or a function cannot be read.
+    ///
+    /// ```
+    /// use pc_mech::Graph;
+    /// use pc_model::{Document, Model, Source};
+    /// use pc_print::{Page, Theory, TheoryOptions};
+    ///
+    /// let text = "[parameters]\na = 2.0\n[coordinates]\nx = 1.0\ny = 0.5\n[lagrangian]\n\
+    ///             kinetic = \"(x'^2 + y'^2)/2\"\npotential = \"x^2 + a*y^2\"";
+    /// let model = Model::new(Document::parse(Source::new("oscillator.toml", text))?);
+    /// let graph = Graph::new();
+    /// let theory = Theory::of(&model, &model.assemble(&graph)?, &TheoryOptions::default())?;
+    /// let printed = theory.printed(Page::Text);
+    /// assert!(printed.contains("2 a y² + y'² = const   (proved)"), "{printed}");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of(
+        model: &Model,
+        assembly: &Assembly<'g>,
+        options: &TheoryOptions,
+    ) -> Result<Theory<'g>, ModelError> {
+        let ground = Ground::new(assembly)?;
+        let bracket = ground.placed(brackets::bracket(&ground))?;
+        let found = integrals::found(&ground, model, options)?;
+        let sections: Vec<Section<'g>> = vec![
+            brackets::momenta(&ground),
+            brackets::brackets(&ground, bracket.as_ref()),
+            brackets::casimirs(&ground, bracket.as_ref(), options.degree),
+            brackets::group_reduction(&ground, options.degree),
+            integrals::section(&ground, &found, options),
+            integrals::displacements(&ground, &found.0),
+            measure::section(&ground)?,
+            measure::multiplier(&ground),
+            action::section(&ground),
+            steady::section(&ground, &found.0)?,
+            routh::section(&ground)?,
+        ];
+        let sections = sections.into_iter().filter(|section| !section.entries.is_empty()).collect();
+        let mut theory = Theory { title: model.title().to_owned(), sections };
+        names::write(&mut theory, assembly);
+        assembly.within_limits()?;
+        Ok(theory)
+    }
 
-pub(crate) fn described<'g>(
-    model: &Model,
-    assembly: &Assembly<'g>,
-    options: &TheoryOptions,
-) -> Result<Theory<'g>, ModelError> {
-    let ground = Ground::new(assembly)?;
-    let bracket = ground.placed(brackets::bracket(&ground))?;
-    let found = integrals::found(&ground, model, options)?;
-    let sections: Vec<Section<'g>> = vec![
-        brackets::momenta(&ground),
-        brackets::brackets(&ground, bracket.as_ref()),
-        brackets::casimirs(&ground, bracket.as_ref(), options.degree),
-        brackets::group_reduction(&ground, options.degree),
-        integrals::section(&ground, &found, options),
-        integrals::displacements(&ground, &found.0),
-        measure::section(&ground)?,
-        measure::multiplier(&ground),
-        action::section(&ground),
-        steady::section(&ground, &found.0)?,
-        routh::section(&ground)?,
-    ];
-    let sections = sections.into_iter().filter(|section| !section.entries.is_empty()).collect();
-    let mut theory = Theory { title: one_line(model.title()).into_owned(), sections };
-    names::write(&mut theory, assembly);
-    Ok(theory)
+    /// The theory on a page.
+    pub fn printed(&self, page: Page) -> String {
+        match page {
+            Page::Text => visible(&text::written(self)).into_owned(),
+            Page::Latex => latex::written(self),
+            Page::Json => visible_json(&json::written(self)) + "\n",
+        }
+    }
 }

@@ -4,6 +4,7 @@ use crate::lines::columns;
 use crate::text::underlined;
 use crate::theory::description::{Entry, Section, Theory};
 use crate::theory::folded::folded;
+use crate::visible::one_line;
 use crate::words::{short, wrapped};
 
 /// The most columns of a line.
@@ -21,7 +22,7 @@ pub(crate) fn written(theory: &Theory<'_>) -> String {
         format!("{}\n{lines}", section.title)
     };
     let sections: Vec<String> = theory.sections.iter().map(section).collect();
-    underlined(&format!("{}: theory", theory.title)) + &sections.join("\n")
+    underlined(&format!("{}: theory", one_line(&theory.title))) + &sections.join("\n")
 }
 
 /// Name, formulas with their verdict, then the remaining lines, indented further.
