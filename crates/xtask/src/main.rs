@@ -41,7 +41,7 @@ usage: cargo xtask <command>
   demo             build `pc`, derive, integrate and plot a heavy top in target/demo
   test [--quick] [--since REV]
                    format, lints, tests, documentation, licences, FMUs, the Python package, with the times of all at the end;
-                   --quick stops after the tests, --since tries only what can behave otherwise than at a revision of git
+                   --quick leaves out the longest tests and what follows the tests, --since tries only what can behave otherwise than at a revision of git
   stage TITLE      one of the stages that `test` names, by itself
   bench [NAME…]    run the benchmarks, all of them or those named
   fuzz models|trees [--count N] [--seed S] [--model K]

@@ -24,7 +24,7 @@ use stage::{AFTER, BEFORE, Stage};
 /// Which of the tests are wanted.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Wanted {
-    /// Nothing after the test programs.
+    /// Nothing after the test programs, and no long tests.
     pub(crate) quick: bool,
     /// Only what can behave otherwise than at this revision.
     pub(crate) since: Option<String>,
@@ -61,7 +61,7 @@ struct Work {
 impl Work {
     fn everything(&mut self, quick: bool) -> Result<(), Error> {
         BEFORE.iter().try_for_each(|stage| self.stage(stage))?;
-        let tests = self.tests();
+        let tests = self.tests(quick);
         let documentation = self.stage(&stage::DOCUMENTATION_TESTS);
         tests.and(documentation)?;
         if quick { Ok(()) } else { AFTER.iter().try_for_each(|stage| self.stage(stage)) }
@@ -97,7 +97,7 @@ impl Work {
     }
 
     /// The test programs, one after the other; each uses all processors.
-    fn tests(&mut self) -> Result<(), Error> {
+    fn tests(&mut self, quick: bool) -> Result<(), Error> {
         let title = "build of everything";
         println!("\n== {title}");
         let start = Instant::now();
@@ -108,7 +108,7 @@ impl Work {
             built?.into_iter().filter(|program| self.concerns(&[program.package()])).collect::<Vec<_>>()
         {
             let start = Instant::now();
-            let run = programs::run(&program, &mut self.counts)?;
+            let run = programs::run(&program, &mut self.counts, quick)?;
             let verdict = if run.failure.is_none() { Verdict::Passed } else { Verdict::Failed };
             self.over(&program.name, verdict, start);
             self.report.tests(run.tests);

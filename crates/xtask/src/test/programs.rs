@@ -101,20 +101,22 @@ pub(crate) struct Run {
     pub(crate) failure: Option<Error>,
 }
 
-/// Runs a program; its lines go to the terminal and to `counts`.
+/// Runs a program, in a `quick` run without its long tests; its lines go to the terminal and to `counts`.
 ///
 /// # Errors
 /// [`Error::Start`] and [`Error::Output`]; that tests fail, or take too long, is in the result.
-pub(crate) fn run(program: &TestProgram, counts: &mut Counts) -> Result<Run, Error> {
+pub(crate) fn run(program: &TestProgram, counts: &mut Counts, quick: bool) -> Result<Run, Error> {
     println!("\n   Running {}", program.name);
-    let list = program.command().args(["--list", "--format", "terse"]).output();
+    let skipped = usual::LONG.iter().filter(|(of, _)| quick && *of == program.name);
+    let chosen: Vec<&str> = skipped.flat_map(|(_, test)| ["--skip", test]).collect();
+    let list = program.command().args(["--list", "--format", "terse"]).args(&chosen).output();
     let list = list.map_err(|source| Error::Start { program: program.name.clone(), source })?;
     let threads = available_parallelism().map_or(1, usize::from);
     let (start, limit) = (Instant::now(), usual::limit_of_program(&program.name));
     let mut progress = Progress::new(&String::from_utf8_lossy(&list.stdout), threads, start);
     let mut last = VecDeque::new();
     let mut command = program.command();
-    command.arg(format!("--test-threads={threads}"));
+    command.arg(format!("--test-threads={threads}")).args(&chosen);
     let ending = limited::run(&mut command, limit, None, |line, now| {
         println!("{line}");
         counts.add_line(line);

@@ -22,6 +22,20 @@ const PROGRAMS: [(&str, u64); 10] = [
     ("pc-verify it", 15),
 ];
 
+/// The tests that take more than ten seconds: `--quick` leaves them out.
+pub(crate) const LONG: [(&str, &str); 10] = [
+    ("pc-cli it", "browser::the_page_of_a_bicycle"),
+    ("pc-cli it", "help::the_examples_run"),
+    ("pc-cli it", "program::models_and_algebras_are_listed"),
+    ("pc-cli it", "report::the_page_of_a_platform_on_six_legs_is_below_a_megabyte"),
+    ("pc-cli it", "sweep_of::what_was_killed_goes_on_and_gives_the_same_bytes"),
+    ("pc-cli it", "theory::all_models_have_a_theory"),
+    ("pc-cli it", "verdicts::check_and_linearize_agree_on_stability"),
+    ("pc-report pages", "pages_of_all_models"),
+    ("pc-tests it", "printed_pages::pages_of_mechanisms_agree_with_their_equations"),
+    ("pc-tests it", "random_models::random_models_agree_with_independent_computations"),
+];
+
 /// The limit of what usually takes some seconds.
 pub(crate) fn limit(usual: u64) -> Duration {
     (Duration::from_secs(usual) * FACTOR).max(LEAST)
@@ -35,7 +49,27 @@ pub(crate) fn limit_of_program(name: &str) -> Duration {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+    use std::path::Path;
+
     use super::*;
+
+    /// A name that no test has leaves nothing out.
+    #[test]
+    fn long_tests_exist() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        for (program, test) in LONG {
+            let (package, program) = program.split_once(' ').unwrap();
+            let package =
+                if package == "pc-tests" { "tests".to_owned() } else { format!("crates/{package}") };
+            let (file, name) =
+                test.split_once("::").map_or((format!("{program}.rs"), test), |(module, name)| {
+                    (format!("{program}/{module}.rs"), name)
+                });
+            let text = fs::read_to_string(root.join(package).join("tests").join(&file)).unwrap();
+            assert!(text.contains(&format!("fn {name}(")), "{file}: {name}");
+        }
+    }
 
     #[test]
     fn limits_are_five_times_the_usual_time_and_at_least_a_minute() {
