@@ -3,10 +3,12 @@
 //! An [`Assembly`](crate::Assembly) becomes a [`Flow`](flow::Flow). Read `variables` first, the equations in
 //! the variables of their state, `free_form`, those of independent quasi-velocities, whose start is given by
 //! `formulas`, and `compile`, their motion, evaluated at the start; `reading` converts states to coordinates,
-//! quasi-velocities and first-order states; `events` are the model's events on them, and `flow` combines all
-//! of these; `prototype` gives a flow other numbers without deriving it again.
+//! quasi-velocities and first-order states; `events` are the model's events on them, `constrained_resets` the
+//! states that constraints allow after these, and `flow` combines all of these; `prototype` gives a flow other
+//! numbers without deriving it again.
 
 pub(crate) mod compile;
+pub(crate) mod constrained_resets;
 pub(crate) mod event_slopes;
 pub(crate) mod events;
 pub(crate) mod flow;

@@ -49,7 +49,7 @@ pub fn twin(specimen: &Specimen, start: &Start) -> Option<String> {
     let same_words = specimen.carried.is_empty() && matches!(specimen.frame, Frame::Velocities);
     let velocities = specimen.chart_velocities();
     let resets = specimen.events.iter().any(|event| !event.reset.is_empty());
-    if same_words || resets && velocities.is_none() {
+    if same_words || resets && velocities.is_none() || holds_some_velocities(specimen) {
         return None;
     }
     let mut text = Text::default();
@@ -81,6 +81,15 @@ pub fn twin(specimen: &Specimen, start: &Start) -> Option<String> {
         velocities.chain(event.reset.iter().filter(|(name, _)| is_same(name)).cloned()).collect()
     });
     Some(text.simulation(specimen))
+}
+
+/// Whether a reset keeps some quasi-velocities but not all at the values that it gives, and constraints move the others: in
+/// ordinary velocities there are no values that say the same.
+fn holds_some_velocities(specimen: &Specimen) -> bool {
+    let eta = specimen.quasi_velocities();
+    let sets = |event: &super::specimen::Event, eta: &String| event.reset.iter().any(|(name, _)| name == eta);
+    let some = |event| eta.iter().any(|eta| sets(event, eta)) && !eta.iter().all(|eta| sets(event, eta));
+    !specimen.constraints.is_empty() && specimen.events.iter().any(some)
 }
 
 /// F_i = Q_s a_si + Q_i: what forces on quasi-velocities η = a ẋ + a_0 are on coordinates.

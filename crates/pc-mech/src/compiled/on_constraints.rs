@@ -70,4 +70,25 @@ impl Motion {
         let outcome = self.surface.as_mut().map_or(Ok(()), |s| s.project_velocities(t, y, parameters));
         outcome.map_err(|failure| self.failure(failure, t, y))
     }
+
+    /// Moves the η of a state onto the constraints, and leaves its x as they are. The quasi-velocities of the indices
+    /// `held` change only as far as the constraints on them alone demand, the others then follow, both by the shortest
+    /// way in the kinetic metric.
+    ///
+    /// # Errors
+    /// A [`Failure`] where no such velocities are found.
+    ///
+    /// # Panics
+    /// If `y` does not have the length of the state.
+    pub fn project_velocities_holding(
+        &mut self,
+        t: f64,
+        y: &mut [f64],
+        held: &[usize],
+    ) -> Result<(), Failure> {
+        assert_eq!(y.len(), self.names.len(), "length of the state");
+        let Some(surface) = &mut self.surface else { return Ok(()) };
+        let projected = surface.project_velocities_holding((t, y, &self.parameters), held);
+        projected.map_err(|failure| self.failure(failure, t, y))
+    }
 }

@@ -2,7 +2,8 @@
 //!
 //! `constraint_manifold` is the surface on which constraints hold, with conditions that follow from them
 //! (`followers`) and components that are prescribed (`holding`); `nearest` finds the nearest velocities on
-//! it; `unit_quaternions` of joints have length 1; `integrals` are first integrals that are kept, `keeping` gives them to a motion.
+//! it, `yielding` those of which some keep their values as far as they can; `unit_quaternions` of joints have
+//! length 1; `integrals` are first integrals that are kept, `keeping` gives them to a motion.
 
 pub(crate) mod constraint_manifold;
 pub(crate) mod followers;
@@ -11,3 +12,4 @@ pub(crate) mod integrals;
 pub(crate) mod keeping;
 pub(crate) mod nearest;
 pub(crate) mod unit_quaternions;
+pub(crate) mod yielding;

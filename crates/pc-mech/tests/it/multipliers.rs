@@ -669,6 +669,43 @@ fn held_components_stay_and_the_rest_moves_the_shortest_way() {
     assert_eq!(failure.singular_constraint(), Some("rod"));
 }
 
+/// The same two bobs, with a third as heavy as both that hangs on the second in y: what is held changes only where it must.
+#[test]
+fn held_velocities_yield_only_to_conditions_on_them_alone() {
+    let graph = Graph::new();
+    let system = System::builder(&graph)
+        .coordinates(["x1", "x2", "y"])
+        .lagrangian(|_, _, v| (v[0].square() + 4.0 * v[1].square() + 5.0 * v[2].square()) / 2.0)
+        .build()
+        .unwrap();
+    let [x1, x2, y] = graph.symbols(["x1", "x2", "y"]);
+    let rod = Constraint::new("rod", x2 - x1 - 1.0);
+    let mut one = system.with_multipliers(std::slice::from_ref(&rod)).unwrap().compile().unwrap();
+    let hook = Constraint::new("hook", y - 2.0 * x2);
+    let mut both = system.with_multipliers(&[rod, hook]).unwrap().compile().unwrap();
+    let place = [0.0, 1.0, 2.0];
+    let moved = |motion: &mut Motion, velocities: [f64; 3], held: &[usize]| {
+        let mut state = [place, velocities].concat();
+        motion.project_velocities_holding(0.0, &mut state, held).unwrap();
+        assert_eq!(state[..3], place);
+        state[3..].to_vec()
+    };
+    let near = |found: Vec<f64>, expected: [f64; 3]| {
+        for (x, y) in found.iter().zip(&expected) {
+            assert!((x - y).abs() < 1e-14, "{found:?} is not {expected:?}");
+        }
+    };
+    near(moved(&mut one, [1.0, 2.0, 3.0], &[1]), [2.0, 2.0, 3.0]);
+    // On the first two alone the rod acts as if the third were not there: (1 + 4·2)/5.
+    near(moved(&mut one, [1.0, 2.0, 3.0], &[0, 1]), [1.8, 1.8, 3.0]);
+    near(moved(&mut both, [1.0, 2.0, 3.0], &[0, 1]), [1.8, 1.8, 3.6]);
+    near(moved(&mut both, [1.5, 1.5, 7.0], &[0, 1]), [1.5, 1.5, 3.0]);
+    near(moved(&mut both, [1.0, 2.0, 3.0], &[2]), [1.5, 1.5, 3.0]);
+    // All together: v (1 + 4 + 5·4) = 1 + 8 + 5·2·3.
+    near(moved(&mut both, [1.0, 2.0, 3.0], &[]), [1.56, 1.56, 3.12]);
+    near(moved(&mut both, [1.0, 2.0, 3.0], &[0, 1, 2]), [1.56, 1.56, 3.12]);
+}
+
 /// x = y holds where (x − y)(x + y) = 0 and x > 0, but not on the other branch.
 #[test]
 fn a_constraint_that_no_longer_follows_is_an_error() {

@@ -85,8 +85,8 @@ impl<'g> Assembler<'g, '_> {
         let dissipation = self.dissipation(&x_dot)?;
         let rates = self.state_rates(&x_dot)?;
         let (forces, on_coordinates) = self.forces(eta.len(), &x_dot)?;
-        let integrals = self.observed(&document.integrals, &x_dot)?;
-        let mut outputs = self.observed(&document.outputs, &x_dot)?;
+        let integrals = self.observed(&document.integrals, &eta, &x_dot)?;
+        let mut outputs = self.observed(&document.outputs, &eta, &x_dot)?;
         if self.model.observes_reactions() {
             let names = document.constraints.iter().map(|constraint| format!("λ_{}", constraint.name.text));
             outputs.extend(names.map(|name| (name.clone(), self.graph.symbol(&name))));
@@ -254,20 +254,24 @@ impl<'g> Assembler<'g, '_> {
     fn observed(
         &mut self,
         list: &[NamedExpression],
+        eta: &[Expr<'g>],
         x_dot: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<Vec<(String, Expr<'g>)>, ModelError> {
         let mut observed = Vec::new();
         for item in list {
             let value = self.scope.resolve(&item.expression, Stage::Observation)?;
-            observed.push((item.name.text.clone(), self.with_velocities(value, x_dot)));
+            observed.push((item.name.text.clone(), self.with_velocities(value, eta, x_dot)));
         }
         Ok(observed)
     }
 
-    /// Substitutes ẋ = b η + b_0, and for the accelerations x'' its derivative along the motion.
-    fn with_velocities(&self, value: Expr<'g>, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
+    /// Substitutes ẋ = b η + b_0, and for the accelerations x'' its derivative along the motion,
+    ///
+    ///   ẍ = b η̇ + (db/dt) η + db_0/dt,
+    ///
+    /// where `eta` are all quasi-velocities of the system, with those that complete the declared ones.
+    fn with_velocities(&self, value: Expr<'g>, eta: &[Expr<'g>], x_dot: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
         let graph = self.graph;
-        let eta = self.scope.quasi_velocities();
         // Of the velocities that remain, x' is itself a quasi-velocity.
         let rate = |velocity: Expr<'g>| x_dot.iter().find(|(symbol, _)| *symbol == velocity);
         let coordinates = self.scope.coordinates().into_iter().zip(self.scope.velocities());

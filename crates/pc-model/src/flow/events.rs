@@ -3,20 +3,15 @@
 use std::sync::Arc;
 
 use pc_expr::{Backend, Evaluator, Event, Events, Failure, Program};
-use pc_mech::{MechError, Motion, Signals, VectorField};
+use pc_mech::{MechError, Motion, Signals};
 
 use crate::assembly::assembly::Assembly;
 use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
+use crate::flow::constrained_resets::ConstrainedResets;
 use crate::flow::event_slopes::EventSlopes;
 use crate::flow::reading::{Reading, inputs};
 use crate::model::model::Model;
-
-/// A reset that leaves a constraint on coordinates by more than this displacement, absolute or relative,
-/// whichever is larger, is more than rounding.
-const OFF: f64 = 1e-8;
-/// The factor by which a reset may increase the distance of a state from the constraints.
-const LENGTHENED: f64 = 10.0;
 
 /// The events of a model, compiled. Functions and resets see (x, η) with all quasi-velocities.
 #[derive(Clone, Debug)]
@@ -31,10 +26,8 @@ pub struct FlowEvents {
     slopes: Option<EventSlopes>,
     /// The indices of inputs with tables.
     tables: Vec<usize>,
-    /// The motion under constraints, which measures distances from them.
-    constraints: Option<Motion>,
-    /// The quasi-velocities that determine the others, and keep the values of resets.
-    determining: Vec<usize>,
+    /// What constraints that multipliers hold make of resets.
+    constraints: Option<ConstrainedResets>,
     /// Storage for (x, η, z) with all η.
     room: Vec<f64>,
 }
@@ -55,15 +48,6 @@ struct NoSlopes;
 #[error("there is no derivative by parameter {parameter} (from 0): it is an input with a table")]
 struct OfTable {
     parameter: usize,
-}
-
-/// The error of a reset to a state that constraints forbid.
-#[derive(Debug, thiserror::Error)]
-#[error("its reset leaves the constraints: {coordinate} would have to be {allowed}, not {given}")]
-struct OffConstraints {
-    coordinate: String,
-    given: f64,
-    allowed: f64,
 }
 
 impl FlowEvents {
@@ -92,14 +76,13 @@ impl FlowEvents {
             let (places, values): (Vec<_>, Vec<_>) = event.resets.iter().copied().unzip();
             Ok(Reset { places, values: compiled(&values)? })
         });
-        let held = matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_))
-            && !declared.is_empty();
-        // The declared ones, if others complete them to a frame and follow from them.
-        let bound =
-            assembly.constraints.multipliers().map_or(0, |multipliers| multipliers.constraints().len());
-        let follow = bound > 0 && assembly.declared + bound == system.quasi_velocities().len();
+        let constraints = match assembly.constraints.formulation() {
+            ConstraintFormulation::Multipliers(held) if !declared.is_empty() => {
+                Some(ConstrainedResets::new(watch, &held.multipliers, assembly.declared))
+            }
+            _ => None,
+        };
         Ok(FlowEvents {
-            determining: if follow { (0..assembly.declared).collect() } else { Vec::new() },
             events: declared.iter().map(event).collect(),
             reading: reading.clone(),
             signals: model.signals(),
@@ -107,7 +90,7 @@ impl FlowEvents {
             resets: resets.collect::<Result<_, ModelError>>()?,
             slopes,
             tables: model.parameter_values().tables().iter().map(|&(place, _)| place).collect(),
-            constraints: held.then(|| watch.clone().without_kept()),
+            constraints,
             room: Vec::new(),
         })
     }
@@ -118,8 +101,8 @@ impl FlowEvents {
     /// Unless there are as many values as parameters.
     pub fn set_parameters(&mut self, parameters: &[f64]) {
         self.reading.set_parameters(parameters);
-        if let Some(motion) = &mut self.constraints {
-            motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
+        if let Some(constraints) = &mut self.constraints {
+            constraints.set_parameters(parameters);
         }
     }
 
@@ -186,8 +169,7 @@ impl Events for FlowEvents {
         plain.then(|| (self.functions.program(), self.reading.parameters()))
     }
 
-    /// All new values are functions of the state before; velocities are then projected to the constraints.
-    /// Other coordinates stay unchanged: the state is at the event, and rounding must not move it back.
+    /// All new values are functions of the state before.
     fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let mut all = self.reading.read(t, y).map_err(Failure::fatal)?;
         let before = all.clone();
@@ -198,31 +180,10 @@ impl Events for FlowEvents {
         for (&place, value) in places.iter().zip(new) {
             all[place] = value;
         }
-        if let Some(motion) = self.constraints.as_mut().filter(|_| all.iter().all(|value| value.is_finite()))
+        if let Some(constraints) =
+            self.constraints.as_mut().filter(|_| all.iter().all(|value| value.is_finite()))
         {
-            if places.iter().all(|&place| place >= motion.coordinates()) {
-                motion.project_velocities(t, &mut all)?;
-                y.copy_from_slice(&self.reading.write(t, &all).map_err(Failure::fatal)?);
-                return Ok(());
-            }
-            let given = all.clone();
-            match self.determining.as_slice() {
-                [] => motion.project(t, &mut all)?,
-                determining => motion.project_holding(t, &mut all, &[], determining)?,
-            }
-            // A state that is itself at some distance from the constraints, such as one displaced for
-            // derivatives, keeps that distance.
-            let mut nearest = before.clone();
-            motion.project(t, &mut nearest)?;
-            let coordinates = 0..motion.coordinates();
-            let off = coordinates.map(|i| (before[i] - nearest[i]).abs()).fold(0.0, f64::max);
-            for i in 0..motion.coordinates() {
-                let (given, allowed) = (given[i], all[i]);
-                if (given - allowed).abs() > OFF * given.abs().max(1.0) + LENGTHENED * off {
-                    let coordinate = motion.component_name(i);
-                    return Err(Failure::fatal(OffConstraints { coordinate, given, allowed }));
-                }
-            }
+            constraints.settle(t, &before, places, &mut all)?;
         }
         y.copy_from_slice(&self.reading.write(t, &all).map_err(Failure::fatal)?);
         Ok(())

@@ -2,7 +2,7 @@
 //! determined, and every refusal in full.
 
 use pc_mech::{Graph, VectorField};
-use pc_model::{Category, ConstraintFormulation, Document, Model, ModelError, Source};
+use pc_model::{Category, ConstraintFormulation, Document, Flow, Model, ModelError, Source, Variables};
 
 use crate::verified::derived_twice;
 
@@ -239,4 +239,142 @@ fn an_invalid_reset_lists_what_can_be_reset() {
         "m.toml:13:11: [events.e] reset.w1: `w1` cannot be reset: it is a quasi-velocity that a constraint keeps at zero\n    \
          reset = { w1 = \"0.3\" }\n              ^^\n  help: an event can reset x, y, w2"
     );
+}
+
+/// Mechanisms in quasi-velocities that the velocities of coordinates, or constraints, complete; functions to differentiate, and
+/// independent velocities.
+const MOVING: [(&str, &[&str], &[&str]); 6] = [
+    // Coefficients of the definition contain a coordinate that follows.
+    (
+        "[coordinates]\na = 0.7\nb = 0.49\nc = 0.343\n[quasi_velocities]\nw = { is = \"exp(b/2)*a' + 0.4*c'\", start = 0.9 }\n\
+         [constraints]\nk0 = \"b - a^2\"\nk1 = \"c - a^3\"\n[lagrangian]\nkinetic = \"(a'^2 + 2*b'^2 + c'^2)/2\"\n",
+        &["a'", "b'", "c'", "w", "w*a'*c", "b'*c' + sin(t)*w^2"],
+        &["w"],
+    ),
+    // A rod that becomes longer.
+    (
+        "[coordinates]\nx = 0.6\ny = -0.8\n[quasi_velocities]\nw = { is = \"x' + 0.2*y'\", start = 1.1 }\n[constraints]\n\
+         rod = \"x^2 + y^2 - (1 + t/3)^2\"\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential = \"y\"\n",
+        &["x'", "y'", "w", "x*y' - y*x'"],
+        &["y'"],
+    ),
+    // Two degrees of freedom, a definition that changes with time.
+    (
+        "[coordinates]\nx = 1.0\ny = 0.5\nz = 0.2\n[quasi_velocities]\nu = { is = \"x' + y*z'\", start = 0.4 }\n\
+         v = { is = \"2*z' + t*y\", start = -0.3 }\n[constraints]\nk = \"y - x^2/2 - sin(t)\"\n[lagrangian]\n\
+         kinetic = \"(x'^2 + 2*y'^2 + 3*z'^2)/2\"\npotential = \"x^2 + z*y\"\n",
+        &["x'", "y'", "z'", "u*v", "t*y'"],
+        &["u", "v"],
+    ),
+    // A knife edge on a surface: constraints of both kinds.
+    (
+        "[coordinates]\nx = 0.1\ny = 0.2\nq = 0.3\nz = 0.02\n[quasi_velocities]\n\
+         v = { is = \"cos(q)*x' + sin(q)*y' + z'/5\", start = 1.0 }\nw = { is = \"q' + z*x'\", start = 0.7 }\n[constraints]\n\
+         edge = \"sin(q)*x' - cos(q)*y'\"\nlift = \"z - x*y\"\n[lagrangian]\n\
+         kinetic = \"(x'^2 + y'^2 + 2*q'^2 + z'^2)/2\"\npotential = \"x/3 + q^2 + z\"\n",
+        &["x'", "y'", "z'", "v*w", "q'*z'"],
+        &["v", "w"],
+    ),
+    // A first-order state pulls.
+    (
+        "[coordinates]\nx = 0.6\ny = 0.36\n[quasi_velocities]\nw = { is = \"x' + y*y'\", start = 1.0 }\n[constraints]\n\
+         k = \"y - x^2\"\n[states]\ns = { start = 0.2, rate = \"x' - s\" }\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n\
+         [forces]\nx = \"-s\"\n",
+        &["x'", "y'", "s*y'", "w*s"],
+        &["w"],
+    ),
+    // As many definitions as coordinates, which a constraint binds.
+    (
+        "[coordinates]\na = 0.4\nb = 0.1\n[quasi_velocities]\nu = { is = \"a' + sin(a)*b'\", start = 0.3 }\n\
+         v = { is = \"b'*exp(a/3)\", start = 1.0 }\n[constraints]\nk = \"u - 0.3*v\"\n[lagrangian]\n\
+         kinetic = \"(a'^2 + b'^2 + a'*b'*cos(a - b))/2\"\npotential = \"-cos(a) - cos(b)\"\n",
+        &["a'", "b'", "u*v", "a'*b'"],
+        &["v"],
+    ),
+];
+
+/// A form of the equations of a model, with the independent velocities asked for.
+fn flow(text: &str, variables: Variables, independent: &[&str]) -> Flow {
+    let mut model = model(text);
+    model.choose_independent(independent.iter().copied());
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    Flow::new(&model, &assembly, variables).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// The rate of a function along the motion is its difference quotient along (1, ẏ), at the start and beside it.
+#[test]
+fn rates_of_velocities_are_those_along_the_motion() {
+    for (text, functions, chosen) in MOVING {
+        let outputs =
+            functions.iter().enumerate().map(|(i, f)| format!("f{i} = \"{f}\"\nd{i} = \"d({f})\"\n"));
+        let text = format!("{text}[outputs]\n{}", outputs.collect::<String>());
+        let forms = [
+            (Variables::QuasiVelocities, &[][..]),
+            (Variables::Momenta, &[]),
+            (Variables::QuasiVelocities, chosen),
+            (Variables::Momenta, chosen),
+        ];
+        for (variables, independent) in forms {
+            let mut flow = flow(&text, variables, independent);
+            let start = flow.start.clone();
+            let mut rates = vec![f64::NAN; start.len()];
+            flow.motion.rhs(0.0, &start, &mut rates).unwrap();
+            let mut at = |h: f64| {
+                let moved: Vec<f64> = start.iter().zip(&rates).map(|(y, rate)| y + h * rate).collect();
+                flow.row(h, &moved)
+            };
+            // Quotients of order 4: their truncation, of h⁴, and rounding are below 1e-10.
+            let h = 1e-3;
+            let (here, values) = (at(0.0), [at(h), at(-h), at(2.0 * h), at(-2.0 * h)]);
+            let names = [flow.names.clone(), flow.motion.observable_names().to_vec()].concat();
+            let place = |name: String| names.iter().position(|known| *known == name).unwrap();
+            for (i, f) in functions.iter().enumerate() {
+                let (f_place, d_place) = (place(format!("f{i}")), place(format!("d{i}")));
+                let [ahead, behind, far_ahead, far_behind] = &values;
+                let quotient = (8.0 * (ahead[f_place] - behind[f_place]) - far_ahead[f_place]
+                    + far_behind[f_place])
+                    / (12.0 * h);
+                let rate = here[d_place];
+                assert!(
+                    (rate - quotient).abs() < 1e-8 * rate.abs().max(1.0),
+                    "d({f}) by {variables:?} {independent:?}: {rate} is not {quotient}\n{text}"
+                );
+            }
+        }
+    }
+}
+
+/// On the curve (a, a², a³) without forces the energy a'² (1 + 4 a² + 9 a⁴)/2 stays, so that a'' = −a'² (4 a + 18 a³)/(1 + 4 a²
+/// + 9 a⁴), and c'' = 3 a² a'' + 6 a a'².
+#[test]
+fn accelerations_on_a_curve_are_those_of_its_formula() {
+    for (a, start) in [(0.6f64, 1.0), (0.5, -0.7), (1.2, 0.3)] {
+        let text = format!(
+            "[coordinates]\na = {a}\nb = {}\nc = {}\n[quasi_velocities]\nw = {{ is = \"cos(b)*a' + 0.3*c'\", start = {start} }}\n\
+             [constraints]\nk0 = \"b - a^2\"\nk1 = \"c - a^3\"\n[lagrangian]\nkinetic = \"(a'^2 + b'^2 + c'^2)/2\"\n\
+             [outputs]\nbend = \"d(c')\"\n",
+            a * a,
+            a * a * a
+        );
+        let speed = start / ((a * a).cos() + 0.9 * a * a);
+        let slow = -speed * speed * (4.0 * a + 18.0 * a.powi(3)) / (1.0 + 4.0 * a * a + 9.0 * a.powi(4));
+        let expected = 3.0 * a * a * slow + 6.0 * a * speed * speed;
+        for (variables, independent) in [
+            (Variables::QuasiVelocities, &[][..]),
+            (Variables::QuasiVelocities, &["w"]),
+            (Variables::QuasiVelocities, &["b'"]),
+            (Variables::Momenta, &[]),
+            (Variables::Momenta, &["w"]),
+            (Variables::Orthonormal, &["w"]),
+        ] {
+            let mut flow = flow(&text, variables, independent);
+            let place = flow.motion.observable_names().iter().position(|name| name == "bend").unwrap();
+            let bend = flow.row(0.0, &flow.start.clone())[flow.names.len() + place];
+            assert!(
+                (bend - expected).abs() < 1e-13 * expected.abs().max(10.0),
+                "{variables:?} {independent:?} at {a}: {bend} is not {expected}"
+            );
+        }
+    }
 }

@@ -187,13 +187,18 @@ impl Surface {
     pub(super) fn factorise(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         self.bordered.eval(t, y, p, &mut self.entries);
         check_finite(&self.entries, &self.bordered, Point { t, y, p })?;
+        self.weigh();
+        self.solver.factorise(&self.lower, &self.entries)
+    }
+
+    /// Takes the weights from the diagonal of the mass matrix; what has no mass weighs as little as the lightest.
+    pub(super) fn weigh(&mut self) {
         let masses =
             || self.diagonal.iter().map(|place| place.map_or(0.0, |place| self.entries[place].abs()));
         let lightest = masses().filter(|&mass| mass > 0.0).fold(f64::INFINITY, f64::min);
         let lightest = if lightest.is_finite() { lightest } else { 1.0 };
         let weights = masses().map(|mass| if mass > 0.0 { mass } else { lightest });
         self.weights.iter_mut().zip(weights).for_each(|(weight, mass)| *weight = mass);
-        self.solver.factorise(&self.lower, &self.entries)
     }
 
     /// Newton's method for f(t, x) = 0 or for g(t, x, η) = 0, which ends after one step where g is affine in

@@ -22,9 +22,9 @@ const ROUNDING: f64 = 1e-14;
 const HALVINGS: i32 = 20;
 
 /// M and C = ∂g/∂η by rows.
-struct Coefficients {
-    mass: Vec<Vec<f64>>,
-    constraints: Vec<Vec<f64>>,
+pub(super) struct Coefficients {
+    pub(super) mass: Vec<Vec<f64>>,
+    pub(super) constraints: Vec<Vec<f64>>,
 }
 
 impl Surface {
@@ -54,7 +54,7 @@ impl Surface {
     }
 
     /// The range of η in a state.
-    fn moving(&self) -> std::ops::Range<usize> {
+    pub(super) fn moving(&self) -> std::ops::Range<usize> {
         self.coordinates..self.coordinates + self.k
     }
 
@@ -189,7 +189,10 @@ impl Surface {
     }
 
     /// M and C at a state.
-    fn coefficients(&mut self, Point { t, y, p }: Point<'_>) -> Result<Coefficients, EvaluationFailure> {
+    pub(super) fn coefficients(
+        &mut self,
+        Point { t, y, p }: Point<'_>,
+    ) -> Result<Coefficients, EvaluationFailure> {
         self.bordered.eval(t, y, p, &mut self.entries);
         check_finite(&self.entries, &self.bordered, Point { t, y, p })?;
         let k = self.k;
@@ -206,7 +209,7 @@ impl Surface {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
