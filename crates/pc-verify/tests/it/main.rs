@@ -6,3 +6,4 @@ mod builtin;
 mod forces;
 mod large;
 mod resultants;
+mod sizes;
