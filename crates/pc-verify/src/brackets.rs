@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use crate::constants::Constants;
 use crate::derivation::Derivation;
 use crate::error::{Irregular, Unable};
-use crate::linear::pseudo_inverse;
+use crate::linear::fitting_inverse;
 use crate::place::{Direction, Place};
 use crate::rounding::{Random, Rounding, within};
 use crate::structure::Structure;
@@ -72,7 +72,7 @@ fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     let pairs = (k + 1) * k / 2;
     let b = DMatrix::from_row_slice(brackets.len(), k, &fields);
     let right = DMatrix::from_fn(brackets.len(), pairs, |i, j| brackets[i][j]);
-    let (inverse, rank) = pseudo_inverse(&b).ok_or(Irregular::NotFinite { what: "the frame" })?;
+    let (inverse, rank) = fitting_inverse(&b).ok_or(Irregular::NotFinite { what: "the frame" })?;
     let mut solved = &inverse * &right;
     solved -= &inverse * (&b * &solved - &right); // corrects the error of the pseudo-inverse
     let rest = &b * &solved - &right;

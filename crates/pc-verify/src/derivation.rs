@@ -126,15 +126,10 @@ impl Derivation {
         (0..at.w.len()).map(field).collect()
     }
 
-    /// The constraints that are independent at a place of those before, in an order in which some come last;
-    /// returned in the order of the text.
-    pub(crate) fn independent(&self, at: &Place, last: &[usize]) -> Result<Vec<usize>, Irregular> {
-        let first = (0..self.on_positions.len()).filter(|a| !last.contains(a));
-        let order: Vec<usize> = first.chain(last.iter().copied()).collect();
-        let rows = independent_rows(&self.constraint_matrix(&order, at, &Rounding::none())?);
-        let mut kept: Vec<usize> = rows.into_iter().map(|row| order[row]).collect();
-        kept.sort_unstable();
-        Ok(kept)
+    /// Those of some constraints that are independent at a place of those before.
+    pub(crate) fn independent(&self, at: &Place, of: &[usize]) -> Result<Vec<usize>, Irregular> {
+        let rows = independent_rows(&self.constraint_matrix(of, at, &Rounding::none())?, at.w.len());
+        Ok(rows.into_iter().map(|row| of[row]).collect())
     }
 
     /// The place moved by rounding errors of a state, w by errors of terms of these sizes.

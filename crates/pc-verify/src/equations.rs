@@ -15,9 +15,9 @@ use nalgebra::DMatrix;
 use crate::balance::Balance;
 use crate::derivation::Derivation;
 use crate::error::Irregular;
-use crate::linear::{Solution, pseudo_inverse, solve};
+use crate::linear::{Solution, fitting_inverse, solve};
 use crate::place::{Direction, Place, Virtual};
-use crate::rounding::{Rounding, within};
+use crate::rounding::{Rounding, UNIT, within};
 use crate::text::Velocities;
 
 /// The equations at a place, solved.
@@ -175,7 +175,7 @@ impl Derivation {
             return Ok((0..k).map(of).collect());
         }
         let b = DMatrix::from_fn(n, k, |i, s| frame[s][i]);
-        let (inverse, rank) = pseudo_inverse(&b).ok_or(Irregular::NotFinite { what: "the frame" })?;
+        let (inverse, rank) = fitting_inverse(&b).ok_or(Irregular::NotFinite { what: "the frame" })?;
         if rank < k {
             return Err(Irregular::Frame);
         }
@@ -212,14 +212,25 @@ impl Derivation {
         if dropped.is_empty() {
             return Ok(());
         }
-        let exact = Rounding::none();
-        let rows = self.constraint_matrix(&dropped, at, &exact)?;
-        let drift = self.constraint_rates(&dropped, at, in_time, &exact)?;
-        for (row, drift) in rows.iter().zip(drift) {
-            let mut rate = Balance::default();
-            rate.add(drift);
-            row.iter().zip(accelerations).for_each(|(c, w)| rate.add(c * w));
-            if !within(rate.sum.abs(), FOLLOWED * rate.largest.max(1.0)) {
+        let followed = |rounding: &Rounding| -> Result<Vec<(Balance, f64)>, Irregular> {
+            let rows = self.constraint_matrix(&dropped, at, rounding)?;
+            let drift = self.constraint_rates(&dropped, at, in_time, rounding)?;
+            let rate = |(row, drift): (&Vec<f64>, f64)| {
+                let (mut rate, mut unit) = (Balance::default(), 0.0f64);
+                rate.add(drift);
+                for (c, w) in row.iter().zip(accelerations) {
+                    rate.add(c * w);
+                    unit = unit.max(c.abs());
+                }
+                (rate, unit)
+            };
+            Ok(rows.iter().zip(drift).map(rate).collect())
+        };
+        let (rates, moved) = (followed(&Rounding::none())?, followed(&Rounding::made(1))?);
+        for ((rate, unit), (moved, _)) in rates.into_iter().zip(moved) {
+            // Coefficients that vanish up to rounding have no size of their own.
+            let scatter = (moved.sum - rate.sum).abs() / UNIT;
+            if !within(rate.sum.abs(), FOLLOWED * rate.largest.max(unit).max(scatter)) {
                 return Err(Irregular::OffConstraints);
             }
         }
@@ -230,5 +241,6 @@ impl Derivation {
 /// The greatest error of closure of the brackets of a frame; an error of derivation is of order one.
 const CLOSED: f64 = 1e-7;
 
-/// The greatest residual of a dependent constraint; an error of derivation is of order one.
+/// The greatest residual of a dependent constraint, relative to its terms at accelerations of at least one; an
+/// error of derivation is of order one.
 const FOLLOWED: f64 = 1e-6;

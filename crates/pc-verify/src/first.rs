@@ -162,11 +162,13 @@ impl<'g> First<'g> {
             return Err("its quasi-velocities are not those of the free system".to_owned());
         }
         let frame = system.frame();
+        let external = assembly.system.external_forces().iter().map(|&(_, force)| (force, 0.0));
         let energy_rate = EnergyRate {
             graph: system.graph(),
             rate: system.energy_rate(),
             inputs: std::iter::once(frame.time()).chain(system.state()).collect(),
-            parameters: system.parameters().to_vec(),
+            // Forces computed outside are 0 in either derivation.
+            parameters: system.parameters().iter().copied().chain(external).collect(),
         };
         let tables = second.derivation.text.tables.clone();
         let source = Values::Emitted { motion: Box::new(motion), free: free.clone(), energy_rate, tables };

@@ -2,13 +2,15 @@
 //!
 //! A force F on a body at r that depends on the place alone, and is homogeneous of degree d in r there, has
 //! the force function U = F·r/(d + 1) (Euler) if F·X_s r = X_s U for all s. The text format adds such forces,
-//! whole or by components, to L; which ones is the choice of the first derivation, which proves the property
-//! where it can. Here the property is tested in numbers: the quotient μ of F·X_s r and X_s (F·r) is one
-//! constant for all s, at all places and for other values of the parameters.
+//! whole or by components, to L; which ones is the choice of the first derivation, by the symbols that the
+//! expressions contain: at a state where its rate vanishes, a force of time looks like a constant one, and
+//! velocities that cancel leave rounding. Here that choice is justified in numbers: the force does not change
+//! with the velocities, and the quotient μ of F·X_s r and X_s (F·r) is one constant for all s, at all places
+//! and for other values of the parameters.
 
 use crate::derivation::Derivation;
 use crate::error::Irregular;
-use crate::place::{Direction, Place};
+use crate::place::Place;
 use crate::rounding::{Random, Rounding, within};
 
 /// The number of places at which the quotient is tested, for the present parameters and for others.
@@ -53,8 +55,7 @@ impl Derivation {
     /// μ of the vector with these components of the force on a body, and zeros.
     fn factor(&self, body: usize, components: &[usize], near: &Place) -> Option<f64> {
         let mut random = Random::new(2);
-        let mut factor = None;
-        let mut looked = 0;
+        let mut known: Vec<Sides> = Vec::with_capacity(PLACES);
         for number in 0..PLACES {
             // At any place, also off the surface of a frame or of constraints.
             let scale = if number == 0 { 0.0 } else { MOVED };
@@ -63,46 +64,40 @@ impl Derivation {
             };
             let place = Place { x: moved(&near.x), w: moved(&near.w), ..near.clone() };
             let Ok(sides) = self.sides(body, components, &place) else { continue };
-            let sides = sides?;
-            if !sides.iter().flatten().all(|side| side.is_finite()) {
-                continue;
-            }
-            looked += 1;
-            let size = sides.iter().flatten().fold(0.0f64, |size, side| size.max(side.abs()));
-            for [work, slope] in sides {
-                if work.abs() <= ALIKE * size && slope.abs() <= ALIKE * size {
-                    continue;
-                }
-                let factor = *factor.get_or_insert(work / slope);
-                if !within((work - factor * slope).abs(), ALIKE * size) {
-                    return None;
-                }
-            }
+            known.extend(Some(sides).filter(Sides::are_finite));
         }
-        // A force that does no work counts once.
-        if looked == 0 { None } else { Some(factor.unwrap_or(1.0)) }
+        let rate = largest(known.iter().flat_map(|sides| &sides.rates));
+        let force = largest(known.iter().flat_map(|sides| &sides.terms));
+        if known.is_empty() || !within(rate, ALIKE * force) {
+            return None;
+        }
+        let size = largest(known.iter().flat_map(|sides| sides.of_fields.as_flattened()));
+        // Where it vanishes up to rounding, the quotient is noise.
+        let pairs = || known.iter().flat_map(|sides| &sides.of_fields);
+        let steepest = pairs().max_by(|one, other| one[1].abs().total_cmp(&other[1].abs()));
+        let factor = match steepest {
+            Some([work, slope]) if slope.abs() > ALIKE * size => work / slope,
+            // A force that does no work counts once.
+            _ => 1.0,
+        };
+        let is_exact = |[work, slope]: &[f64; 2]| within((work - factor * slope).abs(), ALIKE * size);
+        pairs().all(is_exact).then_some(factor)
     }
 
-    /// F·X_s r and X_s (F·r) for all s; none where the force depends on time or velocities.
-    fn sides(
-        &self,
-        body: usize,
-        components: &[usize],
-        at: &Place,
-    ) -> Result<Option<Vec<[f64; 2]>>, Irregular> {
+    /// Both sides for these components of the force on a body.
+    fn sides(&self, body: usize, components: &[usize], at: &Place) -> Result<Sides, Irregular> {
         let (exact, body) = (Rounding::none(), &self.text.bodies[body]);
-        let rests = |along: &Direction| -> Result<bool, Irregular> {
-            let point = self.once(at, along, &exact);
-            let mut rates = components.iter().map(|&i| point.value(&body.force[i]));
-            rates.try_fold(true, |rests, rate| Ok(rests && rate?.eps == 0.0))
-        };
-        let time = Direction { t: 1.0, ..at.along(vec![0.0; at.x.len()]) };
-        for along in (0..at.w.len()).map(|s| at.along_velocity(s)).chain([time]) {
-            if !rests(&along)? {
-                return Ok(None);
+        let still = self.still(at, &exact);
+        let terms = components.iter().map(|&i| still.largest_term(&body.force[i]));
+        let terms = terms.collect::<Result<Vec<f64>, Irregular>>()?;
+        let mut rates = Vec::with_capacity(at.w.len() * components.len());
+        for s in 0..at.w.len() {
+            let point = self.once(at, &at.along_velocity(s), &exact);
+            for &i in components {
+                rates.push(point.value(&body.force[i])?.eps);
             }
         }
-        let mut sides = Vec::with_capacity(at.w.len());
+        let mut of_fields = Vec::with_capacity(at.w.len());
         for field in self.frame(at, &exact)? {
             let point = self.once(at, &at.along(field), &exact);
             let (mut work, mut slope) = (0.0, 0.0);
@@ -111,8 +106,28 @@ impl Derivation {
                 work += force.re * r.eps;
                 slope += (force * r).eps;
             }
-            sides.push([work, slope]);
+            of_fields.push([work, slope]);
         }
-        Ok(Some(sides))
+        Ok(Sides { of_fields, rates, terms })
     }
+}
+
+/// What the force on a body does at a place.
+struct Sides {
+    /// F·X_s r and X_s (F·r) for all s.
+    of_fields: Vec<[f64; 2]>,
+    /// The rates of its components with the velocities, and the largest term of each.
+    rates: Vec<f64>,
+    terms: Vec<f64>,
+}
+
+impl Sides {
+    fn are_finite(&self) -> bool {
+        let all = self.of_fields.as_flattened().iter().chain(&self.rates).chain(&self.terms);
+        all.copied().all(f64::is_finite)
+    }
+}
+
+fn largest<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
+    values.fold(0.0, |largest, value| largest.max(value.abs()))
 }

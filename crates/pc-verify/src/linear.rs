@@ -1,4 +1,5 @@
-//! Dense matrices with pivoting, block by block: n uncoupled coordinates cost n small matrices.
+//! Dense matrices with pivoting, block by block: n uncoupled coordinates cost n small matrices. The size of an
+//! equation and the units of an unknown decide no rank: rows and columns are scaled before.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,6 +12,9 @@ const RANK: f64 = 1e-9;
 /// The factor that excludes doubt about a rank: the rounding of a decomposition is some thousand times the
 /// condition.
 const CERTAIN: f64 = 0.1;
+
+/// Entries below this part of the largest of their row may be some hundred roundings of it.
+const NOISE: f64 = 1e-13;
 
 /// Pivots below this part of the largest make equations singular.
 const PIVOT: f64 = 1e-13;
@@ -65,8 +69,58 @@ fn blocks(a: &DMatrix<f64>) -> Vec<Block> {
     blocks
 }
 
+/// A⁻ with A A⁻ A = A, A⁻ A A⁻ = A⁻, and the rank: A⁻ r solves A z = r wherever this has solutions, whatever the
+/// sizes of the equations and the units of the unknowns.
+pub(crate) fn solving_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
+    let rows = row_weights(a, &vec![1.0; a.ncols()]);
+    let columns = column_weights(a, &rows);
+    weighted_inverse(a, &row_weights(a, &columns), &columns)
+}
+
+/// As [`solving_inverse`]; A⁻ r is the shortest of the solutions.
+pub(crate) fn shortest_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
+    let columns = vec![1.0; a.ncols()];
+    weighted_inverse(a, &row_weights(a, &columns), &columns)
+}
+
+/// As [`solving_inverse`]; A⁻ r leaves the least squares of A z − r, so that equations that are mere rounding
+/// have no weight.
+pub(crate) fn fitting_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
+    let rows = vec![1.0; a.nrows()];
+    weighted_inverse(a, &rows, &column_weights(a, &rows))
+}
+
+/// C (R A C)⁺ R for diagonal matrices R and C.
+fn weighted_inverse(a: &DMatrix<f64>, rows: &[f64], columns: &[f64]) -> Option<(DMatrix<f64>, usize)> {
+    let scaled = DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| rows[i] * a[(i, j)] * columns[j]);
+    let (inverse, rank) = pseudo_inverse(&scaled)?;
+    Some((DMatrix::from_fn(a.ncols(), a.nrows(), |i, j| columns[i] * inverse[(i, j)] * rows[j]), rank))
+}
+
+/// Powers of two by which the largest entry of each row is near 1.
+fn row_weights(a: &DMatrix<f64>, columns: &[f64]) -> Vec<f64> {
+    let entry = |i: usize, j: usize| (a[(i, j)] * columns[j]).abs();
+    (0..a.nrows()).map(|i| weight((0..a.ncols()).map(|j| entry(i, j)).fold(0.0, f64::max))).collect()
+}
+
+/// Powers of two by which the largest entry of each column is near 1. Entries that are rounding of others in
+/// their row give a column no unit.
+fn column_weights(a: &DMatrix<f64>, rows: &[f64]) -> Vec<f64> {
+    let noise: Vec<f64> = a.row_iter().map(|row| NOISE * row.amax()).collect();
+    let column = |j: usize| {
+        let known = (0..a.nrows()).filter(|&i| a[(i, j)].abs() > noise[i]);
+        weight(known.map(|i| (rows[i] * a[(i, j)]).abs()).fold(0.0, f64::max))
+    };
+    (0..a.ncols()).map(column).collect()
+}
+
+fn weight(largest: f64) -> f64 {
+    let power = (-largest.log2()).round().exp2();
+    if power.is_normal() { power } else { 1.0 }
+}
+
 /// The pseudo-inverse, with the rank, block by block.
-pub(crate) fn pseudo_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
+fn pseudo_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
     let mut inverse = DMatrix::zeros(a.ncols(), a.nrows());
     if a.is_empty() {
         return Some((inverse, 0));
@@ -135,12 +189,15 @@ fn by_singular_values(blocks: &[(Block, DMatrix<f64>)]) -> Option<Vec<(DMatrix<f
     Some(inverses)
 }
 
-/// The indices of rows that are independent of those before, by the method of Gram and Schmidt.
-pub(crate) fn independent_rows(rows: &[Vec<f64>]) -> Vec<usize> {
+/// The indices of rows of `width` entries each that are independent of those before, by the method of Gram and
+/// Schmidt.
+pub(crate) fn independent_rows(rows: &[Vec<f64>], width: usize) -> Vec<usize> {
+    let all = matrix(rows, width);
+    let columns = column_weights(&all, &row_weights(&all, &vec![1.0; width]));
     let mut basis: Vec<DVector<f64>> = Vec::new();
     let mut independent = Vec::new();
     for (i, row) in rows.iter().enumerate() {
-        let row = DVector::from_column_slice(row);
+        let row = DVector::from_fn(width, |j, _| row[j] * columns[j]);
         let length = row.norm();
         let mut rest = row / length;
         for _ in 0..2 {
@@ -291,5 +348,30 @@ mod tests {
         let solution = solve(&a, &[1.0; 5], &[1.0; 5]).expect("regular");
         let rest = &a * DVector::from_vec(solution.values) - DVector::from_element(5, 1.0);
         assert!(rest.amax() < 1e-12 * solution.condition, "{rest}");
+    }
+
+    /// The equations 1e-9 (z_1 + z_2) = 3e-9, 1e9 (z_1 − 1e-12 z_3) = 1e9, z_1 − 2e-12 z_3 = 0 have z = (2, 1, 1e12).
+    #[test]
+    fn neither_the_size_of_an_equation_nor_a_unit_decides_a_rank() {
+        let rows = [vec![1e-9, 1e-9, 0.0], vec![1e9, 0.0, -1e-3], vec![1.0, 0.0, -2e-12]];
+        let (inverse, rank) = solving_inverse(&matrix(&rows, 3)).expect("finite");
+        let z = inverse * DVector::from_vec(vec![3e-9, 1e9, 0.0]);
+        assert_eq!(rank, 3);
+        for (found, expected) in z.iter().zip([2.0, 1.0, 1e12]) {
+            assert!((found - expected).abs() < 1e-14 * expected, "{z}");
+        }
+        assert_eq!(independent_rows(&rows, 3), [0, 1, 2]);
+        let multiple: Vec<f64> = rows[1].iter().map(|entry| 1e-15 * entry).collect();
+        assert_eq!(independent_rows(&[rows[1].clone(), multiple], 3), [0]);
+    }
+
+    /// cos(π/2) beside 1 in the one row with such a column makes it no unit.
+    #[test]
+    fn rounding_is_no_unit() {
+        let rows = [vec![1.0, 6.1e-17], vec![2.0, 0.0]];
+        assert_eq!(independent_rows(&rows, 2), [0]);
+        let (inverse, rank) = solving_inverse(&matrix(&rows, 2)).expect("finite");
+        assert_eq!(rank, 1);
+        assert!(inverse.amax() < 1.0, "{inverse}");
     }
 }

@@ -15,7 +15,7 @@ use pc_model::Flow;
 
 use crate::derivation::Derivation;
 use crate::error::Irregular;
-use crate::linear::{matrix, pseudo_inverse};
+use crate::linear::{fitting_inverse, matrix, solving_inverse};
 use crate::place::{Direction, Place, Virtual};
 use crate::quantities::REPETITIONS;
 use crate::rounding::{Random, Rounding, UNIT};
@@ -133,12 +133,11 @@ impl Derivation {
         let in_time = Direction { z: state_rates.to_vec(), ..at.in_time(velocities) };
         let matrix_of_columns = self.quasi_velocity_matrix(at, &exact)?;
         let drift = self.columns(&self.once(at, &in_time, &exact))?;
-        let all: Vec<usize> = (0..self.on_positions.len()).collect();
         let mut rows: Vec<Vec<f64>> = known.iter().map(|&(s, _)| matrix_of_columns[s].clone()).collect();
         let mut right: Vec<f64> = known.iter().map(|&(s, rate)| rate - drift[s].eps).collect();
-        rows.extend(self.constraint_matrix(&all, at, &exact)?);
-        right.extend(self.constraint_rates(&all, at, &in_time, &exact)?.iter().map(|rate| -rate));
-        let (inverse, rank) = pseudo_inverse(&matrix(&rows, at.w.len())).ok_or(Irregular::Singular)?;
+        rows.extend(self.constraint_matrix(&self.kept, at, &exact)?);
+        right.extend(self.constraint_rates(&self.kept, at, &in_time, &exact)?.iter().map(|rate| -rate));
+        let (inverse, rank) = solving_inverse(&matrix(&rows, at.w.len())).ok_or(Irregular::Singular)?;
         if rank < at.w.len() {
             return Err(Irregular::IllConditioned);
         }
@@ -156,7 +155,7 @@ impl Derivation {
         let rows = self.constraint_matrix(&self.kept, at, &Rounding::none())?;
         let constraints = matrix(&rows, k);
         let (inverse, _) =
-            pseudo_inverse(&constraints).ok_or(Irregular::NotFinite { what: "a constraint" })?;
+            solving_inverse(&constraints).ok_or(Irregular::NotFinite { what: "a constraint" })?;
         let mut random = Random::new(k as u64);
         let allowed = |_| {
             let mut v = DMatrix::from_fn(k, 1, |_, _| random.signed());
@@ -278,7 +277,7 @@ impl Derivation {
         let displaced: Vec<f64> = displaced.velocities()?.iter().map(|u| u.eps).collect();
         let frame = self.frame(at, rounding)?;
         let b = DMatrix::from_fn(at.x.len(), k, |i, s| frame[s][i]);
-        let (inverse, rank) = pseudo_inverse(&b).ok_or(Irregular::NotFinite { what: "the frame" })?;
+        let (inverse, rank) = fitting_inverse(&b).ok_or(Irregular::NotFinite { what: "the frame" })?;
         if rank < k {
             return Err(Irregular::Frame);
         }

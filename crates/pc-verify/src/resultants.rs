@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use crate::derivation::Derivation;
 use crate::equations::Derived;
 use crate::error::Irregular;
-use crate::linear::pseudo_inverse;
+use crate::linear::shortest_inverse;
 use crate::resultant::Resultants;
 use crate::rounding::Rounding;
 use crate::sized::Sized;
@@ -46,7 +46,7 @@ impl Derivation {
         let size = columns.first().map_or(0, Vec::len);
         let work = DMatrix::from_fn(k, size, |s, i| columns[s][i]);
         let (inverse, _) =
-            pseudo_inverse(&work).ok_or(Irregular::NotFinite { what: "a velocity of a body" })?;
+            shortest_inverse(&work).ok_or(Irregular::NotFinite { what: "a velocity of a body" })?;
         let constraints = self.constraint_matrix(&self.kept, at, rounding)?;
         let of = |i: usize, place: usize| {
             let terms = || (0..k).map(|s| inverse[(i, s)] * constraints[place][s]);

@@ -8,7 +8,7 @@ use crate::agreement::{Agreement, Passed};
 use crate::couplings::Couplings;
 use crate::derivation::{Completing, Derivation};
 use crate::error::{Irregular, VerifyError};
-use crate::linear::pseudo_inverse;
+use crate::linear::fitting_inverse;
 use crate::place::Place;
 use crate::quantity::{Free, Quantity};
 use crate::resultant::Resultant;
@@ -79,6 +79,14 @@ impl Second {
         let all = assembly.system.quasi_velocities().iter().skip(columns.len());
         derivation.completing =
             all.filter_map(|eta| completing(&derivation.text, &eta.to_string())).collect();
+        // Of constraints that follow from each other any may be dropped: the first derivation chooses. That they
+        // follow, and that the motion satisfies them, is verified at each state.
+        let follows = |a: &usize| {
+            let name = &derivation.text.names.constraints[*a];
+            assembly.constraints.redundant().iter().any(|redundant| redundant.constraint == *name)
+        };
+        let binding: Vec<usize> = (0..derivation.on_positions.len()).filter(|a| !follows(a)).collect();
+        derivation.kept.clone_from(&binding);
         let (x, eta) = assembly.start.split_at(n);
         let stated = Passed::from;
         let refused = |passed: Passed| match passed {
@@ -95,18 +103,12 @@ impl Second {
         if let Velocities::Quasi(_) = derivation.text.velocities {
             derivation.structure = Structure::new(&derivation.text, derivation.rank(&start), start.w.len())?;
         }
-        if !derivation.on_positions.is_empty() {
-            // Of constraints that follow from each other any may be dropped: the first derivation chooses.
-            // That they follow, and that the motion satisfies them, is verified here.
-            let dropped = |a: &usize| {
-                let name = &derivation.text.names.constraints[*a];
-                assembly.constraints.redundant().iter().any(|redundant| redundant.constraint == *name)
-            };
-            let last: Vec<usize> = (0..derivation.on_positions.len()).filter(dropped).collect();
-            let mut kept = derivation.independent(&start, &last).unwrap_or_default();
+        if !binding.is_empty() {
+            let mut kept = derivation.independent(&start, &binding).unwrap_or_default();
             for number in 0..RANK_POINTS {
                 let place = derivation.random(&start, number);
-                let found = place.and_then(|place| derivation.independent(&place, &last)).unwrap_or_default();
+                let found =
+                    place.and_then(|place| derivation.independent(&place, &binding)).unwrap_or_default();
                 if found.len() > kept.len() {
                     kept = found;
                 }
@@ -325,7 +327,7 @@ impl Derivation {
             let x = near.x.iter().map(|x| x + scale * (1.0 + x.abs()) * random.signed()).collect();
             let Ok(frame) = self.frame(&Place { x, ..near.clone() }, &exact) else { continue };
             let b = nalgebra::DMatrix::from_fn(near.x.len(), near.w.len(), |i, s| frame[s][i]);
-            largest = pseudo_inverse(&b).map_or(largest, |(_, rank)| largest.max(rank));
+            largest = fitting_inverse(&b).map_or(largest, |(_, rank)| largest.max(rank));
         }
         largest
     }

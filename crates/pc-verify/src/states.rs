@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::derivation::Derivation;
 use crate::error::Irregular;
-use crate::linear::pseudo_inverse;
+use crate::linear::{matrix, shortest_inverse};
 use crate::place::Place;
 use crate::rounding::{Random, Rounding};
 use crate::text::Velocities;
@@ -152,14 +152,9 @@ fn size(values: &[f64]) -> f64 {
 /// The shortest solution of C ξ = −rest. All constraints have the same weight, whatever the size of their
 /// coefficients.
 fn shortest(rows: &[Vec<f64>], rest: &[f64], columns: usize) -> Result<Vec<f64>, Irregular> {
-    let scale = |row: &Vec<f64>| match size(row) {
-        0.0 => 1.0,
-        largest => largest.recip(),
-    };
-    let scales: Vec<f64> = rows.iter().map(scale).collect();
-    let scaled = DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j] * scales[i]);
-    let (inverse, _) = pseudo_inverse(&scaled).ok_or(Irregular::NotFinite { what: "a constraint" })?;
-    let step = -(inverse * DMatrix::from_fn(rest.len(), 1, |i, _| rest[i] * scales[i]));
+    let inverse = shortest_inverse(&matrix(rows, columns));
+    let (inverse, _) = inverse.ok_or(Irregular::NotFinite { what: "a constraint" })?;
+    let step = -(inverse * DMatrix::from_column_slice(rest.len(), 1, rest));
     if step.iter().all(|step| step.is_finite()) {
         Ok(step.iter().copied().collect())
     } else {

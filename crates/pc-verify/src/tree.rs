@@ -254,8 +254,10 @@ fn vector(list: Option<&[Expression; 3]>, names: &Names) -> Result<Vec<Term>, Un
     }
 }
 
+/// The constant rotation of a joint. Entries that are 0 or ±1 up to rounding are exact, as cos(π/2) is not: of
+/// parallel axes a loop must not restrict what they leave free.
 fn constant_rotation(joint: &Joint, names: &Names) -> Result<Vec<Term>, Unable> {
-    Ok(match &joint.rotation {
+    let entries = match &joint.rotation {
         None => unit(),
         Some(JointRotation::Matrix(entries)) => {
             entries.iter().map(|entry| names.resolve(&entry.ast)).collect::<Result<_, _>>()?
@@ -268,8 +270,16 @@ fn constant_rotation(joint: &Joint, names: &Names) -> Result<Vec<Term>, Unable> 
             }
             all
         }
-    })
+    };
+    let exact = |entry: Term| {
+        let is_near = |unit: &f64| number(&entry).is_some_and(|value| (value - unit).abs() <= ROUNDING);
+        [0.0, 1.0, -1.0].into_iter().find(is_near).map_or(entry, Term::Number)
+    };
+    Ok(entries.into_iter().map(exact).collect())
 }
+
+/// Some roundings of a number near 1.
+const ROUNDING: f64 = 1e-15;
 
 fn times<const N: usize>(factors: [&Term; N]) -> Term {
     Term::Product(factors.map(|factor| (false, factor.clone())).to_vec())
@@ -355,7 +365,7 @@ fn sine_and_cosine(angle: &Term) -> [Term; 2] {
     [Function::Sin, Function::Cos].map(|function| Term::Call(function, vec![angle.clone()]))
 }
 
-/// The value of a term that consists of sums and products of numbers.
+/// The value of a term that consists of sums and products of numbers, of sines and cosines.
 fn number(term: &Term) -> Option<f64> {
     match term {
         Term::Number(value) => Some(*value),
@@ -368,6 +378,8 @@ fn number(term: &Term) -> Option<f64> {
             let value = number(factor)?;
             Some(if *over { product / value } else { product * value })
         }),
+        Term::Call(Function::Sin, arguments) => Some(number(arguments.first()?)?.sin()),
+        Term::Call(Function::Cos, arguments) => Some(number(arguments.first()?)?.cos()),
         _ => None,
     }
 }

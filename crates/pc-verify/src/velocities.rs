@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::derivation::{Completing, Derivation};
 use crate::error::Irregular;
-use crate::linear::{matrix, pseudo_inverse};
+use crate::linear::{matrix, solving_inverse};
 use crate::number::Number;
 use crate::place::Place;
 use crate::point::Point;
@@ -51,17 +51,16 @@ impl Derivation {
             Velocities::Ordinary(_) => {}
         }
         let exact = Rounding::none();
-        let all: Vec<usize> = (0..self.on_positions.len()).collect();
         // First-order states occur in no definition and no constraint.
         let mut at =
             Place { t, x: x.to_vec(), w: vec![0.0; x.len()], z: vec![0.0; self.text.state_rates.len()] };
         for _ in 0..NEWTON {
             let mut rows = self.quasi_velocity_matrix(&at, &exact)?;
-            rows.extend(self.constraint_matrix(&all, &at, &exact)?);
+            rows.extend(self.constraint_matrix(&self.kept, &at, &exact)?);
             let found = self.columns(&self.still(&at, &exact))?;
             let mut rest: Vec<f64> = eta.iter().zip(found).map(|(wanted, found)| wanted - found).collect();
-            rest.extend(self.constraints(&all, &at, &exact)?.iter().map(|phi| -phi));
-            let (inverse, _) = pseudo_inverse(&matrix(&rows, x.len())).ok_or(Irregular::Singular)?;
+            rest.extend(self.constraints(&self.kept, &at, &exact)?.iter().map(|phi| -phi));
+            let (inverse, _) = solving_inverse(&matrix(&rows, x.len())).ok_or(Irregular::Singular)?;
             let step = inverse * DMatrix::from_column_slice(rest.len(), 1, &rest);
             at.w.iter_mut().zip(step.iter()).for_each(|(w, step)| *w += step);
             let size = at.w.iter().fold(1.0f64, |size, w| size.max(w.abs()));
@@ -95,7 +94,7 @@ impl Derivation {
             rows.push((0..zero.len()).map(|i| f64::from(u8::from(i == velocity))).collect());
             rest.push(0.0);
         }
-        let (inverse, _) = pseudo_inverse(&matrix(&rows, zero.len())).ok_or(Irregular::Singular)?;
+        let (inverse, _) = solving_inverse(&matrix(&rows, zero.len())).ok_or(Irregular::Singular)?;
         let against = |rest: &[f64]| -> Vec<f64> {
             (-(&inverse * DMatrix::from_column_slice(rest.len(), 1, rest))).iter().copied().collect()
         };

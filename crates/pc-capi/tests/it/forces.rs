@@ -689,3 +689,30 @@ fn the_source_takes_forces_as_parameters() {
     assert!(header.contains("Q_θ'"), "{header}");
     assert!(source.contains("Q_theta"), "{source}");
 }
+
+/// Forces computed outside are 0 where a system is compared with a second derivation, under constraints of each kind.
+#[test]
+fn external_forces_are_zero_where_a_system_is_verified() {
+    let mass = "[coordinates]\nx = 0.5\n[lagrangian]\nkinetic = \"x'^2/2\"\n";
+    let cases: [(Model, &[&str]); 4] = [
+        (Model::text(mass).unwrap(), &["x"]),
+        (Model::named("tilted-disk"), &["ω1", "ω3"]),
+        (Model::named("vertical-disk"), &["θ", "X"]),
+        (Model::named("rod"), &["x", "y"]),
+    ];
+    for (model, on) in cases {
+        declare(&model, on);
+        let system = model.system(PC_POINCARE).unwrap();
+        let mut text = ptr::null_mut();
+        // SAFETY: a live system, and a text that is freed once.
+        let said = unsafe {
+            call(|error| pc_system_verify(system.0, 10, &raw mut text, error)).unwrap();
+            let said = CStr::from_ptr(text).to_str().unwrap().to_owned();
+            pc_string_free(text);
+            said
+        };
+        assert!(said.starts_with("agrees to "), "{said}");
+        let left_out = |on: &&str| said.contains(&format!("not compared: the force on {on}"));
+        assert!(on.iter().all(left_out), "{said}");
+    }
+}

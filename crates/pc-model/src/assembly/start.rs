@@ -165,7 +165,8 @@ impl<'g> Assembler<'g, '_> {
         Ok(start)
     }
 
-    /// C η = −c_0 for the constraints that have values.
+    /// C η = −c_0 for the constraints that have values, with rows of length one: velocities are compared, whatever the
+    /// size of a constraint.
     fn conditions(
         &self,
         frame: &Frame<'g>,
@@ -178,7 +179,9 @@ impl<'g> Assembler<'g, '_> {
             let values = self.graph.evaluate(&[row, vec![rest]].concat(), at).unwrap_or_default();
             let is_known = values.iter().all(|v| v.is_finite());
             if let Some((rest, row)) = values.split_last().filter(|_| is_known) {
-                conditions.push((row.to_vec(), -rest));
+                let length = norm(row);
+                let length = if length > 0.0 { length } else { 1.0 };
+                conditions.push((row.iter().map(|entry| entry / length).collect(), -rest / length));
             }
         }
         conditions

@@ -18,6 +18,9 @@ const AXES: &str = "axes = [[1, 0, 0], [0, 1, 0]]";
 const AT: &str = "at = [0, 0, 0]";
 const TURNS: &str = "turns = [[\"z\", \"pi/2\"], [\"x\", \"a\"]]";
 
+/// Some roundings of a number near 1.
+pub(crate) const ROUNDING: f64 = 1e-15;
+
 /// The bodies with a position, and those with a joint.
 pub(super) fn bodies(table: &Table<'_>) -> Result<(Vec<Body>, Vec<TreeBody>), ModelError> {
     let (mut placed, mut hanging) = (Vec::new(), Vec::new());
@@ -139,16 +142,18 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
     Ok(Joint { place: item.place(), kind, axes, pitch, at, rotation, coordinates, quasi_velocities })
 }
 
-/// The components of a direction.
+/// The components of a direction. One that is rounding beside the largest is 0, as cos(π/2) is where a program
+/// writes the axes of its drawing: of parallel axes a loop must not restrict what they leave free.
 pub(super) fn direction(item: &Item<'_>, example: &'static str) -> Result<[f64; 3], ModelError> {
     let components = item.parts(&[3], "3 numbers", example)?;
     let mut direction = [0.0; 3];
     for (value, component) in direction.iter_mut().zip(&components) {
         *value = component.number()?.value;
     }
-    match direction == [0.0; 3] {
+    let largest = direction.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    match largest == 0.0 {
         true => Err(item.error(MeaningError::ZeroAxis)),
-        false => Ok(direction),
+        false => Ok(direction.map(|value| if value.abs() <= ROUNDING * largest { 0.0 } else { value })),
     }
 }
 

@@ -6,6 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 use pc_mech::{Expr, Joint, Matrix, Tree, TreeBody};
 
 use crate::diagnostics::error::ModelError;
+use crate::document::tree::ROUNDING;
 use crate::document::{self, Expression, JointKind, JointRotation};
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
@@ -92,7 +93,7 @@ impl<'g> Scope<'g, '_> {
     fn constant_rotation(&mut self, rotation: &JointRotation) -> Result<Matrix<Expr<'g>>, ModelError> {
         match rotation {
             JointRotation::Matrix(entries) => {
-                let entries = self.constants(entries)?;
+                let entries = self.constants(entries)?.map(entry_of_rotation);
                 Ok(Matrix::from_fn(3, 3, |i, j| entries[3 * i + j]))
             }
             JointRotation::Turns(turns) => {
@@ -154,6 +155,12 @@ fn about<'g>(axis: usize, angle: Expr<'g>) -> Matrix<Expr<'g>> {
         (i, j) if (i, j) == (last, next) => sin,
         _ => Expr::ZERO,
     })
+}
+
+/// An entry of a matrix of rotation, exact where it is 0 or ±1 up to rounding, as that of quarters of a turn is.
+fn entry_of_rotation(entry: Expr<'_>) -> Expr<'_> {
+    let near = |entry: f64| [0, 1, -1].into_iter().find(|&unit| (entry - f64::from(unit)).abs() <= ROUNDING);
+    entry.constant().and_then(|value| near(value.to_f64())).map_or(entry, Expr::from)
 }
 
 /// The number of quarters of a turn in an angle, 0 to 3, if it is a multiple up to rounding: π is rounded,

@@ -3,6 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod builtin;
+mod energies;
 mod forces;
 mod large;
 mod resultants;
+mod sizes;
