@@ -226,7 +226,7 @@ fn sweeps_have_the_columns_and_numbers_of_runs_in_each_form() {
         (orbit.as_str(), "k", ["1", "1.2"], &given[..]),
         ("chaplygin-sleigh", "a", ["0.3", "0.45"], &given[..5]),
         ("tilted-disk", "m", ["1", "1.5"], &given[..5]),
-        ("swinging-atwood", "M", ["3", "3.5"], &given[..5]),
+        ("swinging-atwood", "g", ["9.81", "4.9"], &given[..5]),
         ("elroys-beanie", "I1", ["1.5", "2"], &given[..5]),
     ] {
         for form in forms {
