@@ -34,7 +34,8 @@ struct Members {
     options: Options,
     /// Whether all rows are wanted instead of the last.
     all_rows: bool,
-    width: usize,
+    /// The names of the numbers in a row of each, after its time.
+    columns: Vec<String>,
 }
 
 /// What is known of a member.
@@ -51,8 +52,13 @@ impl Members {
         if self.all_rows { self.times.len() } else { 1 }
     }
 
+    /// How many numbers a row has, with its time.
+    fn width(&self) -> usize {
+        1 + self.columns.len()
+    }
+
     fn blank(&self, status: &'static str, message: String) -> Member {
-        Member { status, message, steps: 0, rows: vec![f64::NAN; self.rows() * (self.width + 1)] }
+        Member { status, message, steps: 0, rows: vec![f64::NAN; self.rows() * self.width()] }
     }
 
     fn flow(&self, member: u64) -> Result<Flow, Error> {
@@ -83,6 +89,11 @@ impl Members {
                 return self.blank("refused", message);
             }
         };
+        let own = flow.columns();
+        if own != self.columns {
+            let message = format!("its table has other columns than that of the system: {}", own.join(", "));
+            return self.blank("refused", message);
+        }
         let observer = |_: f64, _: &[f64]| match stop.requested() {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
@@ -95,7 +106,7 @@ impl Members {
             (None, Some(Ending::Event { event })) => ("event", flow.events.events()[event].name().to_owned()),
             (None, _) => ("completed", String::new()),
         };
-        let mut rows = Vec::with_capacity(self.rows() * (self.width + 1));
+        let mut rows = Vec::with_capacity(self.rows() * self.width());
         let mut put = |t: f64, y: &[f64]| {
             rows.push(t);
             rows.extend(flow.row(t, y));
@@ -109,8 +120,8 @@ impl Members {
                 }
             }
         }
-        rows.truncate(self.rows() * (self.width + 1)); // a terminal event has a row of its own
-        rows.resize(self.rows() * (self.width + 1), f64::NAN);
+        rows.truncate(self.rows() * self.width()); // a terminal event has a row of its own
+        rows.resize(self.rows() * self.width(), f64::NAN);
         Member { status, message, steps: trajectory.statistics().steps, rows }
     }
 }
@@ -172,9 +183,9 @@ impl SystemCore {
             times,
             options: plan.options(&cancel)?,
             all_rows,
-            width: self.inventory.columns.len(),
+            columns: self.inventory.columns.clone(),
         };
-        let (rows, width) = (work.rows(), work.width + 1);
+        let (rows, width) = (work.rows(), work.width());
         let done = Arc::new(AtomicU64::new(0));
         let counted = Arc::clone(&done);
         let tick = |py: Python<'_>| match &progress {

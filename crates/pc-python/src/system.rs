@@ -119,7 +119,7 @@ impl SystemCore {
             coordinates: motion.coordinates(),
             states: motion.states(),
             conserved: motion.conserved_len(),
-            columns: flow.names.iter().chain(motion.observable_names()).cloned().collect(),
+            columns: flow.columns(),
             shown: flow.names.len(),
         };
         let state = State { version: 0, model, flow };

@@ -17,6 +17,8 @@ use crate::linear_algebra::matrix::Matrix;
 
 /// Operators whose singular values spread more than this may be dependent, as far as numbers show.
 const DEPENDENT: f64 = 1e-9;
+/// The part of a vector that rounding may leave of a component that is 0.
+const ROUNDED: f64 = 1e-11;
 /// The most points tried for each operator to find as many equations as unknowns.
 const POINTS: usize = 8;
 
@@ -202,13 +204,18 @@ impl<'g> Frame<'g> {
         near: &Neighbourhood<'g>,
     ) -> Option<Vec<Vec<Expr<'g>>>> {
         let k = operators.len();
-        let stacked = self.stacked(&[operators, targets].concat(), near);
+        let (stacked, sizes) = normalised(self.stacked(&[operators, targets].concat(), near));
         let svd = stacked.columns(0, k).clone_owned().svd(true, true);
         (0..targets.len())
             .map(|target| {
                 let right: DVector<f64> = stacked.column(k + target).clone_owned();
                 let solution = svd.solve(&right, 0.0).ok()?;
-                Some(solution.iter().map(|&a| nearest_fraction(a).into()).collect())
+                // The columns have length 1 now, so a share is small against 1, in any units, where the coefficient is 0.
+                let coefficient = |(&share, size): (&f64, &f64)| match share.abs() < ROUNDED {
+                    true => Expr::ZERO,
+                    false => nearest_fraction(share * sizes[k + target] / size).into(),
+                };
+                Some(solution.iter().zip(&sizes).map(coefficient).collect())
             })
             .collect()
     }
@@ -219,11 +226,7 @@ impl<'g> Frame<'g> {
         operators: &[Vec<Expr<'g>>],
         near: &Neighbourhood<'g>,
     ) -> Option<Vec<(usize, String)>> {
-        let mut stacked = self.stacked(operators, near);
-        let sizes: Vec<f64> = stacked.column_iter().map(|column| column.norm()).collect();
-        for (mut column, &size) in stacked.column_iter_mut().zip(&sizes) {
-            column /= if size > 0.0 { size } else { 1.0 };
-        }
+        let (stacked, sizes) = normalised(self.stacked(operators, near));
         if stacked.nrows() < operators.len() {
             return Some(Vec::new()); // no values to decide by
         }
@@ -231,17 +234,16 @@ impl<'g> Frame<'g> {
         let (least, &smallest) = (0..).zip(svd.singular_values.iter()).min_by(|a, b| a.1.total_cmp(b.1))?;
         let largest = svd.singular_values.max();
         let vector = svd.v_t?.row(least).into_owned();
-        let scaled: Vec<f64> =
-            vector.iter().zip(&sizes).map(|(v, size)| v / if *size > 0.0 { *size } else { 1.0 }).collect();
-        let most = scaled.iter().fold(0.0f64, |most, a| most.max(a.abs()));
-        let present: Vec<usize> = (0..scaled.len()).filter(|&s| scaled[s].abs() > DEPENDENT * most).collect();
+        let scaled: Vec<f64> = vector.iter().zip(&sizes).map(|(v, size)| v / size).collect();
+        let present: Vec<usize> = (0..scaled.len()).filter(|&s| vector[s].abs() > DEPENDENT).collect();
         let last = scaled[*present.last()?];
         let unit = if present.len() == 1 { last } else { -last };
         let term = |s: usize| (s + 1, nearest_fraction(scaled[s] / unit).to_string());
         (smallest <= DEPENDENT * largest).then(|| present.into_iter().map(term).collect())
     }
 
-    /// The columns at points near the centre, stacked; parameters and time have their values.
+    /// The columns at points near the centre, stacked, each coordinate in units in which the largest entry is 1; parameters
+    /// and time have their values.
     fn stacked(&self, columns: &[Vec<Expr<'g>>], near: &Neighbourhood<'g>) -> DMatrix<f64> {
         let (graph, n) = (self.graph(), self.coordinates().len());
         let centre =
@@ -250,7 +252,14 @@ impl<'g> Frame<'g> {
             self.constants(columns).iter().map(|symbol| (*symbol, centre(symbol).into())).collect();
         let entries = graph.substitute(&columns.concat(), &values);
         let samples = near.samples(graph, &entries, 4 * (columns.len() + 1));
-        DMatrix::from_fn(samples.len() * n, columns.len(), |row, s| samples[row / n][s * n + row % n])
+        let entry = |row: usize, s: usize| samples[row / n][s * n + row % n];
+        let unit = |i: usize| {
+            let of_coordinate =
+                (0..samples.len()).flat_map(|sample| (0..columns.len()).map(move |s| (sample, s)));
+            of_coordinate.fold(0.0f64, |most, (sample, s)| most.max(entry(sample * n + i, s).abs()))
+        };
+        let units: Vec<f64> = (0..n).map(unit).map(|most| if most > 0.0 { most } else { 1.0 }).collect();
+        DMatrix::from_fn(samples.len() * n, columns.len(), |row, s| entry(row, s) / units[row % n])
     }
 }
 
@@ -271,12 +280,19 @@ fn simple(place: usize, salt: usize, point: usize, coordinates: usize) -> Number
     Number::integer((mixed >> 7) as i32 % 7 + 1)
 }
 
+/// The columns divided by their lengths, and these; a column of zeros has 1.
+fn normalised(mut columns: DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
+    let length = |length: f64| if length > 0.0 { length } else { 1.0 };
+    let lengths: Vec<f64> = columns.column_iter().map(|column| length(column.norm())).collect();
+    columns.column_iter_mut().zip(&lengths).for_each(|(mut column, &length)| column /= length);
+    (columns, lengths)
+}
+
 /// A fraction with a denominator up to 1000 that equals `value` to eleven digits, else the number itself.
 fn nearest_fraction(value: f64) -> Number {
     let near = |den: i64| {
         let num = (value * den as f64).round();
-        ((num / den as f64 - value).abs() < 1e-11 * (1.0 + value.abs()))
-            .then(|| Number::ratio(num as i64, den))
+        ((num / den as f64 - value).abs() < ROUNDED * value.abs()).then(|| Number::ratio(num as i64, den))
     };
     (1..=1000).find_map(near).unwrap_or_else(|| Number::from(value))
 }

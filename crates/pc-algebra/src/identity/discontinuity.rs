@@ -2,7 +2,10 @@
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
 
-/// The points from which each surface is sought; their components have magnitudes between 10⁻² and 10².
+use crate::identity::magnitudes::magnitudes;
+
+/// The points from which each surface is sought; their components have magnitudes between 10⁻² and 10², in units in which the
+/// terms of the functions are of one order.
 const TRIALS: u64 = 32;
 /// Newton's steps to a surface, enough to halve the distance to a double zero as often as numbers allow.
 const MOST_STEPS: usize = 60;
@@ -26,7 +29,8 @@ pub struct Discontinuity<'g> {
 /// The [seams](Graph::seams) on which functions jump as the `moving` symbols change; the symbols of `numbers` have these
 /// values, all others any.
 ///
-/// Newton's steps lead to points of a seam. From the difference D(δ) of the values at the distances ±δ the part that
+/// Newton's steps lead to points of a seam. Lengths are those of vectors whose components are in units in which the terms of the
+/// functions and of the seam are of one order. From the difference D(δ) of the values at the distances ±δ the part that
 /// grows as δ does is taken off, (D(qδ) − q D(δ))/(1 − q): what is left, is the same at each δ and is no rounding is a
 /// jump. At a corner or a root it falls with δ, at a pole it rises.
 ///
@@ -64,15 +68,26 @@ pub fn discontinuities<'g>(
     let number =
         |symbol: Expr<'g>| numbers.iter().find(|(known, _)| *known == symbol).map(|&(_, value)| value);
     let fixed: Vec<Option<f64>> = symbols.iter().map(|&symbol| number(symbol)).collect();
+    let free: Vec<(Expr<'g>, f64)> =
+        symbols.iter().filter(|&&x| number(x).is_none()).map(|&x| (x, 1.0)).collect();
     let mut found = Vec::new();
     for surface in seams {
+        let orders = magnitudes(graph, &[functions, &[surface]].concat(), &free, numbers);
+        let unit = |symbol: &Expr<'g>| {
+            let place = free.iter().position(|(known, _)| known == symbol);
+            place.zip(orders.as_ref()).map_or(1.0, |(place, orders)| orders[place])
+        };
         let moves = |&place: &usize| moving.contains(&symbols[place]) && surface.depends_on(symbols[place]);
         let mut sides = Sides {
             moving: (0..symbols.len()).filter(moves).collect(),
+            units: symbols.iter().map(unit).collect(),
             seam: evaluator(&[surface])?,
             values: &mut values,
         };
-        let function = (0..TRIALS).find_map(|trial| sides.jump(point(trial, &fixed)));
+        let function = (0..TRIALS).find_map(|trial| {
+            let from = point(trial, &fixed, &sides.units);
+            sides.jump(from)
+        });
         found.extend(function.map(|function| Discontinuity { surface, function }));
     }
     Ok(found)
@@ -94,18 +109,22 @@ pub fn may_jump<'g>(
 }
 
 /// A point with the fixed components, number `trial` of a sequence.
-fn point(trial: u64, fixed: &[Option<f64>]) -> Vec<f64> {
+fn point(trial: u64, fixed: &[Option<f64>], units: &[f64]) -> Vec<f64> {
     let number = |place: usize| {
         let bits = mixed(trial << 32 | place as u64);
         let sign = if bits & 1 == 0 { 1.0 } else { -1.0 };
         sign * 10f64.powf(4.0 * (bits >> 11) as f64 / (1u64 << 53) as f64 - 2.0)
     };
-    fixed.iter().enumerate().map(|(place, value)| value.unwrap_or_else(|| number(place))).collect()
+    let component =
+        |(place, value): (usize, &Option<f64>)| value.unwrap_or_else(|| number(place) * units[place]);
+    fixed.iter().enumerate().map(component).collect()
 }
 
 /// A seam between the pieces of some functions, with the places of the symbols that move across it.
 struct Sides<'a> {
     moving: Vec<usize>,
+    /// The unit of each symbol.
+    units: Vec<f64>,
     seam: Evaluator,
     values: &'a mut Evaluator,
 }
@@ -117,8 +136,9 @@ impl Sides<'_> {
         let size = self.size(&point);
         let mut sums = Vec::new();
         let mut differences = |part: f64| -> Vec<f64> {
-            let [ahead, behind] = [part, -part]
-                .map(|part| at(self.values, &shifted(&point, &self.moving, &normal, part * size)));
+            let [ahead, behind] =
+                [part, -part].map(|part| shifted(&point, (&self.moving, &self.units), &normal, part * size));
+            let [ahead, behind] = [ahead, behind].map(|point| at(self.values, &point));
             sums = ahead.iter().zip(&behind).map(|(a, b)| a.abs() + b.abs()).collect();
             ahead.iter().zip(&behind).map(|(a, b)| a - b).collect()
         };
@@ -143,7 +163,8 @@ impl Sides<'_> {
             let mut slopes = Vec::with_capacity(self.moving.len());
             for &place in &self.moving {
                 let [ahead, behind] =
-                    [step, -step].map(|step| at(&mut self.seam, &shifted(&point, &[place], &[1.0], step))[0]);
+                    [step, -step].map(|step| shifted(&point, (&[place], &self.units), &[1.0], step));
+                let [ahead, behind] = [ahead, behind].map(|point| at(&mut self.seam, &point)[0]);
                 slopes.push((ahead - behind) / (2.0 * step));
             }
             let steepness = slopes.iter().fold(0.0f64, |sum, slope| sum.hypot(*slope));
@@ -155,14 +176,15 @@ impl Sides<'_> {
             if distance.abs() <= ARRIVED * size {
                 return Some((point, normal));
             }
-            point = shifted(&point, &self.moving, &normal, -distance);
+            point = shifted(&point, (&self.moving, &self.units), &normal, -distance);
         }
         None
     }
 
     /// The size of the moving part of a point, 1 for one at the origin.
     fn size(&self, point: &[f64]) -> f64 {
-        let largest = self.moving.iter().fold(0.0f64, |size, &place| size.max(point[place].abs()));
+        let in_units = |&place: &usize| (point[place] / self.units[place]).abs();
+        let largest = self.moving.iter().map(in_units).fold(0.0f64, f64::max);
         if largest > 0.0 { largest } else { 1.0 }
     }
 }
@@ -173,9 +195,10 @@ fn at(program: &mut Evaluator, point: &[f64]) -> Vec<f64> {
     outputs
 }
 
-fn shifted(point: &[f64], places: &[usize], direction: &[f64], distance: f64) -> Vec<f64> {
+fn shifted(point: &[f64], (places, units): (&[usize], &[f64]), direction: &[f64], distance: f64) -> Vec<f64> {
     let mut there = point.to_vec();
-    places.iter().zip(direction).for_each(|(&place, slope)| there[place] += distance * slope);
+    let steps = places.iter().zip(direction);
+    steps.for_each(|(&place, slope)| there[place] += distance * slope * units[place]);
     there
 }
 

@@ -54,9 +54,12 @@ impl<'g> Neighbourhood<'g> {
         let slopes = graph.gradient(at.surface, &moving);
         let surface: Vec<Expr<'g>> = [at.surface].into_iter().chain(slopes).collect();
         let all = graph.symbols_of(&[&surface[..], &[change]].concat());
-        (0..TRIALS as u64).find_map(|trial| {
+        let beside = (0..TRIALS as u64).filter_map(|trial| {
             let values = self.sample::<f64>(graph, &all, trial)?;
-            let mut point: Vec<(Expr<'g>, f64)> = all.iter().copied().zip(values).collect();
+            Some(all.iter().copied().zip(values).collect::<Vec<(Expr<'g>, f64)>>())
+        });
+        let of_one_order = || self.points_of_one_order(graph, &[at.surface, change], TRIALS);
+        beside.chain(std::iter::once_with(of_one_order).flatten()).find_map(|mut point| {
             reach(graph, &surface, &moving, &mut point)?;
             let weighed: Vec<_> = point.iter().map(|&(z, value)| (z, Weighed::rounded(value))).collect();
             let size = graph.evaluate(&[change], &weighed).ok()?[0];

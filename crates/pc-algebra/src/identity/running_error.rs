@@ -22,12 +22,14 @@ const CHANGE: f64 = 1e-12;
 pub(crate) struct Weighed {
     pub(crate) value: f64,
     weight: f64,
+    /// Whether it is 0 only because what is not 0 was too small for a number, as exp(−10⁶) is.
+    lost: bool,
 }
 
 impl Weighed {
     /// A number that has been rounded.
     pub(crate) fn rounded(value: f64) -> Weighed {
-        Weighed { value, weight: value.abs() }
+        Weighed { value, weight: value.abs(), lost: false }
     }
 
     /// |a|, or the weight where that is larger.
@@ -44,6 +46,11 @@ impl Weighed {
         self.value.is_finite() && self.weight.is_finite()
     }
 
+    /// Whether it is a finite number that is 0 only where the exact one is.
+    pub(crate) fn is_known(self) -> bool {
+        self.is_finite() && !self.lost
+    }
+
     /// f(a), weighed by its change with each of its arguments.
     fn of<const N: usize>(args: [Weighed; N], f: impl Fn([f64; N]) -> f64) -> Weighed {
         let at = args.map(|arg| arg.value);
@@ -56,14 +63,18 @@ impl Weighed {
                 weight = weight.max((f(moved) - value).abs() / CHANGE); // outside its domain f gives no weight
             }
         }
-        Weighed { value, weight }
+        // Of the functions without zeros only exp has values that are too small.
+        let lost = value == 0.0 && args.iter().any(|arg| arg.lost);
+        Weighed { value, weight, lost }
     }
 }
 
 impl Add for Weighed {
     type Output = Weighed;
     fn add(self, other: Weighed) -> Weighed {
-        Weighed { value: self.value + other.value, weight: self.size() + other.size() }
+        let value = self.value + other.value;
+        let lost = value == 0.0 && (self.lost || other.lost);
+        Weighed { value, weight: self.size() + other.size(), lost }
     }
 }
 
@@ -72,7 +83,9 @@ impl Mul for Weighed {
     fn mul(self, other: Weighed) -> Weighed {
         let value = self.value * other.value;
         let errors = (self.value.abs() * other.weight).max(self.weight * other.value.abs());
-        Weighed { value, weight: value.abs().max(errors) }
+        let is_zero = |factor: Weighed| factor.value == 0.0 && !factor.lost;
+        let lost = value == 0.0 && !is_zero(self) && !is_zero(other);
+        Weighed { value, weight: value.abs().max(errors), lost }
     }
 }
 
@@ -85,7 +98,7 @@ impl Neg for Weighed {
 
 impl Scalar for Weighed {
     fn from_f64(value: f64) -> Weighed {
-        Weighed { value, weight: 0.0 }
+        Weighed { value, weight: 0.0, lost: false }
     }
 
     /// A constant of the size of rounding errors counts as the remainder of numbers of order one, like
@@ -95,18 +108,27 @@ impl Scalar for Weighed {
         const MOST: f64 = f64::EPSILON * 64.0;
         match value {
             Number::Rational { .. } => Weighed::from_f64(value.to_f64()),
-            Number::Real(value) if (LEAST..MOST).contains(&value.abs()) => Weighed { value, weight: 1.0 },
+            Number::Real(value) if (LEAST..MOST).contains(&value.abs()) => {
+                Weighed { value, weight: 1.0, lost: false }
+            }
             Number::Real(value) => Weighed::rounded(value),
         }
     }
 
     fn powi(self, exponent: i32) -> Weighed {
-        if exponent == 1 { self } else { Weighed::of([self], |[x]| x.powi(exponent)) }
+        if exponent == 1 {
+            return self;
+        }
+        let power = Weighed::of([self], |[x]| x.powi(exponent));
+        Weighed { lost: power.value == 0.0 && (self.lost || self.value != 0.0), ..power }
     }
 
     fn call(function: Function, args: &[Weighed]) -> Weighed {
         match *args {
-            [x] => Weighed::of([x], |args| f64::call(function, &args)),
+            [x] => {
+                let value = Weighed::of([x], |args| f64::call(function, &args));
+                Weighed { lost: value.lost || (function == Function::Exp && value.value == 0.0), ..value }
+            }
             [x, y] => Weighed::of([x, y], |args| f64::call(function, &args)),
             [x, y, z] => Weighed::of([x, y, z], |args| f64::call(function, &args)),
             _ => Weighed::from_f64(f64::NAN), // all functions have one to three arguments
@@ -148,6 +170,18 @@ mod tests {
         assert!(relative.abs() < CHANGE * 2e6, "{relative}");
         let large = Weighed::call(Function::Sin, &[exact(1e9)]);
         assert_eq!(large.rest(), 1.0, "an exact argument has no error to enlarge");
+    }
+
+    #[test]
+    fn a_number_that_is_too_small_is_not_zero() {
+        let vanished = Weighed::call(Function::Exp, &[exact(-1e6)]);
+        assert!(vanished.value == 0.0 && !vanished.is_known());
+        assert!(!(vanished * exact(1e3)).is_known() && !(vanished + exact(0.0)).is_known());
+        assert!(!Weighed::call(Function::Sin, &[vanished]).is_known() && !vanished.powi(2).is_known());
+        assert!(!(exact(1e-200) * exact(1e-200)).is_known() && !exact(1e-200).powi(2).is_known());
+        // Beside 1 it does not count, and an exact zero is one.
+        assert!((vanished + exact(1.0)).is_known() && Weighed::call(Function::Cos, &[vanished]).is_known());
+        assert!((exact(0.0) * exact(2.0)).is_known() && exact(0.0).powi(3).is_known());
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use pc_expr::{Expr, Function, Graph, Scalar, SymbolPlaces, independent_blocks};
 
+use crate::identity::magnitudes::magnitudes;
 use crate::identity::running_error::Weighed;
 use crate::linear_algebra::matrix::Matrix;
 
@@ -12,6 +13,10 @@ pub(crate) const TRIALS: usize = 8;
 pub(crate) const HIDDEN: f64 = 1e-12;
 
 /// Values of symbols near which an expression is regular; symbols that are not listed are taken near 1.
+///
+/// Points near by are of the order of the values and of 1. Where expressions have no values there, are too small for numbers, or
+/// seem to vanish, points are added at which the [commensurable](Graph::commensurable) terms of the expressions are of one order: so
+/// nothing that is said of a model depends on its units.
 #[derive(Clone, Debug, Default)]
 pub struct Neighbourhood<'g> {
     /// Symbols and their values.
@@ -23,28 +28,51 @@ impl<'g> Neighbourhood<'g> {
     /// that does not vanish is of the order of its terms.
     pub const ROUNDING: f64 = 1e-9;
 
-    /// Values of `outputs` at point number `index` of a fixed sequence (0 is the centre).
+    /// Values of `outputs` at point number `index` of a fixed sequence beside the centre (0 is the centre).
     pub(crate) fn sample<S: Scalar>(
         &self,
         graph: &'g Graph,
         outputs: &[Expr<'g>],
         index: u64,
     ) -> Option<Vec<S>> {
-        let symbols = graph.symbols_of(outputs);
-        if symbols.is_empty() {
-            return graph.evaluate(outputs, &[]).ok();
-        }
         let mut random = Random(index);
-        let known = SymbolPlaces::of(&self.centre.iter().map(|&(symbol, _)| symbol).collect::<Vec<_>>());
-        let values: Vec<(Expr<'g>, S)> = symbols
-            .into_iter()
-            .map(|symbol| {
-                let centre = known.get(symbol).map_or(1.0, |place| self.centre[place].1);
-                let reach = 0.1 + 0.2 * centre.abs();
-                (symbol, S::from_f64(if index == 0 { centre } else { centre + reach * random.next() }))
-            })
-            .collect();
+        let centre = self.centre_of(&graph.symbols_of(outputs));
+        let value = |(symbol, centre): (Expr<'g>, f64)| {
+            let reach = 0.1 + 0.2 * centre.abs();
+            (symbol, S::from_f64(if index == 0 { centre } else { centre + reach * random.next() }))
+        };
+        let values: Vec<(Expr<'g>, S)> = centre.into_iter().map(value).collect();
         graph.evaluate(outputs, &values).ok()
+    }
+
+    /// The symbols with their values at the centre.
+    fn centre_of(&self, symbols: &[Expr<'g>]) -> Vec<(Expr<'g>, f64)> {
+        let known = SymbolPlaces::of(&self.centre.iter().map(|&(symbol, _)| symbol).collect::<Vec<_>>());
+        let value = |symbol: Expr<'g>| known.get(symbol).map_or(1.0, |place| self.centre[place].1);
+        symbols.iter().map(|&symbol| (symbol, value(symbol))).collect()
+    }
+
+    /// Points at which the terms of the expressions are of one order, by turns near the centre and away from it; none if the points
+    /// of [`sample`](Self::sample) are of this kind.
+    pub(crate) fn points_of_one_order(
+        &self,
+        graph: &'g Graph,
+        expressions: &[Expr<'g>],
+        count: usize,
+    ) -> Vec<Vec<(Expr<'g>, f64)>> {
+        let centre = self.centre_of(&graph.symbols_of(expressions));
+        let from: Vec<(Expr<'g>, f64)> =
+            centre.iter().map(|&(symbol, c)| (symbol, if c == 0.0 { 1.0 } else { c })).collect();
+        let Some(sizes) = magnitudes(graph, expressions, &from, &[]) else { return Vec::new() };
+        let point = |index: u64| {
+            let mut random = Random(index);
+            let value = |(&(symbol, c), size): (&(Expr<'g>, f64), f64)| match index % 2 {
+                0 => (symbol, c + 0.3 * size * random.next()),
+                _ => (symbol, size * (0.5 + 0.4 * random.next())),
+            };
+            centre.iter().zip(sizes.iter().copied()).map(value).collect()
+        };
+        (0..count as u64).map(point).collect()
     }
 
     /// The largest absolute value of the expressions at the centre and points near it where all are finite; infinity if
@@ -87,16 +115,20 @@ impl<'g> Neighbourhood<'g> {
         if samples.is_empty() {
             return f64::INFINITY;
         }
-        let mut worst = f64::EPSILON; // numbers alone prove nothing
-        for sample in &samples {
+        let of_sample = |sample: &Vec<Weighed>| {
             let mut values = sample.iter().copied();
-            for terms in &sums {
+            let sum = |terms: &&Vec<Expr<'g>>| {
                 let zero = Weighed::from_f64(0.0);
-                worst =
-                    worst.max(values.by_ref().take(terms.len()).fold(zero, |sum, term| sum + term).rest());
-            }
+                values.by_ref().take(terms.len()).fold(zero, |sum, term| sum + term).rest()
+            };
+            sums.iter().map(sum).fold(0.0, f64::max)
+        };
+        let worst = |samples: &[Vec<Weighed>]| samples.iter().map(of_sample).fold(f64::EPSILON, f64::max);
+        match worst(&samples) {
+            // Numbers alone prove nothing.
+            small if small <= Self::ROUNDING => small.max(worst(&self.of_one_order(graph, &terms, TRIALS))),
+            large => large,
         }
-        worst
     }
 
     /// A neighbourhood in which the expressions have values, if one is found, without any values given for
@@ -105,8 +137,16 @@ impl<'g> Neighbourhood<'g> {
         let symbols = graph.symbols_of(expressions);
         let about =
             |value: f64| Neighbourhood { centre: symbols.iter().map(|&symbol| (symbol, value)).collect() };
-        let has_numbers = |near: &Neighbourhood<'g>| near.samples(graph, expressions, 1).len() == 1;
-        [1.0, 0.0, -1.0, 0.3, 3.0, 10.0, -10.0].into_iter().map(about).find(has_numbers).unwrap_or_default()
+        let has = |is: fn(Weighed) -> bool| {
+            move |near: &Neighbourhood<'g>| !near.beside(graph, expressions, 1, is).is_empty()
+        };
+        let usual = || [1.0, 0.0, -1.0, 0.3, 3.0, 10.0, -10.0].into_iter().map(about);
+        let of_one_order = || {
+            let points = Neighbourhood::default().points_of_one_order(graph, expressions, 4 * TRIALS);
+            points.into_iter().map(|centre| Neighbourhood { centre }).find(has(Weighed::is_known))
+        };
+        let known = usual().find(has(Weighed::is_known)).or_else(of_one_order);
+        known.or_else(|| usual().find(has(Weighed::is_finite))).unwrap_or_default()
     }
 
     /// Whether an expression is zero, or at most rounding wherever it has values near by, although the graph does
@@ -119,7 +159,8 @@ impl<'g> Neighbourhood<'g> {
         // A function of several pieces may be 0 on this piece only.
         let is_zero = |value: &Weighed| value.value == 0.0 && in_pieces(graph, &[expression]);
         let is_rounding = |value: &Weighed| value.rest() <= HIDDEN && !is_zero(value);
-        !samples.is_empty() && samples.iter().flatten().all(is_rounding)
+        let vanish = |samples: &[Vec<Weighed>]| samples.iter().flatten().all(is_rounding);
+        !samples.is_empty() && vanish(&samples) && vanish(&self.of_one_order(graph, &[expression], TRIALS))
     }
 
     /// The greatest numerical rank of a matrix at nearby points; `None` where it has no values, or where
@@ -129,8 +170,16 @@ impl<'g> Neighbourhood<'g> {
         if in_pieces(graph, &entries) {
             return None;
         }
-        let samples = self.weighed(graph, &entries, TRIALS);
-        samples.into_iter().map(|sample| rank_of_sample(matrix, &sample)).max()
+        let greatest = |samples: Vec<Vec<Weighed>>| {
+            samples.into_iter().map(|sample| rank_of_sample(matrix, &sample)).max()
+        };
+        let seen = greatest(self.weighed(graph, &entries, TRIALS))?;
+        let is_full = seen == matrix.rows().min(matrix.columns());
+        Some(if is_full {
+            seen
+        } else {
+            greatest(self.of_one_order(graph, &entries, TRIALS)).map_or(seen, |more| more.max(seen))
+        })
     }
 
     /// The rank of a matrix at the centre; `None` where it has no values there.
@@ -141,24 +190,44 @@ impl<'g> Neighbourhood<'g> {
 
     /// Values at up to `count` points where all outputs are finite.
     pub(crate) fn samples(&self, graph: &'g Graph, outputs: &[Expr<'g>], count: usize) -> Vec<Vec<f64>> {
-        self.finite(graph, outputs, count, |x: &f64| x.is_finite())
+        let values = |sample: Vec<Weighed>| sample.into_iter().map(|x| x.value).collect();
+        self.weighed(graph, outputs, count).into_iter().map(values).collect()
     }
 
-    /// Values with their weights; see [`samples`](Self::samples).
+    /// Values with their weights; see [`samples`](Self::samples). Points are left out where a value is too small for a number, unless
+    /// no others are found.
     pub(crate) fn weighed(&self, graph: &'g Graph, outputs: &[Expr<'g>], count: usize) -> Vec<Vec<Weighed>> {
-        self.finite(graph, outputs, count, |x: &Weighed| x.is_finite())
+        let mut found = self.beside(graph, outputs, count, Weighed::is_known);
+        if found.len() < count {
+            found.extend(self.of_one_order(graph, outputs, count - found.len()));
+        }
+        if found.is_empty() {
+            found = self.beside(graph, outputs, count, Weighed::is_finite);
+        }
+        found
     }
 
-    fn finite<S: Scalar>(
+    /// Values at up to `count` points beside the centre where all outputs are such numbers.
+    fn beside(
         &self,
         graph: &'g Graph,
         outputs: &[Expr<'g>],
         count: usize,
-        is_finite: impl Fn(&S) -> bool,
-    ) -> Vec<Vec<S>> {
-        let all_finite = |values: &Vec<S>| values.iter().all(&is_finite);
-        let points = 0..4 * count as u64;
-        points.filter_map(|index| self.sample(graph, outputs, index)).filter(all_finite).take(count).collect()
+        is: fn(Weighed) -> bool,
+    ) -> Vec<Vec<Weighed>> {
+        let values = (0..4 * count as u64).filter_map(|index| self.sample::<Weighed>(graph, outputs, index));
+        values.filter(|values| values.iter().all(|&x| is(x))).take(count).collect()
+    }
+
+    /// Values at the [points of one order](Self::points_of_one_order).
+    fn of_one_order(&self, graph: &'g Graph, outputs: &[Expr<'g>], count: usize) -> Vec<Vec<Weighed>> {
+        let value = |point: Vec<(Expr<'g>, f64)>| {
+            let point: Vec<_> = point.into_iter().map(|(x, value)| (x, Weighed::from_f64(value))).collect();
+            graph.evaluate(outputs, &point).ok()
+        };
+        let points = self.points_of_one_order(graph, outputs, 4 * count).into_iter();
+        let is_known = |values: &Vec<Weighed>| values.iter().all(|x| x.is_known());
+        points.filter_map(value).filter(is_known).take(count).collect()
     }
 }
 

@@ -1,7 +1,7 @@
 //! The properties of a frame are independent of the units of coordinates and quasi-velocities, and of
 //! rounding.
 
-use pc_algebra::{AlgebraError, Frame, Integrability, LieAlgebra, Neighbourhood};
+use pc_algebra::{AlgebraError, Frame, Integrability, LieAlgebra, Neighbourhood, discontinuities};
 use pc_expr::{Expr, Graph};
 
 /// ẋ = u, ẏ = w and ż as given, in the `units` of z, u and w.
@@ -101,5 +101,67 @@ fn a_drift_that_is_not_a_derivation_is_refused() {
         let error = algebra.with_time(drift).unwrap_err();
         let defect = (unit * (unit + unit)).to_string();
         assert_eq!(error, AlgebraError::Jacobi { triple: (0, 1, 2), component: 2, defect });
+    }
+}
+
+const LENGTHS: [f64; 5] = [1e-9, 1e-6, 1.0, 1e6, 1e9];
+
+/// x' = l u, y' = l exp(−(x/l)²) v in the unit l: [u, v] = −2 (x/l) v. At x = 1 nothing is left of the exponential function where l is
+/// small, and it is 1 where l is large.
+#[test]
+fn brackets_change_with_the_place_in_all_units() {
+    for length in LENGTHS {
+        let graph = Graph::new();
+        let [t, x, y, u, v] = graph.symbols(["t", "x", "y", "u", "v"]);
+        let velocities = [length * u, length * (-(x / length).square()).exp() * v];
+        let frame = Frame::from_velocities(&graph, t, vec![x, y], &[u, v], &velocities).unwrap();
+        assert_eq!(frame.rank(), 2, "{length}");
+        for near in [Neighbourhood { centre: vec![(x, length / 2.0), (y, 0.0)] }, Neighbourhood::default()] {
+            let c = frame.structure_coefficients(&near).unwrap_or_else(|error| panic!("{length}: {error}"));
+            assert_eq!(c.nonzero().count(), 1, "{length}: {c:?}");
+            let found = graph.evaluate(&[c.get(1, 2, 2)], &[(x, 0.75 * length)]).unwrap()[0];
+            assert!((found + 1.5).abs() < 1e-12, "{length}: {found}, some roundings from -3/2");
+        }
+    }
+}
+
+/// What is small at x = 1 in the wrong unit is no zero, and what is zero is one in any unit.
+#[test]
+fn what_vanishes_does_so_in_all_units() {
+    for length in LENGTHS {
+        let graph = Graph::new();
+        let x = graph.symbol("x");
+        let z = x / length;
+        let nears = [Neighbourhood { centre: vec![(x, 0.3 * length)] }, Neighbourhood::default()];
+        let zero = [(z.square() + 4.0 * z + 4.0).log(), -2.0 * (z + 2.0).log()];
+        let present =
+            [(-z.square()).exp(), (z.square() + 1.0).sqrt() - 1.0, z.atan() - z, (z + 2.0).log() - z];
+        for near in nears {
+            for (i, present) in present.into_iter().enumerate() {
+                assert!(!near.vanishes(&graph, present), "{length}: number {i}");
+                assert!(near.residual(&graph, &[vec![present]]) > 1e-6, "{length}: number {i}");
+            }
+            assert!(
+                near.residual(&graph, &[zero.to_vec()]) < 1e-12,
+                "{length}: log((z + 2)²) = 2 log(z + 2)"
+            );
+        }
+    }
+}
+
+/// A force that jumps at x = l and is felt within some l only.
+#[test]
+fn jumps_are_seen_in_all_units() {
+    for length in LENGTHS {
+        let graph = Graph::new();
+        let x = graph.symbol("x");
+        let z = x / length;
+        let force = (z - 1.0).step(1.0, 2.0) * (-z.square()).exp();
+        let near = Neighbourhood { centre: vec![(x, 0.2 * length)] };
+        let jump = near.jump(&graph, force, &[x]).unwrap_or_else(|| panic!("{length}"));
+        assert!((jump.at[0].1 / length - 1.0).abs() < 1e-9, "{length}: {jump:?}");
+        assert!((jump.size + (-1f64).exp()).abs() < 1e-9, "{length}: {jump:?}");
+        let found = discontinuities(&graph, &[force], &[x], &[]).unwrap();
+        assert_eq!(found.len(), 1, "{length}: {found:?}");
     }
 }

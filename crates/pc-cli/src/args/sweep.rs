@@ -51,7 +51,7 @@ impl SweepOf {
                   lognormal(m,s) is exp of normal(m,s).\n\
                   A row has the number of the member, the varied values (start values as NAME(start)), how it ended \
                   (completed; event: it was ended by the event of the message; failed: the row is what was reached; refused: it could not start; panicked), the \
-                  columns of `pc run` at the end, the drift of each integral, the number of steps, and a message \
+                  columns of `pc run` in the same form at the end, the drift of each integral, the number of steps, and a message \
                   where it was not completed. --of linearize has the real and imaginary parts re1, im1, … of the eigenvalues in descending \
                   order of the real parts, and the stability by them, instead; --of check has verdicts of `pc check`.\n\
                   What is finished is kept in FILE.partial until FILE is complete: after an interruption of any kind \
@@ -91,7 +91,8 @@ pub struct SweepArguments {
     /// Tolerances and method.
     #[command(flatten)]
     pub integration: IntegrationArguments,
-    /// Form of the equations: poincare or canonical; else that of the file, else poincare. Columns stay the same
+    /// Form of the equations, as for `pc run`: poincare, canonical, reduced, lie-poisson, orthonormal, or hamel where the file gives the
+    /// quasi-velocities; else that of the file, else poincare. Columns are those of `pc run` in this form
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<RunForm>,
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)

@@ -14,7 +14,7 @@ const CHECKPOINTED: u64 = 3;
 /// Numbers in memory for each row until the table is written.
 pub(crate) fn numbers(flow: &Flow, plan: &Plan, checkpointed: bool) -> u64 {
     let dim = flow.motion.dim() as u64;
-    let columns = 1 + flow.names.len() as u64 + flow.motion.observable_names().len() as u64;
+    let columns = 1 + flow.columns().len() as u64;
     let copies = if checkpointed { CHECKPOINTED } else { 1 };
     // Derivatives are held by the trajectory and separately, with their times and states, and in
     // the row of the table.

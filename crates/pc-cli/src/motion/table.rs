@@ -80,7 +80,7 @@ impl Table {
 
     /// The rows of these states.
     pub(crate) fn of_states(flow: &mut Flow, states: &[(f64, Vec<f64>)]) -> Table {
-        let mut table = Table::empty(flow, Vec::new());
+        let mut table = Table::of(flow);
         for (t, y) in states {
             table.values.push(*t);
             table.values.extend(flow.row(*t, y));
@@ -91,7 +91,7 @@ impl Table {
     /// A table whose rows are written as they are computed.
     pub(crate) fn given(flow: &Flow) -> Table {
         let given = Given { rows: 0, start: Vec::new(), worst: Vec::new(), not_finite: Vec::new() };
-        Table { given: Some(given), ..Table::empty(flow, Vec::new()) }
+        Table { given: Some(given), ..Table::of(flow) }
     }
 
     /// Replaces the last row by that of a state.
@@ -114,10 +114,14 @@ impl Table {
         }
     }
 
+    /// No rows yet; the columns are those of the flow that is to give them.
+    pub(crate) fn of(flow: &Flow) -> Table {
+        Table::empty(flow, Vec::new())
+    }
+
     fn empty(flow: &Flow, more: Vec<String>) -> Table {
-        let names = flow.names.iter().chain(flow.motion.observable_names()).cloned();
         let derivatives = more.len();
-        let columns: Vec<String> = std::iter::once("t".to_owned()).chain(names).chain(more).collect();
+        let columns = std::iter::once("t".to_owned()).chain(flow.columns()).chain(more).collect();
         Table {
             columns,
             coordinates: flow.motion.coordinates(),

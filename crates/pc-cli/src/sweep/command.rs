@@ -98,7 +98,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
         });
         // A member without a record was interrupted, or ended by a limit.
         let Some(record) = record else { return ControlFlow::Break(()) };
-        kept = journal.append(&record);
+        kept = sheet.check(&record).map_err(SweepError::from).and_then(|()| journal.append(&record));
         progress.at(place + 1);
         if kept.is_err() || interrupt::requested() {
             ControlFlow::Break(())

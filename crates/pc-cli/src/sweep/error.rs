@@ -9,6 +9,7 @@ use pc_solve::{EnsembleError, Spent};
 use crate::exit_code;
 use crate::sweep::plot_error::SweepPlotError;
 use crate::sweep::shard::Shard;
+use crate::sweep::sheet::Misshapen;
 
 /// Why a sweep was not begun or not completed.
 #[derive(Debug, thiserror::Error)]
@@ -128,6 +129,9 @@ pub enum SweepError {
         /// How many it should have.
         members: u64,
     },
+    /// The record of a member does not fit the columns.
+    #[error(transparent)]
+    Misshapen(#[from] Misshapen),
     /// The finished members cannot be read again.
     #[error("cannot draw the sweep: its finished members cannot be read")]
     Read(#[source] io::Error),
@@ -169,7 +173,7 @@ impl SweepError {
     /// Exit code of the program.
     pub fn exit_code(&self) -> u8 {
         match self {
-            SweepError::Ended { .. } => 4,
+            SweepError::Ended { .. } | SweepError::Misshapen(_) => 4,
             SweepError::NoneCompleted { .. } => 5,
             SweepError::Interrupted { .. } => 130,
             SweepError::UnknownValue(_)

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use pc_expr::{LaneField, VectorField};
 use pc_model::document::NamedExpression;
-use pc_model::{Flow, Model, ModelError, Prototype};
+use pc_model::{Flow, Model, ModelError, Prototype, Variables};
 use pc_solve::{Ending, Ensemble, EnsembleError, Events, Options, Solution, Solve, Stop, Trajectory};
 
 use super::design::Design;
@@ -52,11 +52,12 @@ impl Motions {
         all_rows: bool,
         threads: usize,
     ) -> Result<Motions, CliError> {
-        let columns = columns(&model, !all_rows);
+        let (table, prototype) = begun(&model, &design, form.into());
+        let shown = table.as_ref().map_or_else(|| written(&model), Columns::of);
         // Of each member at work its trajectory, its table, its record and the bytes of that.
-        let numbers = (4 * self::columns(&model, false).len() * threads) as u64;
+        let numbers = (4 * shown.names.len() * threads) as u64;
         memory::allow(plan.samples as u64, numbers, model.budget().limits())?;
-        let prototype = Prototype::new(&model, form.into());
+        let columns = shown.in_rows(!all_rows);
         Ok(Motions {
             members: Members::new(model, design, columns),
             form,
@@ -80,9 +81,7 @@ impl Motions {
                 let lane = lane.map(|field| (field, flow.start.clone()));
                 (Ok(Box::new((flow, blank))), lane)
             }
-            Err(error) => {
-                (Err(self.members.ended(Status::Refused, &error.diagnostic().message, blank)), None)
-            }
+            Err(error) => (Err(self.members.ended(Status::Refused, &error, blank)), None),
         }
     }
 
@@ -134,25 +133,30 @@ impl Motions {
         })
     }
 
-    fn flow(&self, model: &Model) -> Result<Flow, ModelError> {
+    /// The motion of a member, or what is wrong with it.
+    fn flow(&self, model: &Model) -> Result<Flow, String> {
         if let Some(flow) = self.prototype.as_ref().and_then(|known| known.flow(model, self.plan.t_start)) {
             return Ok(flow);
         }
-        let graph = model.graph();
-        Flow::new(model, &model.assemble(&graph)?, self.form.into())
+        let flow = derived(model, self.form.into()).map_err(|error| error.diagnostic().message.clone())?;
+        let own = Columns::of(&Table::of(&flow));
+        let is_alike = own.in_rows(!self.all_rows) == self.members.columns();
+        let other = || format!("its table has other columns than the sweep: {}", own.names.join(", "));
+        is_alike.then_some(flow).ok_or_else(other)
     }
 
-    /// All rows, or the last one with the drifts; what was `reached` is one more.
+    /// All rows, or the last one with the drifts; what was `reached` is one more. There is a row in any case.
     fn rows_of(&self, flow: &mut Flow, trajectory: &Trajectory, reached: Option<(f64, &[f64])>) -> Vec<f64> {
         let table = Table::new(flow, trajectory);
         let last = reached.map(|(t, y)| std::iter::once(t).chain(flow.row(t, y)).collect::<Vec<f64>>());
+        let nothing = || vec![f64::NAN; table.columns().len()];
         if self.all_rows {
-            return table.rows().flatten().copied().chain(last.into_iter().flatten()).collect();
+            let rows: Vec<f64> = table.rows().flatten().copied().chain(last.into_iter().flatten()).collect();
+            return if rows.is_empty() { nothing() } else { rows };
         }
         let drifts: Vec<f64> = table.conserved().map(|j| drift(&table, last.as_deref(), j)).collect();
         let row = last.or_else(|| table.rows().next_back().map(<[f64]>::to_vec));
-        let width = self.members.columns().len() - drifts.len();
-        row.unwrap_or_else(|| vec![f64::NAN; width]).into_iter().chain(drifts).collect()
+        row.unwrap_or_else(nothing).into_iter().chain(drifts).collect()
     }
 }
 
@@ -196,20 +200,60 @@ impl Work for Motions {
     }
 }
 
-/// The columns of a motion of a model: those of `pc run`, with the drifts of what should be constant if these are
-/// wanted.
-fn columns(model: &Model, drifts: bool) -> Vec<Column> {
+/// The columns of a motion, with those of them that should stay constant.
+struct Columns {
+    names: Vec<String>,
+    conserved: Range<usize>,
+}
+
+impl Columns {
+    /// Those of the table that the rows come from.
+    fn of(table: &Table) -> Columns {
+        Columns { names: table.columns().to_vec(), conserved: table.conserved() }
+    }
+
+    /// The columns of a member, with the drifts of what should stay constant if these are wanted.
+    fn in_rows(&self, drifts: bool) -> Vec<Column> {
+        let kept = if drifts { &self.names[self.conserved.clone()] } else { &[] };
+        let drifts = kept.iter().map(|name| format!("drift({name})"));
+        self.names.iter().cloned().chain(drifts).map(|name| Column::new(name, Kind::Number)).collect()
+    }
+}
+
+/// The columns of `pc run` as far as the text has them, for a sweep of which no member begins.
+fn written(model: &Model) -> Columns {
     let document = model.document();
     let named = |list: &[NamedExpression]| list.iter().map(|item| item.name.text.clone()).collect::<Vec<_>>();
-    let energy = || vec!["energy".to_owned()];
-    let mut names = vec!["t".to_owned()];
-    names.extend(model.start_names());
-    names.extend([named(&document.integrals), energy(), named(&document.outputs)].concat());
-    if drifts {
-        let kept = [named(&document.integrals), energy()].concat();
-        names.extend(kept.iter().map(|name| format!("drift({name})")));
+    let state = [vec!["t".to_owned()], model.start_names()].concat();
+    let kept = [named(&document.integrals), vec!["energy".to_owned()]].concat();
+    let conserved = state.len()..state.len() + kept.len();
+    Columns { names: [state, kept, named(&document.outputs)].concat(), conserved }
+}
+
+/// The table of the model without its rows and, where the members differ from it by numbers alone, its equations; where it has no
+/// motion the table of the first member that has one. It is the same for each shard.
+fn begun(model: &Model, design: &Design, variables: Variables) -> (Option<Table>, Option<Prototype>) {
+    let graph = model.graph();
+    let own = model.assemble(&graph).ok().and_then(|assembly| {
+        let flow = Flow::new(model, &assembly, variables).ok()?;
+        Some((Table::of(&flow), Prototype::of(model, &assembly, variables, flow)))
+    });
+    if let Some((table, prototype)) = own {
+        return (Some(table), prototype);
     }
-    names.into_iter().map(|name| Column::new(name, Kind::Number)).collect()
+    let in_time = |_: &u64| model.budget().deadline().passed().is_none();
+    let table = (0..design.members()).take_while(in_time).find_map(|member| {
+        let mut model = design.model(model, &design.values(member));
+        model.within(model.budget().beside());
+        derived(&model, variables).ok().map(|flow| Table::of(&flow))
+    });
+    (table, None)
+}
+
+/// The flow of a model, derived anew.
+fn derived(model: &Model, variables: Variables) -> Result<Flow, ModelError> {
+    let graph = model.graph();
+    Flow::new(model, &model.assemble(&graph)?, variables)
 }
 
 /// max |I(t) − I(t_start)| of column `j`, with one row more.

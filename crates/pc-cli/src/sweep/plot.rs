@@ -114,6 +114,7 @@ pub(crate) fn picture(
     let (mut finished, mut left) = (Vec::new(), 0);
     for record in members.records()? {
         let record = record?;
+        sheet.check(&record).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
         if !matches!(record.status, Status::Completed | Status::Event) {
             left += 1;
             continue;

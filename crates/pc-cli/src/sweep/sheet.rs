@@ -1,5 +1,7 @@
 //! The table of a sweep: rows of numbers and text, member by member.
 
+use std::io;
+
 use serde_json::json;
 
 use super::record::Record;
@@ -32,6 +34,21 @@ pub(crate) enum Cell<'a> {
     Integer(u64),
     Number(f64),
     Text(&'a str),
+}
+
+/// A record that is not made of whole rows: names and numbers do not come from one table.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "member {member} has {} varied values, {} numbers and {} words, which do not fill rows of {}, {} and {}; no table is written, because this is a defect of this program",
+    found[0], found[1], found[2], columns[0], columns[1], columns[2]
+)]
+pub struct Misshapen {
+    /// The member.
+    pub member: u64,
+    /// Its varied values, its numbers and its words.
+    pub found: [usize; 3],
+    /// Those of one row.
+    pub columns: [usize; 3],
 }
 
 /// The columns.
@@ -119,14 +136,44 @@ impl Sheet {
         &self.columns
     }
 
+    /// An error unless the numbers and words of a member fill whole rows, at least one.
+    ///
+    /// # Errors
+    /// [`Misshapen`]
+    pub(crate) fn check(&self, record: &Record) -> Result<(), Misshapen> {
+        let words = self.results().iter().filter(|column| column.kind == Kind::Text).count();
+        let numbers = self.results().len() - words;
+        let rows = |found: usize, columns: usize| match (columns, found) {
+            (0, 0) => Some(None),
+            (0, _) => None,
+            _ => (found > 0 && found.is_multiple_of(columns)).then_some(Some(found / columns)),
+        };
+        let of_both = (rows(record.rows.len(), numbers), rows(record.words.len(), words));
+        let is_whole = match of_both {
+            (Some(Some(a)), Some(Some(b))) => a == b,
+            (Some(_), Some(_)) => true,
+            _ => false,
+        };
+        let is_varied = record.values.len() == self.varied;
+        (is_whole && is_varied).then_some(()).ok_or(Misshapen {
+            member: record.member,
+            found: [record.values.len(), record.rows.len(), record.words.len()],
+            columns: [self.varied, numbers, words],
+        })
+    }
+
     /// The rows of a member, at least one.
-    pub(crate) fn rows<'r>(&self, record: &'r Record) -> impl Iterator<Item = Vec<Cell<'r>>> {
+    ///
+    /// # Errors
+    /// [`Misshapen`], as [`io::ErrorKind::InvalidData`].
+    pub(crate) fn rows<'r>(&self, record: &'r Record) -> io::Result<impl Iterator<Item = Vec<Cell<'r>>>> {
+        self.check(record).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
         let (mut numbers, mut words) = (record.rows.iter(), record.words.iter());
         let mut result = move |column: &Column| match column.kind {
             Kind::Text => words.next().map(|word| Cell::Text(word)),
             Kind::Number | Kind::Integer => numbers.next().map(|&number| Cell::Number(number)),
         };
-        std::iter::from_fn(move || {
+        Ok(std::iter::from_fn(move || {
             let mut cells = vec![Cell::Integer(record.member)];
             cells.extend(record.values.iter().copied().map(Cell::Number));
             cells.push(Cell::Text(record.status.word()));
@@ -138,6 +185,6 @@ impl Sheet {
             }
             cells.push(Cell::Text(&record.message));
             Some(cells)
-        })
+        }))
     }
 }

@@ -181,3 +181,123 @@ fn a_file_says_its_independent_velocities() {
     );
     assert_ne!(said(&["derive", &path]), said(&[&["derive", "carriage"][..], &other].concat()));
 }
+
+/// A particle in the field −k/r in polar coordinates, with the velocity v = r φ' across.
+const ORBIT: &str = r#"
+[parameters]
+k = 1.0
+[coordinates]
+r = 1.0
+"φ" = 0.0
+[quasi_velocities]
+"r'" = 0.1
+"φ'" = 1.0
+[lagrangian]
+kinetic = "(r'^2 + r^2*φ'^2)/2"
+potential = "-k/r"
+[integrals]
+area = "r^2*φ'"
+[outputs]
+distance = "r"
+[simulation]
+t_end = 1.0
+form = "hamel"
+hamel = { v = "r*φ'" }
+"#;
+
+/// Numbers as they are printed, by the names of their columns.
+fn last_row(csv: &str) -> Vec<(String, String)> {
+    let cells = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
+    let names = cells(csv.lines().next().expect("a head"));
+    let row = cells(csv.lines().last().expect("a row"));
+    assert_eq!(names.len(), row.len(), "{csv}");
+    names.into_iter().zip(row).collect()
+}
+
+/// The table of a sweep is that of the runs of its members: the same names, the same numbers, in every form.
+#[test]
+fn sweeps_have_the_columns_and_numbers_of_runs_in_each_form() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = |name: &str| directory.path().join(name).to_str().expect("UTF-8").to_owned();
+    let orbit = path("orbit.toml");
+    std::fs::write(&orbit, ORBIT).expect("written");
+    let given = ["poincare", "canonical", "reduced", "lie-poisson", "orthonormal", "hamel"];
+    for (model, parameter, values, forms) in [
+        (orbit.as_str(), "k", ["1", "1.2"], &given[..]),
+        ("chaplygin-sleigh", "a", ["0.3", "0.45"], &given[..5]),
+        ("tilted-disk", "m", ["1", "1.5"], &given[..5]),
+        ("swinging-atwood", "g", ["9.81", "4.9"], &given[..5]),
+        ("elroys-beanie", "I1", ["1.5", "2"], &given[..5]),
+    ] {
+        for form in forms {
+            // Beside others in vectors the last digits are others.
+            let own = ["--form", form, "--t-end", "1", "--method", "adams"];
+            let set = format!("{parameter}={}", values[1]);
+            let run = |more: &[&str]| {
+                let run = ["run", model, "--no-verify", "--set", &set];
+                last_row(&said(&[&run[..], &own, more].concat()))
+            };
+            let vary = format!("{parameter}={},{}", values[0], values[1]);
+            let sweep = |name: &str, more: &[&str]| {
+                let table = path(name);
+                let arguments = [&["sweep", model, "--vary", &vary, "-o", &table][..], &own, more].concat();
+                said(&arguments);
+                std::fs::read_to_string(&table).expect("a table")
+            };
+            let swept = sweep("last.csv", &["--rows", "3"]);
+            assert_eq!(swept.lines().count(), 1 + 2 * 3, "{model} {form}: {swept}");
+            let (swept, run_in_rows) = (last_row(&swept), run(&["--samples", "3"]));
+            let run = run(&[]);
+            assert_eq!(swept[3..3 + run.len()], run_in_rows, "{model} {form}");
+            let names: Vec<&str> = swept[3 + run.len()..].iter().map(|(name, _)| name.as_str()).collect();
+            assert_eq!(names, ["steps", "message"], "{model} {form}");
+
+            let with_drifts = last_row(&sweep("drifts.csv", &[]));
+            assert_eq!(with_drifts[3..3 + run.len()], run, "{model} {form}");
+            let drifts: Vec<_> = with_drifts.iter().filter(|(name, _)| name.starts_with("drift(")).collect();
+            let conserved =
+                run.iter().filter(|(name, _)| drifts.iter().any(|(d, _)| *d == format!("drift({name})")));
+            assert_eq!((drifts.len(), drifts.len()), (conserved.count(), with_drifts.len() - run.len() - 5));
+            for (name, drift) in drifts {
+                // The tolerance 1e-9 a step, times some hundred steps and values of order 1.
+                let drift: f64 = drift.parse().expect("a number");
+                assert!(drift.abs() < 1e-6, "{model} {form}: {name} = {drift}");
+            }
+            // Shards have the same columns, each by itself.
+            if !matches!(*form, "reduced" | "hamel") {
+                continue;
+            }
+            for shard in ["1/2", "2/2"] {
+                said(
+                    &[&["sweep", model, "--vary", &vary, "-o", &path("s.csv"), "--shard", shard][..], &own]
+                        .concat(),
+                );
+            }
+            let shards = ["1", "2"].map(|number| path(&format!("s.csv.shard-{number}-of-2")));
+            said(&["merge", &shards[0], &shards[1], "-o", &path("s.csv")]);
+            let read = |name: &str| std::fs::read_to_string(path(name)).expect("a table");
+            assert_eq!(read("s.csv"), read("drifts.csv"), "{model} {form}");
+            shards.iter().for_each(|shard| std::fs::remove_file(shard).expect("removed"));
+        }
+    }
+}
+
+/// The columns of a sweep are known where the model as it is has no motion, too: from the first member that has one.
+#[test]
+fn a_model_that_is_wrong_only_as_it_is_has_columns() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = |name: &str| directory.path().join(name).to_str().expect("UTF-8").to_owned();
+    let massless = ORBIT.replace("k = 1.0", "k = 1.0\nm = 0.0").replace("\"(r'", "\"m*(r'");
+    std::fs::write(path("model.toml"), massless).expect("written");
+    let common = ["--form", "reduced", "--method", "adams"];
+    let model = path("model.toml");
+    said(&[&["sweep", &model, "--vary", "m=0,2", "-o", &path("a.csv")][..], &common].concat());
+    let table = std::fs::read_to_string(path("a.csv")).expect("a table");
+    let refused = table.lines().nth(1).expect("a first member");
+    assert!(refused.contains(",refused,NaN,NaN,"), "{table}");
+    let run = said(&[&["run", &model, "--samples", "2", "--set", "m=2"][..], &common].concat());
+    let run = last_row(&run);
+    assert_eq!(last_row(&table)[3..3 + run.len()], run);
+    assert_eq!(run[1].0, "r");
+    assert_eq!(run[2].0, "r'", "nothing depends on φ");
+}

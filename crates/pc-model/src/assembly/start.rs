@@ -15,7 +15,7 @@ use crate::names::stage::Stage;
 /// The greatest remainder of a unit vector that depends on others: rounding.
 const DEPENDENT: f64 = 1e-9;
 
-/// Velocities that differ by less than this, absolute or relative, whichever is larger, are equal.
+/// Velocities that differ by less than this part of those that they follow from are equal.
 const OFF: f64 = 1e-8;
 
 /// The given start.
@@ -250,7 +250,13 @@ impl Equations {
             self.rows.push((rest.iter().map(|entry| entry / left).collect(), missing / left));
             return None;
         }
-        (missing.abs() > OFF * value.abs().max(length).max(1.0)).then_some(value - missing)
+        (missing.abs() > OFF * value.abs().max(length * self.largest(row))).then_some(value - missing)
+    }
+
+    /// The largest of the unknowns that a row contains, as far as they are known: what is small beside it is so in any unit.
+    fn largest(&self, row: &[f64]) -> f64 {
+        let known = self.solution(row.len()).into_iter().zip(row).filter(|&(_, &entry)| entry != 0.0);
+        known.fold(0.0, |largest, (value, _)| largest.max(value.abs()))
     }
 
     /// The part of an equation that is independent of the present ones.

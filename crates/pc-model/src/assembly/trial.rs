@@ -7,9 +7,15 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
 
-/// A start whose distance from a constraint, as a displacement of a coordinate or velocity, absolute or
-/// relative, whichever is larger, is less than this is off by the rounding of its digits.
+/// A start whose distance from a constraint, as a displacement of a coordinate or velocity, is less than this part of it is off by
+/// the rounding of its digits. Small coordinates may be as far off as larger ones of the constraint, and as 1.
 const OFF: f64 = 1e-8;
+
+/// Where all coordinates of a constraint are smaller than this, they are in small units: 1 is no measure of them.
+const SMALL: f64 = 1e-2;
+
+/// A coordinate may be this far off, times [`OFF`], in any case: it is the rounding of numbers of order one, such as cos(π/2).
+const LEAST: f64 = 1e-7;
 
 /// The indices of the components of the start that are not moved to the constraints.
 pub(super) struct StartHeld {
@@ -164,9 +170,13 @@ impl<'g> Trial<'_, 'g> {
     /// The value of an expression that should vanish, if no change of the `movable` by [`OFF`] makes it zero.
     fn misses(&self, (value, movable): (Expr<'g>, &[Expr<'g>]), state: &[f64]) -> Option<f64> {
         let graph = self.system.graph();
-        let gradient = graph.gradient(value, movable).into_iter().map(|slope| self.value(slope, state));
-        let sizes = movable.iter().map(|&x| self.value(x, state).abs().max(1.0));
-        let reach = gradient.zip(sizes).map(|(slope, size)| slope.abs() * size).fold(0.0, f64::max);
+        let slopes = graph.gradient(value, movable).into_iter().map(|slope| self.value(slope, state));
+        let sizes = movable.iter().map(|&x| self.value(x, state).abs());
+        let moving: Vec<(f64, f64)> =
+            slopes.map(f64::abs).zip(sizes).filter(|&(slope, _)| slope > 0.0).collect();
+        let largest = moving.iter().fold(0.0, |largest, &(_, size)| f64::max(largest, size));
+        let least = if largest > 0.0 { (largest / SMALL).clamp(LEAST, 1.0) } else { 1.0 };
+        let reach = moving.iter().map(|&(slope, size)| slope * size.max(least)).fold(0.0, f64::max);
         let residual = self.value(value, state);
         // An expression that nothing moves is compared directly.
         let within = residual.abs() <= OFF * if reach > 0.0 { reach } else { 1.0 };

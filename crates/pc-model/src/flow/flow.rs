@@ -19,7 +19,7 @@ pub struct Flow {
     pub motion: Motion,
     /// Its state at the start.
     pub start: Vec<f64>,
-    /// Coordinates, declared quasi-velocities and first-order states, the columns of a table whatever the form.
+    /// The coordinates of the form, the declared quasi-velocities whatever the form, and the first-order states.
     pub names: Vec<String>,
     /// The events; none in most models.
     pub events: FlowEvents,
@@ -141,7 +141,13 @@ impl Flow {
         })
     }
 
-    /// Coordinates, declared quasi-velocities and first-order states of a state, then the observables.
+    /// The names of the numbers of each [row](Flow::row). They depend on the form: a reduced one has fewer coordinates.
+    pub fn columns(&self) -> Vec<String> {
+        self.names.iter().chain(self.motion.observable_names()).cloned().collect()
+    }
+
+    /// Coordinates, declared quasi-velocities and first-order states of a state, then the observables, named by
+    /// [`columns`](Flow::columns).
     pub fn row(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let mut row = self.shown(t, state);
         row.extend(self.motion.observe(t, state));

@@ -140,10 +140,13 @@ impl<'g> Assembly<'g> {
             let slopes = self.numbers_at_start(free, &slopes)?;
             Ok(slopes.chunks(eta.len().max(1)).map(<[f64]>::to_vec).collect())
         };
+        let given = rows(&definitions)?;
         let mut known: Vec<Vec<f64>> = Vec::new();
+        let mut known_alike: Vec<Vec<f64>> = Vec::new();
         let mut chosen: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
-        for ((&(name, _), &definition), row) in self.given.iter().zip(&definitions).zip(rows(&definitions)?) {
-            let (rest, left) = rest(&known, &row);
+        let alike = in_alike_units(&given);
+        for (s, (&(name, _), &definition)) in self.given.iter().zip(&definitions).enumerate() {
+            let (rest_alike, left) = rest(&known_alike, &alike[s]);
             if left.is_nan() || left <= DEPENDENT {
                 let message = match chosen.len() == eta.len() {
                     true => format!("`{name}` is one quasi-velocity too many: {} are independent", eta.len()),
@@ -151,7 +154,8 @@ impl<'g> Assembly<'g> {
                 };
                 return Err(self.no_form(message, help));
             }
-            known.push(rest);
+            known_alike.push(rest_alike);
+            known.push(rest(&known, &given[s]).0);
             chosen.push((name, definition));
         }
         // Each time the one least determined by those present; the first among equals.
@@ -282,6 +286,15 @@ fn short_determinant<'g>(graph: &'g Graph, square: &Matrix<Expr<'g>>) -> Option<
     let rest = Matrix::from_fn(rows.len(), columns.len(), |r, c| square[(rows[r], columns[c])]);
     let rest = if rows.is_empty() { Expr::ONE } else { determinant(graph, &rest)? };
     Some(factors.into_iter().fold(rest, |product, factor| product * factor))
+}
+
+/// Rows of derivatives in units of the quasi-velocities in which the largest of each column is 1: r' + r φ' does not depend on r'
+/// however small r is.
+fn in_alike_units(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let largest = |s: usize| rows.iter().fold(0.0f64, |most, row| most.max(row[s].abs()));
+    let unit = |s: usize| Some(largest(s)).filter(|&most| most > 0.0).unwrap_or(1.0);
+    let in_units = |row: &Vec<f64>| row.iter().enumerate().map(|(s, entry)| entry / unit(s)).collect();
+    rows.iter().map(in_units).collect()
 }
 
 /// The part of a row orthogonal to the known ones, all of length one, and its size relative to the row.

@@ -9,9 +9,11 @@ use crate::flow::flow::Flow;
 use crate::flow::variables::Variables;
 use crate::model::model::Model;
 
-/// A start that a projection moves by at most this, relative to the larger of 1 and its size, satisfies the
-/// constraints up to the rounding of its digits; a tenth of the distance at which a model is refused.
+/// A start of which a projection moves each component by at most this part satisfies the constraints up to the rounding of its
+/// digits; a tenth of the distance at which a model is refused.
 const ON_CONSTRAINTS: f64 = 1e-9;
+/// A component may also move by this part of the largest: the rounding of the projection.
+const ROUNDING: f64 = 1e-14;
 
 /// The equations of a model compiled once, for models of which only numbers are different.
 #[derive(Debug)]
@@ -62,7 +64,8 @@ impl Prototype {
         flow.motion.keep_from(t, &start).ok()?;
         let mut nearest = flow.start.clone();
         flow.motion.project(t, &mut nearest).ok()?;
-        let near = |(a, b): (&f64, &f64)| (a - b).abs() <= ON_CONSTRAINTS * a.abs().max(1.0);
+        let largest = flow.start.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() <= ON_CONSTRAINTS * a.abs() + ROUNDING * largest;
         let on = self.vanishing.iter().all(|&place| values[place] == 0.0)
             && flow.start.iter().zip(&nearest).all(near);
         let mut rate = vec![0.0; nearest.len()];

@@ -11,7 +11,7 @@ use crate::sweep::sheet::{Cell, Sheet};
 pub(super) fn write(sheet: &Sheet, members: &dyn Records, out: &mut FileWriter<'_>) -> io::Result<()> {
     writeln!(out, "{}", header(sheet.columns().iter().map(|column| &column.name)))?;
     for record in members.records()? {
-        for row in sheet.rows(&record?) {
+        for row in sheet.rows(&record?)? {
             for (j, cell) in row.iter().enumerate() {
                 let comma = if j == 0 { "" } else { "," };
                 match cell {

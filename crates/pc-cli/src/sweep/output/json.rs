@@ -19,7 +19,7 @@ pub(super) fn write(
     write!(out, "{{\n\"model\": {},\n\"columns\": {},\n\"rows\": [", json!(title), json!(names))?;
     let mut comma = "";
     for record in members.records()? {
-        for row in sheet.rows(&record?) {
+        for row in sheet.rows(&record?)? {
             let cells = row.iter().map(|cell| match *cell {
                 Cell::Integer(value) => json!(value),
                 Cell::Number(value) => json!(value),

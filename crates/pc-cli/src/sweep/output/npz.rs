@@ -51,7 +51,7 @@ pub(super) fn write(sheet: &Sheet, members: &dyn Records, out: &mut FileWriter<'
 fn extent(sheet: &Sheet, members: &dyn Records) -> io::Result<(u64, Vec<usize>)> {
     let (mut rows, mut lengths) = (0, vec![0; sheet.columns().len()]);
     for record in members.records()? {
-        for row in sheet.rows(&record?) {
+        for row in sheet.rows(&record?)? {
             rows += 1;
             for (longest, cell) in lengths.iter_mut().zip(row) {
                 if let Cell::Text(text) = cell {
@@ -72,7 +72,7 @@ fn fill<T: npyz::Serialize>(
 ) -> io::Result<()> {
     let mut array = npyz::WriteOptions::new().dtype(dtype).shape(&[rows]).writer(archive).begin_nd()?;
     for record in members.records()? {
-        for row in sheet.rows(&record?) {
+        for row in sheet.rows(&record?)? {
             array.push(&value(&row))?;
         }
     }

@@ -31,7 +31,7 @@ pub(super) fn write(sheet: &Sheet, members: &dyn Records, out: &mut FileWriter<'
     let mut file = SerializedFileWriter::new(out, Arc::new(schema), properties).map_err(io::Error::other)?;
     let (mut group, mut rows) = (empty(sheet), 0);
     for record in members.records()? {
-        for row in sheet.rows(&record?) {
+        for row in sheet.rows(&record?)? {
             group.iter_mut().zip(row).for_each(|(column, cell)| column.push(cell));
             rows += 1;
             if rows == GROUP {
