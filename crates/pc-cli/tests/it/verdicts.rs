@@ -200,8 +200,10 @@ fn in_units(text: &str, [length, time, mass]: [i32; 3]) -> String {
     format!("{scaled}[simulation]\nt_end = 1.5e{time}\natol = 1e-30\n")
 }
 
-/// Models, with the columns of their motions and the powers of length, time and mass in their units.
-const SCALED: [(&str, &str, &[(&str, [i32; 3])]); 6] = [
+/// A model by its name, with the columns of its motion and the powers of length, time and mass in their units.
+type Scaled = (&'static str, &'static str, &'static [(&'static str, [i32; 3])]);
+
+const SCALED: [Scaled; 6] = [
     (
         "an operator that grows small with the distance",
         "[coordinates]\nx = \"L{0.4}\"\ny = \"L{0.1}\"\n[quasi_velocities]\nu = \"V{0.7}\"\nv = \"V{1.1}\"\n\
