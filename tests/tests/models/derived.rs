@@ -99,7 +99,10 @@ impl<'g> Derived<'g> {
             Some(multipliers) => multipliers.in_velocities()?.compile(),
             None => assembly.system.in_velocities()?.poincare()?.compile(),
         };
-        self.in_velocities.get_or_init(|| self.anew(compiled)).as_ref().map(Clone::clone)
+        match self.in_velocities.get_or_init(|| self.anew(compiled)) {
+            Ok(motion) => Ok(motion.clone()),
+            Err(error) => Err(error),
+        }
     }
 
     /// The motion of the model with its start, as it is run.
