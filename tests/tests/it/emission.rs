@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use pc_expr::{Inputs, Interpreter, Kernel, Program};
 use pc_mech::{Backend, EmitOptions, Equations, Expr, Graph, Language, System, VectorField};
@@ -40,6 +40,8 @@ const CXX_FLAGS: &[&str] =
 /// A system as source, with what it has to compute.
 struct Case {
     emitted: Emitted,
+    /// The names of the state.
+    names: Vec<String>,
     /// t, state, parameters
     inputs: Vec<Vec<f64>>,
     /// ydot, mass matrix, energy, integrals; then the Jacobian
@@ -58,6 +60,7 @@ impl Case {
         let parameters: Vec<Expr<'_>> = system.parameters().iter().map(|&(symbol, _)| symbol).collect();
         let state = system.frame().coordinates().iter().chain(system.quasi_velocities()).copied().collect();
         let inputs = Inputs { time: Some(system.frame().time()), state, parameters };
+        let names = inputs.state.iter().map(Expr::to_string).collect();
         let accelerations = equations.accelerations();
         let rates: Vec<_> = system.accelerations().into_iter().zip(accelerations.iter().copied()).collect();
         let integrals: Vec<Expr<'_>> = system.integrals().iter().map(|&(_, value)| value).collect();
@@ -83,7 +86,7 @@ impl Case {
         }
         routines.push(routine("jacobian", Some(dimension * dimension)));
         let emitted = Emitted::new(equations, |language| options(language).fused(fused), routines).unwrap();
-        let mut case = Case { emitted, inputs: Vec::new(), expected: Vec::new() };
+        let mut case = Case { emitted, names, inputs: Vec::new(), expected: Vec::new() };
         for (t, y, p) in states {
             let values = interpreters.iter_mut().flat_map(|interpreter| {
                 let mut values = vec![0.0; interpreter.program().outputs_len()];
@@ -250,15 +253,20 @@ fn compile_c(compiler: &str, flags: &[&str], cases: &[Case]) -> PathBuf {
     emitted::compile_c(&directory(compiler), compiler, flags, &sources(cases))
 }
 
-fn all_cases() -> Vec<Case> {
+/// All models and some systems more, derived once for all tests.
+static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
     let fused = ["heavy-top-euler", "charged-particle-induction"].map(|name| Case::fused(name, STATES));
     MODELS.iter().map(|name| Case::builtin(name, STATES)).chain(fused).chain([awkward(), chain(4)]).collect()
+});
+
+/// The case of a model, or of a system by its name.
+fn case_of(name: &str) -> &'static Case {
+    CASES.iter().find(|case| case.emitted.name == name.replace('-', "_")).unwrap()
 }
 
 #[test]
 fn emitted_c_computes_what_the_interpreter_does() {
-    let cases = all_cases();
-    compare(&compile_c("gcc", C_FLAGS, &cases), &cases, "C");
+    compare(&compile_c("gcc", C_FLAGS, &CASES), &CASES, "C");
 }
 
 #[test]
@@ -267,14 +275,12 @@ fn emitted_c_is_cpp() {
         println!("SKIPPED: there is no g++ here, so that emitted C has not been tried as C++");
         return;
     }
-    let cases = all_cases();
-    compare(&compile_c("g++", CXX_FLAGS, &cases), &cases, "C++");
+    compare(&compile_c("g++", CXX_FLAGS, &CASES), &CASES, "C++");
 }
 
 #[test]
 fn emitted_rust_computes_what_the_interpreter_does() {
-    let cases = all_cases();
-    compare(&emitted::compile_rust(&directory("rustc"), &[], &sources(&cases)), &cases, "Rust");
+    compare(&emitted::compile_rust(&directory("rustc"), &[], &sources(&CASES)), &CASES, "Rust");
 }
 
 /// The crate `libm` as far as it is called, so that the test needs no network.
@@ -293,15 +299,11 @@ functions! {
 
 #[test]
 fn emitted_rust_needs_no_std() {
-    let cases: Vec<Case> = ["heavy-top-euler", "euler-top"]
-        .map(|name| Case::builtin(name, 0))
-        .into_iter()
-        .chain([awkward()])
-        .collect();
+    let sources = ["heavy-top-euler", "euler-top", "awkward"].map(|name| case_of(name).emitted.clone());
     let path = directory("no_std");
-    write_files(&path, &sources(&cases));
+    write_files(&path, &sources);
     fs::write(path.join("libm.rs"), LIBM).unwrap();
-    let modules: String = cases.iter().map(|case| format!("pub mod {};\n", case.emitted.name)).collect();
+    let modules: String = sources.iter().map(|source| format!("pub mod {};\n", source.name)).collect();
     fs::write(path.join("alone.rs"), format!("#![no_std]\n{modules}")).unwrap();
     let rustc = || {
         let mut command = rustc();
@@ -322,14 +324,10 @@ fn last_line(program: &Path) -> Vec<f64> {
 fn compare_end(name: &str, end: &[f64]) {
     let reference = reference(name).unwrap();
     assert!((end[0] - reference.t_end).abs() < 1e-9, "{name} ends at {}", end[0]);
-    let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
-    let graph = Graph::new();
-    let equations = model.assemble(&graph).unwrap().equations().unwrap();
-    let system = equations.system();
-    let components = system.frame().coordinates().iter().chain(system.quasi_velocities()).zip(&end[1..]);
+    let names = &case_of(name).names;
     for (column, expected) in reference.columns.iter().zip(reference.state) {
-        let component = components.clone().find(|(symbol, _)| symbol.to_string() == *column);
-        let Some((_, found)) = component else { continue };
+        let Some(place) = names.iter().position(|name| name == column) else { continue };
+        let found = end[1 + place];
         assert!(
             (found - expected).abs() <= MAIN_TOLERANCE,
             "{name}: {column} ends at {found}, not {expected}"
@@ -345,8 +343,8 @@ const OUT_OF_REACH: [&str; 2] = ["stiff-sleigh", "vertical-disk"];
 fn main_of_emitted_c_reaches_the_end_time() {
     let path = directory("main_c");
     for &name in MODELS.iter().filter(|name| !OUT_OF_REACH.contains(name)) {
-        let source = Case::builtin(name, 0).emitted;
-        write_files(&path, std::slice::from_ref(&source));
+        let source = &case_of(name).emitted;
+        write_files(&path, std::slice::from_ref(source));
         let main = format!("-D{}_MAIN", source.name.to_uppercase());
         let file = &source.file(".c").unwrap().name;
         let mut gcc = Command::new("gcc");
@@ -359,8 +357,8 @@ fn main_of_emitted_c_reaches_the_end_time() {
 fn main_of_emitted_rust_reaches_the_end_time() {
     let path = directory("main_rust");
     for name in ["heavy-top-lagrange", "euler-top"] {
-        let source = Case::builtin(name, 0).emitted;
-        write_files(&path, std::slice::from_ref(&source));
+        let source = &case_of(name).emitted;
+        write_files(&path, std::slice::from_ref(source));
         let flags = ["-O", "--cfg", "pc_main", "-Dwarnings", &source.file(".rs").unwrap().name];
         execute(rustc().current_dir(&path).args(flags), &[]);
         compare_end(name, &last_line(&path.join(&source.name)));
@@ -370,7 +368,7 @@ fn main_of_emitted_rust_reaches_the_end_time() {
 #[test]
 fn emission_is_deterministic() {
     for name in ["heavy-top-euler", "relativistic-particle"] {
-        assert_eq!(Case::builtin(name, 0).emitted.files, Case::builtin(name, 0).emitted.files);
+        assert_eq!(Case::builtin(name, 0).emitted.files, case_of(name).emitted.files);
     }
 }
 

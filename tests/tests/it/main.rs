@@ -1,21 +1,19 @@
-//! End-to-end tests over all crates, one module a topic.
+//! End-to-end tests over all crates, one module a topic. What is claimed of every built-in model is in the program `models`.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod backends;
 mod bicycle;
 mod charts;
 mod classics;
-mod derived_equations;
+#[path = "../shared/divergence.rs"]
+mod divergence;
 mod emission;
 mod energy_rate;
 mod event_sensitivities;
-mod forms_agree;
 mod frames;
 mod free_forms;
 mod holonomic;
 mod joints;
-mod kept_costs;
 mod malformed;
 mod measures;
 mod mechanisms;
@@ -24,11 +22,11 @@ mod nonlinear_constraints;
 mod printed_pages;
 mod projection;
 mod random_models;
+#[path = "../shared/read_back.rs"]
+mod read_back;
 mod redundant;
-mod reference_states;
 mod references;
 mod rolling_stability;
 mod schema;
 mod sensitivities;
 mod taylor_references;
-mod theory;

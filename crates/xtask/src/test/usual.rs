@@ -9,7 +9,7 @@ const LEAST: Duration = Duration::from_secs(60);
 const FACTOR: u32 = 5;
 
 /// Seconds that the test programs take on two cores which do nothing else; those that are not named take less than twelve.
-const PROGRAMS: [(&str, u64); 10] = [
+const PROGRAMS: [(&str, u64); 11] = [
     ("pc-capi it", 15),
     ("pc-cli it", 300),
     ("pc-expr it", 15),
@@ -18,6 +18,7 @@ const PROGRAMS: [(&str, u64); 10] = [
     ("pc-report pages", 90),
     ("pc-solve it", 60),
     ("pc-tests it", 350),
+    ("pc-tests models", 60),
     ("pc-tests rumyantsev", 25),
     ("pc-verify it", 15),
 ];

@@ -3,18 +3,20 @@
 //! What they are is kept in a table. Where they have become less, or models are new, it is written anew by
 //!
 //! ```sh
-//! KEEP_COSTS=1 cargo test -p pc-tests --test it kept_costs
+//! KEEP_COSTS=1 cargo test -p pc-tests --test models neither_pages
 //! ```
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use pc_mech::Graph;
-use pc_model::{BUILTIN, Document, Model, Source};
-use pc_print::{Form, Layout, Page, page};
+use pc_print::{Form, Page};
 
+use crate::derived::Derived;
+use crate::findings::Costs;
+use crate::pages::printed;
+
+/// The forms that may be printed of any model.
 const FORMS: [(&str, Form); 7] = [
     ("poincare", Form::Poincare),
     ("canonical", Form::Canonical),
@@ -28,46 +30,26 @@ const FORMS: [(&str, Form); 7] = [
 /// What is kept of a page: its characters, those of its longest line, and the operations with parameters free and bound.
 const KEPT: [&str; 4] = ["characters", "longest line", "operations, parameters free", "operations, bound"];
 
-type Costs = BTreeMap<(String, String), [usize; 4]>;
-
-fn tests(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
-}
-
-fn documents() -> Vec<(String, Document)> {
-    let mut files: Vec<PathBuf> =
-        fs::read_dir(tests("mechanisms")).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.sort();
-    let read = |path: PathBuf| {
-        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-        let document = Document::parse(Source::new(&name, fs::read_to_string(&path).unwrap())).unwrap();
-        (name, document)
-    };
-    let builtin = BUILTIN.iter().map(|model| (model.name.to_owned(), model.document().unwrap()));
-    builtin.chain(files.into_iter().map(read)).collect()
-}
-
 /// Operations are said in lines such as `parameters free   24 = 2 add + …`.
 fn operations(text: &str, of: &str) -> usize {
     let line = text.lines().find_map(|line| line.trim_start().strip_prefix(of)).unwrap();
     line.split_whitespace().next().unwrap().parse().unwrap()
 }
 
-fn measured() -> Costs {
+fn costs_of(text: &str) -> [usize; 4] {
+    let longest = text.lines().map(|line| line.chars().count()).max().unwrap();
+    let (free, bound) = (operations(text, "parameters free "), operations(text, "parameters bound"));
+    [text.chars().count(), longest, free, bound]
+}
+
+/// The costs of a model are measured; that none grows is said of the table of all.
+pub(crate) fn neither_pages_nor_operations_grow(derived: &Derived<'_>) {
     let mut costs = Costs::new();
-    for (name, document) in documents() {
-        let model = Model::new(document);
-        for (form, of) in FORMS {
-            let graph = Graph::new();
-            let assembly = model.assemble(&graph).unwrap();
-            let Ok(text) = page(of, Page::Text, &Layout::default(), &name, &assembly) else { continue };
-            let longest = text.lines().map(|line| line.chars().count()).max().unwrap();
-            let (free, bound) =
-                (operations(&text, "parameters free "), operations(&text, "parameters bound"));
-            costs.insert((name.clone(), form.to_owned()), [text.chars().count(), longest, free, bound]);
-        }
+    for (form, of) in FORMS {
+        let Some(text) = printed(derived, of, Page::Text) else { continue };
+        costs.insert((derived.name.to_owned(), form.to_owned()), costs_of(&text));
     }
-    costs
+    derived.findings.borrow_mut().costs = costs;
 }
 
 fn written(costs: &Costs) -> String {
@@ -88,18 +70,17 @@ fn read(table: &str) -> Costs {
     table.lines().skip(1).map(row).collect()
 }
 
-#[test]
-fn neither_pages_nor_operations_grow() {
-    let path = tests("kept-costs.txt");
-    let found = measured();
+/// The claim of all models, in the table.
+pub(crate) fn assert_kept(found: &Costs) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("kept-costs.txt");
     if std::env::var_os("KEEP_COSTS").is_some() {
-        fs::write(&path, written(&found)).unwrap();
+        fs::write(&path, written(found)).unwrap();
     }
     let table = fs::read_to_string(&path).unwrap();
     let kept = read(&table);
     assert_eq!(written(&kept), table, "the table is not as it was written");
     let mut grown = String::new();
-    for (place @ (name, form), costs) in &found {
+    for (place @ (name, form), costs) in found {
         let Some(before) = kept.get(place) else {
             writeln!(grown, "{name}, {form}: not in the table").unwrap();
             continue;
