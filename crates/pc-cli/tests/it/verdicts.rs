@@ -182,12 +182,17 @@ fn in_units(text: &str, [length, time, mass]: [i32; 3]) -> String {
     let mut pieces = text.split('{');
     let mut scaled = pieces.next().expect("a beginning").to_owned();
     for piece in pieces {
-        let power = match scaled.pop().expect("a dimension") {
-            'L' => length,
-            'V' => length - time,
-            'W' => -time,
-            'E' => mass + 2 * (length - time),
-            other => panic!("{other}"),
+        let power = match scaled.pop() {
+            Some('L') => length,
+            Some('V') => length - time,
+            Some('W') => -time,
+            Some('E') => mass + 2 * (length - time),
+            other => {
+                // The beginning of a table.
+                scaled.extend(other.into_iter().chain(['{']));
+                scaled += piece;
+                continue;
+            }
         };
         let (inside, rest) = piece.split_once('}').expect("an end");
         scaled += &match (inside, inside.parse::<f64>()) {
