@@ -24,7 +24,7 @@ const PROGRAMS: [(&str, u64); 11] = [
 ];
 
 /// The tests that take more than ten seconds: `--quick` leaves them out.
-pub(crate) const LONG: [(&str, &str); 10] = [
+pub(crate) const LONG: [(&str, &str); 9] = [
     ("pc-cli it", "browser::the_page_of_a_bicycle"),
     ("pc-cli it", "help::the_examples_run"),
     ("pc-cli it", "program::models_and_algebras_are_listed"),
@@ -33,7 +33,6 @@ pub(crate) const LONG: [(&str, &str); 10] = [
     ("pc-cli it", "theory::all_models_have_a_theory"),
     ("pc-cli it", "verdicts::check_and_linearize_agree_on_stability"),
     ("pc-report pages", "pages_of_all_models"),
-    ("pc-tests it", "printed_pages::pages_of_mechanisms_agree_with_their_equations"),
     ("pc-tests it", "random_models::random_models_agree_with_independent_computations"),
 ];
 
