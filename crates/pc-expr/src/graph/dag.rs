@@ -297,17 +297,16 @@ impl Dag {
         if self.folding == Folding::Structural {
             return NodeSet::NONE;
         }
-        let Dag { symbol_sets, symbols, nodes, .. } = self;
-        let of = |&node: &NodeId| symbols[node.index()];
+        let mut all = NodeSet::NONE;
+        let mut add = |node: NodeId| all = self.symbol_sets.union(all, self.symbols[node.index()]);
         match *candidate {
-            Candidate::Constant(_) => NodeSet::NONE,
-            Candidate::Symbol(_) => symbol_sets.intern(vec![NodeId(nodes.len() as u32)]),
-            Candidate::Sum(_, terms) => symbol_sets.union_of(terms.iter().map(|(node, _)| of(node))),
-            Candidate::Product(factors) => symbol_sets.union_of(factors.iter().map(|(node, _)| of(node))),
-            Candidate::Call(function, args) => {
-                symbol_sets.union_of(Dag::args(function, &args).iter().map(of))
-            }
+            Candidate::Constant(_) => {}
+            Candidate::Symbol(_) => all = self.symbol_sets.intern(vec![NodeId(self.nodes.len() as u32)]),
+            Candidate::Sum(_, terms) => terms.iter().for_each(|&(node, _)| add(node)),
+            Candidate::Product(factors) => factors.iter().for_each(|&(node, _)| add(node)),
+            Candidate::Call(function, args) => Dag::args(function, &args).iter().for_each(|&node| add(node)),
         }
+        all
     }
 
     /// Operations of a candidate written out as a tree: n − 1 additions or multiplications for n operands,

@@ -62,26 +62,6 @@ impl NodeSets {
         union
     }
 
-    /// The union of many sets, without those on the way to it: of a sum of a thousand terms they would take a megabyte.
-    pub(super) fn union_of(&mut self, sets: impl Iterator<Item = NodeSet>) -> NodeSet {
-        let mut distinct: Vec<NodeSet> = sets.filter(|&set| set != NodeSet::NONE).collect();
-        distinct.sort_unstable();
-        distinct.dedup();
-        match *distinct.as_slice() {
-            [] => NodeSet::NONE,
-            [one] => one,
-            [one, other] => self.union(one, other),
-            [.., last] if last == NodeSet::ALL => last,
-            _ => {
-                let mut nodes: Vec<NodeId> =
-                    distinct.iter().flat_map(|&set| self.get(set)).copied().collect();
-                nodes.sort_unstable();
-                nodes.dedup();
-                self.intern(nodes)
-            }
-        }
-    }
-
     /// Whether each node of the first set is known to be in the second.
     pub(super) fn is_subset(&self, some: NodeSet, others: NodeSet) -> bool {
         if some == NodeSet::NONE {
