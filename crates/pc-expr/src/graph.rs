@@ -1,9 +1,9 @@
 //! Expressions as nodes of a graph, interned and normalised as they are built.
 //!
 //! The operators of [`Expr`](expr::Expr) build nodes; nodes written alike are one node. Read `number` (exact
-//! constants), `function` (the elementary functions), `node` and `node_sets` first, then `dag`
-//! (the arena) with `normal_form`, `calls`, `value`, `merging`, `signs` and `regularity`, which treat sums and
-//! products, calls, values in prime fields, nodes of equal value, signs, and divisors. `graph` owns a `dag` and stays within a `budget`
+//! constants), `function` (the elementary functions), `node` and `divisors` (sets of them) first, then `dag`
+//! (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`, which treat sums and products,
+//! calls, values in prime fields, signs, and divisors. `graph` owns a `dag` and stays within a `budget`
 //! (`limits`, and for time a `deadline`); `expr` is the handle that formulas are written with; `subgraph`
 //! walks the nodes below some expressions, `queries` answers questions about whole expressions, `places`
 //! finds symbols in long lists, `transcription` writes expressions in another graph, and `evaluate` computes
@@ -13,14 +13,13 @@ pub(crate) mod budget;
 pub(crate) mod calls;
 pub(crate) mod dag;
 pub(crate) mod deadline;
+pub(crate) mod divisors;
 pub(crate) mod evaluate;
 pub(crate) mod expr;
 pub(crate) mod function;
 pub(crate) mod graph;
 pub(crate) mod limits;
-pub(crate) mod merging;
 pub(crate) mod node;
-pub(crate) mod node_sets;
 pub(crate) mod normal_form;
 pub(crate) mod number;
 pub(crate) mod places;

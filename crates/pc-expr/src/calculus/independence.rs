@@ -61,8 +61,27 @@ impl Graph {
         forms.find(|&form| self.is_as_regular(form, e)).or(first).unwrap_or(e)
     }
 
-    /// `outputs` written without symbols other than `known`, as far as they do not depend on them: such a
-    /// symbol cancels.
+    /// e, which does not depend on the symbol z, written without it: without new divisors, or with one that
+    /// vanishes only at unlikely places.
+    pub(crate) fn without_symbol<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
+        let is_without = |form: &Expr<'g>| !form.is_undefined() && !self.symbols_of(&[*form]).contains(&z);
+        let mut odd = None;
+        for form in self.forms_without(e, z, true).filter(is_without) {
+            if self.is_as_regular(form, e) {
+                return form;
+            }
+            odd = Some(form);
+        }
+        // Where constants are rounded, every form has a slightly different value.
+        let rounded = || {
+            [ODD, Number::ONE, Number::ZERO].into_iter().map(|value| self.at(e, z, value)).find(is_without)
+        };
+        odd.or_else(rounded).unwrap_or(e)
+    }
+
+    /// `outputs` written without symbols other than `known`, as far as they do not depend on them. Such a
+    /// symbol cancels; it appears where a result has the value of an older and cheaper expression that
+    /// contains it.
     ///
     /// ```
     /// # use pc_expr::Graph;

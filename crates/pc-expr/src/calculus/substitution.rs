@@ -5,8 +5,9 @@ use rustc_hash::FxHashMap;
 use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
-use crate::graph::node::{Atom, Node, NodeId};
+use crate::graph::node::{Atom, Folding, Node, NodeId};
 use crate::graph::number::Number;
+use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::{Assignment, Cone};
 
 /// Symbols with their replacements. Applied to a short expression, it costs what that expression has, however
@@ -15,6 +16,7 @@ use crate::graph::subgraph::{Assignment, Cone};
 pub struct Substitution<'g> {
     graph: &'g Graph,
     by_node: FxHashMap<NodeId, Atom>,
+    values: Vec<Expr<'g>>,
 }
 
 impl<'g> Substitution<'g> {
@@ -22,7 +24,7 @@ impl<'g> Substitution<'g> {
     pub fn apply(&self, outputs: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let graph = self.graph;
         let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(graph)).collect();
-        graph.build_all(|dag| {
+        let mut results = graph.build_all(|dag| {
             let cone = Cone::below(dag, outputs.iter().copied());
             let pair = |&node: &NodeId| Some((node, *self.by_node.get(&node)?));
             let pairs: Vec<(NodeId, Atom)> = cone.order.iter().filter_map(pair).collect();
@@ -30,7 +32,35 @@ impl<'g> Substitution<'g> {
                 true => outputs,
                 false => dag.substitute(&outputs, &pairs),
             }
-        })
+        });
+        if graph.folding() == Folding::ByValue {
+            self.drop_returned(&mut results);
+        }
+        results
+    }
+
+    /// Writes results without the symbols that were replaced.
+    ///
+    /// Such a symbol comes back where it cancels, as the result then has the value of an older and cheaper
+    /// expression that contains it.
+    fn drop_returned(&self, results: &mut [Expr<'g>]) {
+        let graph = self.graph;
+        let is_replaced = |symbol: &Expr<'g>| match symbol.atom() {
+            Atom::Node(node) => self.by_node.contains_key(&node),
+            Atom::Constant(_) => false,
+        };
+        let mut returned = graph.symbols_of(results);
+        returned.retain(is_replaced);
+        if returned.is_empty() {
+            return;
+        }
+        let put_in = SymbolPlaces::of(&graph.symbols_of(&self.values));
+        for symbol in returned.into_iter().filter(|&symbol| !put_in.contains(symbol)) {
+            for result in results.iter_mut().filter(|result| graph.symbols_of(&[**result]).contains(&symbol))
+            {
+                *result = graph.without_symbol(*result, symbol);
+            }
+        }
     }
 }
 
@@ -49,7 +79,11 @@ impl Graph {
     /// If the first of a pair is not a symbol.
     pub fn substitution<'g>(&'g self, replacements: &[(Expr<'g>, Expr<'g>)]) -> Substitution<'g> {
         let pair = |(symbol, value): &(Expr<'g>, Expr<'g>)| (symbol.symbol_in(self), value.atom_in(self));
-        Substitution { graph: self, by_node: replacements.iter().map(pair).collect() }
+        Substitution {
+            graph: self,
+            by_node: replacements.iter().map(pair).collect(),
+            values: replacements.iter().map(|&(_, value)| value).collect(),
+        }
     }
 
     /// `outputs` with each symbol of `replacements` replaced by the expression beside it, all at once.

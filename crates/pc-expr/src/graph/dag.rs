@@ -8,29 +8,24 @@ use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::graph::budget::Meter;
+use crate::graph::divisors::{DivisorSets, Divisors};
 use crate::graph::function::Function;
-use crate::graph::node::{Atom, Candidate, Folding, Node, NodeId, Slice};
-use crate::graph::node_sets::{NodeSet, NodeSets};
+use crate::graph::node::{Atom, Candidate, Folding, Node, NodeId, Slice, hash_of};
 use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::roots::{Roots, Terms, Value};
-
-/// The most divisors, or limits, that are told apart.
-const MOST_DIVISORS: usize = 64;
-/// The most symbols of a node that are told apart.
-const MOST_SYMBOLS: usize = 512;
 
 #[derive(Debug)]
 pub(crate) struct Dag {
     pub(super) folding: Folding,
     /// `None` where constants are combined without a graph.
-    pub(super) meter: Option<Arc<Meter>>,
+    meter: Option<Arc<Meter>>,
     /// Bytes taken from the meter.
     taken: u64,
     /// Counts queries: the clock and the handle for cancelling are read only once in so many.
-    pub(super) asked: u8,
+    asked: u8,
     nodes: Vec<Node>,
-    pub(super) fingerprints: Vec<Fingerprint>,
+    fingerprints: Vec<Fingerprint>,
     /// The values of nodes with roots, as sums of products of roots.
     expansions: FxHashMap<NodeId, Terms>,
     roots: Roots,
@@ -38,23 +33,21 @@ pub(crate) struct Dag {
     pub(super) nonnegative: Vec<bool>,
     /// Operations of the node written out as a tree, saturating: decides which of two nodes of equal value is kept.
     costs: Vec<u32>,
-    /// The symbols in the node.
-    pub(super) symbols: Vec<NodeSet>,
-    pub(super) symbol_sets: NodeSets,
+    /// A bit for each symbol in the node; symbols 64 apart share a bit.
+    symbols: Vec<u64>,
     /// Nodes that sums and products above them leave closed.
     kept: FxHashSet<NodeId>,
     /// The divisors in the node.
-    pub(super) divisors: Vec<NodeSet>,
+    pub(super) divisors: Vec<Divisors>,
     /// The arguments of roots and the like in the node, which bound the region where it has a value.
-    pub(super) limits: Vec<NodeSet>,
-    pub(super) divisor_sets: NodeSets,
+    pub(super) limits: Vec<Divisors>,
+    pub(super) divisor_sets: DivisorSets,
     /// The node that stands for this one, if a better one of the same value (up to sign) was found later.
-    pub(super) successor: Vec<Option<(NodeId, Number)>>,
+    successor: Vec<Option<(NodeId, Number)>>,
     terms: Vec<(NodeId, Number)>,
     factors: Vec<(NodeId, i32)>,
     names: Vec<String>,
     by_structure: HashTable<NodeId>,
-    /// Of each value the best node; several where they differ in their symbols.
     pub(super) by_value: HashTable<NodeId>,
     /// Numerators of the divisions by zero so far.
     pub(super) zero_divisions: Vec<Atom>,
@@ -82,11 +75,10 @@ impl Dag {
             nonnegative: Vec::new(),
             costs: Vec::new(),
             symbols: Vec::new(),
-            symbol_sets: NodeSets::up_to(MOST_SYMBOLS),
             kept: FxHashSet::default(),
             divisors: Vec::new(),
             limits: Vec::new(),
-            divisor_sets: NodeSets::up_to(MOST_DIVISORS),
+            divisor_sets: DivisorSets::default(),
             successor: Vec::new(),
             terms: Vec::new(),
             factors: Vec::new(),
@@ -199,6 +191,74 @@ impl Dag {
         }
     }
 
+    /// The best node known to have this node's value up to the sign that is returned with it.
+    pub(super) fn representative(&self, mut node: NodeId) -> (NodeId, Number) {
+        let mut sign = Number::ONE;
+        while let Some((next, s)) = self.successor[node.index()] {
+            (node, sign) = (next, sign * s);
+        }
+        (node, sign)
+    }
+
+    /// Interns a candidate. Where folding by value is on, constants are recognised, and an existing node of
+    /// equal value up to sign is returned if it is at least as good.
+    ///
+    /// Of two forms of one function the better one divides by less, as x + 1 has a value at x = 1 and (x² −
+    /// 1)/(x − 1) has none, and takes fewer roots, as (√x − 1)² + 2√x is undefined below 0; where neither is
+    /// worse, the shorter one is better. Two forms each with a divisor that the other lacks stay separate
+    /// nodes.
+    ///
+    /// Once the budget is spent the result is undefined, so that the work ends soon.
+    pub(super) fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
+        self.asked = self.asked.wrapping_add(1);
+        let looks = self.asked == 0;
+        if self.meter.as_ref().is_some_and(|meter| meter.is_spent(looks)) {
+            return Atom::Constant(Number::UNDEFINED);
+        }
+        if self.folding == Folding::Structural {
+            return self.intern(candidate);
+        }
+        if let Some(known) = self.find(candidate) {
+            let (node, sign) = self.representative(known);
+            return self.signed(node, sign);
+        }
+        let value = self.value_of(candidate);
+        let fingerprint = value.fingerprint;
+        if let Some((p, q)) = fingerprint.small_rational() {
+            return Atom::Constant(Number::ratio(p, q));
+        }
+        let key = fingerprint.up_to_sign();
+        let hash = hash_of(&key);
+        let Some(&equal) = self.by_value.find(hash, |&id| self.fingerprint(id).up_to_sign() == key) else {
+            let id = self.push(candidate, value);
+            self.register(id);
+            return Atom::Node(id);
+        };
+        let sign = if self.fingerprint(equal) == fingerprint { Number::ONE } else { Number::MINUS_ONE };
+        let (ours, theirs) = (self.divisors_of(candidate), self.divisors[equal.index()]);
+        let (bounds, their_bounds) = (self.limits_of(candidate), self.limits[equal.index()]);
+        let regular = self.are_within(theirs, ours) && self.are_among(their_bounds, bounds);
+        let replaceable = self.are_within(ours, theirs) && self.are_among(bounds, their_bounds);
+        if regular && !(replaceable && self.is_shorter(candidate, equal)) {
+            return self.signed(equal, sign);
+        }
+        let id = self.push(candidate, value);
+        if replaceable {
+            self.successor[equal.index()] = Some((id, sign));
+            if let Some(slot) = self.by_value.find_mut(hash, |&known| known == equal) {
+                *slot = id;
+            }
+        }
+        Atom::Node(id)
+    }
+
+    /// Makes a node findable by its value.
+    fn register(&mut self, id: NodeId) {
+        let Dag { by_value, fingerprints, .. } = self;
+        let hash = |id: &NodeId| hash_of(&fingerprints[id.index()].up_to_sign());
+        by_value.insert_unique(hash(&id), id, hash);
+    }
+
     /// ±n; a negative is interned by structure, without computing its value again.
     pub(super) fn signed(&mut self, node: NodeId, sign: Number) -> Atom {
         if sign.is_one() {
@@ -292,26 +352,30 @@ impl Dag {
         id
     }
 
-    /// The symbols in a candidate; none where nodes are merged by structure alone.
-    pub(super) fn symbols_of(&mut self, candidate: &Candidate<'_>) -> NodeSet {
-        if self.folding == Folding::Structural {
-            return NodeSet::NONE;
-        }
-        let mut all = NodeSet::NONE;
-        let mut add = |node: NodeId| all = self.symbol_sets.union(all, self.symbols[node.index()]);
+    /// Whether a candidate costs less than a node, or as much with fewer symbols.
+    fn is_shorter(&self, candidate: &Candidate<'_>, node: NodeId) -> bool {
+        let (ours, theirs) = (self.symbols_of(candidate), self.symbols[node.index()]);
+        let without = ours & theirs == ours && ours != theirs;
+        let (cost, known) = (self.cost_of(candidate), self.cost(node));
+        cost < known || cost == known && without
+    }
+
+    fn symbols_of(&self, candidate: &Candidate<'_>) -> u64 {
+        let with = |bits: u64, node: NodeId| bits | self.symbols[node.index()];
         match *candidate {
-            Candidate::Constant(_) => {}
-            Candidate::Symbol(_) => all = self.symbol_sets.intern(vec![NodeId(self.nodes.len() as u32)]),
-            Candidate::Sum(_, terms) => terms.iter().for_each(|&(node, _)| add(node)),
-            Candidate::Product(factors) => factors.iter().for_each(|&(node, _)| add(node)),
-            Candidate::Call(function, args) => Dag::args(function, &args).iter().for_each(|&node| add(node)),
+            Candidate::Constant(_) => 0,
+            Candidate::Symbol(_) => 1 << (self.names.len() % 64),
+            Candidate::Sum(_, terms) => terms.iter().fold(0, |bits, &(node, _)| with(bits, node)),
+            Candidate::Product(factors) => factors.iter().fold(0, |bits, &(node, _)| with(bits, node)),
+            Candidate::Call(function, args) => {
+                Dag::args(function, &args).iter().fold(0, |bits, &node| with(bits, node))
+            }
         }
-        all
     }
 
     /// Operations of a candidate written out as a tree: n − 1 additions or multiplications for n operands,
     /// plus those of coefficients and powers; a division counts four, a call ten.
-    pub(super) fn cost_of(&self, candidate: &Candidate<'_>) -> u32 {
+    fn cost_of(&self, candidate: &Candidate<'_>) -> u32 {
         let sum = |costs: &mut dyn Iterator<Item = u32>| costs.fold(0u32, u32::saturating_add);
         match *candidate {
             Candidate::Constant(_) | Candidate::Symbol(_) => 0,

@@ -1,20 +1,20 @@
 //! The divisors of nodes as written: two forms of one function differ at points where a divisor vanishes.
 
 use crate::graph::dag::Dag;
+use crate::graph::divisors::Divisors;
 use crate::graph::function::Function;
 use crate::graph::node::{Atom, Candidate, Folding, Node, NodeId, hash_of};
-use crate::graph::node_sets::NodeSet;
 use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 
 impl Dag {
     /// The divisors of a candidate, its own and those below it; none where nodes are merged by structure
     /// alone.
-    pub(crate) fn divisors_of(&mut self, candidate: &Candidate<'_>) -> NodeSet {
+    pub(crate) fn divisors_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
         if self.folding == Folding::Structural {
-            return NodeSet::NONE;
+            return Divisors::NONE;
         }
-        let mut all = NodeSet::NONE;
+        let mut all = Divisors::NONE;
         let mut add = |dag: &mut Dag, node: NodeId| {
             all = dag.divisor_sets.union(all, dag.divisors[node.index()]);
         };
@@ -39,11 +39,11 @@ impl Dag {
 
     /// The arguments that bound the region where a candidate has a value, its own and those below it; none
     /// where nodes are merged by structure alone.
-    pub(crate) fn limits_of(&mut self, candidate: &Candidate<'_>) -> NodeSet {
+    pub(crate) fn limits_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
         if self.folding == Folding::Structural {
-            return NodeSet::NONE;
+            return Divisors::NONE;
         }
-        let mut all = NodeSet::NONE;
+        let mut all = Divisors::NONE;
         let mut add = |dag: &mut Dag, node: NodeId| {
             all = dag.divisor_sets.union(all, dag.limits[node.index()]);
         };
@@ -69,11 +69,11 @@ impl Dag {
     }
 
     /// Whether each limit of the first set is one of the second.
-    pub(crate) fn are_among(&self, some: NodeSet, others: NodeSet) -> bool {
-        if some == others || some == NodeSet::NONE || others == NodeSet::ALL {
+    pub(crate) fn are_among(&self, some: Divisors, others: Divisors) -> bool {
+        if some == others || some == Divisors::NONE || others == Divisors::ALL {
             return true;
         }
-        if some == NodeSet::ALL || others == NodeSet::NONE {
+        if some == Divisors::ALL || others == Divisors::NONE {
             return false;
         }
         let others = self.divisor_sets.get(others);
@@ -85,7 +85,7 @@ impl Dag {
     /// Whether each divisor of the first expression vanishes only where one of the second does.
     pub(crate) fn is_as_regular(&self, some: Atom, other: Atom) -> bool {
         let divisors = |atom| match atom {
-            Atom::Constant(_) => NodeSet::NONE,
+            Atom::Constant(_) => Divisors::NONE,
             Atom::Node(node) => self.divisors[node.index()],
         };
         self.are_within(divisors(some), divisors(other))
@@ -93,11 +93,11 @@ impl Dag {
 
     /// Whether each divisor of the first set vanishes only where one of the second does, judged by their
     /// factors.
-    pub(crate) fn are_within(&self, some: NodeSet, others: NodeSet) -> bool {
-        if some == others || some == NodeSet::NONE || others == NodeSet::ALL {
+    pub(crate) fn are_within(&self, some: Divisors, others: Divisors) -> bool {
+        if some == others || some == Divisors::NONE || others == Divisors::ALL {
             return true;
         }
-        if some == NodeSet::ALL || others == NodeSet::NONE {
+        if some == Divisors::ALL || others == Divisors::NONE {
             return false;
         }
         let others = self.irreducible(others);
@@ -114,13 +114,13 @@ impl Dag {
         if quotient.small_rational().is_some() {
             return true;
         }
-        let is_quotient = |id: NodeId| self.fingerprint(id).up_to_sign() == quotient;
-        let is_regular = |id: NodeId| self.divisors[id.index()] == NodeSet::NONE;
-        self.by_value.find(hash_of(&quotient), |&id| is_quotient(id) && is_regular(id)).is_some()
+        let known =
+            self.by_value.find(hash_of(&quotient), |&id| self.fingerprint(id).up_to_sign() == quotient);
+        known.is_some_and(|id| self.divisors[id.index()] == Divisors::NONE)
     }
 
     /// The values, up to sign, of the factors of some divisors; a root vanishes where its radicand does.
-    fn irreducible(&self, divisors: NodeSet) -> Vec<Fingerprint> {
+    fn irreducible(&self, divisors: Divisors) -> Vec<Fingerprint> {
         let mut open = self.divisor_sets.get(divisors).to_vec();
         let mut values = Vec::with_capacity(open.len());
         while let Some(node) = open.pop() {
