@@ -23,9 +23,9 @@ const STATES: usize = 6;
 /// The tolerances of the same motion once more, to see what errors of integration grow to.
 const LOOSE: f64 = 1e2;
 
-/// Steps from one row to the next. Motions are smooth and need some ten, but a coordinate that is carried along, such as sin x of
-/// an x that grows to a thousand, needs as many as it turns; and one that runs into a singularity takes them all.
-const MOST_STEPS: u64 = 50_000;
+/// Steps from one row to the next, as many as the program takes. Motions are smooth and need some ten, but a coordinate that is
+/// carried along, such as sin x of an x that grows to a thousand, needs as many as it turns.
+const MOST_STEPS: u64 = 500_000;
 
 /// The part of the time span by which a state is moved to both sides of an event.
 const ASIDE: f64 = 1e-7;

@@ -5,7 +5,7 @@
 mod bicycle;
 mod charts;
 mod classics;
-#[path = "../shared/divergence.rs"]
+#[path = "../common/divergence.rs"]
 mod divergence;
 mod emission;
 mod energy_rate;
@@ -22,7 +22,7 @@ mod nonlinear_constraints;
 mod printed_pages;
 mod projection;
 mod random_models;
-#[path = "../shared/read_back.rs"]
+#[path = "../common/read_back.rs"]
 mod read_back;
 mod redundant;
 mod references;

@@ -10,7 +10,7 @@ mod bound_programs;
 mod claims;
 mod derived;
 mod derived_equations;
-#[path = "../shared/divergence.rs"]
+#[path = "../common/divergence.rs"]
 mod divergence;
 mod findings;
 mod forms_agree;
@@ -19,7 +19,7 @@ mod kept_costs;
 mod measures;
 mod pages;
 mod printed_pages;
-#[path = "../shared/read_back.rs"]
+#[path = "../common/read_back.rs"]
 mod read_back;
 mod reference_states;
 mod subject;

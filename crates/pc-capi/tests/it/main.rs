@@ -11,6 +11,7 @@ mod builder_keys;
 mod checkpoint;
 mod ensemble;
 mod events;
+mod force_functions;
 mod forces;
 mod forms;
 #[path = "../../examples/header/generate.rs"]
@@ -19,6 +20,7 @@ mod header;
 mod hold_start;
 #[path = "../../examples/header/interface.rs"]
 mod interface;
+mod laws;
 mod limits;
 mod misuse;
 mod numbers;

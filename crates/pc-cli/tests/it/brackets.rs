@@ -1,20 +1,9 @@
 //! Brackets that the frame does not determine: given in `[algebra]`, found, or requested by an
 //! error.
 
-use std::io::Write;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
-fn pc(model: &str, arguments: &[&str]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_pc"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("pc starts");
-    child.stdin.take().expect("a pipe").write_all(model.as_bytes()).expect("pc reads");
-    child.wait_with_output().expect("pc ends")
-}
+use crate::piped::pc;
 
 fn stderr(output: &Output) -> String {
     let text = String::from_utf8(output.stderr.clone()).expect("UTF-8");

@@ -5,10 +5,11 @@ mod forms;
 mod motions;
 mod reports;
 
-use std::io::Write;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
 use serde_json::Value;
+
+pub(crate) use crate::piped::pc;
 
 /// Chaplygin's sleigh, its blade a constraint that defines a quasi-velocity.
 pub(crate) const SLEIGH: &str = r#"
@@ -82,18 +83,6 @@ area = "x*y' - y*x'"
 t_end = 2.0
 samples = 5
 "#;
-
-pub(crate) fn pc(model: &str, arguments: &[&str]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_pc"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("pc starts");
-    child.stdin.take().expect("a pipe").write_all(model.as_bytes()).expect("pc reads");
-    child.wait_with_output().expect("pc ends")
-}
 
 pub(crate) fn stderr(output: &Output) -> String {
     let text = String::from_utf8(output.stderr.clone()).expect("UTF-8");

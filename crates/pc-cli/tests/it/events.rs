@@ -2,24 +2,12 @@
 //! reports of events.
 
 use std::f64::consts::TAU;
-use std::io::{Read, Write};
-use std::process::{Command, Output, Stdio};
+use std::io::Read;
+use std::process::Output;
 
 use serde_json::Value;
 
-fn pc(model: &str, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
-    let mut child = command
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("pc starts");
-    // If the arguments are refused, the input stays unread.
-    let _ = child.stdin.take().expect("a pipe").write_all(model.as_bytes());
-    child.wait_with_output().expect("pc ends")
-}
+use crate::piped::pc;
 
 fn said(output: &Output) -> String {
     let text = String::from_utf8(output.stderr.clone()).expect("UTF-8");

@@ -1,18 +1,11 @@
 //! Motions that stay on their constraints in spite of rounding errors of different sizes.
 
-use std::io::Write;
 use std::process::{Command, Output, Stdio};
 
+use crate::piped;
+
 fn run(model: &str, arguments: &[&str]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_pc"))
-        .args([&["run", "-"], arguments].concat())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("pc starts");
-    child.stdin.take().expect("a pipe").write_all(model.as_bytes()).expect("pc reads");
-    child.wait_with_output().expect("pc ends")
+    piped::pc(model, &[&["run", "-"], arguments].concat())
 }
 
 /// The columns and rows of a run that succeeds.

@@ -1,19 +1,11 @@
 //! `--set` of start values, `--keep`, `--samples-per-step` and `--accumulation` of `pc run`.
 
-use std::io::Write;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
+
+use crate::piped;
 
 fn pc(model: &str, arguments: &[&str]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_pc"))
-        .args([&["run", "-"], arguments].concat())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("pc starts");
-    // A refused command line leaves the input unread.
-    let _ = child.stdin.take().expect("a pipe").write_all(model.as_bytes());
-    child.wait_with_output().expect("pc ends")
+    piped::pc(model, &[&["run", "-"], arguments].concat())
 }
 
 fn said(output: &Output, code: i32) -> String {

@@ -1,6 +1,6 @@
 //! The program in use: exit codes, output streams, and files.
 
-use std::io::{Read, Write};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -8,6 +8,8 @@ use crate::patience::{ended, started, until};
 
 use crate::each_model::{answer, each};
 use pc_model::Builtin;
+
+use crate::piped;
 
 const HEADER: &str = "t,γ1,γ2,γ3,ω1,ω2,ω3,area,norm,spin,energy";
 
@@ -47,16 +49,7 @@ fn run(arguments: &[&str]) -> Output {
 }
 
 fn run_on(model: &str, arguments: &[&str]) -> Output {
-    let mut command = pc();
-    let mut child = command
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("pc starts");
-    child.stdin.take().expect("a pipe").write_all(model.as_bytes()).expect("pc reads");
-    child.wait_with_output().expect("pc ends")
+    piped::pc(model, arguments)
 }
 
 fn code(output: &Output) -> i32 {

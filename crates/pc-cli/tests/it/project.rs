@@ -1,7 +1,8 @@
 //! `project` in a model and `--project`.
 
-use std::io::Write;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
+
+use crate::piped;
 
 const OSCILLATOR: &str = r#"[coordinates]
 x = 1.0
@@ -17,15 +18,7 @@ samples = 11
 "#;
 
 fn pc(model: &str, arguments: &[&str]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_pc"))
-        .args([&["run", "-"], arguments].concat())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("pc starts");
-    child.stdin.take().expect("a pipe").write_all(model.as_bytes()).expect("pc reads");
-    child.wait_with_output().expect("pc ends")
+    piped::pc(model, &[&["run", "-"], arguments].concat())
 }
 
 fn said(output: &Output, code: i32) -> String {

@@ -5,6 +5,7 @@
 mod bodies;
 mod canonical;
 mod common;
+mod constraint_manifold;
 mod derivatives;
 mod external;
 mod given_brackets;
