@@ -4,6 +4,7 @@
 use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use crate::boxed::erased;
 use crate::offers::{Circle, Formulas, OFFERS, Offer, Offering, Oscillator, Pendulum, precise};
 use pc_solve::{
     AdjointOptions, Code, Failure, Functional, Gradient, Method, NonFinite, NonlinearSolver, Options, Reason,
@@ -60,7 +61,7 @@ fn forward(p: [f64; 3], t0: f64, t1: f64) -> (f64, Vec<f64>) {
     let wanted = Sensitivities::new().by_starts(0..2).by_parameters(0..3);
     let options = Options::default().relative_tolerance(1e-12).absolute_tolerance(1e-14);
     let start = [START[0], START[1], 0.0];
-    let found = solve_with_sensitivities(field, t0, &start, &[t1], &options, &wanted).unwrap();
+    let found = solve_with_sensitivities(erased(field), t0, &start, &[t1], &options, &wanted).unwrap();
     let y = found.motion().state(0);
     let (mut by_y, mut by_p) = ([0.0; 2], [0.0; 3]);
     let value = y[2] + Mixed(p).end(t1, y, &mut by_y, &mut by_p).unwrap();
@@ -219,9 +220,15 @@ fn fields_with_a_projection() {
         let found = adjoint_gradient(circle, Area, 0.0, &start, end, &adjoint).unwrap();
         let exact = Options::default().relative_tolerance(1e-12).absolute_tolerance(1e-13);
         let wanted = Sensitivities::new().by_starts(0..2);
-        let forward =
-            solve_with_sensitivities(by_angle.clone(), 0.0, &[0.0, speed, 0.0], &[end], &exact, &wanted)
-                .unwrap();
+        let forward = solve_with_sensitivities(
+            erased(by_angle.clone()),
+            0.0,
+            &[0.0, speed, 0.0],
+            &[end],
+            &exact,
+            &wanted,
+        )
+        .unwrap();
         let y = forward.motion().state(0);
         assert!((found.value - y[2] - y[0].sin()).abs() < 1e-6, "{} {}", found.value, y[2] + y[0].sin());
         // By φ₀, (x, z, ẋ, ż) = (0, 1, −φ̇, 0), and by φ̇₀, (0, 0, 0, 1).

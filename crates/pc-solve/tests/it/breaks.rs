@@ -5,6 +5,8 @@ use std::ops::ControlFlow;
 use pc_expr::{Failure, VectorField};
 use pc_solve::{Integration, Method, Observed, Options, solve};
 
+use crate::boxed::erased;
+
 /// ẏ = a y with a factor for each leg between two breaks, set by `enter`.
 #[derive(Clone)]
 struct Legs {
@@ -61,7 +63,7 @@ const TIMES: [f64; 6] = [0.5, 1.0, 1.1, 2.0, 3.0, 4.0];
 fn each_leg_is_integrated_by_itself() {
     for method in [Method::Bdf, Method::Adams, Method::Dop853, Method::Auto] {
         let options = Options::new(method).relative_tolerance(1e-10).absolute_tolerance(1e-14);
-        let found = solve(Legs::new(), 0.0, &[1.0], &TIMES, &options).unwrap();
+        let found = solve(erased(Legs::new()), 0.0, &[1.0], &TIMES, &options).unwrap();
         for (t, y) in found.iter() {
             let exact = Legs::new().exact(t);
             assert!((y[0] / exact - 1.0).abs() < 1e-7, "{method:?}: y({t}) = {}, not {exact}", y[0]);
@@ -74,7 +76,7 @@ fn each_leg_is_integrated_by_itself() {
 
 #[test]
 fn steps_end_at_breaks() {
-    let mut cvode = Integration::new(Legs::new(), 0.0, &[1.0], &Options::default()).unwrap();
+    let mut cvode = Integration::new(erased(Legs::new()), 0.0, &[1.0], &Options::default()).unwrap();
     let mut ends = Vec::new();
     let step = |t, _: &[f64]| {
         ends.push(t);
@@ -93,7 +95,7 @@ fn each_leg_is_integrated_by_itself_backwards() {
     let mut field = Legs::new();
     field.leg = 3;
     let start = field.exact(4.0);
-    let mut cvode = Integration::new(field, 4.0, &[start], &options).unwrap();
+    let mut cvode = Integration::new(erased(field), 4.0, &[start], &options).unwrap();
     let end = cvode.state_at(0.0).unwrap()[0];
     assert!((end - 1.0).abs() < 1e-7, "{end}");
 }

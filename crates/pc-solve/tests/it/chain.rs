@@ -1,5 +1,6 @@
 //! A chain of 200 links, 800 components, with every linear solver.
 
+use crate::boxed::erased;
 use crate::model::Chain;
 use pc_solve::{
     Integration, Krylov, LinearSolver, Method, Options, Statistics, Trajectory, VectorField, solve,
@@ -9,7 +10,7 @@ fn motion(chain: Chain, end: f64, solver: LinearSolver) -> Trajectory {
     let options =
         Options::new(Method::Bdf).relative_tolerance(1e-10).absolute_tolerance(1e-10).linear_solver(solver);
     let start = chain.start();
-    solve(chain, 0.0, &start, &[end], &options).unwrap()
+    solve(erased(chain), 0.0, &start, &[end], &options).unwrap()
 }
 
 fn distance(a: &Trajectory, b: &Trajectory) -> f64 {
@@ -90,6 +91,6 @@ fn quotients_find_the_same_motion_by_few_evaluations() {
 fn the_chain_is_found_to_be_sparse() {
     let chain = Chain::new(200);
     let start = chain.start();
-    let cvode = Integration::new(chain, 0.0, &start, &Options::new(Method::Bdf)).unwrap();
+    let cvode = Integration::new(erased(chain), 0.0, &start, &Options::new(Method::Bdf)).unwrap();
     assert_eq!(cvode.linear_solver(), Some(&LinearSolver::Sparse));
 }

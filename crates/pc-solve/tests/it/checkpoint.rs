@@ -2,7 +2,7 @@
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Checkpoint, CheckpointError, Code, Failure, Integration, Method, NoEvents, Options, SolveError,
     Trajectory, VectorField, solve, solve_checkpointed,
@@ -117,7 +117,8 @@ fn checkpoints_change_the_motion_within_its_tolerance() {
         assert!((y[0] - angle(t).cos()).abs() < 1e-6 && (y[1] - angle(t).sin()).abs() < 1e-6);
         assert!((y[0].hypot(y[1]) - 1.0).abs() < 4.0 * f64::EPSILON, "projected at an output in a step");
     }
-    let plain = solve(Turning, 0.0, &[0.5_f64.sqrt(); 2], &times, &Options::new(Method::Adams)).unwrap();
+    let plain =
+        solve(erased(Turning), 0.0, &[0.5_f64.sqrt(); 2], &times, &Options::new(Method::Adams)).unwrap();
     assert!(motion.statistics().steps > plain.statistics().steps, "orders grow again after each");
 }
 
@@ -210,7 +211,8 @@ fn numbers_keep_their_bits() {
 
 #[test]
 fn damaged_bytes_are_refused() {
-    let mut cvode = Integration::new(Turning, 0.0, &[1.0, 0.0], &Options::new(Method::Adams)).unwrap();
+    let mut cvode =
+        Integration::new(erased(Turning), 0.0, &[1.0, 0.0], &Options::new(Method::Adams)).unwrap();
     cvode.state_at(1.0).unwrap();
     let bytes = cvode.checkpoint().to_bytes("model");
     assert_eq!(Checkpoint::from_bytes(&bytes).unwrap().0.state(), cvode.state());

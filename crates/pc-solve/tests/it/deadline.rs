@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_expr::{Cancel, Limits};
 use pc_solve::{
     Deadline, FixedStep, Integration, Options, Reason, RungeKutta4, SolveError, SolveFailure, Spent,
@@ -29,7 +29,7 @@ fn a_cancelled_integration_keeps_what_it_reached() {
     let cancel = Cancel::default();
     let times: Vec<f64> = (1..=100).map(f64::from).collect();
     let field = cancelling(cancel.clone(), 50.0);
-    let failure = solve(field, 0.0, &[1.0, 0.0], &times, &within(None, cancel.clone())).unwrap_err();
+    let failure = solve(erased(field), 0.0, &[1.0, 0.0], &times, &within(None, cancel.clone())).unwrap_err();
     let SolveFailure { reached, error, .. } = *failure;
     assert_eq!(error.ended(), Some(Spent::Cancelled));
     assert!(error.to_string().starts_with("cancelled, after reaching t = "), "{error}");
@@ -39,7 +39,7 @@ fn a_cancelled_integration_keeps_what_it_reached() {
     assert!((reached.state(outputs - 1)[0] - reached.times()[outputs - 1].cos()).abs() < 1e-6);
     // A cancelled integration does not begin again.
     let (field, options) = (cancelling(Cancel::default(), 1.0), within(None, cancel));
-    let mut again = Integration::new(field, 0.0, &[1.0, 0.0], &options).unwrap();
+    let mut again = Integration::new(erased(field), 0.0, &[1.0, 0.0], &options).unwrap();
     assert_eq!(again.state_at(1.0).unwrap_err().ended(), Some(Spent::Cancelled));
     assert_eq!((again.time(), again.state()), (0.0, &[1.0, 0.0][..]));
 }
@@ -48,7 +48,7 @@ fn a_cancelled_integration_keeps_what_it_reached() {
 fn is_ended_midway(limit: Duration) -> bool {
     let options = within(Some(limit), Cancel::default()).max_steps(100_000_000);
     let field = cancelling(Cancel::default(), 0.0);
-    let mut motion = Integration::new(field, 0.0, &[1.0, 0.0], &options).unwrap();
+    let mut motion = Integration::new(erased(field), 0.0, &[1.0, 0.0], &options).unwrap();
     let error = motion.state_at(1e12).unwrap_err();
     assert_eq!(error.ended(), Some(Spent::Time { limit }));
     assert!(

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::ops::ControlFlow::{Break, Continue};
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     DenseOutput, Ending, Event, Failure, FnEvents, InputError, Integration, Method, Options, Segment, Solve,
     VectorField,
@@ -17,7 +17,7 @@ fn oscillator() -> impl VectorField {
 }
 
 fn circle(end: f64, options: &Options) -> DenseOutput {
-    Solve::new(oscillator(), 0.0, &[1.0, 0.0]).method(options).dense(end).unwrap()
+    Solve::new(erased(oscillator()), 0.0, &[1.0, 0.0]).method(options).dense(end).unwrap()
 }
 
 /// Each segment begins at exactly the time at which the previous one ends, with its state up to the
@@ -121,7 +121,7 @@ fn a_time_outside_is_refused() {
 /// in between change nothing.
 #[test]
 fn segments_are_given_in_order() {
-    let mut cvode = Integration::new(oscillator(), 0.0, &[1.0, 0.0], &Options::default()).unwrap();
+    let mut cvode = Integration::new(erased(oscillator()), 0.0, &[1.0, 0.0], &Options::default()).unwrap();
     let mut motion = DenseOutput::default();
     let mut spans = Vec::new();
     for end in [0.5, 1.0, 1.0001, 3.0] {
@@ -161,7 +161,7 @@ fn dense_output_with_resets() {
             .with(Event::new("mark"), |t, _| Ok(t - 0.5));
         let options = Options::new(method).relative_tolerance(1e-12).absolute_tolerance(1e-14);
         let mut hybrid =
-            Integration::new(ball, 0.0, &[1.0, 0.0], &options).unwrap().with_events(bounce).unwrap();
+            Integration::new(erased(ball), 0.0, &[1.0, 0.0], &options).unwrap().with_events(bounce).unwrap();
         let (mut motion, mut events) = (DenseOutput::default(), Vec::new());
         let keep = |segment: Segment| {
             motion.extend([segment]);
@@ -217,7 +217,7 @@ fn segments_of_projected_states_fit_together() {
         }
     }
     let options = Options::default().relative_tolerance(1e-6).absolute_tolerance(1e-6);
-    let motion = Solve::new(Circle, 0.0, &[1.0, 0.0]).method(&options).dense(10.0).unwrap();
+    let motion = Solve::new(erased(Circle), 0.0, &[1.0, 0.0]).method(&options).dense(10.0).unwrap();
     let (mut before, mut after) = ([0.0; 2], [0.0; 2]);
     for pair in motion.segments().windows(2) {
         let t = pair[0].span().1;
@@ -229,7 +229,7 @@ fn segments_of_projected_states_fit_together() {
 
 #[test]
 fn the_step_limit_holds() {
-    let failed = Solve::new(oscillator(), 0.0, &[1.0, 0.0])
+    let failed = Solve::new(erased(oscillator()), 0.0, &[1.0, 0.0])
         .method(&Options::default().max_steps(10).max_step(1e-3))
         .dense(1.0);
     let error = failed.unwrap_err();
@@ -245,7 +245,8 @@ fn an_interpolation_that_fails_moves_nothing() {
         Ok(())
     })
     .with_projection(|_, _| if broken.get() { Err(Failure::recoverable(std::fmt::Error)) } else { Ok(()) });
-    let mut motion = Integration::new(field, 0.0, &[0.0], &Options::default().initial_step(0.4)).unwrap();
+    let mut motion =
+        Integration::new(erased(field), 0.0, &[0.0], &Options::default().initial_step(0.4)).unwrap();
     let here = motion.state_at(0.3).unwrap().to_vec();
     broken.set(true);
     assert!(motion.interpolate(0.1, 0).is_err());

@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::num::NonZeroU64;
 use std::ops::ControlFlow::Continue;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Checkpoint, Dop853, Event, Failure, FnEvents, Inequality, InputError, Integration, LinearSolver, Method,
     NonlinearSolver, Options, Reason, Sensitivities, Solve, SolveError, VectorField, solve,
@@ -44,14 +44,14 @@ fn decay() -> impl VectorField {
 fn the_error_falls_with_the_eighth_power_of_the_step() {
     for end in [4.0_f64, -4.0] {
         let error = |length: f64| {
-            let y = solve(oscillator(), 0.0, &[1.0, 0.0], &[end], &stepping(length)).unwrap();
+            let y = solve(erased(oscillator()), 0.0, &[1.0, 0.0], &[end], &stepping(length)).unwrap();
             (y.state(0)[0] - end.cos()).hypot(y.state(0)[1] + end.sin())
         };
         let slope = (error(0.5) / error(0.25)).log2();
         assert!((slope - 8.0).abs() < 0.3, "{end}: {slope}");
     }
     let error = |length: f64| {
-        let y = solve(decay(), 0.0, &[1.0], &[4.0], &stepping(length)).unwrap();
+        let y = solve(erased(decay()), 0.0, &[1.0], &[4.0], &stepping(length)).unwrap();
         (y.state(0)[0] - 0.2_f64.sqrt()).abs()
     };
     let slope = (error(0.4) / error(0.2)).log2();
@@ -89,7 +89,7 @@ fn states_inside_steps_are_of_order_seven_and_rates_of_one_less_each() {
 fn errors_and_steps_follow_the_tolerance() {
     let mut before: Option<(f64, u64)> = None;
     for rtol in [1e-6, 1e-8, 1e-10, 1e-12] {
-        let found = solve(oscillator(), 0.0, &[1.0, 0.0], &[20.0], &options(rtol)).unwrap();
+        let found = solve(erased(oscillator()), 0.0, &[1.0, 0.0], &[20.0], &options(rtol)).unwrap();
         let error = (found.state(0)[0] - 20.0_f64.cos()).hypot(found.state(0)[1] + 20.0_f64.sin());
         let steps = found.statistics().steps;
         assert!(error < 100.0 * rtol, "{rtol:e}: {error:e}");
@@ -111,7 +111,7 @@ fn kepler_and_arenstorf_orbits_close() {
         Ok(())
     });
     let start = [0.5, 0.0, 0.0, 3.0_f64.sqrt()];
-    let found = solve(kepler, 0.0, &start, &[std::f64::consts::TAU], &options(1e-12)).unwrap();
+    let found = solve(erased(kepler), 0.0, &start, &[std::f64::consts::TAU], &options(1e-12)).unwrap();
     for (found, expected) in found.state(0).iter().zip(start) {
         assert!((found - expected).abs() < 1e-10, "{found} {expected}");
     }
@@ -128,7 +128,7 @@ fn kepler_and_arenstorf_orbits_close() {
     })
     .autonomous();
     let start = [0.994, 0.0, 0.0, -2.001_585_106_379_082_5];
-    let found = solve(arenstorf, 0.0, &start, &[17.065_216_560_157_96], &options(1e-12)).unwrap();
+    let found = solve(erased(arenstorf), 0.0, &start, &[17.065_216_560_157_96], &options(1e-12)).unwrap();
     for (found, expected) in found.state(0)[..2].iter().zip(start) {
         assert!((found - expected).abs() < 1e-6, "{found} {expected}");
     }
@@ -165,11 +165,11 @@ fn evaluations_are_counted_and_dense_output_costs_three() {
 #[test]
 fn dense_output_is_what_interpolation_gives() {
     let method = options(1e-9);
-    let dense = Solve::new(oscillator(), 0.0, &[1.0, 0.0]).method(&method).dense(6.0).unwrap();
+    let dense = Solve::new(erased(oscillator()), 0.0, &[1.0, 0.0]).method(&method).dense(6.0).unwrap();
     assert_eq!(dense.span(), Some((0.0, 6.0)));
     for i in 0..60 {
         let t = f64::from(i) / 10.0;
-        let y = solve(oscillator(), 0.0, &[1.0, 0.0], &[t, 6.0], &method).unwrap().state(0).to_vec();
+        let y = solve(erased(oscillator()), 0.0, &[1.0, 0.0], &[t, 6.0], &method).unwrap().state(0).to_vec();
         let of_polynomial = dense.evaluate(t).unwrap();
         // The same polynomials, about another point; of order 7, with the tolerance of a step of
         // order 8.
@@ -197,7 +197,8 @@ fn ball() -> (impl VectorField, FnEvents<'static>) {
 fn a_ball_bounces_when_it_should() {
     let (fall, bounce) = ball();
     let method = options(1e-9);
-    let motion = Solve::new(fall, 0.0, &[1.0, 0.0]).method(&method).events(bounce).run(&[1.2]).unwrap();
+    let motion =
+        Solve::new(erased(fall), 0.0, &[1.0, 0.0]).method(&method).events(bounce).run(&[1.2]).unwrap();
     let fall_time = (2.0 / G).sqrt();
     let times = [1.0, 2.0, 2.5].map(|k| k * fall_time);
     assert_eq!(motion.occurrences.len(), 3);
@@ -236,8 +237,8 @@ fn there_and_back_again() {
             Ok(())
         })
     };
-    let there = solve(pendulum(), 0.0, &[1.0, 0.5], &[10.0], &options(1e-12)).unwrap();
-    let back = solve(pendulum(), 10.0, there.state(0), &[0.0], &options(1e-12)).unwrap();
+    let there = solve(erased(pendulum()), 0.0, &[1.0, 0.5], &[10.0], &options(1e-12)).unwrap();
+    let back = solve(erased(pendulum()), 10.0, there.state(0), &[0.0], &options(1e-12)).unwrap();
     assert!((back.state(0)[0] - 1.0).hypot(back.state(0)[1] - 0.5) < 1e-10);
 }
 
@@ -248,7 +249,7 @@ fn steps_end_at_the_last_time_and_not_beyond() {
         rates[0] = t;
         Ok(())
     };
-    let motion = solve(from_fn(1, late), 0.0, &[0.0], &[1.0], &options(1e-9)).unwrap();
+    let motion = solve(erased(from_fn(1, late)), 0.0, &[0.0], &[1.0], &options(1e-9)).unwrap();
     assert!((motion.state(0)[0] - 0.5).abs() < 1e-14);
 }
 
@@ -286,7 +287,7 @@ fn steps_end_where_the_field_jumps() {
             let field = Switch { breaks: [1.0], on: false };
             // With outputs inside steps, whose states must stay on their side.
             let times: Vec<f64> = (1..=50).map(|i| t0 + (end - t0) * f64::from(i) / 50.0).collect();
-            let motion = solve(field, t0, &[0.0], &times, &Options::new(method)).unwrap();
+            let motion = solve(erased(field), t0, &[0.0], &times, &Options::new(method)).unwrap();
             assert!((motion.state(49)[0] - expected).abs() < 1e-13, "{method} {t0} → {end}");
             let at = |t: f64| if t0 == 0.0 { (t - 1.0).max(0.0) } else { t.max(1.0) - 2.5 };
             for (t, y) in motion.iter() {
@@ -306,7 +307,7 @@ fn where_the_field_fails_steps_become_shorter() {
         })
     };
     let method = options(1e-9);
-    let failure = Solve::new(root(), 0.0, &[1.0]).method(&method).run(&[0.2, 5.0]).unwrap_err();
+    let failure = Solve::new(erased(root()), 0.0, &[1.0]).method(&method).run(&[0.2, 5.0]).unwrap_err();
     assert_eq!(failure.reached.trajectory.len(), 1);
     let SolveError::Integration(error) = &failure.error else { panic!("{}", failure.error) };
     // With u = √y: t = 2(1 − u) − 2 ln(2/(1 + u)) at u = 0.
@@ -320,7 +321,7 @@ fn where_the_field_fails_steps_become_shorter() {
         calls.set(calls.get() + 1);
         Err(Failure::fatal(std::fmt::Error))
     });
-    let failure = solve(fatal, 0.0, &[1.0], &[1.0], &method).unwrap_err();
+    let failure = solve(erased(fatal), 0.0, &[1.0], &[1.0], &method).unwrap_err();
     assert!(
         matches!(&failure.error, SolveError::Integration(error) if matches!(error.reason, Reason::Rates { t } if t == 0.0))
     );
@@ -334,7 +335,7 @@ fn a_motion_that_becomes_infinite_is_an_error() {
         rates[0] = y[0] * y[0];
         Ok(())
     });
-    let failure = solve(field, 0.0, &[1.0], &[2.0], &options(1e-9)).unwrap_err();
+    let failure = solve(erased(field), 0.0, &[1.0], &[2.0], &options(1e-9)).unwrap_err();
     let SolveError::Integration(error) = &failure.error else { panic!("{}", failure.error) };
     assert!((error.time - 1.0).abs() < 1e-6, "{error}");
 }
@@ -354,10 +355,10 @@ fn inequalities_hold_at_the_ends_of_steps() {
         lowest = lowest.min(y[0]);
         Continue(())
     };
-    let motion = Solve::new(field(), 0.0, &[1.0]).method(&method).run_observed(&[4.0], step).unwrap();
+    let motion = Solve::new(erased(field()), 0.0, &[1.0]).method(&method).run_observed(&[4.0], step).unwrap();
     assert!(lowest >= 0.0, "{lowest}");
     assert!(motion.trajectory.state(0)[0] < 1e-6);
-    let refused = solve(field(), 0.0, &[-1.0], &[1.0], &method).unwrap_err();
+    let refused = solve(erased(field()), 0.0, &[-1.0], &[1.0], &method).unwrap_err();
     assert!(matches!(refused.error, SolveError::Input(InputError::Inequality { .. })));
 }
 
@@ -373,7 +374,7 @@ fn states_stay_where_they_are_projected_to() {
         Ok(())
     });
     let times: Vec<f64> = (1..=200).map(f64::from).collect();
-    let motion = solve(circle, 0.0, &[1.0, 0.0], &times, &options(1e-6)).unwrap();
+    let motion = solve(erased(circle), 0.0, &[1.0, 0.0], &times, &options(1e-6)).unwrap();
     for (t, y) in motion.iter() {
         assert!((y[0].hypot(y[1]) - 1.0).abs() < 1e-15, "{t}: {y:?}");
     }
@@ -381,11 +382,13 @@ fn states_stay_where_they_are_projected_to() {
 
 #[test]
 fn limits_end_an_integration() {
-    let failure = solve(oscillator(), 0.0, &[1.0, 0.0], &[1e3], &options(1e-9).max_steps(10)).unwrap_err();
+    let failure =
+        solve(erased(oscillator()), 0.0, &[1.0, 0.0], &[1e3], &options(1e-9).max_steps(10)).unwrap_err();
     let SolveError::Integration(error) = &failure.error else { panic!("{}", failure.error) };
     assert!(matches!(error.reason, Reason::Steps { steps: 10, .. }), "{error}");
     // Steps that need to be shorter than allowed.
-    let failure = solve(oscillator(), 0.0, &[1.0, 0.0], &[1e3], &options(1e-12).min_step(3.0)).unwrap_err();
+    let failure =
+        solve(erased(oscillator()), 0.0, &[1.0, 0.0], &[1e3], &options(1e-12).min_step(3.0)).unwrap_err();
     let SolveError::Integration(error) = &failure.error else { panic!("{}", failure.error) };
     assert_eq!(error.reason, Reason::Stalled);
     let mut longest = 0.0_f64;
@@ -396,7 +399,7 @@ fn limits_end_an_integration() {
         Continue(())
     };
     let method = options(1e-6).max_step(0.25);
-    Solve::new(oscillator(), 0.0, &[1.0, 0.0]).method(&method).run_observed(&[5.0], step).unwrap();
+    Solve::new(erased(oscillator()), 0.0, &[1.0, 0.0]).method(&method).run_observed(&[5.0], step).unwrap();
     assert!(longest <= 0.25 * (1.0 + 1e-12), "{longest}");
 }
 
@@ -409,7 +412,7 @@ fn pulses_are_not_stepped_over() {
             rates[1] = (-((t - at) / width).powi(2)).exp() - y[0];
             Ok(())
         });
-        let motion = solve(spring, 0.0, &[0.0, 0.0], &[10.0], &options(1e-9)).unwrap();
+        let motion = solve(erased(spring), 0.0, &[0.0, 0.0], &[10.0], &options(1e-9)).unwrap();
         let expected = width * std::f64::consts::PI.sqrt() * (-width * width / 4.0).exp() * (10.0 - at).sin();
         let found = motion.state(0)[0];
         assert!((found - expected).abs() < 1e-6 * width, "{at} {width}: {found}, not {expected}");
@@ -435,16 +438,16 @@ fn van_der_pol(mu: f64) -> impl VectorField {
 #[test]
 fn stiffness_is_detected_where_it_is_and_only_there() {
     for (field, end) in [(relaxation(1e4), 3.0), (relaxation(1e6), 0.1)] {
-        let motion = solve(field, 0.0, &[0.0], &[end], &options(1e-6)).unwrap();
+        let motion = solve(erased(field), 0.0, &[0.0], &[end], &options(1e-6)).unwrap();
         let seen = motion.statistics().stiff_from.expect("stiff");
         assert!(seen < 0.1, "{seen}");
     }
-    let motion = solve(van_der_pol(1e3), 0.0, &[2.0, 0.0], &[20.0], &options(1e-6)).unwrap();
+    let motion = solve(erased(van_der_pol(1e3)), 0.0, &[2.0, 0.0], &[20.0], &options(1e-6)).unwrap();
     assert!(motion.statistics().stiff_from.is_some());
     for rtol in [1e-4, 1e-6, 1e-9, 1e-12] {
-        let motion = solve(van_der_pol(1.0), 0.0, &[2.0, 0.0], &[50.0], &options(rtol)).unwrap();
+        let motion = solve(erased(van_der_pol(1.0)), 0.0, &[2.0, 0.0], &[50.0], &options(rtol)).unwrap();
         assert_eq!(motion.statistics().stiff_from, None, "{rtol:e}");
-        let motion = solve(oscillator(), 0.0, &[1.0, 0.0], &[200.0], &options(rtol)).unwrap();
+        let motion = solve(erased(oscillator()), 0.0, &[1.0, 0.0], &[200.0], &options(rtol)).unwrap();
         assert_eq!(motion.statistics().stiff_from, None, "{rtol:e}");
     }
 }
@@ -453,7 +456,7 @@ fn stiffness_is_detected_where_it_is_and_only_there() {
 fn the_method_changes_to_bdf_and_back() {
     let run = |method: Method, field: &mut dyn VectorField, y: &[f64], end: f64| {
         let options = Options::new(method).relative_tolerance(1e-8).absolute_tolerance(1e-11);
-        let motion = solve(field, 0.0, y, &[end], &options).unwrap();
+        let motion = solve(erased(field), 0.0, y, &[end], &options).unwrap();
         (motion.state(0).to_vec(), *motion.statistics())
     };
     // A motion that is stiff throughout.
@@ -487,7 +490,7 @@ fn the_method_changes_to_bdf_and_back() {
 fn the_same_input_gives_the_same_bits() {
     let run = || {
         let options = Options::new(Method::Auto).relative_tolerance(1e-6).absolute_tolerance(1e-9);
-        solve(van_der_pol(50.0), 0.0, &[2.0, 0.0], &[10.0, 150.0], &options).unwrap()
+        solve(erased(van_der_pol(50.0)), 0.0, &[2.0, 0.0], &[10.0, 150.0], &options).unwrap()
     };
     assert_eq!(run(), run());
 }
@@ -495,7 +498,7 @@ fn the_same_input_gives_the_same_bits() {
 #[test]
 fn options_that_a_method_lacks_are_refused_by_name() {
     let of = |options: Options| {
-        let error = solve(oscillator(), 0.0, &[1.0, 0.0], &[1.0], &options).unwrap_err();
+        let error = solve(erased(oscillator()), 0.0, &[1.0, 0.0], &[1.0], &options).unwrap_err();
         error.to_string()
     };
     assert_eq!(
@@ -521,7 +524,7 @@ fn options_that_a_method_lacks_are_refused_by_name() {
     let with = |method: Method| {
         let options = Options::new(method);
         let (y, times) = ([1.0, 0.0], [1.0]);
-        solve_with_sensitivities(oscillator(), 0.0, &y, &times, &options, &sensitivities).map(|_| ())
+        solve_with_sensitivities(erased(oscillator()), 0.0, &y, &times, &options, &sensitivities).map(|_| ())
     };
     let refused = with(Method::Dop853).unwrap_err();
     assert!(

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{Ending, Ensemble, Failure, MemberError, Options, Stop, VectorField, member_stream, solve};
 use rand_chacha::rand_core::Rng;
 
@@ -53,7 +53,7 @@ fn pendulums(ensemble: &Ensemble<'_>, members: u64) -> Vec<(u64, Vec<f64>)> {
 fn results_do_not_depend_on_the_number_of_threads() {
     let alone: Vec<(u64, Vec<f64>)> = (0..50)
         .map(|member| {
-            let motion = solve(pendulum(), 0.0, &start(member), &TIMES, &Options::default()).unwrap();
+            let motion = solve(erased(pendulum()), 0.0, &start(member), &TIMES, &Options::default()).unwrap();
             (member, motion.states().to_vec())
         })
         .collect();

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow::Continue;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use crate::fields::field;
 use pc_expr::{Failure, ProgramField};
 use pc_solve::{
@@ -23,7 +23,11 @@ fn set(to: f64) -> impl FnMut(f64, &mut [f64]) -> Result<(), Failure> {
 }
 
 fn run(events: FnEvents<'_>, method: Method) -> Solution {
-    Solve::new(point(), 0.0, &[0.0, 0.0]).method(Options::new(method)).events(events).run(&[2.0]).unwrap()
+    Solve::new(erased(point()), 0.0, &[0.0, 0.0])
+        .method(Options::new(method))
+        .events(events)
+        .run(&[2.0])
+        .unwrap()
 }
 
 fn found(motion: &Solution) -> Vec<(usize, f64)> {
@@ -58,8 +62,11 @@ fn the_third_bounce_ends_the_motion() {
                 },
             );
         let options = Options::new(method).relative_tolerance(1e-12).absolute_tolerance(1e-13);
-        let motion =
-            Solve::new(ball, 0.0, &[1.0, 0.0, 0.0]).method(options).events(events).run(&[3.0]).unwrap();
+        let motion = Solve::new(erased(ball), 0.0, &[1.0, 0.0, 0.0])
+            .method(options)
+            .events(events)
+            .run(&[3.0])
+            .unwrap();
         assert_eq!(motion.ending, Some(Ending::Event { event: 0 }), "{method}");
         let names: Vec<usize> = motion.occurrences.iter().map(|occurrence| occurrence.event).collect();
         assert_eq!(names, [1, 1, 1, 0], "{method}");
@@ -81,7 +88,7 @@ fn a_threshold_moved_through_the_motion_is_passed() {
     };
     let expected = [(1, 0.3), (0, 0.3), (2, 0.8), (0, 0.8), (0, 1.3)];
     for method in Method::ALL {
-        let begin = || Solve::new(point(), 0.0, &[0.0, 0.5]).method(Options::new(method));
+        let begin = || Solve::new(erased(point()), 0.0, &[0.0, 0.5]).method(Options::new(method));
         let motion = begin().events(events()).run(&[2.0]).unwrap();
         assert_found(&motion, &expected, method);
         // Continued from a checkpoint between the resets.
@@ -135,7 +142,7 @@ fn which_resets_set_events_off() {
                     },
                 )
                 .with(Event::new("x"), |_, y| Ok(y[0]));
-            Solve::new(point(), 0.0, &[start, 0.0])
+            Solve::new(erased(point()), 0.0, &[start, 0.0])
                 .method(Options::new(method))
                 .events(events)
                 .run(&[1.0])
@@ -153,7 +160,8 @@ fn events_that_set_each_other_off_without_end_are_an_error() {
             .with_reset(Event::new("start"), |t, _| Ok(t - 0.5), set(2.0))
             .with_reset(Event::new("up").rising(), |_, y| Ok(y[1] - 1.0), set(-2.0))
             .with_reset(Event::new("down").falling(), |_, y| Ok(y[1] + 1.0), set(2.0));
-        let motion = Solve::new(point(), 0.0, &[0.0, 0.0]).method(Options::new(method)).events(events);
+        let motion =
+            Solve::new(erased(point()), 0.0, &[0.0, 0.0]).method(Options::new(method)).events(events);
         let SolveError::Integration(error) = motion.run(&[2.0]).unwrap_err().error else {
             panic!("{method}")
         };
@@ -192,7 +200,7 @@ fn sensitivities_over_events_that_are_set_off() {
         });
     let options = Options::new(Method::Adams).relative_tolerance(1e-12).absolute_tolerance(1e-13);
     let columns = Sensitivities::new().by_parameters([0]);
-    let begun = Integration::with_sensitivities(speed, 0.0, &[0.0; 3], &options, &columns).unwrap();
+    let begun = Integration::with_sensitivities(erased(speed), 0.0, &[0.0; 3], &options, &columns).unwrap();
     let mut found = Vec::new();
     let keep = |_: f64, y: &[f64], matrix: &[f64]| {
         found.push((y[2], matrix[2]));
@@ -213,7 +221,11 @@ fn jumps_are_passed_once_and_poles_are_none() {
         let events = || FnEvents::new();
         let options = || Options::new(method).max_step(0.05);
         let run = |events: FnEvents<'_>| {
-            Solve::new(point(), 0.0, &[0.0, 0.0]).method(options()).events(events).run(&[2.0]).unwrap()
+            Solve::new(erased(point()), 0.0, &[0.0, 0.0])
+                .method(options())
+                .events(events)
+                .run(&[2.0])
+                .unwrap()
         };
         let jump = events().with(Event::new("a"), |_, y| Ok(sign(y[0] - 0.3) * (y[0] - 1.5)));
         assert_found(&run(jump), &[(0, 0.3), (0, 1.5)], method);
@@ -243,7 +255,7 @@ fn a_jump_with_a_reset_is_passed_again_from_the_other_side() {
     };
     let events = FnEvents::new().with_reset(Event::new("a"), move |_, y| Ok(sign(y[0])), count);
     let options = Options::new(Method::Adams).max_step(0.1);
-    let motion = Solve::new(circle, 0.0, &[1.0, 0.0, 0.0]).method(options).events(events);
+    let motion = Solve::new(erased(circle), 0.0, &[1.0, 0.0, 0.0]).method(options).events(events);
     let expected: Vec<(usize, f64)> =
         (0..3).map(|k| (0, (f64::from(k) + 0.5) * std::f64::consts::PI)).collect();
     let found = motion.run(&[9.0]).unwrap().occurrences;

@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::ops::ControlFlow::Continue;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Cvode, Event, Failure, FnEvents, Integration, IntegrationError, Method, Options, Reason, Solve,
     SolveError, VectorField,
@@ -24,7 +24,7 @@ fn clock() -> impl VectorField {
 }
 
 fn hybrid(events: FnEvents<'_>) -> Result<Integration<Cvode<impl VectorField>, FnEvents<'_>>, SolveError> {
-    Integration::new(clock(), 0.0, &[0.0, 0.0], &Options::new(Method::Adams).max_step(0.1))
+    Integration::new(erased(clock()), 0.0, &[0.0, 0.0], &Options::new(Method::Adams).max_step(0.1))
         .unwrap()
         .with_events(events)
 }
@@ -155,7 +155,7 @@ fn a_field_that_fails() {
         Ok(())
     });
     let events = FnEvents::new().with(Event::new("half"), |t, _| Ok(t - 0.5));
-    let failure = Solve::new(fails, 0.0, &[0.0])
+    let failure = Solve::new(erased(fails), 0.0, &[0.0])
         .method(&Options::new(Method::Adams))
         .events(events)
         .run(&[0.25, 2.0])

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow::Continue;
 
+use crate::boxed::erased;
 use crate::fields::field;
 use pc_expr::ProgramField;
 use pc_solve::{Accumulation, Event, FnEvents, Method, Options, Reason, Solve, SolveError};
@@ -14,7 +15,8 @@ fn clock() -> ProgramField {
 /// The zeros found of a function of the clock y = t, from `start` to `end`.
 fn passages(function: impl Fn(f64) -> f64, start: f64, end: f64, options: &Options) -> Vec<f64> {
     let events = FnEvents::new().with(Event::new("zero"), move |_, y| Ok(function(y[0])));
-    let motion = Solve::new(clock(), start, &[start]).method(options).events(events).run(&[end]).unwrap();
+    let motion =
+        Solve::new(erased(clock()), start, &[start]).method(options).events(events).run(&[end]).unwrap();
     motion.occurrences.iter().map(|occurrence| occurrence.time).collect()
 }
 
@@ -88,7 +90,8 @@ fn a_touch_hides_no_passage() {
             .with(Event::new("pass"), |_, y| Ok(y[0] - 5.0))
             .with(Event::new("later"), |_, y| Ok(5.001 - y[0]));
         let options = Options::new(method);
-        let motion = Solve::new(clock(), 0.0, &[0.0]).method(options).events(events).run(&[10.0]).unwrap();
+        let motion =
+            Solve::new(erased(clock()), 0.0, &[0.0]).method(options).events(events).run(&[10.0]).unwrap();
         let found: Vec<usize> = motion.occurrences.iter().map(|occurrence| occurrence.event).collect();
         assert_eq!(found, [1, 2], "{method}");
     }
@@ -107,7 +110,8 @@ fn a_step_is_sampled_as_densely_as_requested() {
         let few = passages(wave, 0.0, 9.9, &options(1));
         let lost = expected.len() - few.len();
         assert!(lost > 0 && lost.is_multiple_of(2), "{method}: {}", few.len());
-        let none = Solve::new(clock(), 0.0, &[0.0]).method(&options(0)).events(FnEvents::new()).run(&[1.0]);
+        let none =
+            Solve::new(erased(clock()), 0.0, &[0.0]).method(&options(0)).events(FnEvents::new()).run(&[1.0]);
         assert!(none.is_err(), "{method}");
     }
 }
@@ -152,7 +156,7 @@ fn passages_are_located_to_rounding() {
             let at = scale * (0.1 + (0.618_033_988_749_894_8 * f64::from(k)).fract());
             for method in Method::ALL {
                 let events = FnEvents::new().with(Event::new("then"), move |t, _| Ok(t - at));
-                let motion = Solve::new(clock(), 0.0, &[0.0])
+                let motion = Solve::new(erased(clock()), 0.0, &[0.0])
                     .method(Options::new(method))
                     .events(events)
                     .run(&[2.0 * scale]);
@@ -186,7 +190,7 @@ fn bounces_with_a_kick_do_not_accumulate() {
     let start = 2e4;
     for (method, t0) in Method::ALL.into_iter().flat_map(|method| [(method, 0.0), (method, -start)]) {
         let options = Options::new(method).max_steps(u64::MAX);
-        let kicked = Solve::new(ball(), t0, &[1.0, 0.0]).method(options).events(kicked(0.01));
+        let kicked = Solve::new(erased(ball()), t0, &[1.0, 0.0]).method(options).events(kicked(0.01));
         let mut bounces = 0_u32;
         kicked
             .start()
@@ -211,8 +215,11 @@ fn bounces_with_a_kick_do_not_accumulate() {
             },
         );
         let options = Options::new(method).relative_tolerance(1e-13).absolute_tolerance(1e-15);
-        let failure =
-            Solve::new(ball(), 0.0, &[1.0, 0.0]).method(&options).events(events).run(&[1e6]).unwrap_err();
+        let failure = Solve::new(erased(ball()), 0.0, &[1.0, 0.0])
+            .method(&options)
+            .events(events)
+            .run(&[1e6])
+            .unwrap_err();
         let SolveError::Integration(error) = failure.error else { panic!("{}", failure.error) };
         let Reason::Accumulation { t, .. } = error.reason else { panic!("{method}: {error}") };
         let limit = 2.0_f64.sqrt() * (3.0 + 2.0 * f64::from(flights));
@@ -228,7 +235,7 @@ fn the_accumulation_fraction_can_be_chosen() {
         let run = |within| {
             let accumulation = Accumulation { within, ..Accumulation::default() };
             let options = Options::new(method).accumulation(accumulation);
-            Solve::new(ball(), 0.0, &[1.0, 0.0]).method(&options).events(kicked(1e-4)).run(&[30.0])
+            Solve::new(erased(ball()), 0.0, &[1.0, 0.0]).method(&options).events(kicked(1e-4)).run(&[30.0])
         };
         assert!(run(0.1).is_err() && run(1e-5).is_ok() && run(0.0).is_ok(), "{method}");
         assert!(run(1.0).is_err() && run(-1.0).is_err() && run(f64::NAN).is_err(), "{method}");
@@ -252,7 +259,7 @@ fn an_event_does_not_occur_again_before_it_has_left() {
                     Ok(())
                 },
             );
-            let motion = Solve::new(ball(), 0.0, &[1.0, 0.0])
+            let motion = Solve::new(erased(ball()), 0.0, &[1.0, 0.0])
                 .method(Options::new(method))
                 .events(events)
                 .run(&[2.0])

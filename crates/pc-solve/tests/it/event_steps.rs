@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow::{Break, Continue};
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Cvode, DenseOutput, Ending, Event, FnEvents, InputError, Integration, Observed, Occurrence, Options,
     Segment, SolveError, VectorField,
@@ -22,7 +22,7 @@ fn ball() -> Integration<Cvode<impl VectorField>, FnEvents<'static>> {
         .with_reset(Event::new("bounce").falling(), |_, y| Ok(y[0]), turn)
         .with(Event::new("top").falling(), |_, y| Ok(y[1]));
     let sharp = Options::default().relative_tolerance(1e-13).absolute_tolerance(1e-15);
-    let cvode = Integration::new(from_fn(2, rates), 0.0, &[1.0, 0.0], &sharp).expect("a start");
+    let cvode = Integration::new(erased(from_fn(2, rates)), 0.0, &[1.0, 0.0], &sharp).expect("a start");
     cvode.with_events(events).expect("events")
 }
 
@@ -143,7 +143,7 @@ fn a_terminal_event_ends_an_integration_also_where_an_observer_stops_it() {
             let events = names.into_iter().fold(FnEvents::new(), |events, name| {
                 events.with(Event::new(name).terminal(name.ends_with("end")), |_, y| Ok(y[0] - 0.5))
             });
-            let cvode = Integration::new(clock(), 0.0, &[0.0], &Options::default()).expect("a start");
+            let cvode = Integration::new(erased(clock()), 0.0, &[0.0], &Options::default()).expect("a start");
             cvode.with_events(events).expect("events")
         };
         let told = std::cell::RefCell::new(Vec::new());
@@ -194,7 +194,7 @@ fn the_event_that_fails_is_named() {
             if t > 0.5 { Err(pc_solve::Failure::fatal(late)) } else { Ok(y[0] + 1.0) }
         },
     );
-    let cvode = Integration::new(still, 0.0, &[0.0], &Options::default()).expect("a start");
+    let cvode = Integration::new(erased(still), 0.0, &[0.0], &Options::default()).expect("a start");
     let mut hybrid = cvode.with_events(events).expect("events");
     let error = hybrid.advance_to(1.0, |_| Continue(())).expect_err("late");
     assert!(error.to_string().starts_with("the event second cannot be evaluated"), "{error}");

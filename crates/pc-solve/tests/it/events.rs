@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::ops::ControlFlow::{Break, Continue};
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use crate::fields;
 use pc_expr::ProgramField;
 use pc_solve::{
@@ -64,7 +64,7 @@ fn a_ball_bounces_when_it_should() {
     for method in Method::ALL {
         for restitution in [0.5_f64, 0.9] {
             let outputs: Vec<f64> = (1..=40).map(|i| f64::from(i) * 0.1).collect();
-            let motion = Solve::new(falling(), 0.0, &[1.0, 0.0])
+            let motion = Solve::new(erased(falling()), 0.0, &[1.0, 0.0])
                 .method(&sharp(method))
                 .events(bounce(restitution))
                 .run(&outputs)
@@ -107,7 +107,7 @@ fn bounces_that_accumulate_are_an_error_with_their_limit() {
     // Without BDF, whose speeds have errors of 1e-8 after so many starts at order 1.
     let methods = [Method::Adams, Method::Dop853, Method::Taylor, Method::Auto];
     for (method, restitution) in methods.into_iter().flat_map(|m| [0.1, 0.5, 0.9].map(|e| (m, e))) {
-        let failure = Solve::new(falling(), 0.0, &[1.0, 0.0])
+        let failure = Solve::new(erased(falling()), 0.0, &[1.0, 0.0])
             .method(&sharp(method))
             .events(bounce(restitution))
             .run(&[1.0, 100.0])
@@ -127,7 +127,7 @@ fn bounces_that_accumulate_are_an_error_with_their_limit() {
         assert!(text.starts_with("the event bounce occurs at ever shorter intervals near t = "), "{text}");
     }
     // A user-defined limit.
-    let hybrid = Integration::new(falling(), 0.0, &[1.0, 0.0], &Options::default()).unwrap();
+    let hybrid = Integration::new(erased(falling()), 0.0, &[1.0, 0.0], &Options::default()).unwrap();
     let mut hybrid =
         hybrid.with_events(bounce(0.5)).unwrap().accumulation(Accumulation { occurrences: 4, within: 0.25 });
     let error = hybrid.advance_to(5.0, |_| Continue(())).unwrap_err();
@@ -145,7 +145,7 @@ fn zeros_are_found_once_in_their_direction() {
                 .with(Event::new("both"), |_, y| Ok(y[0]))
                 .with(Event::new("rising").rising(), |_, y| Ok(y[0]))
                 .with(Event::new("falling").falling(), |_, y| Ok(y[0]));
-            let motion = Solve::new(oscillator(), 0.0, &[1.0, 0.0])
+            let motion = Solve::new(erased(oscillator()), 0.0, &[1.0, 0.0])
                 .method(&sharp(method))
                 .events(events)
                 .run(&[end])
@@ -181,7 +181,7 @@ fn a_time_is_located_to_rounding() {
             ] {
                 let events = FnEvents::new().with(Event::new("then"), move |t, _| Ok(function(t)));
                 let still = field(|_, _| vec![0.0], 1);
-                let motion = Solve::new(still, 0.0, &[1.0])
+                let motion = Solve::new(erased(still), 0.0, &[1.0])
                     .method(Options::new(method))
                     .events(events)
                     .run(&[end])
@@ -199,7 +199,7 @@ fn a_function_that_is_zero_at_the_start_has_to_leave_first() {
     for method in Method::ALL {
         // sin t leaves zero at once and returns at π.
         let events = FnEvents::new().with(Event::new("zero"), |_, y| Ok(y[0]));
-        let motion = Solve::new(oscillator(), 0.0, &[0.0, 1.0])
+        let motion = Solve::new(erased(oscillator()), 0.0, &[0.0, 1.0])
             .method(&sharp(method))
             .events(events)
             .run(&[4.0])
@@ -209,7 +209,7 @@ fn a_function_that_is_zero_at_the_start_has_to_leave_first() {
         assert!(is_found, "{method}: {found:?}");
         // A function that is always zero has no event.
         let events = FnEvents::new().with(Event::new("nothing"), |_, _| Ok(0.0));
-        let motion = Solve::new(oscillator(), 0.0, &[0.0, 1.0])
+        let motion = Solve::new(erased(oscillator()), 0.0, &[0.0, 1.0])
             .method(Options::new(method))
             .events(events)
             .run(&[4.0])
@@ -227,8 +227,11 @@ fn grazing_functions_cause_no_event() {
             let f: f64 = depth;
             let events = FnEvents::new().with(Event::new("graze"), move |_, y| Ok(y[0] - f));
             let parabola = field(|t, _| vec![2.0 * (t - 1.0)], 1);
-            let motion =
-                Solve::new(parabola, 0.0, &[1.0]).method(&sharp(method)).events(events).run(&[3.0]).unwrap();
+            let motion = Solve::new(erased(parabola), 0.0, &[1.0])
+                .method(&sharp(method))
+                .events(events)
+                .run(&[3.0])
+                .unwrap();
             let found = times(&motion.occurrences);
             assert_eq!(found.len(), expected, "{method}: {depth} {found:?}");
             for (found, expected) in found.iter().zip([1.0 - depth.abs().sqrt(), 1.0 + depth.abs().sqrt()]) {
@@ -258,7 +261,7 @@ fn simultaneous_events_are_handled_in_order() {
         .with_reset(Event::new("c").rising(), |_, y| Ok((y[0] - 0.3).powi(3)), add(3.0))
         .with_reset(Event::new("not").falling(), |_, y| Ok(y[0] - 0.3), add(5.0));
     let clock = field(|_, _| vec![1.0, 0.0], 2);
-    let motion = Solve::new(clock, 0.0, &[0.0, 0.0])
+    let motion = Solve::new(erased(clock), 0.0, &[0.0, 0.0])
         .method(&Options::default())
         .events(events)
         .run(&[0.3, 1.0])
@@ -289,7 +292,7 @@ fn outputs_at_events() {
         let outputs = [0.5 - 1e-9 * direction, 0.5, 0.5 + 1e-9 * direction, end];
         let clock = field(|_, _| vec![1.0], 1);
         let start = 1.0 - end;
-        let motion = Solve::new(clock, start, &[start])
+        let motion = Solve::new(erased(clock), start, &[start])
             .method(&Options::default())
             .events(jump())
             .run(&outputs)
@@ -304,8 +307,11 @@ fn outputs_at_events() {
     }
     // A jump at the end is part of the motion.
     let clock = field(|_, _| vec![1.0], 1);
-    let motion =
-        Solve::new(clock, 0.0, &[0.0]).method(&Options::default()).events(jump()).run(&[0.25, 0.5]).unwrap();
+    let motion = Solve::new(erased(clock), 0.0, &[0.0])
+        .method(&Options::default())
+        .events(jump())
+        .run(&[0.25, 0.5])
+        .unwrap();
     assert_eq!((motion.occurrences.len(), motion.trajectory.state(1)[0]), (1, 10.5));
 }
 
@@ -315,7 +321,7 @@ fn a_terminal_event_is_the_last_output() {
         let events = FnEvents::new()
             .with(Event::new("other"), |t, _| Ok(t - 0.5))
             .with(Event::new("floor").falling().terminal(true), |_, y| Ok(y[0]));
-        let motion = Solve::new(falling(), 0.0, &[1.0, 0.0])
+        let motion = Solve::new(erased(falling()), 0.0, &[1.0, 0.0])
             .method(&sharp(method))
             .events(events)
             .run(&[0.0, 1.0, 2.0, 3.0])
@@ -329,7 +335,7 @@ fn a_terminal_event_is_the_last_output() {
 
         // It can continue from there, and does not meet the event again.
         let events = FnEvents::new().with(Event::new("floor").terminal(true), |_, y| Ok(y[0]));
-        let start = Solve::new(falling(), 0.0, &[1.0, 0.0]).method(sharp(method)).events(events);
+        let start = Solve::new(erased(falling()), 0.0, &[1.0, 0.0]).method(sharp(method)).events(events);
         let mut hybrid = start.start().unwrap();
         assert_eq!(hybrid.advance_to(3.0, |_| Continue(())).unwrap(), Ending::Event { event: 0 });
         assert!((hybrid.time() - landing).abs() < 1e-12, "{method}");
@@ -340,7 +346,7 @@ fn a_terminal_event_is_the_last_output() {
 
 #[test]
 fn observers_may_stop() {
-    let mut hybrid = Integration::new(falling(), 0.0, &[1.0, 0.0], &Options::default())
+    let mut hybrid = Integration::new(erased(falling()), 0.0, &[1.0, 0.0], &Options::default())
         .unwrap()
         .with_events(bounce(0.9))
         .unwrap();
@@ -371,7 +377,7 @@ fn statistics_continue_over_restarts() {
             ydot.copy_from_slice(&[y[1], -1.0]);
             Ok(())
         });
-        let motion = Solve::new(counted, 0.0, &[1.0, 0.0])
+        let motion = Solve::new(erased(counted), 0.0, &[1.0, 0.0])
             .method(&Options::new(method))
             .events(bounce(0.5))
             .run(&[4.0])
@@ -391,7 +397,7 @@ fn options_stay_over_restarts() {
             Ok(())
         });
         let options = Options::new(method).initial_step(1e-6).max_step(0.01).stop_time(3.0);
-        let start = Solve::new(fall, 0.0, &[1.0, 0.0]).method(options).events(bounce(0.5));
+        let start = Solve::new(erased(fall), 0.0, &[1.0, 0.0]).method(options).events(bounce(0.5));
         let mut hybrid = start.start().unwrap();
         let mut ends = vec![0.0];
         let landing = 2.0_f64.sqrt();
@@ -455,7 +461,7 @@ fn projected_states() {
             },
         );
         let options = Options::new(method);
-        let motion = Solve::new(Circle, 0.0, &[1.0, 0.0, 0.0, 0.0])
+        let motion = Solve::new(erased(Circle), 0.0, &[1.0, 0.0, 0.0, 0.0])
             .method(&options)
             .events(wall)
             .run(&[10.0, 20.0, 30.0])
@@ -490,12 +496,16 @@ fn events_are_returned() {
     }
     let mut count = Count(vec![Event::new("one"), Event::new("two").resetting(true)], 0);
     let clock = field(|_, _| vec![1.0], 1);
-    let motion =
-        Solve::new(clock, 0.0, &[0.0]).method(&Options::default()).events(&mut count).run(&[1.0]).unwrap();
+    let motion = Solve::new(erased(clock), 0.0, &[0.0])
+        .method(&Options::default())
+        .events(&mut count)
+        .run(&[1.0])
+        .unwrap();
     assert_eq!(motion.occurrences.len(), 2);
     assert!(count.1 > 10);
-    let hybrid =
-        |events| Integration::new(oscillator(), 0.0, &[1.0, 0.0], &Options::default())?.with_events(events);
+    let hybrid = |events| {
+        Integration::new(erased(oscillator()), 0.0, &[1.0, 0.0], &Options::default())?.with_events(events)
+    };
     let hybrid: Integration<Cvode<_>, FnEvents<'_>> = hybrid(bounce(0.5)).unwrap();
     assert!(format!("{hybrid:?}").contains("bounce"));
     assert_eq!(hybrid.events().events().len(), 1);
@@ -516,7 +526,7 @@ fn many_events() {
                 Ok(())
             },
         );
-        let start = Solve::new(clock, 0.0, &[0.0]).method(Options::new(method)).events(tooth);
+        let start = Solve::new(erased(clock), 0.0, &[0.0]).method(Options::new(method)).events(tooth);
         let mut saw = start.start().unwrap();
         let mut count = 0;
         let check = |occurrence: &Occurrence| {
@@ -537,7 +547,7 @@ fn events_do_not_lift_the_limit_of_steps() {
     for method in Method::ALL {
         let zeros = FnEvents::new().with(Event::new("zero"), |_, y| Ok(y[0]));
         let options = Options::new(method).max_steps(200);
-        let start = Solve::new(oscillator(), 0.0, &[1.0, 0.0]).method(options).events(zeros);
+        let start = Solve::new(erased(oscillator()), 0.0, &[1.0, 0.0]).method(options).events(zeros);
         let mut motion = start.start().unwrap();
         let error = motion.advance_to(1e12, |_| Continue(())).unwrap_err();
         assert_eq!(error.code(), Some(Code::TooMuchWork), "{method}");
@@ -560,7 +570,7 @@ fn passages_before_time_zero_are_located() {
         });
         let events =
             FnEvents::default().with(Event::new("noon"), move |t: f64, _y: &[f64]| Ok((t - at).sin()));
-        let found = Solve::new(clock, start, &[start])
+        let found = Solve::new(erased(clock), start, &[start])
             .method(Options::new(method))
             .events(events)
             .run(&[0.0])
@@ -585,7 +595,8 @@ fn another_event_hides_no_passages() {
             events = events.with(Event::new("once"), |_t: f64, y: &[f64]| Ok(y[0] - 40.0));
         }
         let options = Options::new(method).initial_step(1.0);
-        let found = Solve::new(clock, 0.0, &[0.0]).method(&options).events(events).run(&[100.0]).unwrap();
+        let found =
+            Solve::new(erased(clock), 0.0, &[0.0]).method(&options).events(events).run(&[100.0]).unwrap();
         found.occurrences.iter().map(|o| (o.time * 1e6).round() / 1e6).collect::<Vec<_>>()
     };
     for method in FOR_CLOSURES {

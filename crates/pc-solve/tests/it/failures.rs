@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::error::Error;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Code, Failure, Integration, Method, NonFinite, NonlinearSolver, Options, Reason, SolveError,
     SolveFailure, Trajectory, solve,
@@ -48,7 +48,7 @@ fn recoverable_failures_are_answered_by_shorter_steps() {
             Ok(())
         });
         let options = options.relative_tolerance(1e-4).absolute_tolerance(1e-6).initial_step(0.999);
-        let mut cvode = Integration::new(fall, 0.0, &[1.0], &options).unwrap();
+        let mut cvode = Integration::new(erased(fall), 0.0, &[1.0], &options).unwrap();
         let y = cvode.state_at(0.9).unwrap()[0];
         assert!((y - 0.01).abs() < 1e-3, "{y}");
         assert!(failures.get() > 0, "{options:?}");
@@ -62,7 +62,7 @@ fn a_singularity_stalls_the_integration_and_is_named() {
             ydot[0] = 3.0 * root(1.0 - t)?;
             Ok(())
         });
-        let failure = failure(solve(clock, 0.0, &[0.0], &[0.5, 0.75, 2.0], &options));
+        let failure = failure(solve(erased(clock), 0.0, &[0.0], &[0.5, 0.75, 2.0], &options));
         assert_eq!(failure.reached.times(), [0.5, 0.75]);
         assert!(!failure.reached.is_complete());
         for (t, y) in failure.reached.iter() {
@@ -96,8 +96,8 @@ fn codes_of_a_failing_right_hand_side() {
             })
         };
         let options = Options::new(Method::Adams).initial_step(0.5).max_step(0.5);
-        let at_start = failure(solve(field(0.0), 0.0, &[0.0], &[1.0], &options));
-        let later = failure(solve(field(0.75), 0.0, &[0.0], &[0.5, 1.0], &options.min_step(0.5)));
+        let at_start = failure(solve(erased(field(0.0)), 0.0, &[0.0], &[1.0], &options));
+        let later = failure(solve(erased(field(0.75)), 0.0, &[0.0], &[0.5, 1.0], &options.min_step(0.5)));
         assert_eq!(at_start.reached.len(), 0);
         assert_eq!(later.reached.times(), [0.5]);
         assert_eq!(later.error.reached(), Some((0.5, &[0.5][..])));
@@ -141,7 +141,8 @@ fn failure_where_no_smaller_step_helps() {
         ydot[0] = if t == 0.0 { 0.0 } else { 1e9 };
         Ok(())
     });
-    let failure = failure(solve(jump, 0.0, &[1.0], &[1.0], &Options::new(Method::Adams).initial_step(0.1)));
+    let failure =
+        failure(solve(erased(jump), 0.0, &[1.0], &[1.0], &Options::new(Method::Adams).initial_step(0.1)));
     assert_eq!(
         chain(&failure),
         "CV_UNREC_RHSFUNC_ERR (-11) after reaching t = 0: At t = 0, the right-hand side failed in a recoverable \
@@ -161,7 +162,7 @@ fn codes_of_a_failing_jacobian() {
             Err(if recoverable { Failure::recoverable(cause) } else { Failure::fatal(cause) })
         });
         let failure =
-            failure(solve(field, 0.0, &[1.0], &[1.0], &Options::new(Method::Bdf).initial_step(1e-3)));
+            failure(solve(erased(field), 0.0, &[1.0], &[1.0], &Options::new(Method::Bdf).initial_step(1e-3)));
         let message = chain(&failure);
         let (head, cause) = message.split_once(" <- ").unwrap();
         assert!(cause.starts_with("sqrt(") && cause.ends_with(") is not real"), "{cause}");
@@ -190,7 +191,7 @@ fn a_rate_that_is_not_finite_is_named() {
             Ok(())
         });
         let failure = failure(solve(
-            field.with_names(["x", "v"]),
+            erased(field.with_names(["x", "v"])),
             0.5,
             &[0.0, 0.0],
             &[1.0],
@@ -218,7 +219,7 @@ fn a_rate_that_is_not_finite_is_recoverable() {
     });
     let options =
         Options::new(Method::Adams).relative_tolerance(1e-4).absolute_tolerance(1e-6).initial_step(0.999);
-    let motion = solve(field, 0.0, &[1.0], &[0.9], &options).unwrap();
+    let motion = solve(erased(field), 0.0, &[1.0], &[0.9], &options).unwrap();
     assert!(met.get());
     assert!((motion.state(0)[0] - 0.01).abs() < 1e-3);
 }
@@ -229,7 +230,7 @@ fn a_rate_that_is_not_written_is_named() {
         ydot[0] = 1.0;
         Ok(())
     });
-    let failure = failure(solve(field, 0.0, &[0.0, 0.0], &[1.0], &Options::new(Method::Adams)));
+    let failure = failure(solve(erased(field), 0.0, &[0.0, 0.0], &[1.0], &Options::new(Method::Adams)));
     assert_eq!(failure.source().unwrap().to_string(), "the rate of y[1] is NaN at t = 0");
 }
 
@@ -245,7 +246,7 @@ fn a_jacobian_that_is_not_finite_is_named() {
         Ok(())
     })
     .with_names(["x"]);
-    let failure = failure(solve(field, 0.0, &[1.0, 1.0], &[1.0], &Options::new(Method::Bdf)));
+    let failure = failure(solve(erased(field), 0.0, &[1.0, 1.0], &[1.0], &Options::new(Method::Bdf)));
     assert_eq!(failure.error.code(), Some(Code::ConvergenceFailure));
     let cause = failure.source().unwrap().to_string();
     assert!(cause.starts_with("the derivative of the rate of y[1] by x is inf at t = "), "{cause}");
@@ -261,7 +262,7 @@ fn a_step_limit_ends_the_work_and_allows_more() {
         })
     };
     let options = Options::new(Method::Adams).max_steps(50);
-    let failure = failure(solve(oscillator(), 0.0, &[1.0, 0.0], &[0.1, 0.2, 1e6], &options));
+    let failure = failure(solve(erased(oscillator()), 0.0, &[1.0, 0.0], &[0.1, 0.2, 1e6], &options));
     assert_eq!(failure.reached.len(), 2);
     let (t, y) = failure.error.reached().unwrap();
     assert!((y[0] - t.cos()).abs() < 1e-6);
@@ -269,7 +270,7 @@ fn a_step_limit_ends_the_work_and_allows_more() {
     let expected = "50 steps were not enough to reach the output at t = 1000000: the last, of length ";
     assert!(said.starts_with(expected) && said.ends_with(&format!(", ended at t = {t}")), "{said}");
 
-    let mut cvode = Integration::new(oscillator(), 0.0, &[1.0, 0.0], &options).unwrap();
+    let mut cvode = Integration::new(erased(oscillator()), 0.0, &[1.0, 0.0], &options).unwrap();
     let mut failures = 0;
     while let Err(error) = cvode.state_at(20.0) {
         assert_eq!(error.code(), Some(Code::TooMuchWork));
@@ -287,7 +288,7 @@ fn tolerances_below_rounding_error() {
         Ok(())
     });
     let options = Options::new(Method::Adams).relative_tolerance(1e-18).absolute_tolerance(1e-30);
-    let failure = failure(solve(growth, 0.0, &[1.0], &[1.0], &options));
+    let failure = failure(solve(erased(growth), 0.0, &[1.0], &[1.0], &options));
     assert_eq!(
         chain(&failure),
         "CV_TOO_MUCH_ACC (-2) after reaching t = 0: At t = 0, too much accuracy requested."
@@ -301,7 +302,7 @@ fn an_end_too_close_to_the_start() {
         Ok(())
     });
     let end = 1.0 + f64::EPSILON;
-    let failure = failure(solve(growth, 1.0, &[1.0], &[end], &Options::new(Method::Adams)));
+    let failure = failure(solve(erased(growth), 1.0, &[1.0], &[end], &Options::new(Method::Adams)));
     assert_eq!(
         chain(&failure),
         "CV_TOO_CLOSE (-27) after reaching t = 1: tout too close to t0 to start integration."
@@ -316,7 +317,7 @@ fn error_test_failures() {
         Ok(())
     });
     let options = Options::new(Method::Adams).initial_step(0.1).min_step(0.1).max_step(0.1);
-    let failure = failure(solve(jump, 0.0, &[1.0], &[2.0], &options));
+    let failure = failure(solve(erased(jump), 0.0, &[1.0], &[2.0], &options));
     let (t, y) = failure.error.reached().unwrap();
     assert!((t - 1.0).abs() < 1e-9);
     assert_eq!(y, [1.0]);
@@ -337,7 +338,7 @@ fn blow_up_ends() {
             ydot[0] = y[0] * y[0];
             Ok(())
         });
-        let failure = failure(solve(blow_up, 0.0, &[1.0], &[0.5, 2.0], &options));
+        let failure = failure(solve(erased(blow_up), 0.0, &[1.0], &[0.5, 2.0], &options));
         assert!((failure.reached.state(0)[0] - 2.0).abs() < 1e-6);
         let (t, _) = failure.error.reached().unwrap();
         assert!((t - 1.0).abs() < 1e-4);
@@ -352,7 +353,8 @@ fn overflow_is_named() {
         ydot[1] = 1e306;
         Ok(())
     });
-    let failure = failure(solve(field, 0.0, &[0.0, 1.7e308], &[1.0, 20.0], &Options::new(Method::Adams)));
+    let failure =
+        failure(solve(erased(field), 0.0, &[0.0, 1.7e308], &[1.0, 20.0], &Options::new(Method::Adams)));
     assert_eq!(failure.reached.len(), 1);
     let SolveError::Integration(error) = &failure.error else { panic!("{failure:?}") };
     let Reason::Overflow { component, value, t } = &error.reason else { panic!("{failure:?}") };

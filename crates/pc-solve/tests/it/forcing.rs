@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_expr::{Expr, Graph, Inputs, Interpreter, Kernel, Program, TimeDependence};
 use pc_solve::{Failure, Method, Options, Reason, SolveError, Trajectory, VectorField, solve};
 
@@ -40,7 +40,7 @@ impl VectorField for Spring {
 
 /// The motion from rest at 0 to `end`.
 fn motion(field: impl VectorField, end: f64, method: Method) -> Trajectory {
-    solve(field, 0.0, &[0.0, 0.0], &[end], &Options::new(method)).unwrap()
+    solve(erased(field), 0.0, &[0.0, 0.0], &[end], &Options::new(method)).unwrap()
 }
 
 fn gauss(at: f64, width: f64) -> Spring {
@@ -141,7 +141,8 @@ fn each_of_many_pulses_is_found() {
         }
         let body = Body(Arc::clone(&program), Interpreter::new(program));
         let start = 5.0 * direction;
-        let motion = solve(body, start, &[0.0], &[1005.0 * direction], &Options::new(Method::Adams)).unwrap();
+        let motion =
+            solve(erased(body), start, &[0.0], &[1005.0 * direction], &Options::new(Method::Adams)).unwrap();
         let expected = direction * 100.0 * width * PI.sqrt();
         let found = motion.state(0)[0];
         assert!((found - expected).abs() < 1e-6 * expected.abs(), "{found}, not {expected}");
@@ -158,7 +159,7 @@ fn a_field_without_time_costs_nothing() {
         })
     };
     let run = |field: &mut dyn VectorField| {
-        let motion = solve(field, 0.0, &[1.0, 0.0], &[100.0], &Options::new(Method::Adams)).unwrap();
+        let motion = solve(erased(field), 0.0, &[1.0, 0.0], &[100.0], &Options::new(Method::Adams)).unwrap();
         *motion.statistics()
     };
     let (plain, looked) = (run(&mut pendulum().autonomous()), run(&mut pendulum()));
@@ -172,7 +173,7 @@ fn a_field_without_time_costs_nothing() {
     });
     let start = [1.0, 0.0];
     let of = |field: &mut dyn VectorField| {
-        *solve(field, 0.0, &start, &[50.0], &Options::new(Method::Adams)).unwrap().statistics()
+        *solve(erased(field), 0.0, &start, &[50.0], &Options::new(Method::Adams)).unwrap().statistics()
     };
     assert_eq!(of(&mut { spring }).rhs_evaluations, of(&mut same.autonomous()).rhs_evaluations);
 }
@@ -240,7 +241,8 @@ fn a_force_that_no_step_can_follow_is_refused() {
     for (at, from) in [(1e21, 0.0), (1e17, 3.0)] {
         for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
             let force = |size: f64| Spring::new(move |t, _| size * (at * t).sin());
-            let run = |size| solve(force(size), from, &[1.0, 0.0], &[from + 10.0], &Options::new(method));
+            let run =
+                |size| solve(erased(force(size)), from, &[1.0, 0.0], &[from + 10.0], &Options::new(method));
             let failure = run(1.0).unwrap_err();
             let SolveError::Integration(error) = &failure.error else { panic!("{}", failure.error) };
             assert!(matches!(error.reason, Reason::Unresolved { .. }), "{error}");

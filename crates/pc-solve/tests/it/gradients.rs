@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow::Continue;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     AdjointOptions, Event, Events, Failure, FnEvents, Functional, InputError, Integration, Krylov,
     LinearSolver, Method, Options, Pattern, Reason, Sensitivities, SolveError, VectorField, adjoint_gradient,
@@ -248,7 +248,7 @@ fn over_events_the_adjoint_agrees_with_forward_sensitivities() {
     }
     let columns = Sensitivities::new().by_starts([0, 1]).by_parameters([0, 1]);
     let (start, t, options) = ([1.0, 0.7, 0.0], 20.0, sharp(Method::Adams));
-    let cvode = Integration::with_sensitivities(wide, 0.0, &start, &options, &columns).unwrap();
+    let cvode = Integration::with_sensitivities(erased(wide), 0.0, &start, &options, &columns).unwrap();
     let mut hybrid = cvode.with_events(Wide(wall_and_switch(p[0]))).unwrap();
     let mut occurred = [0; 2];
     hybrid
@@ -435,9 +435,14 @@ fn large_systems_take_no_dense_matrix() {
     let columns = Sensitivities::new().along(direction.clone()).by_parameters([0, 1]);
     let options = Options::new(Method::Bdf).relative_tolerance(1e-10).absolute_tolerance(1e-12);
     let sparse = options.clone().linear_solver(LinearSolver::Sparse);
-    let mut forward =
-        Integration::with_sensitivities(diffusion(n, p, Offer::Colours), 0.0, &start, &sparse, &columns)
-            .unwrap();
+    let mut forward = Integration::with_sensitivities(
+        erased(diffusion(n, p, Offer::Colours)),
+        0.0,
+        &start,
+        &sparse,
+        &columns,
+    )
+    .unwrap();
     forward.state_at(t).unwrap();
     let u = forward.state().to_vec();
     let matrix = forward.sensitivities().unwrap();

@@ -3,6 +3,7 @@
 use std::num::NonZeroU64;
 use std::ops::ControlFlow::Continue;
 
+use crate::boxed::erased;
 use crate::fields::{ProgramEvents, field, program};
 use pc_expr::{Event, ProgramField};
 use pc_solve::{Checkpoint, Method, Options, Solution, Solve, solve_checkpointed};
@@ -41,7 +42,7 @@ fn sharp(method: Method) -> Options {
 
 fn run(parts: Parts, y0: &[f64], times: &[f64], options: &Options) -> Solution {
     let (field, events) = parts();
-    Solve::new(field, 0.0, y0).method(options).events(events).run(times).unwrap()
+    Solve::new(erased(field), 0.0, y0).method(options).events(events).run(times).unwrap()
 }
 
 /// The first landing is at √2, the following flights take 2√2 · 0.8ⁿ.

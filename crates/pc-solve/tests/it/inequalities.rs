@@ -1,6 +1,6 @@
 //! Components that keep their sign.
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Code, Inequality, Integration, LinearSolver, Method, NonlinearSolver, Options, Pattern, SolveError,
 };
@@ -12,7 +12,7 @@ fn least(options: &Options) -> f64 {
         Ok(())
     })
     .with_sparsity(Pattern::full(1, 1));
-    let mut cvode = Integration::new(decay, 0.0, &[1.0], options).unwrap();
+    let mut cvode = Integration::new(erased(decay), 0.0, &[1.0], options).unwrap();
     let mut least = f64::INFINITY;
     while cvode.time() < 2.0 {
         cvode.step_towards(2.0).unwrap();
@@ -48,7 +48,7 @@ fn an_inequality_that_cannot_be_kept_ends_the_integration() {
             ydot[0] = -1.0;
             Ok(())
         });
-        let mut cvode = Integration::new(fall, 0.0, &[1.0], &options).unwrap();
+        let mut cvode = Integration::new(erased(fall), 0.0, &[1.0], &options).unwrap();
         let error = cvode.state_at(2.0).unwrap_err();
         let (t, y) = error.reached().unwrap();
         assert!(t > 0.99 && t <= 1.0 && y[0] >= 0.0, "{t} {y:?}: {error}");
@@ -69,7 +69,7 @@ fn quotients_keep_to_their_side() {
         Ok(())
     })
     .with_sparsity(Pattern::full(1, 1));
-    let mut cvode = Integration::new(field, 0.0, &[0.0], &options).unwrap();
+    let mut cvode = Integration::new(erased(field), 0.0, &[0.0], &options).unwrap();
     cvode.state_at(1.0).unwrap();
     assert!(cvode.statistics().jacobian_evaluations > 0);
     assert!(!crossed.get());
@@ -83,7 +83,7 @@ fn starts_that_do_not_satisfy_them_are_refused() {
             Ok(())
         });
         let options = Options::default().inequalities(inequalities);
-        match Integration::new(field.with_names(["x"]), 0.0, y0, &options) {
+        match Integration::new(erased(field.with_names(["x"])), 0.0, y0, &options) {
             Ok(_) => "taken".to_owned(),
             Err(error) => error.to_string(),
         }
@@ -113,7 +113,7 @@ fn starts_that_do_not_satisfy_them_are_refused() {
     })
     .with_projection(|_t, _y| Ok(()));
     let options = Options::default().inequalities(vec![Free]);
-    let error = Integration::new(projected, 0.0, &[0.0], &options).unwrap_err();
+    let error = Integration::new(erased(projected), 0.0, &[0.0], &options).unwrap_err();
     assert!(matches!(error, SolveError::Input(_)));
     assert_eq!(
         error.to_string(),
@@ -131,7 +131,7 @@ fn a_new_start_is_checked() {
         })
     };
     let options = Options::default().inequalities(vec![Inequality::NotNegative]);
-    let mut cvode = Integration::new(falling(), 0.0, &[1.0], &options).unwrap();
+    let mut cvode = Integration::new(erased(falling()), 0.0, &[1.0], &options).unwrap();
     cvode.state_at(0.1).unwrap();
     let refused = cvode.restart(0.1, &[-1.0]).unwrap_err();
     assert!(

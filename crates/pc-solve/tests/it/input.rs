@@ -2,6 +2,8 @@
 
 use pc_solve::{Failure, FnField, Integration, Method, Options, VectorField, solve};
 
+use crate::boxed::erased;
+
 type Rhs = fn(f64, &[f64], &mut [f64]) -> Result<(), Failure>;
 
 fn drift(dim: usize) -> FnField<Rhs> {
@@ -13,7 +15,7 @@ fn drift(dim: usize) -> FnField<Rhs> {
 
 #[track_caller]
 fn assert_refused(options: &Options, expected: &str) {
-    let error = Integration::new(drift(2), 0.0, &[0.0, 0.0], options).expect_err("must be refused");
+    let error = Integration::new(erased(drift(2)), 0.0, &[0.0, 0.0], options).expect_err("must be refused");
     assert_eq!(error.to_string(), expected);
     assert_eq!(error.reached(), None);
     assert_eq!(error.code(), None);
@@ -52,7 +54,7 @@ fn options() {
 #[test]
 fn start() {
     let refusal = |field: FnField<Rhs>, t0: f64, y0: &[f64]| {
-        Integration::new(field, t0, y0, &Options::default()).expect_err("must be refused").to_string()
+        Integration::new(erased(field), t0, y0, &Options::default()).expect_err("must be refused").to_string()
     };
     assert_eq!(refusal(drift(0), 0.0, &[]), "the vector field has no components");
     assert_eq!(
@@ -71,7 +73,7 @@ fn start() {
 #[test]
 fn times() {
     let refusal = |times: &[f64]| {
-        let failure = solve(drift(1), 1.0, &[0.0], times, &Options::default()).unwrap_err();
+        let failure = solve(erased(drift(1)), 1.0, &[0.0], times, &Options::default()).unwrap_err();
         assert!(failure.reached.is_empty());
         assert_eq!(failure.reached.last(), None);
         failure.to_string()
@@ -90,15 +92,15 @@ fn times() {
     );
     assert_eq!(refusal(&[0.5, 1.5]), "t = 0.5 has already been passed: the integration has reached t = 1");
     let options = Options::default().stop_time(1.5);
-    let failure = solve(drift(1), 1.0, &[0.0], &[1.2, 1.6], &options).unwrap_err();
+    let failure = solve(erased(drift(1)), 1.0, &[0.0], &[1.2, 1.6], &options).unwrap_err();
     assert_eq!(failure.to_string(), "t = 1.6 lies beyond the stop time 1.5");
-    let failure = solve(drift(0), 1.0, &[], &[2.0], &options).unwrap_err();
+    let failure = solve(erased(drift(0)), 1.0, &[], &[2.0], &options).unwrap_err();
     assert_eq!(failure.reached.iter().len(), 0);
 }
 
 #[test]
 fn directions() {
-    let mut cvode = Integration::new(drift(1), 0.0, &[0.0], &Options::default()).unwrap();
+    let mut cvode = Integration::new(erased(drift(1)), 0.0, &[0.0], &Options::default()).unwrap();
     assert_eq!(cvode.step_towards(0.0).unwrap_err().to_string(), "the end time equals the start time, t = 0");
     cvode.state_at(1.0).unwrap();
     assert_eq!(
@@ -120,7 +122,8 @@ fn directions() {
     assert_eq!(cvode.time(), 1.0);
     assert!((cvode.state_at(2.0).unwrap()[0] - 2.0).abs() < 1e-9);
 
-    let mut behind = Integration::new(drift(1), 0.0, &[0.0], &Options::default().stop_time(-1.0)).unwrap();
+    let mut behind =
+        Integration::new(erased(drift(1)), 0.0, &[0.0], &Options::default().stop_time(-1.0)).unwrap();
     assert_eq!(behind.state_at(1.0).unwrap_err().to_string(), "t = 1 lies beyond the stop time -1");
     behind.state_at(-1.0).unwrap();
 }

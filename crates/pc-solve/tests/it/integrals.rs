@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow::Continue;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Event, Failure, FnEvents, InputError, Integrals, Integration, Method, NonFinite, Options, Sensitivities,
     SolveError, VectorField, solve, solve_with_integrals,
@@ -33,7 +33,7 @@ fn closed_forms() {
             for sign in [1.0, -1.0] {
                 let times: Vec<f64> = (0..=30).map(|i| sign * f64::from(i) / 10.0).collect();
                 let (motion, values) =
-                    solve_with_integrals(decay(), 0.0, &[1.0], &times, &options, moments()).unwrap();
+                    solve_with_integrals(erased(decay()), 0.0, &[1.0], &times, &options, moments()).unwrap();
                 assert!(motion.is_complete() && values.len() == 31);
                 for (t, values) in times.iter().zip(&values) {
                     let exact = [1.0 - (-t).exp(), (1.0 - (-2.0 * t).exp()) / 2.0];
@@ -67,13 +67,14 @@ fn error_control() {
     };
     let options = Options::new(Method::Adams).relative_tolerance(1e-8).absolute_tolerance(1e-10);
     let run = |integrals: Integrals| {
-        let mut cvode = Integration::with_integrals(still(), 0.0, &[1.0], &options, integrals).unwrap();
+        let mut cvode =
+            Integration::with_integrals(erased(still()), 0.0, &[1.0], &options, integrals).unwrap();
         cvode.state_at(2.0).unwrap();
         (cvode.integrals().unwrap()[0], cvode.statistics().steps)
     };
     let (found, steps) = run(wave());
     assert!((found - 10.0_f64.sin() / 5.0).abs() < 1e-7, "{found}");
-    let plain = solve(still(), 0.0, &[1.0], &[2.0], &options).unwrap().statistics().steps;
+    let plain = solve(erased(still()), 0.0, &[1.0], &[2.0], &options).unwrap().statistics().steps;
     let (_, careless) = run(wave().error_control(false));
     assert!(careless <= plain + 1 && steps > 2 * careless, "{steps} {careless} {plain}");
     let (loose, fewer) = run(wave().tolerances(1e-3, 1e-4));
@@ -100,7 +101,7 @@ fn over_events() {
     });
     let options = Options::new(Method::Adams).relative_tolerance(1e-10).absolute_tolerance(1e-12);
     let columns = Sensitivities::new().by_start(0);
-    let cvode = Integration::with_sensitivities(ball, 0.0, &[h, 0.0], &options, &columns).unwrap();
+    let cvode = Integration::with_sensitivities(erased(ball), 0.0, &[h, 0.0], &options, &columns).unwrap();
     let mut hybrid = cvode.and_integrals(height, &options).unwrap().with_events(bounce).unwrap();
     let w = (2.0 * g * h).sqrt();
     let (first, second) = (w / g, 2.0 * e * w / g);
@@ -131,7 +132,7 @@ fn over_events() {
 #[test]
 fn integrals_continue_over_a_restart() {
     let options = Options::new(Method::Bdf).relative_tolerance(1e-10).absolute_tolerance(1e-12);
-    let mut cvode = Integration::with_integrals(decay(), 0.0, &[1.0], &options, moments()).unwrap();
+    let mut cvode = Integration::with_integrals(erased(decay()), 0.0, &[1.0], &options, moments()).unwrap();
     assert_eq!(cvode.integrals().unwrap(), [0.0, 0.0]);
     cvode.state_at(0.77).unwrap(); // inside a step
     let first = cvode.integrals().unwrap()[0];
@@ -160,7 +161,7 @@ fn of_projected_states() {
         Ok(())
     });
     let mut cvode =
-        Integration::with_integrals(circle, 0.0, &[1.0, 0.0], &Options::default(), radius).unwrap();
+        Integration::with_integrals(erased(circle), 0.0, &[1.0, 0.0], &Options::default(), radius).unwrap();
     cvode.state_at(20.0).unwrap();
     assert!((cvode.integrals().unwrap()[0] - 20.0).abs() < 1e-6);
 }
@@ -168,7 +169,8 @@ fn of_projected_states() {
 #[test]
 fn invalid_integrals_are_refused() {
     let options = Options::default();
-    let begin = |integrals: Integrals| Integration::with_integrals(decay(), 0.0, &[1.0], &options, integrals);
+    let begin =
+        |integrals: Integrals| Integration::with_integrals(erased(decay()), 0.0, &[1.0], &options, integrals);
     let none = Integrals::new(0, |_, _, _| Ok(()));
     assert_eq!(begin(none).unwrap_err().to_string(), "the number of integrals is 0, but must be positive");
     assert!(begin(moments().tolerances(0.0, 1.0)).is_err());
@@ -176,7 +178,7 @@ fn invalid_integrals_are_refused() {
     cvode.state_at(1.0).unwrap();
     let error = cvode.and_integrals(moments(), &options).unwrap_err();
     assert!(matches!(error, SolveError::Input(InputError::NoIntegrals)));
-    let mut plain = Integration::new(decay(), 0.0, &[1.0], &options).unwrap();
+    let mut plain = Integration::new(erased(decay()), 0.0, &[1.0], &options).unwrap();
     assert!(matches!(plain.integrals().unwrap_err(), SolveError::Input(InputError::NoIntegrals)));
 
     let unwritten = Integrals::new(2, |_, _, rates| {

@@ -12,6 +12,8 @@ use pc_solve::{
 };
 use rand_chacha::rand_core::Rng;
 
+use crate::boxed::erased;
+
 /// A field of (y₀, y₁ …) with parameters (p, q).
 fn program(dim: usize, rates: impl for<'g> Fn(&[Expr<'g>], Expr<'g>, Expr<'g>) -> Vec<Expr<'g>>) -> Program {
     let graph = Graph::new();
@@ -113,11 +115,11 @@ fn lanes_agree_with_single_motions_within_the_tolerance() {
             let mut steps = [0; 2];
             for (member, motion) in found.iter().enumerate() {
                 let (single, start) = make(member as u64).unwrap();
-                let exact = solve(single.clone(), t0, &start, &times, &options(1e-14)).unwrap();
+                let exact = solve(erased(single.clone()), t0, &start, &times, &options(1e-14)).unwrap();
                 for (a, b) in motion.states().iter().zip(exact.states()) {
                     assert!((a - b).abs() <= 300.0 * rtol * (1.0 + b.abs()), "{member}: {a} {b} at {rtol:e}");
                 }
-                let single = solve(single, t0, &start, &times, &options(rtol)).unwrap();
+                let single = solve(erased(single), t0, &start, &times, &options(rtol)).unwrap();
                 steps[0] += motion.statistics().steps;
                 steps[1] += single.statistics().steps;
             }
@@ -173,7 +175,7 @@ fn a_member_that_fails_reports_as_alone_and_leaves_the_others_unchanged() {
                 Err(error) => {
                     assert_eq!(member % 5, 3);
                     let (field, start) = make(true)(member).unwrap();
-                    let alone = solve(field, 0.0, &start, &[0.25, 2.0], &options(1e-9)).unwrap_err();
+                    let alone = solve(erased(field), 0.0, &start, &[0.25, 2.0], &options(1e-9)).unwrap_err();
                     assert_eq!(error.to_string(), alone.to_string());
                     assert_eq!(error.reached(), alone.error.reached());
                     failed += 1;
@@ -273,7 +275,8 @@ fn limits_of_steps_are_those_of_single_motions() {
     let program = pendulum();
     let make = |_| Ok::<_, Failure>((of(&program, [1.0, 0.0]), vec![1.0, 0.0]));
     let alone =
-        solve(of(&program, [1.0, 0.0]), 0.0, &[1.0, 0.0], &[9.0], &options(1e-9).max_steps(4)).unwrap_err();
+        solve(erased(of(&program, [1.0, 0.0])), 0.0, &[1.0, 0.0], &[9.0], &options(1e-9).max_steps(4))
+            .unwrap_err();
     let mut errors = Vec::new();
     ensemble(1, 8)
         .solve(0..3, make, 0.0, &[9.0], &options(1e-9).max_steps(4), |_, motion| {
@@ -352,7 +355,7 @@ fn stiff_members_are_integrated_by_themselves() {
     let all = of_threads(1, 16);
     assert_eq!(bits(&all), bits(&of_threads(2, 5)));
     for (member, motion) in (0..).zip(&all) {
-        let alone = solve(field(member), 0.0, &[2.0, 0.0], &times, &auto).unwrap();
+        let alone = solve(erased(field(member)), 0.0, &[2.0, 0.0], &times, &auto).unwrap();
         if member % 3 == 1 {
             assert_eq!((motion, motion.statistics().lane_steps), (&alone, 0), "{member}");
             assert!(alone.statistics().stiff_from.is_some(), "{member}");

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Failure, FnField, InputError, Integration, Krylov, LinearSolver, Method, NonlinearSolver, Options,
     Pattern, Preconditioner, Side, SolveError, Statistics, VectorField, solve,
@@ -80,7 +80,7 @@ fn options(solver: LinearSolver) -> Options {
 
 /// Integrates to t = 0.3, where the slow mode is e^(−1.8), and checks the end.
 fn run(rod: Rod, field: impl VectorField, solver: &LinearSolver) -> Statistics {
-    let motion = solve(field, 0.0, &rod.exact(0.0), &[0.3], &options(solver.clone())).unwrap();
+    let motion = solve(erased(field), 0.0, &rod.exact(0.0), &[0.3], &options(solver.clone())).unwrap();
     for (y, exact) in motion.state(0).iter().zip(rod.exact(0.3)) {
         // Some hundred steps of local errors of 1e-9.
         assert!((y - exact).abs() < 1e-7, "{solver:?}: {y} is not {exact}");
@@ -217,7 +217,7 @@ fn preconditioners_save_iterations() {
         })
     };
     let start = vec![1.0; n];
-    let motion = |solver| solve(field(), 0.0, &start, &[1.0], &options(solver)).unwrap();
+    let motion = |solver| solve(erased(field()), 0.0, &start, &[1.0], &options(solver)).unwrap();
     let plain = motion(LinearSolver::Krylov(Krylov::new(30)));
     let sparse = motion(LinearSolver::Sparse);
     for side in [Side::Left, Side::Right] {
@@ -261,7 +261,7 @@ fn singular_matrices_are_overcome() {
             Ok(())
         });
         let options = options(solver.clone()).initial_step(1.0 / lambda);
-        let motion = solve(growth, 0.0, &vec![1.0; n], &[3.0 / lambda], &options).unwrap();
+        let motion = solve(erased(growth), 0.0, &vec![1.0; n], &[3.0 / lambda], &options).unwrap();
         let work = motion.statistics();
         assert!(work.step_failures > 0, "{solver:?}: {work:?}");
         // Zero pivots of sparse factors are found only when solving.
@@ -282,7 +282,8 @@ fn the_linear_solver_is_chosen_by_size_and_pattern() {
             Some(pattern) => field.with_sparsity(pattern),
             None => field,
         };
-        Integration::new(field, 0.0, &vec![0.0; n], options).map(|cvode| cvode.linear_solver().cloned())
+        Integration::new(erased(field), 0.0, &vec![0.0; n], options)
+            .map(|cvode| cvode.linear_solver().cloned())
     };
     let bdf = Options::new(Method::Bdf);
     let rod = |n| Some(Rod::new(n).pattern());
@@ -337,7 +338,8 @@ fn weights_and_errors_are_those_of_the_test() {
     let rod = Rod::new(5);
     let calls = Arc::new(AtomicU64::new(0));
     let mut cvode =
-        Integration::new(analytic(rod, &calls), 0.0, &rod.exact(0.0), &options(LinearSolver::Dense)).unwrap();
+        Integration::new(erased(analytic(rod, &calls)), 0.0, &rod.exact(0.0), &options(LinearSolver::Dense))
+            .unwrap();
     assert!(matches!(cvode.error_weights(), Err(SolveError::Input(InputError::NoStep))));
     assert!(matches!(cvode.local_errors(), Err(SolveError::Input(InputError::NoStep))));
     let start = cvode.statistics();

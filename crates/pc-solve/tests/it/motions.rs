@@ -3,6 +3,7 @@
 //! All methods control the local error, which adds up over an interval; these tests allow 1000
 //! times the relative tolerance, over intervals in which neighbouring motions do not diverge.
 
+use crate::boxed::erased;
 use crate::fields::{field, oscillator};
 use pc_expr::ProgramField;
 use pc_solve::{Method, NonlinearSolver, Options, solve};
@@ -39,7 +40,7 @@ fn assert_near(found: &[f64], expected: &[f64]) {
 fn linear_oscillator() {
     let times: Vec<f64> = (0..=20).map(f64::from).collect();
     for options in all_options() {
-        let motion = solve(oscillator(), 0.0, &[1.0, 0.0], &times, &options).unwrap();
+        let motion = solve(erased(oscillator()), 0.0, &[1.0, 0.0], &times, &options).unwrap();
         assert!(motion.is_complete());
         assert_eq!(motion.times(), times);
         assert_eq!(motion.state(0), [1.0, 0.0]);
@@ -53,7 +54,7 @@ fn linear_oscillator() {
 fn linear_oscillator_backwards() {
     let times: Vec<f64> = (1..=20).map(|i| -f64::from(i)).collect();
     for options in all_options() {
-        let motion = solve(oscillator(), 0.0, &[1.0, 0.0], &times, &options).unwrap();
+        let motion = solve(erased(oscillator()), 0.0, &[1.0, 0.0], &times, &options).unwrap();
         for (t, y) in motion.iter() {
             assert_near(y, &[t.cos(), -t.sin()]);
         }
@@ -66,7 +67,7 @@ fn exponential_with_a_tolerance_for_each_component() {
     for options in all_options() {
         let decay = field(|_, [x, y]| [-x, y * -1e-6]);
         let options = options.absolute_tolerance(vec![1e-12, 1e-18]);
-        let motion = solve(decay, 1.0, &[1.0, 1e-6], &[2.0, 3.0], &options).unwrap();
+        let motion = solve(erased(decay), 1.0, &[1.0, 1e-6], &[2.0, 3.0], &options).unwrap();
         for (t, y) in motion.iter() {
             assert_near(&[y[0], 1e6 * y[1]], &[(1.0 - t).exp(), (1e-6 * (1.0 - t)).exp()]);
         }
@@ -78,10 +79,10 @@ fn exponential_with_a_tolerance_for_each_component() {
 fn right_hand_side_of_time() {
     for options in all_options() {
         let rising = field(|t, [_y]| [t * 2.0]);
-        let motion = solve(rising, -1.0, &[1.0], &[0.5, 3.0], &options).unwrap();
+        let motion = solve(erased(rising), -1.0, &[1.0], &[0.5, 3.0], &options).unwrap();
         assert_near(motion.states(), &[0.25, 9.0]);
         let falling = field(|t, [_y]| [t * 2.0]);
-        let motion = solve(falling, 3.0, &[9.0], &[0.5, -1.0], &options).unwrap();
+        let motion = solve(erased(falling), 3.0, &[9.0], &[0.5, -1.0], &options).unwrap();
         assert_near(motion.states(), &[0.25, 1.0]);
     }
 }
@@ -97,7 +98,7 @@ fn free_top_on_the_separatrix() {
     let root3 = 3.0_f64.sqrt();
     for options in all_options() {
         for times in [[1.0, 2.0, 3.0], [-1.0, -2.0, -3.0]] {
-            let motion = solve(top(), 0.0, &[root3, 0.0, 1.0], &times, &options).unwrap();
+            let motion = solve(erased(top()), 0.0, &[root3, 0.0, 1.0], &times, &options).unwrap();
             for (t, w) in motion.iter() {
                 let sech = 1.0 / t.cosh();
                 let growth = t.abs().exp();
@@ -114,7 +115,7 @@ fn free_top_on_the_separatrix() {
 fn free_top() {
     for options in all_options() {
         for end in [20.0_f64, -20.0] {
-            let motion = solve(top(), 0.0, &[1.0, 0.0, 1.0], &[end], &options).unwrap();
+            let motion = solve(erased(top()), 0.0, &[1.0, 0.0, 1.0], &[end], &options).unwrap();
             let sn = (-0.7043589832440595_f64).copysign(-end);
             assert_near(motion.state(0), &[0.7098439425137012, sn, 0.9135787546280825]);
         }

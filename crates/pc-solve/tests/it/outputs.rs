@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::ops::ControlFlow::{self, Break, Continue};
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Cvode, Ending, Failure, InputError, Integration, Method, NonlinearSolver, Observed, Options, Solve,
     SolveError, VectorField, solve,
@@ -16,7 +16,7 @@ fn pendulum(_t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
 }
 
 fn pendulum_at(t0: f64, options: &Options) -> Integration<Cvode<impl VectorField + use<>>> {
-    Integration::new(from_fn(2, pendulum), t0, &[1.0, 0.0], options).expect("valid input")
+    Integration::new(erased(from_fn(2, pendulum)), t0, &[1.0, 0.0], options).expect("valid input")
 }
 
 /// Outputs are read from the polynomials of the internal steps, which depend on the last output
@@ -28,8 +28,8 @@ fn outputs_do_not_depend_on_the_grid() {
         let coarse: Vec<f64> = (0..=10).map(f64::from).collect();
         let fine: Vec<f64> = (0..=1000).map(|i| f64::from(i) / 100.0).collect();
         let start = [1.0, 0.0];
-        let coarse = solve(from_fn(2, pendulum), 0.0, &start, &coarse, &options).unwrap();
-        let fine = solve(from_fn(2, pendulum), 0.0, &start, &fine, &options).unwrap();
+        let coarse = solve(erased(from_fn(2, pendulum)), 0.0, &start, &coarse, &options).unwrap();
+        let fine = solve(erased(from_fn(2, pendulum)), 0.0, &start, &fine, &options).unwrap();
         for i in 0..coarse.len() {
             assert_eq!(coarse.times()[i], fine.times()[100 * i]);
             assert_eq!(coarse.state(i), fine.state(100 * i));
@@ -158,7 +158,7 @@ fn an_output_observer_stops() {
 fn a_step_observer_stops() {
     let interrupted = Cell::new(false);
     let mut steps = 0;
-    let motion = Solve::new(from_fn(2, pendulum), 0.0, &[1.0, 0.0])
+    let motion = Solve::new(erased(from_fn(2, pendulum)), 0.0, &[1.0, 0.0])
         .method(&Options::default())
         .run_observed(&[1.0, 2.0, 50.0], |t, y| {
             assert_eq!(y.len(), 2);
@@ -214,17 +214,17 @@ fn nothing_is_evaluated_beyond_the_stop_time() {
                 })
             };
             let options = options.relative_tolerance(1e-2).absolute_tolerance(1.0);
-            let motion = solve(field(), 0.0, &[0.0], &[0.3 * end, end], &options).unwrap();
+            let motion = solve(erased(field()), 0.0, &[0.0], &[0.3 * end, end], &options).unwrap();
             assert_eq!(motion.last().unwrap().0, end);
             assert!(farthest.get() <= 1.0, "{}", farthest.get());
 
             farthest.set(0.0);
-            let mut cvode = Integration::new(field(), 0.0, &[0.0], &options).unwrap();
+            let mut cvode = Integration::new(erased(field()), 0.0, &[0.0], &options).unwrap();
             cvode.state_at(end).unwrap();
             assert!(farthest.get() > 1.0);
 
             farthest.set(0.0);
-            let mut cvode = Integration::new(field(), 0.0, &[0.0], &options.stop_time(end)).unwrap();
+            let mut cvode = Integration::new(erased(field()), 0.0, &[0.0], &options.stop_time(end)).unwrap();
             cvode.state_at(0.5 * end).unwrap();
             cvode.state_at(end).unwrap();
             assert!(farthest.get() <= 1.0);
@@ -258,7 +258,8 @@ fn limits_of_step_and_order_are_kept() {
 
 #[test]
 fn trajectories_are_read_by_time_and_by_component() {
-    let motion = solve(from_fn(2, pendulum), 0.0, &[1.0, 0.0], &[0.0, 1.0], &Options::default()).unwrap();
+    let motion =
+        solve(erased(from_fn(2, pendulum)), 0.0, &[1.0, 0.0], &[0.0, 1.0], &Options::default()).unwrap();
     assert_eq!((motion.dim(), motion.len(), motion.is_empty()), (2, 2, false));
     assert_eq!(motion.states(), [motion.state(0), motion.state(1)].concat());
     assert_eq!(motion.component(1).collect::<Vec<_>>(), [0.0, motion.state(1)[1]]);
@@ -276,7 +277,7 @@ fn statistics_count_all_evaluations() {
                 pendulum(t, y, ydot)
             });
             let options = Options::new(method).nonlinear_solver(solver);
-            let motion = solve(field, 0.0, &[1.0, 0.0], &[10.0], &options).unwrap();
+            let motion = solve(erased(field), 0.0, &[1.0, 0.0], &[10.0], &options).unwrap();
             let work = motion.statistics();
             assert_eq!(work.rhs_evaluations, calls.get());
             assert_eq!((work.current_time, work.steps > 0, work.last_order > 0), (10.0, true, true));

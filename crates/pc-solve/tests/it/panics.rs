@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{Failure, Integration, Method, Observed, Options, VectorField, solve};
 
 /// ẏ = 1, which panics or fails after some time, and counts its drops.
@@ -70,7 +70,7 @@ fn a_panic_reaches_the_caller_and_leaves_the_last_state() {
         let drops = Rc::new(Cell::new(0));
         let field = Fragile { panics_from: 2.0, ..Fragile::new(&drops) };
         let options = Options::new(method).max_step(0.1);
-        let mut cvode = Integration::new(field, 0.0, &[0.0], &options).unwrap();
+        let mut cvode = Integration::new(erased(field), 0.0, &[0.0], &options).unwrap();
         cvode.state_at(1.0).unwrap();
         for _ in 0..3 {
             let panic = catch_unwind(AssertUnwindSafe(|| cvode.state_at(3.0).map(<[f64]>::len))).unwrap_err();
@@ -88,19 +88,21 @@ fn a_panic_reaches_the_caller_and_leaves_the_last_state() {
 fn a_panic_unwinds_through_solve() {
     let drops = Rc::new(Cell::new(0));
     let field = Fragile { panics_from: 0.0, ..Fragile::new(&drops) };
-    let run = || solve(field, 0.0, &[0.0], &[1.0], &Options::default()).map(|motion| motion.len());
+    let run = || solve(erased(field), 0.0, &[0.0], &[1.0], &Options::default()).map(|motion| motion.len());
     let panic = catch_unwind(AssertUnwindSafe(run)).unwrap_err();
     assert_eq!(message(&*panic), "no further than 0");
     assert_eq!(drops.get(), 1);
 
     let field = Fragile { jacobian_panics: true, ..Fragile::new(&drops) };
-    let run = || solve(field, 0.0, &[0.0], &[1.0], &Options::new(Method::Bdf)).map(|motion| motion.len());
+    let run =
+        || solve(erased(field), 0.0, &[0.0], &[1.0], &Options::new(Method::Bdf)).map(|motion| motion.len());
     let panic = catch_unwind(AssertUnwindSafe(run)).unwrap_err();
     assert_eq!(message(&*panic), "no Jacobian");
     assert_eq!(drops.get(), 1);
 
     // Other integrations are not affected.
-    let motion = solve(Fragile::new(&drops), 0.0, &[0.0], &[1.0], &Options::new(Method::Bdf)).unwrap();
+    let motion =
+        solve(erased(Fragile::new(&drops)), 0.0, &[0.0], &[1.0], &Options::new(Method::Bdf)).unwrap();
     assert!((motion.state(0)[0] - 1.0).abs() < 1e-9);
     assert_eq!(drops.get(), 1);
 }
@@ -109,7 +111,8 @@ fn a_panic_unwinds_through_solve() {
 fn a_panicking_observer_leaves_the_solver_usable() {
     let drops = Rc::new(Cell::new(0));
     let mut cvode =
-        Integration::new(Fragile::new(&drops), 0.0, &[0.0], &Options::default().max_step(0.1)).unwrap();
+        Integration::new(erased(Fragile::new(&drops)), 0.0, &[0.0], &Options::default().max_step(0.1))
+            .unwrap();
     let panic =
         catch_unwind(AssertUnwindSafe(|| cvode.run(&[1.0, 2.0], |t, _| panic!("seen {t}")))).unwrap_err();
     assert_eq!(message(&*panic), "seen 1");
@@ -139,7 +142,7 @@ fn a_panic_while_naming_a_component() {
             panic!("component {i} has no name")
         }
     }
-    let run = || solve(Nameless, 0.0, &[0.0], &[1.0], &Options::default()).map(|motion| motion.len());
+    let run = || solve(erased(Nameless), 0.0, &[0.0], &[1.0], &Options::default()).map(|motion| motion.len());
     assert_eq!(message(&*catch_unwind(run).unwrap_err()), "component 0 has no name");
 }
 
@@ -149,25 +152,25 @@ fn the_field_is_dropped_once() {
     let options = Options::default();
 
     // Before the first step.
-    drop(Integration::new(Fragile::new(&drops), 0.0, &[0.0], &options).unwrap());
+    drop(Integration::new(erased(Fragile::new(&drops)), 0.0, &[0.0], &options).unwrap());
     assert_eq!(drops.get(), 1);
 
     // In the middle of a step.
-    let mut cvode = Integration::new(Fragile::new(&drops), 0.0, &[0.0], &options).unwrap();
+    let mut cvode = Integration::new(erased(Fragile::new(&drops)), 0.0, &[0.0], &options).unwrap();
     cvode.state_at(1.0).unwrap();
     drop(cvode);
     assert_eq!(drops.get(), 1);
 
     // After an error; the error outlives the solver.
     let field = Fragile { fails_from: 1.0, ..Fragile::new(&drops) };
-    let mut cvode = Integration::new(field, 0.0, &[0.0], &options).unwrap();
+    let mut cvode = Integration::new(erased(field), 0.0, &[0.0], &options).unwrap();
     let error = cvode.state_at(2.0).unwrap_err();
     drop(cvode);
     assert_eq!(drops.get(), 1);
     assert!(error.to_string().starts_with("CV_RHSFUNC_FAIL (-8) after reaching t = "));
 
     // Refused.
-    assert!(Integration::new(Fragile::new(&drops), f64::NAN, &[0.0], &options).is_err());
+    assert!(Integration::new(erased(Fragile::new(&drops)), f64::NAN, &[0.0], &options).is_err());
     assert_eq!(drops.get(), 1);
 
     // The field is returned.
@@ -188,13 +191,14 @@ fn solvers_nest() {
             ydot[0] = y[0];
             Ok(())
         });
-        solve(growth, 0.0, &[1.0], &[end], &Options::default()).map_or(f64::NAN, |motion| motion.state(0)[0])
+        solve(erased(growth), 0.0, &[1.0], &[end], &Options::default())
+            .map_or(f64::NAN, |motion| motion.state(0)[0])
     };
     let outer = from_fn(1, |t: f64, _y: &[f64], ydot: &mut [f64]| {
         ydot[0] = inner(1.0 + t); // e^(1+t)
         Ok(())
     });
     let options = Options::default().relative_tolerance(1e-6);
-    let motion = solve(outer, 0.0, &[0.0], &[1.0], &options).unwrap();
+    let motion = solve(erased(outer), 0.0, &[0.0], &[1.0], &options).unwrap();
     assert!((motion.state(0)[0] - (2.0_f64.exp() - 1.0_f64.exp())).abs() < 1e-5);
 }

@@ -3,6 +3,7 @@
 
 use std::ops::ControlFlow;
 
+use crate::boxed::erased;
 use crate::fields::{ProgramEvents, field, program};
 use pc_expr::{Backend, Event, Expr, Graph, Inputs, Program, ProgramField};
 use pc_solve::{Ending, FnEvents, Integration, Method, Options, Solve, Taylor};
@@ -41,7 +42,8 @@ fn of_clock(function: impl for<'g> Fn(Expr<'g>) -> Expr<'g>) -> Program {
 /// is one step.
 fn passages(method: Method, function: impl for<'g> Fn(Expr<'g>) -> Expr<'g>) -> Vec<f64> {
     let events = ProgramEvents::new(of_clock(function));
-    let motion = Solve::new(clock(), 0.0, &[0.0]).method(options(method)).events(events).run(&[1.0]).unwrap();
+    let motion =
+        Solve::new(erased(clock()), 0.0, &[0.0]).method(options(method)).events(events).run(&[1.0]).unwrap();
     assert_eq!(motion.ending, Some(Ending::Completed));
     if method == Method::Taylor {
         assert_eq!(motion.trajectory.statistics().steps, 1);
@@ -135,7 +137,7 @@ fn no_root_along_a_curved_motion_is_lost() {
                 [all.iter().fold(1.0.into(), |product: Expr<'_>, &root| product * (x - root))]
             });
             let oscillator = field(|_, [x, v]| [v, -x]);
-            let motion = Solve::new(oscillator, 0.0, &[1.0, 0.0])
+            let motion = Solve::new(erased(oscillator), 0.0, &[1.0, 0.0])
                 .method(options(method))
                 .events(ProgramEvents::new(product))
                 .run(&[1.6])
@@ -160,7 +162,8 @@ fn a_function_may_be_much_faster_than_the_motion() {
     for method in Method::ALL {
         let beat = ProgramEvents::new(of_clock(|y| (y * 1000.0).sin()));
         let options = options(method);
-        let motion = Solve::new(clock(), 0.0, &[0.0]).method(options).events(beat).run(&[10.0]).unwrap();
+        let motion =
+            Solve::new(erased(clock()), 0.0, &[0.0]).method(options).events(beat).run(&[10.0]).unwrap();
         assert_eq!(motion.occurrences.len(), 3183, "{method}");
         for (n, occurrence) in (1..).zip(&motion.occurrences) {
             let expected = f64::from(n) * std::f64::consts::PI / 1000.0;

@@ -1,6 +1,6 @@
 //! Fields whose states lie on a surface: a pendulum in Cartesian coordinates.
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{Failure, Method, Options, Reason, SolveError, VectorField, solve};
 
 /// A pendulum of unit length under unit gravity: ṙ = v, v̇ = g − (g·r + |v|²) r/|r|², which does
@@ -53,12 +53,12 @@ fn turn(method: Method, rtol: f64, circle: Circle, end: f64) -> (f64, f64, u64) 
     let options =
         |rtol| Options::new(method).relative_tolerance(rtol).absolute_tolerance(rtol).max_steps(10_000_000);
     let times: Vec<f64> = (1..=500).map(|i| end * f64::from(i) / 500.0).collect();
-    let motion = solve(circle, 0.0, &START, &times, &options(rtol)).unwrap();
+    let motion = solve(erased(circle), 0.0, &START, &times, &options(rtol)).unwrap();
     let by_angle = from_fn(2, |_t, y, ydot| {
         ydot.copy_from_slice(&[y[1], -y[0].cos()]);
         Ok(())
     });
-    let exact = solve(by_angle, 0.0, &[0.0, 2.0], &times, &options(1e-14)).unwrap();
+    let exact = solve(erased(by_angle), 0.0, &[0.0, 2.0], &times, &options(1e-14)).unwrap();
     let mut worst = (0.0f64, 0.0f64);
     for ((_, y), (_, angle)) in motion.iter().zip(exact.iter()) {
         worst.0 = worst.0.max((y[0].hypot(y[1]) - 1.0).abs()).max((y[0] * y[2] + y[1] * y[3]).abs());
@@ -100,7 +100,7 @@ fn projection_preserves_the_order() {
 fn a_state_that_cannot_be_projected_ends_the_integration() {
     let options = Options::new(Method::Adams);
     let circle = Circle { lost_after: 1.0, ..CIRCLE };
-    let failure = solve(circle, 0.0, &START, &[0.5, 3.0], &options).unwrap_err();
+    let failure = solve(erased(circle), 0.0, &START, &[0.5, 3.0], &options).unwrap_err();
     assert_eq!(failure.reached.len(), 1);
     let SolveError::Integration(error) = failure.error else { panic!("no step was taken") };
     assert!(matches!(error.reason, Reason::Projection { t } if t > 1.0));

@@ -4,7 +4,7 @@
 use std::num::NonZeroU64;
 use std::ops::ControlFlow::Continue;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_expr::Failure;
 use pc_solve::{
     Checkpoint, Ending, Event, FixedStep, FnEvents, InputError, Integration, Reason, RungeKutta4, Solve,
@@ -71,7 +71,8 @@ fn states_inside_steps_are_as_accurate_and_rates_nearly() {
 
 #[test]
 fn dense_output_is_what_interpolation_gives() {
-    let dense = Solve::new(oscillator(), 0.0, &[1.0, 0.0]).method(FixedStep::new(0.1)).dense(1.0).unwrap();
+    let dense =
+        Solve::new(erased(oscillator()), 0.0, &[1.0, 0.0]).method(FixedStep::new(0.1)).dense(1.0).unwrap();
     assert_eq!(dense.span(), Some((0.0, 1.0)));
     for i in 0..=40 {
         let t = f64::from(i) / 40.0;
@@ -99,8 +100,11 @@ fn ball() -> (impl VectorField, FnEvents<'static>) {
 #[test]
 fn a_ball_bounces_when_it_should() {
     let (fall, bounce) = ball();
-    let motion =
-        Solve::new(fall, 0.0, &[1.0, 0.0]).method(FixedStep::new(0.07)).events(bounce).run(&[1.2]).unwrap();
+    let motion = Solve::new(erased(fall), 0.0, &[1.0, 0.0])
+        .method(FixedStep::new(0.07))
+        .events(bounce)
+        .run(&[1.2])
+        .unwrap();
     // The fall takes τ = √(2/g), each flight half as long as the previous one: 2τ/2, 2τ/4, …
     let fall_time = (2.0 / G).sqrt();
     let times = [1.0, 2.0, 2.5].map(|k| k * fall_time);
@@ -139,7 +143,8 @@ fn a_resumed_integration_is_the_same_to_the_last_bit() {
     }
     // A one-step method loses no history at a checkpoint: its steps are those without.
     let (fall, bounce) = ball();
-    let plain = Solve::new(fall, 0.0, &[1.0, 0.0]).method(&method).events(bounce).run(&times).unwrap();
+    let plain =
+        Solve::new(erased(fall), 0.0, &[1.0, 0.0]).method(&method).events(bounce).run(&times).unwrap();
     assert_eq!(plain.occurrences, whole.occurrences);
 }
 
@@ -150,7 +155,8 @@ fn steps_end_at_the_last_time_and_not_beyond() {
         rates[0] = t;
         Ok(())
     };
-    let motion = Solve::new(from_fn(1, late), 0.0, &[0.0]).method(FixedStep::new(0.3)).run(&[1.0]).unwrap();
+    let motion =
+        Solve::new(erased(from_fn(1, late)), 0.0, &[0.0]).method(FixedStep::new(0.3)).run(&[1.0]).unwrap();
     assert!((motion.trajectory.state(0)[0] - 0.5).abs() < 1e-15);
     assert_eq!(motion.trajectory.statistics().steps, 4);
     assert_eq!(motion.trajectory.statistics().rhs_evaluations, 1 + 4 * 4);
@@ -187,7 +193,7 @@ impl VectorField for Switch {
 fn steps_end_where_the_field_jumps() {
     for (t0, end, expected) in [(0.0, 2.5, 1.5), (2.5, 0.0, -1.5)] {
         let field = Switch { breaks: [1.0], on: false };
-        let motion = Solve::new(field, t0, &[0.0]).method(FixedStep::new(0.3)).run(&[end]).unwrap();
+        let motion = Solve::new(erased(field), t0, &[0.0]).method(FixedStep::new(0.3)).run(&[end]).unwrap();
         assert!((motion.trajectory.state(0)[0] - expected).abs() < 1e-14, "{t0} → {end}");
     }
 }
@@ -203,7 +209,8 @@ fn invalid_input_is_refused() {
         rates[0] = -y[0].sqrt() - 1.0;
         Ok(())
     });
-    let failure = Solve::new(root, 0.0, &[1.0]).method(FixedStep::new(0.1)).run(&[0.2, 5.0]).unwrap_err();
+    let failure =
+        Solve::new(erased(root), 0.0, &[1.0]).method(FixedStep::new(0.1)).run(&[0.2, 5.0]).unwrap_err();
     assert_eq!(failure.reached.trajectory.len(), 1);
     let SolveError::Integration(error) = &failure.error else { panic!("{}", failure.error) };
     assert!(matches!(error.reason, Reason::Rates { t } if t > 0.5 && t < 0.9), "{error}");

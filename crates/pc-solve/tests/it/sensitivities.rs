@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use crate::offers::{Circle, Formulas, OFFERS, Offer, Offering, Oscillator, Pendulum, derivative, precise};
 use pc_solve::{
     Correction, Integration, Method, NonlinearSolver, Options, Sensitivities, SensitivityStatistics, solve,
@@ -30,7 +30,8 @@ fn damped_oscillator() {
                 let wanted =
                     Sensitivities::new().by_parameters([1, 0]).by_starts(0..2).correction(correction);
                 let field = Offering(OSCILLATOR, offer);
-                let found = solve_with_sensitivities(field, 0.0, &[a, b], &TIMES, &options, &wanted).unwrap();
+                let found =
+                    solve_with_sensitivities(erased(field), 0.0, &[a, b], &TIMES, &options, &wanted).unwrap();
                 assert_eq!((found.columns(), found.motion().times()), (4, &TIMES[..]));
                 for (t, y, s) in found.iter() {
                     for i in 0..2 {
@@ -59,7 +60,8 @@ fn harmonic_oscillator_by_its_frequency() {
         for offer in OFFERS {
             let field = Offering(Oscillator { damping: 0.0, frequency: w }, offer);
             let wanted = Sensitivities::new().by_parameter(1);
-            let found = solve_with_sensitivities(field, 0.0, &[a, 0.0], &TIMES, &options, &wanted).unwrap();
+            let found =
+                solve_with_sensitivities(erased(field), 0.0, &[a, 0.0], &TIMES, &options, &wanted).unwrap();
             for (t, _, s) in found.iter() {
                 let (sin, cos) = (w * t).sin_cos();
                 // The derivative grows as t, and the error with it.
@@ -94,7 +96,8 @@ fn a_start_that_depends_on_a_parameter() {
             let wanted = Sensitivities::new().by_parameter_from(0, [0.25]).by_parameter(0).along([2.0]);
             let field = Offering(Logistic(p), offer);
             let found =
-                solve_with_sensitivities(field, 0.0, &[p / 4.0], &[1.0, 3.0], &options, &wanted).unwrap();
+                solve_with_sensitivities(erased(field), 0.0, &[p / 4.0], &[1.0, 3.0], &options, &wanted)
+                    .unwrap();
             for (i, t) in [1.0, 3.0].into_iter().enumerate() {
                 let expected = [
                     derivative(|p| exact(t, p, p / 4.0), p),
@@ -141,7 +144,8 @@ fn linear_systems() {
         for t in [2.0, -2.0] {
             let wanted = Sensitivities::new().by_starts(0..N);
             let start = [1.0, -1.0, 0.5, 2.0];
-            let found = solve_with_sensitivities(field(), 0.0, &start, &[t], &options, &wanted).unwrap();
+            let found =
+                solve_with_sensitivities(erased(field()), 0.0, &start, &[t], &options, &wanted).unwrap();
             let expected = exponential(t);
             let size = expected.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
             for (found, expected) in found.matrix(0).iter().zip(&expected) {
@@ -160,11 +164,12 @@ fn the_motion_is_unchanged_without_error_control() {
     for method in [Method::Adams, Method::Bdf] {
         for offer in OFFERS {
             let options = Options::new(method);
-            let alone = solve(Offering(pendulum, offer), 0.0, &[1.0, 0.5], &times, &options).unwrap();
+            let alone = solve(erased(Offering(pendulum, offer)), 0.0, &[1.0, 0.5], &times, &options).unwrap();
             let with = |wanted: &Sensitivities| {
                 let field = Offering(pendulum, offer);
                 let mut cvode =
-                    Integration::with_sensitivities(field, 0.0, &[1.0, 0.5], &options, wanted).unwrap();
+                    Integration::with_sensitivities(erased(field), 0.0, &[1.0, 0.5], &options, wanted)
+                        .unwrap();
                 cvode.set_stop_time(Some(20.0)).unwrap();
                 let (mut states, mut matrix) = (Vec::new(), Vec::new());
                 let output = |_, y: &[f64], s: &[f64]| {
@@ -210,7 +215,8 @@ fn tolerances_of_the_columns() {
         let wanted = Sensitivities::new().by_start(0).tolerances(tolerance, tolerance);
         let field = Offering(Growing, Offer::Jacobian);
         let found =
-            solve_with_sensitivities(field, 0.0, &[0.0], &[3.0], &Options::default(), &wanted).unwrap();
+            solve_with_sensitivities(erased(field), 0.0, &[0.0], &[3.0], &Options::default(), &wanted)
+                .unwrap();
         assert_eq!(found.motion().state(0), [0.0]);
         (found.matrix(0)[0] / 3.0_f64.exp() - 1.0).abs()
     };
@@ -224,7 +230,8 @@ fn stepping() {
     let options = &precise()[0];
     let wanted = Sensitivities::new().by_start(1).by_parameter_from(0, [3.0, 4.0]);
     let field = Offering(OSCILLATOR, Offer::Products);
-    let mut cvode = Integration::with_sensitivities(field, 0.0, &[1.0, 0.0], options, &wanted).unwrap();
+    let mut cvode =
+        Integration::with_sensitivities(erased(field), 0.0, &[1.0, 0.0], options, &wanted).unwrap();
     assert_eq!(cvode.sensitivities().unwrap(), [0.0, 1.0, 3.0, 4.0]);
     assert_eq!(cvode.sensitivity_statistics(), SensitivityStatistics::default());
     let check = |t: f64, s: &[f64]| {
@@ -258,7 +265,7 @@ fn stepping() {
     let field = Offering(OSCILLATOR, Offer::Products);
     let none = Sensitivities::new();
     assert!(none.is_empty());
-    let mut plain = Integration::with_sensitivities(field, 0.0, &[1.0, 0.0], options, &none).unwrap();
+    let mut plain = Integration::with_sensitivities(erased(field), 0.0, &[1.0, 0.0], options, &none).unwrap();
     plain.state_at(1.0).unwrap();
     assert_eq!(plain.sensitivities().unwrap(), [0.0; 0]);
 }
@@ -275,7 +282,8 @@ fn difference_quotients_in_other_units() {
         });
         let options = options.clone().absolute_tolerance(1e-13 * scale);
         let wanted = Sensitivities::new().by_start(0).tolerances(1e-11, 1e-13);
-        let found = solve_with_sensitivities(field, 0.0, &[scale], &[1.0], &options, &wanted).unwrap();
+        let found =
+            solve_with_sensitivities(erased(field), 0.0, &[scale], &[1.0], &options, &wanted).unwrap();
         assert_near(found.matrix(0)[0], 0.25, 1e-8, scale);
     }
 }
@@ -293,7 +301,8 @@ fn stiff() {
         Options::new(Method::Bdf).nonlinear_solver(NonlinearSolver::Newton).relative_tolerance(1e-6);
     for correction in [Correction::Staggered, Correction::Simultaneous] {
         let wanted = Sensitivities::new().by_start(0).correction(correction);
-        let found = solve_with_sensitivities(field(), 0.0, &[0.0], &[10.0], &options, &wanted).unwrap();
+        let found =
+            solve_with_sensitivities(erased(field()), 0.0, &[0.0], &[10.0], &options, &wanted).unwrap();
         assert!(found.matrix(0)[0].abs() < 1e-12); // e^(−1e6), and the absolute tolerance
         assert!(found.motion().statistics().steps < 2000, "{:?}", found.motion().statistics());
     }
@@ -320,12 +329,14 @@ fn fields_with_a_projection() {
             |tolerance| Options::new(method).relative_tolerance(tolerance).absolute_tolerance(tolerance);
         let wanted = Sensitivities::new().by_start(1); // by φ̇₀
         let exact =
-            solve_with_sensitivities(by_angle(), 0.0, &[0.0, 2.0], &times, &options(1e-12), &wanted).unwrap();
+            solve_with_sensitivities(erased(by_angle()), 0.0, &[0.0, 2.0], &times, &options(1e-12), &wanted)
+                .unwrap();
         let mut circle = Circle { farthest: 0.0 };
         let wanted = Sensitivities::new().along([0.0, 0.0, 0.0, 1.0]); // (x, z, ẋ, ż) by φ̇₀
         let start = [1.0, 0.0, 0.0, 2.0];
         let found =
-            solve_with_sensitivities(&mut circle, 0.0, &start, &times, &options(1e-9), &wanted).unwrap();
+            solve_with_sensitivities(erased(&mut circle), 0.0, &start, &times, &options(1e-9), &wanted)
+                .unwrap();
         for ((t, y, s), (_, angle, by)) in found.iter().zip(exact.iter()) {
             assert_near(y[0].hypot(y[1]), 1.0, 1e-15, t);
             // Derivatives grow as t², to 3600, and with them the error from the tolerance 1e-9.

@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow::Continue;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Checkpoint, Correction, DenseOutput, Event, FnEvents, InputError, Integration, Method, Options, Reason,
     Segment, Sensitivities, SolveError, VectorField, solve_dense_with_sensitivities,
@@ -83,7 +83,8 @@ fn a_bouncing_ball() {
         for correction in [Correction::Staggered, Correction::Simultaneous] {
             let columns = columns().correction(correction);
             let cvode =
-                Integration::with_sensitivities(ball(g), 0.0, &[h, 0.0], &sharp(method), &columns).unwrap();
+                Integration::with_sensitivities(erased(ball(g)), 0.0, &[h, 0.0], &sharp(method), &columns)
+                    .unwrap();
             let mut hybrid = cvode.with_events(bounce(e)).unwrap();
             let mut outputs = 0;
             let times = [0.4, 0.6, 0.9, 1.2];
@@ -109,14 +110,19 @@ fn a_bouncing_ball() {
 fn many_bounces() {
     let end = 4.0;
     let motion = |h: f64, g: f64, e: f64| {
-        let cvode = Integration::new(ball(g), 0.0, &[h, 0.0], &sharp(Method::Adams)).unwrap();
+        let cvode = Integration::new(erased(ball(g)), 0.0, &[h, 0.0], &sharp(Method::Adams)).unwrap();
         let mut hybrid = cvode.with_events(bounce(e)).unwrap();
         hybrid.advance_to(end, |_| Continue(())).unwrap();
         hybrid.state().to_vec()
     };
-    let cvode =
-        Integration::with_sensitivities(ball(9.81), 0.0, &[1.0, 0.0], &sharp(Method::Adams), &columns())
-            .unwrap();
+    let cvode = Integration::with_sensitivities(
+        erased(ball(9.81)),
+        0.0,
+        &[1.0, 0.0],
+        &sharp(Method::Adams),
+        &columns(),
+    )
+    .unwrap();
     let mut hybrid = cvode.with_events(bounce(0.9)).unwrap();
     let mut bounces = 0;
     hybrid
@@ -167,7 +173,8 @@ fn an_impact_oscillator_whose_wall_moves_with_a_parameter() {
         });
     let columns = Sensitivities::new().by_parameter(0);
     let cvode =
-        Integration::with_sensitivities(field, 0.0, &[1.0, 0.0], &sharp(Method::Adams), &columns).unwrap();
+        Integration::with_sensitivities(erased(field), 0.0, &[1.0, 0.0], &sharp(Method::Adams), &columns)
+            .unwrap();
     let mut hybrid = cvode.with_events(wall).unwrap();
     hybrid.advance_to(t, |_| Continue(())).unwrap();
     // x = c cos s + e √(1 − c²) sin s with s = t − acos c
@@ -182,9 +189,14 @@ fn an_impact_oscillator_whose_wall_moves_with_a_parameter() {
 #[test]
 fn events_that_reset_nothing() {
     let passes = FnEvents::new().with(Event::new("half"), |_, y| Ok(y[0] - 0.5));
-    let cvode =
-        Integration::with_sensitivities(ball(2.0), 0.0, &[1.0, 0.0], &sharp(Method::Adams), &columns())
-            .unwrap();
+    let cvode = Integration::with_sensitivities(
+        erased(ball(2.0)),
+        0.0,
+        &[1.0, 0.0],
+        &sharp(Method::Adams),
+        &columns(),
+    )
+    .unwrap();
     let mut hybrid = cvode.with_events(passes).unwrap();
     hybrid.advance_to(3.0, |_| Continue(())).unwrap();
     assert_near(&hybrid.sensitivities().unwrap(), &[1.0, 0.0, 3.0, 1.0, -4.5, -3.0, 0.0, 0.0], 1e-9);
@@ -194,7 +206,8 @@ fn events_that_reset_nothing() {
 #[test]
 fn sensitivities_over_events_without_derivatives_are_refused() {
     let start = |h: f64, v: f64| {
-        Integration::with_sensitivities(ball(1.0), 0.0, &[h, v], &sharp(Method::Adams), &columns()).unwrap()
+        Integration::with_sensitivities(erased(ball(1.0)), 0.0, &[h, v], &sharp(Method::Adams), &columns())
+            .unwrap()
     };
     let turn = |_: f64, y: &mut [f64]| {
         y[1] = y[1].abs();
@@ -231,7 +244,7 @@ fn derivatives_continue_from_a_checkpoint() {
         })
     };
     let start = Sensitivities::new().by_start(0);
-    let mut motion = Integration::with_sensitivities(decay(), 0.0, &[2.0], &options, &start).unwrap();
+    let mut motion = Integration::with_sensitivities(erased(decay()), 0.0, &[2.0], &options, &start).unwrap();
     motion.state_at(1.0).unwrap();
     let kept = Checkpoint::from_bytes(&motion.checkpoint().to_bytes("")).unwrap().0;
     assert_near(kept.sensitivities(), &[1.0 / 9.0], 1e-9);
@@ -259,7 +272,8 @@ fn derivatives_continue_from_a_checkpoint() {
     refused(Integration::resume_with_sensitivities(decay(), &plain, &options, &start).map(|_| ()));
 
     // With events, in the middle of a flight.
-    let cvode = Integration::with_sensitivities(ball(9.81), 0.0, &[1.3, 0.0], &options, &columns()).unwrap();
+    let cvode =
+        Integration::with_sensitivities(erased(ball(9.81)), 0.0, &[1.3, 0.0], &options, &columns()).unwrap();
     let mut hybrid = cvode.with_events(bounce(0.8)).unwrap();
     hybrid.advance_to(0.7, |_| Continue(())).unwrap();
     let kept = Checkpoint::from_bytes(&hybrid.checkpoint().to_bytes("")).unwrap().0;
@@ -288,7 +302,7 @@ fn parameters_of_any_size() {
             [Sensitivities::new().by_parameter(0), Sensitivities::new().by_parameter(0).scales([size])]
         {
             let motion =
-                solve_with_sensitivities(field(), 0.0, &[1.0], &[2.0], &Options::default(), &columns)
+                solve_with_sensitivities(erased(field()), 0.0, &[1.0], &[2.0], &Options::default(), &columns)
                     .unwrap();
             let (found, expected) = (motion.matrix(0)[0], -2.0 * (-2.0f64).exp() / size);
             // rtol 1e-9 over some dozens of steps.
@@ -300,7 +314,7 @@ fn parameters_of_any_size() {
         ydot[0] = 0.0;
         Ok(())
     });
-    assert!(solve_with_sensitivities(one, 0.0, &[1.0], &[1.0], &Options::default(), &wrong).is_err());
+    assert!(solve_with_sensitivities(erased(one), 0.0, &[1.0], &[1.0], &Options::default(), &wrong).is_err());
 }
 
 /// S as a function of time over a bounce, with the derivatives of its polynomials: as accurate as
@@ -310,7 +324,8 @@ fn derivatives_between_the_steps() {
     let (h, g, e) = (1.3, 9.81, 0.8);
     for method in [Method::Adams, Method::Bdf] {
         let cvode =
-            Integration::with_sensitivities(ball(g), 0.0, &[h, 0.0], &sharp(method), &columns()).unwrap();
+            Integration::with_sensitivities(erased(ball(g)), 0.0, &[h, 0.0], &sharp(method), &columns())
+                .unwrap();
         let mut hybrid = cvode.with_events(bounce(e)).unwrap();
         let mut matrix = DenseOutput::default();
         let keep = |_: Segment, of_matrix: Segment| {
@@ -354,7 +369,8 @@ fn derivatives_of_a_smooth_motion_as_a_function_of_time() {
         for rtol in [1e-6, 1e-9] {
             let options = Options::new(method).relative_tolerance(rtol).absolute_tolerance(rtol);
             let (motion, matrix) =
-                solve_dense_with_sensitivities(decay(), 0.0, &[2.0], 3.0, &options, &columns).unwrap();
+                solve_dense_with_sensitivities(erased(decay()), 0.0, &[2.0], 3.0, &options, &columns)
+                    .unwrap();
             let error = |t: f64| (matrix.evaluate(t).unwrap()[0] - exact(t)).abs();
             let at_steps = motion.segments().iter().map(|s| error(s.span().1)).fold(0.0, f64::max);
             let between = (0..=3000).map(|i| error(f64::from(i) / 1000.0)).fold(0.0, f64::max);
@@ -363,7 +379,8 @@ fn derivatives_of_a_smooth_motion_as_a_function_of_time() {
         }
     }
     let mut cvode =
-        Integration::with_sensitivities(decay(), 0.0, &[2.0], &sharp(Method::Adams), &columns).unwrap();
+        Integration::with_sensitivities(erased(decay()), 0.0, &[2.0], &sharp(Method::Adams), &columns)
+            .unwrap();
     assert!(matches!(
         cvode.interpolate_sensitivities(0.0, 0).unwrap_err(),
         SolveError::Input(InputError::NoStep)
@@ -374,7 +391,7 @@ fn derivatives_of_a_smooth_motion_as_a_function_of_time() {
         cvode.interpolate_sensitivities(2.0 * end, 0).unwrap_err(),
         SolveError::Input(InputError::OutsideStep { .. })
     ));
-    let mut plain = Integration::new(decay(), 0.0, &[2.0], &sharp(Method::Adams)).unwrap();
+    let mut plain = Integration::new(erased(decay()), 0.0, &[2.0], &sharp(Method::Adams)).unwrap();
     let end = plain.step_towards(3.0).unwrap();
     assert!(matches!(
         plain.interpolate_sensitivities(end, 0).unwrap_err(),

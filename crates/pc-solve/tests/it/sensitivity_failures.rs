@@ -5,7 +5,7 @@ use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Code, Failure, Integration, Method, NonFinite, Options, Sensitivities, SensitivityTrajectory, SolveError,
     SolveFailure, VectorField, solve_with_sensitivities,
@@ -90,7 +90,7 @@ fn run(
     // Adams needs no Jacobian for the state, so all failures are of the sensitivities; for BDF they
     // may be of both.
     let options = Options::new(method).initial_step(0.1).max_step(0.1);
-    solve_with_sensitivities(field, 0.0, &[0.0], &[0.5, 2.0], &options, &wanted())
+    solve_with_sensitivities(erased(field), 0.0, &[0.0], &[0.5, 2.0], &options, &wanted())
 }
 
 #[test]
@@ -170,7 +170,8 @@ fn derivatives_that_are_not_written_are_named() {
     for (products, wanted) in [(true, Sensitivities::new().by_start(0)), (false, wanted())] {
         let options = Options::default();
         let failure =
-            solve_with_sensitivities(Silent(products), 0.0, &[1.0], &[1.0], &options, &wanted).unwrap_err();
+            solve_with_sensitivities(erased(Silent(products)), 0.0, &[1.0], &[1.0], &options, &wanted)
+                .unwrap_err();
         assert!(failure.source().unwrap().is::<NonFinite>());
         assert_eq!(failure.error.reached(), Some((0.0, &[1.0][..])));
     }
@@ -182,7 +183,8 @@ fn panics_reach_the_caller_and_leave_the_last_state() {
         for field in [faulty(PANIC, true, ZERO), faulty(PANIC, false, ZERO), faulty(ZERO, true, PANIC)] {
             let drops = Rc::clone(&field.drops);
             let options = Options::new(method).initial_step(0.1).max_step(0.1);
-            let mut cvode = Integration::with_sensitivities(field, 0.0, &[0.0], &options, &wanted()).unwrap();
+            let mut cvode =
+                Integration::with_sensitivities(erased(field), 0.0, &[0.0], &options, &wanted()).unwrap();
             for _ in 0..2 {
                 let advance = AssertUnwindSafe(|| cvode.state_at(2.0).map(<[f64]>::len));
                 let panic = catch_unwind(advance).unwrap_err();
@@ -226,7 +228,7 @@ fn recoverable_failures_are_answered_by_shorter_steps() {
     // them.
     let wanted = Sensitivities::new().by_start(0).correction(pc_solve::Correction::Simultaneous);
     let mut fall = Fall(0);
-    let found = solve_with_sensitivities(&mut fall, 0.0, &[1.0], &[0.9], &options, &wanted).unwrap();
+    let found = solve_with_sensitivities(erased(&mut fall), 0.0, &[1.0], &[0.9], &options, &wanted).unwrap();
     // y = (√y₀ − t)², so ∂y/∂y₀ = 1 − t.
     assert!((found.matrix(0)[0] - 0.1).abs() < 1e-2);
     assert!(fall.0 > 0);
@@ -246,7 +248,7 @@ fn overflow_is_named() {
     let wanted = Sensitivities::new().along([1e300]);
     let options = Options::default();
     let failure =
-        solve_with_sensitivities(growth, 0.0, &[0.0], &[1.0, 100.0], &options, &wanted).unwrap_err();
+        solve_with_sensitivities(erased(growth), 0.0, &[0.0], &[1.0, 100.0], &options, &wanted).unwrap_err();
     assert_eq!(failure.reached.motion().len(), 1);
     let (t, y) = failure.error.reached().unwrap();
     assert!(t > 1.0 && t < 10.0 && y == [0.0], "{t} {y:?}"); // ln(1.8e308/1e300)/2 = 9.5
@@ -257,7 +259,8 @@ fn input_is_checked() {
     let options = Options::default();
     let refusal = |wanted: Sensitivities| {
         let field = faulty(ZERO, true, ZERO);
-        let failure = solve_with_sensitivities(field, 0.0, &[0.0], &[1.0], &options, &wanted).unwrap_err();
+        let failure =
+            solve_with_sensitivities(erased(field), 0.0, &[0.0], &[1.0], &options, &wanted).unwrap_err();
         assert_eq!(failure.reached.motion().len(), 0);
         failure.to_string()
     };
@@ -288,6 +291,7 @@ fn input_is_checked() {
         Ok(())
     });
     let failure =
-        solve_with_sensitivities(closure, 0.0, &[0.0], &[1.0], &options, &new().by_parameter(0)).unwrap_err();
+        solve_with_sensitivities(erased(closure), 0.0, &[0.0], &[1.0], &options, &new().by_parameter(0))
+            .unwrap_err();
     assert_eq!(failure.to_string(), "the vector field does not provide its derivatives by the parameters");
 }

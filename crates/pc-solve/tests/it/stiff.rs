@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use crate::boxed::from_fn;
+use crate::boxed::{erased, from_fn};
 use pc_solve::{Failure, Method, NonlinearSolver, Options, VectorField, solve};
 
 fn robertson_rhs(_t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
@@ -40,11 +40,12 @@ fn robertson() {
         calls.set(calls.get() + 1);
         robertson_jacobian(t, y, j)
     });
-    let with_jacobian = solve(analytic, 0.0, &[1.0, 0.0, 0.0], &[1e11], &options).unwrap();
+    let with_jacobian = solve(erased(analytic), 0.0, &[1.0, 0.0, 0.0], &[1e11], &options).unwrap();
     assert!(calls.get() > 0);
     assert_eq!(with_jacobian.statistics().jacobian_evaluations, calls.get());
 
-    let quotients = solve(from_fn(3, robertson_rhs), 0.0, &[1.0, 0.0, 0.0], &[1e11], &options).unwrap();
+    let quotients =
+        solve(erased(from_fn(3, robertson_rhs)), 0.0, &[1.0, 0.0, 0.0], &[1e11], &options).unwrap();
     for motion in [&with_jacobian, &quotients] {
         for i in 0..3 {
             let error = (motion.state(0)[i] / reference[i] - 1.0).abs();
@@ -63,7 +64,7 @@ fn robertson() {
 fn robertson_as_in_the_sundials_examples() {
     let options = Options::new(Method::Bdf).absolute_tolerance(1e-15);
     let field = from_fn(3, robertson_rhs).with_jacobian(robertson_jacobian);
-    let motion = solve(field, 0.0, &[1.0, 0.0, 0.0], &[4.0, 40.0], &options).unwrap();
+    let motion = solve(erased(field), 0.0, &[1.0, 0.0, 0.0], &[4.0, 40.0], &options).unwrap();
     let printed = [[9.055097e-01, 2.240338e-05, 9.446793e-02], [7.158017e-01, 9.185037e-06, 2.841892e-01]];
     for (i, y) in printed.iter().enumerate() {
         for (found, expected) in motion.state(i).iter().zip(y) {
@@ -81,7 +82,7 @@ fn newton_takes_the_long_steps() {
             Ok(())
         });
         let options = Options::new(Method::Bdf).nonlinear_solver(solver).relative_tolerance(1e-6);
-        let motion = solve(relaxation, 0.0, &[1.0], &[10.0], &options).unwrap();
+        let motion = solve(erased(relaxation), 0.0, &[1.0], &[10.0], &options).unwrap();
         assert!((motion.state(0)[0] - 10.0_f64.cos()).abs() < 1e-3);
         motion.statistics().steps
     };
