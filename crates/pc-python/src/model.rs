@@ -8,7 +8,7 @@ use pc_model::document::{EquationForm, Method};
 use pc_model::{Assembly, Builtin, Document, Model, Variables, deep};
 use pc_print::{Form, Layout, Page, Theory, TheoryOptions, displayed_equations, page};
 use pc_report::Check;
-use pc_verify::{Options, VerifyError, verify};
+use pc_verify::{Options, Outlet, VerifyError, verify, vouch};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -19,6 +19,8 @@ use crate::task::attended;
 #[pyclass(frozen, module = "chetaev._native")]
 pub(crate) struct ModelCore {
     pub(crate) model: Model,
+    /// Whether equations are compared with a second derivation before they leave.
+    pub(crate) verify: bool,
 }
 
 /// What a model is changed by before it is derived.
@@ -35,6 +37,7 @@ pub(crate) struct Changes {
     reactions: bool,
     limit_memory: Option<u64>,
     limit_time: Option<f64>,
+    verify: bool,
 }
 
 /// The form of this name.
@@ -85,6 +88,20 @@ fn method_of(method: Method) -> &'static str {
     }
 }
 
+/// The random states at which equations that leave are compared, besides the start.
+const NEAR: usize = 3;
+
+/// Compares equations that leave with a second derivation. It is no error if that cannot be made: `check` says why.
+///
+/// # Errors
+/// [`Error::Verify`] if the derivations disagree.
+pub(crate) fn vouched(model: &Model, assembly: &Assembly<'_>, outlet: Outlet) -> Result<(), Error> {
+    match vouch(model, assembly, outlet, NEAR) {
+        Err(error @ VerifyError::Disagreement(_)) => Err(error.into()),
+        _ => Ok(()),
+    }
+}
+
 /// The limits of a model for work that begins now, and the handle that ends it.
 pub(crate) fn renewed(model: &mut Model) -> Cancel {
     let cancel = Cancel::default();
@@ -104,17 +121,23 @@ impl ModelCore {
         attended(py, &cancel, |_| Ok(()), move || deep(|| work(&model)))
     }
 
-    /// The same on the assembled model.
+    /// The same on the assembled model, for what leaves it in some form; without one it is compared by the work itself.
     fn assembled<T: Send + 'static>(
         &self,
         py: Python<'_>,
+        outlet: Option<Outlet>,
         work: impl FnOnce(&Model, &Assembly<'_>) -> Result<T, Error> + Send + 'static,
     ) -> PyResult<T> {
-        self.attend(py, |model| {
+        let outlet = outlet.filter(|_| self.verify);
+        self.attend(py, move |model| {
             let graph = model.graph();
             let assembly = model.assemble(&graph)?;
             let result = work(model, &assembly)?;
             assembly.within_limits()?;
+            if let Some(outlet) = outlet {
+                vouched(model, &assembly, outlet)?;
+                assembly.within_limits()?;
+            }
             Ok(result)
         })
     }
@@ -124,14 +147,14 @@ impl ModelCore {
 impl ModelCore {
     #[new]
     fn new(name: String, text: &[u8]) -> Result<ModelCore, Error> {
-        Ok(ModelCore { model: Model::new(Document::from_bytes(&name, text)?) })
+        Ok(ModelCore { model: Model::new(Document::from_bytes(&name, text)?), verify: true })
     }
 
     /// The model that comes with the package, None where there is none of this name.
     #[staticmethod]
     fn builtin(name: &str) -> Result<Option<ModelCore>, Error> {
         let Some(builtin) = Builtin::named(name) else { return Ok(None) };
-        Ok(Some(ModelCore { model: Model::new(builtin.document()?) }))
+        Ok(Some(ModelCore { model: Model::new(builtin.document()?), verify: true }))
     }
 
     /// The same model with other values and settings.
@@ -171,7 +194,7 @@ impl ModelCore {
             model.choose_independent(changes.independent);
         }
         model.observe_reactions(changes.reactions);
-        Ok(ModelCore { model })
+        Ok(ModelCore { model, verify: changes.verify })
     }
 
     #[getter]
@@ -231,7 +254,7 @@ impl ModelCore {
 
     /// What is said of the model before it is run: as text, and as JSON.
     fn check(&self, py: Python<'_>) -> PyResult<(String, String)> {
-        self.assembled(py, |model, assembly| {
+        self.assembled(py, None, |model, assembly| {
             let equations = assembly.equations()?;
             let second = match verify(model, &Options::default()) {
                 Err(error @ VerifyError::Disagreement(_)) => return Err(error.into()),
@@ -254,7 +277,9 @@ impl ModelCore {
     ) -> PyResult<String> {
         let (form, language) = (self::form(form)?, self::language(language)?);
         let layout = Layout { width, inline, ..Layout::default() };
-        self.assembled(py, move |model, assembly| Ok(page(form, language, &layout, model.title(), assembly)?))
+        self.assembled(py, Some(Outlet::Page(form)), move |model, assembly| {
+            Ok(page(form, language, &layout, model.title(), assembly)?)
+        })
     }
 
     /// The name of the form; headings, each with a `math` element or plain text and with notes.
@@ -267,7 +292,7 @@ impl ModelCore {
     ) -> PyResult<(String, Option<String>, Vec<(String, Option<String>, Vec<String>)>)> {
         let form = self::form(form)?;
         let layout = Layout { inline, ..Layout::default() };
-        self.assembled(py, move |model, assembly| {
+        self.assembled(py, Some(Outlet::Page(form)), move |model, assembly| {
             let shown = displayed_equations(form, &layout, model.title(), assembly)?;
             let parts = shown.parts.into_iter();
             let parts = parts
@@ -286,10 +311,9 @@ impl ModelCore {
     ) -> PyResult<String> {
         let language = self::language(language)?;
         let options = TheoryOptions { degree, functions };
-        self.assembled(
-            py,
-            move |model, assembly| Ok(Theory::of(model, assembly, &options)?.printed(language)),
-        )
+        self.assembled(py, Some(Outlet::Equations(Variables::QuasiVelocities)), move |model, assembly| {
+            Ok(Theory::of(model, assembly, &options)?.printed(language))
+        })
     }
 
     /// Source of the equations: names of files with their texts.
@@ -314,7 +338,7 @@ impl ModelCore {
             let why = "it is written of equations in velocities; use the form poincare";
             return Err(Error::Unsupported { what: "the source", why }.into());
         }
-        self.assembled(py, move |model, assembly| {
+        self.assembled(py, Some(Outlet::Source(variables)), move |model, assembly| {
             let (equations, form) = assembly.equations_of(variables)?;
             let mut options = EmitOptions::new(language, &name).title(model.title()).jacobian(jacobian);
             // A motion with the inputs of the start would be another.

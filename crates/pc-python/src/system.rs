@@ -4,11 +4,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 use pc_expr::Events;
 use pc_model::{Flow, Model, Prototype, Variables, deep};
+use pc_verify::Outlet;
 use pyo3::prelude::*;
 
 use crate::error::Error;
 use crate::mechanics::MassMatrix;
-use crate::model::{ModelCore, finite, renewed, variables};
+use crate::model::{ModelCore, finite, renewed, variables, vouched};
 use crate::task::attended;
 
 /// ẏ = f(t, y) of a model. Any number of threads may use it.
@@ -36,6 +37,8 @@ pub(crate) struct Inventory {
     /// Of a row of a motion: coordinates, quasi-velocities, first-order states, then observables.
     pub(crate) columns: Vec<String>,
     pub(crate) shown: usize,
+    /// Whether equations are compared with a second derivation before they leave.
+    verify: bool,
 }
 
 /// What changes with the values.
@@ -97,6 +100,7 @@ impl SystemCore {
     #[new]
     fn new(py: Python<'_>, model: &ModelCore, form: &str) -> PyResult<SystemCore> {
         let variables = variables(form)?;
+        let verify = model.verify;
         let mut model = model.model.clone();
         let cancel = renewed(&mut model);
         let derive = move || {
@@ -106,6 +110,10 @@ impl SystemCore {
                 let flow = Flow::new(&model, &assembly, variables)?;
                 let prototype = Prototype::of(&model, &assembly, variables, flow.clone());
                 let t_start = assembly.t_start;
+                if verify {
+                    vouched(&model, &assembly, Outlet::Equations(variables))?;
+                    assembly.within_limits()?;
+                }
                 drop(assembly);
                 drop(graph);
                 Ok((model, flow, prototype, t_start))
@@ -121,6 +129,7 @@ impl SystemCore {
             conserved: motion.conserved_len(),
             columns: flow.columns(),
             shown: flow.names.len(),
+            verify,
         };
         let state = State { version: 0, model, flow };
         Ok(SystemCore {
@@ -178,7 +187,7 @@ impl SystemCore {
 
     /// The model with the values as they are now.
     fn model_now(&self) -> ModelCore {
-        ModelCore { model: self.state().model.clone() }
+        ModelCore { model: self.state().model.clone(), verify: self.inventory.verify }
     }
 
     /// Gives parameters and start other values, all or none.

@@ -68,7 +68,7 @@ fn compared(
     let second = Second::new(observed, assembly)?;
     let mut agreement = second.nothing_yet();
     let flow = Flow::new(observed, assembly, Variables::QuasiVelocities)?;
-    let mut large = Projection { flow: flow.clone(), layout: Layout::of(&flow, &second) };
+    let mut large = Projection::new(flow.clone(), &second);
     let (wholly, states) = (second.wholly(options.states), second.affordable(options.states));
     let plain_graph = model.graph();
     let plain = model.assemble(&plain_graph)?;
@@ -158,9 +158,24 @@ fn has_form(variables: Variables, assembly: &Assembly<'_>) -> bool {
 }
 
 /// A large model in quasi-velocities.
-struct Projection {
+pub(crate) struct Projection {
     flow: Flow,
     layout: Layout,
+}
+
+impl Projection {
+    pub(crate) fn new(flow: Flow, second: &Second) -> Projection {
+        let layout = Layout::of(&flow, second);
+        Projection { flow, layout }
+    }
+}
+
+/// Equations of the first derivation that are compared.
+pub(crate) enum Compared<'g> {
+    /// In these forms.
+    Wholly(Vec<First<'g>>),
+    /// Those of a large model, along random virtual velocities.
+    Along(Box<Projection>),
 }
 
 /// The number of states tried for each comparison.
@@ -242,8 +257,7 @@ impl Second {
         mut agreement: Agreement,
     ) -> Result<Agreement, VerifyError> {
         let row = self.row(&mut flow, t, state);
-        let layout = Layout::of(&flow, self);
-        let mut large = Projection { flow, layout };
+        let mut large = Projection::new(flow, self);
         let place = self.place(t, &row).map_err(Passed::from);
         match place.and_then(|place| self.compare_projected(form, &mut large, &place, &mut agreement)) {
             Ok(()) => agreement.states += 1,
@@ -252,6 +266,43 @@ impl Second {
         agreement.leave_out("multipliers, integrals and outputs", "the model is large");
         agreement.forms.push(form.to_owned());
         agreement.finished(&[], 1)
+    }
+
+    /// Compares at the start, and at so many random states near it as are regular among three times as many.
+    pub(crate) fn compare_near_start(
+        &self,
+        mut compared: Compared<'_>,
+        near: usize,
+        assembly: &Assembly<'_>,
+        mut agreement: Agreement,
+    ) -> Result<Agreement, VerifyError> {
+        let tries = 1 + TRIES * near;
+        for number in 0..tries {
+            if agreement.states > near {
+                break;
+            }
+            assembly.within_limits()?;
+            let place = match number {
+                0 => Ok(self.start.clone()),
+                _ => self.derivation.random(&self.start, number - 1),
+            };
+            let outcome = place.map_err(Passed::from).and_then(|place| match &mut compared {
+                Compared::Wholly(firsts) => self.compare(firsts, &place, &mut agreement),
+                Compared::Along(large) => self.compare_projected("poincare", large, &place, &mut agreement),
+            });
+            match outcome {
+                Ok(()) => agreement.states += 1,
+                Err(passed) => agreement.pass_over(passed)?,
+            }
+        }
+        match compared {
+            Compared::Wholly(firsts) => agreement.finished(&firsts, tries),
+            Compared::Along(_) => {
+                agreement.leave_out("multipliers, integrals and outputs", "the model is large");
+                agreement.forms.push("poincare".to_owned());
+                agreement.finished(&[], tries)
+            }
+        }
     }
 
     /// Compares the equations with the second derivation at a place along random virtual velocities.

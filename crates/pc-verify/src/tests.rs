@@ -2,10 +2,12 @@
 
 use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, Source, Variables};
+use pc_print::Form;
 
 use crate::compare::{Options, verify};
 use crate::equations::Derived;
 use crate::error::VerifyError;
+use crate::outlet::{Outlet, vouch};
 use crate::place::Place;
 use crate::rounding::Rounding;
 use crate::second::Second;
@@ -422,4 +424,68 @@ fn values_without_significant_digits_are_not_compared() {
     let text = "[coordinates]\nx = 0.7\ny = 0.3\n[lagrangian]\nkinetic = \"3*x'^2 + x'*y'*cos(x) + y'^2\"\n\
                 potential = \"7e-323*sin(x + y)\"\n";
     assert_eq!(verify(&model(text), &Options::default()).unwrap().states, 100);
+}
+
+/// A pendulum with damping beside an angle that nothing depends on; gravity is so many times as strong.
+fn pendulum(times: &str) -> Model {
+    model(&format!(
+        r#"
+[parameters]
+l = 1.0
+[coordinates]
+"φ" = 0.3
+"ψ" = 0.0
+[quasi_velocities]
+w = {{ is = "φ'", start = 0.2 }}
+v = {{ is = "ψ' + φ'", start = 1.0 }}
+[lagrangian]
+kinetic = "l^2*φ'^2/2 + ψ'^2"
+potential = "-{times}*l*cos(φ)"
+[forces]
+"φ" = "-0.1*φ'"
+[simulation]
+t_end = 1
+"#
+    ))
+}
+
+/// Every way out of a model.
+fn outlets() -> Vec<Outlet> {
+    let integrated =
+        [Variables::QuasiVelocities, Variables::Momenta, Variables::Reduced, Variables::Orthonormal];
+    let pages =
+        [Form::Poincare, Form::Canonical, Form::Lagrange, Form::Reduced, Form::LiePoisson, Form::Orthonormal];
+    let sources = [Variables::QuasiVelocities, Variables::Reduced, Variables::Orthonormal];
+    let all = integrated.map(Outlet::Equations).into_iter();
+    all.chain(sources.map(Outlet::Source)).chain(pages.map(Outlet::Page)).collect()
+}
+
+/// In each form the equations themselves are compared, not others in their place.
+#[test]
+fn whatever_leaves_is_compared() {
+    let (graph, model) = (Graph::new(), pendulum("1"));
+    let assembly = model.assemble(&graph).unwrap();
+    for outlet in outlets() {
+        let agreement = vouch(&model, &assembly, outlet, 3).unwrap();
+        let form = match outlet {
+            Outlet::Equations(variables) => variables.name().to_owned(),
+            Outlet::Source(Variables::QuasiVelocities) => "emit".to_owned(),
+            Outlet::Source(variables) => variables.name().to_owned(),
+            Outlet::Page(form) => format!("{} as printed", form.name()),
+        };
+        assert_eq!((agreement.states, agreement.forms.as_slice()), (4, [form].as_slice()), "{outlet:?}");
+        assert!(agreement.error < 1e-13, "{outlet:?}: {agreement}");
+    }
+}
+
+/// Equations with another gravity are not those of the model, in whatever form they leave.
+#[test]
+fn wrong_equations_leave_in_no_form() {
+    let (graph, model, other) = (Graph::new(), pendulum("1"), pendulum("1.01"));
+    let assembly = model.assemble(&graph).unwrap();
+    let second = Second::new(&other, &assembly).unwrap();
+    for outlet in outlets() {
+        let outcome = second.vouches(&model, &assembly, outlet, 0);
+        assert!(matches!(outcome, Err(VerifyError::Disagreement(_))), "{outlet:?}: {outcome:?}");
+    }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::args::options::{self, ModelArguments};
+use crate::args::options::{self, ModelArguments, VerifyArguments};
 use crate::args::steady::StateArguments;
 use crate::args::sweep::{self, Vary};
 
@@ -50,6 +50,9 @@ pub struct LinearizeArguments {
     /// With --vary: draw the real and imaginary parts of the eigenvalues to FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", requires = "vary")]
     pub plot: Option<PathBuf>,
+    /// Verification.
+    #[command(flatten)]
+    pub verify: VerifyArguments,
 }
 
 /// Arguments of `pc equilibria`.
@@ -79,6 +82,9 @@ pub struct EquilibriaArguments {
     /// Write the list to FILE.json or FILE.csv instead
     #[arg(short, long, value_name = "FILE", conflicts_with = "format")]
     pub output: Option<PathBuf>,
+    /// Verification.
+    #[command(flatten)]
+    pub verify: VerifyArguments,
 }
 
 /// `NAME=FROM..TO`

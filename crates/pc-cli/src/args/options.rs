@@ -119,6 +119,17 @@ pub struct DeriveArguments {
     /// Write out the definitions of the model instead of naming them
     #[arg(long)]
     pub inline: bool,
+    /// Verification.
+    #[command(flatten)]
+    pub verify: VerifyArguments,
+}
+
+/// Whether equations are compared with a second derivation before they leave.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct VerifyArguments {
+    /// Do not compare the equations with a second derivation, at the start and near it
+    #[arg(long)]
+    pub no_verify: bool,
 }
 
 /// Arguments of `pc theory`.
@@ -137,6 +148,9 @@ pub struct TheoryArguments {
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Page,
+    /// Verification.
+    #[command(flatten)]
+    pub verify: VerifyArguments,
 }
 
 /// The search for events.
@@ -260,6 +274,9 @@ pub struct EmitArguments {
     /// Leave out the Jacobian
     #[arg(long, conflicts_with = "fmu")]
     pub no_jacobian: bool,
+    /// Verification.
+    #[command(flatten)]
+    pub verify: VerifyArguments,
     /// Output directory, which is created if it does not exist; `-` for standard output, of Rust; with --fmu the file to write
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,

@@ -114,6 +114,9 @@ pub struct SweepArguments {
     /// With --plot: draw these columns, separated by commas
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
     pub columns: Vec<String>,
+    /// Do not compare the first member, one in the middle and the last with a second derivation
+    #[arg(long)]
+    pub no_verify: bool,
 }
 
 /// Arguments of `pc merge`.

@@ -1,6 +1,7 @@
 //! `pc derive`: the equations of motion, printed.
 
 use pc_print::{Layout, page};
+use pc_verify::Outlet;
 
 use crate::args::forms::Form;
 use crate::args::input;
@@ -8,6 +9,7 @@ use crate::args::options::DeriveArguments;
 use crate::error::CliError;
 use crate::output::standard_output::print;
 use crate::report::notes::{say_dropped, say_moved};
+use crate::report::verification::vouched;
 
 /// Prints the equations of a model.
 ///
@@ -25,5 +27,6 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let layout = Layout { width: arguments.width.into(), brief: arguments.brief, inline: arguments.inline };
     let page = page(form.into(), arguments.format.into(), &layout, model.title(), &assembly)?;
     assembly.within_limits()?;
+    vouched(&model, &assembly, Outlet::Page(form.into()), arguments.verify)?;
     print(|out| write!(out, "{page}"))
 }

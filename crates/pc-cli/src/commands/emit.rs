@@ -6,6 +6,7 @@ use std::path::Path;
 
 use pc_mech::{EmitOptions, Language};
 use pc_print::energy_remark;
+use pc_verify::Outlet;
 
 use crate::args::forms::EmitForm;
 use crate::args::input;
@@ -15,6 +16,7 @@ use crate::output::place::{Place, file};
 use crate::output::standard_output::print;
 use crate::report::notes::{choice, say_choice, say_dropped, say_moved};
 use crate::report::text::say;
+use crate::report::verification::vouched;
 
 const NO_EVENTS: &str =
     "The events of the model are not part of this source: it has the equations between them.";
@@ -57,6 +59,7 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     if !remarks.is_empty() {
         options = options.remark(remarks.join("\n"));
     }
+    vouched(&model, &assembly, Outlet::Source(arguments.form.into()), arguments.verify)?;
     // With its inputs fixed at their start values, the motion would be a different one.
     if let Some(t_end) = model.document().simulation.t_end.as_ref().filter(|_| !has_tables) {
         options = options.start(assembly.t_start, &assembly.start_in(&form)?, t_end.value);

@@ -1,7 +1,9 @@
 //! `pc equilibria`: the equilibria in a box.
 
 use pc_analysis::EquilibriumSearch;
+use pc_model::Variables;
 use pc_print::{visible, visible_json};
+use pc_verify::Outlet;
 
 use crate::args::input;
 use crate::args::linear::{EquilibriaArguments, MatrixFormat};
@@ -12,6 +14,7 @@ use crate::linear::found;
 use crate::linear::ground::{Ground, placed};
 use crate::output::standard_output::print;
 use crate::report::notes::{say_dropped, say_moved};
+use crate::report::verification::vouched;
 
 /// Runs `pc equilibria`.
 ///
@@ -24,6 +27,7 @@ pub fn command(arguments: &EquilibriaArguments) -> Result<(), CliError> {
     let mut ground = Ground::new(&model, &graph)?;
     say_dropped(&ground.assembly);
     say_moved(&ground.assembly);
+    vouched(&model, &ground.assembly, Outlet::Equations(Variables::QuasiVelocities), arguments.verify)?;
     let integrals = ground.integrals();
     let mut search = EquilibriumSearch::default().starts(arguments.starts);
     for (i, bounds) in arguments.bounds.iter().enumerate() {

@@ -4,6 +4,7 @@ use std::io::Cursor;
 use std::io::Write;
 
 use pc_fmu::{FmiVersion, Fmu, FmuOptions, FmuSolver};
+use pc_verify::Outlet;
 
 use crate::args::forms::EmitForm;
 use crate::args::input;
@@ -13,6 +14,7 @@ use crate::error::CliError;
 use crate::output::place::Place;
 use crate::report::notes::{choice, say_choice, say_dropped, say_moved};
 use crate::report::text::say;
+use crate::report::verification::vouched;
 
 /// Writes the FMU of a model, whole or not at all.
 ///
@@ -46,6 +48,7 @@ pub fn command(arguments: &EmitArguments, version: FmuVersion) -> Result<(), Cli
     if let Some(remark) = choice(&assembly, &form.independent) {
         say_choice(&remark);
     }
+    vouched(&model, &assembly, Outlet::Source(arguments.form.into()), arguments.verify)?;
     let mut fmu = Fmu::new(&model, &assembly, arguments.form.into(), &options)?;
     for note in fmu.notes() {
         say(format_args!("note: {note}\n"));

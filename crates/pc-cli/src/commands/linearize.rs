@@ -1,8 +1,9 @@
 //! `pc linearize`: the motions near a state to first order, and their eigenvalues over a parameter.
 
 use pc_analysis::{Linearization, RootLocus, Stability};
-use pc_model::Model;
+use pc_model::{Model, Variables};
 use pc_print::{stability_in_words, visible, visible_json};
+use pc_verify::Outlet;
 use serde_json::{Map, Value, json};
 
 use crate::args::input;
@@ -22,6 +23,7 @@ use crate::output::destination::Destination as Picture;
 use crate::output::standard_output::print;
 use crate::report::notes::{say_dropped, say_moved};
 use crate::report::text::{say, short};
+use crate::report::verification::vouched;
 
 /// Runs `pc linearize`.
 ///
@@ -35,6 +37,7 @@ pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
     let mut ground = Ground::new(&model, &graph)?;
     say_dropped(&ground.assembly);
     say_moved(&ground.assembly);
+    vouched(&model, &ground.assembly, Outlet::Equations(Variables::QuasiVelocities), arguments.verify)?;
     if let Some(vary) = &arguments.vary {
         let locus = locus(&model, &ground, vary, arguments)?;
         for (value, reason) in &locus.missing {

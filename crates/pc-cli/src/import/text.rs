@@ -1,14 +1,14 @@
 //! From a robot to the text of a model.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::fmt::Write;
 use std::path::Path;
 
-use pc_expr::parse::{FUNCTIONS, is_name};
 use pc_model::Source;
 
 use crate::import::error::UrdfError;
-use crate::import::robot::{Inertial, Joint, Kind, Link, Pose, Robot};
+use crate::import::names::Names;
+use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Pose, Robot};
 use crate::import::urdf;
 
 /// The text of the model of a robot in URDF, and what was left out of it, a line each.
@@ -32,9 +32,7 @@ struct Tree<'a> {
     robot: &'a Robot,
     /// Links, each after its parent, with the joint between them.
     order: Vec<(&'a Link, Option<&'a Joint>)>,
-    /// The names of the bodies of links, and of the coordinates of joints.
-    bodies: HashMap<&'a str, String>,
-    coordinates: HashMap<&'a str, String>,
+    names: Names<'a>,
 }
 
 impl<'a> Tree<'a> {
@@ -100,24 +98,8 @@ impl<'a> Tree<'a> {
                 "leave a joint of the circle out",
             ));
         }
-        let mut taken: HashSet<String> =
-            HashSet::from(["world", "t", "pi", "energy", "g"].map(str::to_owned));
-        taken.extend(FUNCTIONS.iter().map(|function| function.name.to_owned()));
-        let mut coordinates = HashMap::new();
-        for joint in robot.joints.iter().filter(|joint| joint.kind.is_single()) {
-            coordinates.insert(joint.name.as_str(), unused(&joint.name, &mut taken));
-        }
-        // The names of bodies are labels, but those of free and planar bodies begin the names of their coordinates.
-        let mut bodies = HashMap::new();
-        let mut labels: HashSet<String> = HashSet::from(["world".to_owned()]);
-        for (place, (link, joint)) in order.iter().enumerate() {
-            let names =
-                place == 0 || joint.is_some_and(|joint| !joint.kind.is_single() && joint.kind != Kind::Fixed);
-            let label = unused(&link.name, if names { &mut taken } else { &mut labels });
-            labels.insert(label.clone());
-            bodies.insert(link.name.as_str(), label);
-        }
-        Ok(Tree { source, robot, order, bodies, coordinates })
+        let names = Names::of(&order);
+        Ok(Tree { source, robot, order, names })
     }
 
     /// An error unless everything that moves has mass.
@@ -149,7 +131,9 @@ impl<'a> Tree<'a> {
     /// The start values of joints that follow others, which are 0 themselves.
     fn starts(&self) -> Result<Vec<(&'a Joint, f64)>, UrdfError> {
         let mut starts = Vec::new();
-        for first in self.robot.joints.iter().filter(|joint| joint.mimic.is_some()) {
+        for first in
+            self.robot.joints.iter().filter(|joint| joint.mimic.is_some() && joint.kind != Kind::Fixed)
+        {
             // x = m (m' (… ) + o') + o
             let (mut factor, mut start, mut joint) = (1.0, 0.0, first);
             let mut seen: Vec<&str> = vec![&joint.name];
@@ -189,7 +173,12 @@ impl<'a> Tree<'a> {
         let dry = dry.map(|joint| {
             format!("the dry friction {} of the joint `{}` is left out", joint.friction, joint.name)
         });
-        elements.chain(dry).collect()
+        let still = self.robot.joints.iter().filter(|joint| joint.kind == Kind::Fixed);
+        let still = still.filter_map(|joint| {
+            let mimic = joint.mimic.as_ref()?;
+            Some(format!("the joint `{}` is fixed: that it mimics `{}` is left out", joint.name, mimic.joint))
+        });
+        elements.chain(dry).chain(still).collect()
     }
 
     fn text(&self, floats: bool, starts: &[(&Joint, f64)]) -> String {
@@ -206,16 +195,19 @@ impl<'a> Tree<'a> {
         line("\n[model]".into());
         line(format!("name = {}", quoted(&self.robot.name)));
         line("\n[parameters]\ng = 9.81 # URDF says nothing of gravity".into());
-        for joint in self.robot.joints.iter().filter(|joint| self.is_damped(joint)) {
-            line(format!("{}_damping = {:?}", self.coordinates[joint.name.as_str()], joint.damping));
+        for joint in &self.robot.joints {
+            if let Some(damping) = self.names.damping(joint) {
+                line(format!("{damping} = {:?}", joint.damping));
+            }
         }
         line("\n[gravity]\nacceleration = [0, 0, \"-g\"]".into());
         let apart: Vec<_> = starts.iter().filter(|(_, start)| *start != 0.0).collect();
         if !apart.is_empty() {
             line("\n[coordinates]".into());
-            apart.iter().for_each(|(joint, start)| {
-                line(format!("{} = {start:?}", self.coordinates[joint.name.as_str()]));
-            });
+            for (joint, start) in apart {
+                let x = self.names.coordinate(joint).unwrap_or_default(); // what follows another joint has one
+                line(format!("{x} = {start:?}"));
+            }
         }
         for (link, joint) in &self.order {
             line(self.body(link, *joint, floats));
@@ -224,8 +216,11 @@ impl<'a> Tree<'a> {
             line("\n[constraints]".into());
         }
         for (joint, _) in starts {
-            let (Some(mimic), own) = (&joint.mimic, &self.coordinates[joint.name.as_str()]) else { continue };
-            let other = &self.coordinates[mimic.joint.as_str()];
+            let followed = |mimic: &Mimic| self.robot.joints.iter().find(|joint| joint.name == mimic.joint);
+            let (Some(mimic), Some(own)) = (&joint.mimic, self.names.coordinate(joint)) else { continue };
+            let Some(other) = followed(mimic).and_then(|other| self.names.coordinate(other)) else {
+                continue;
+            };
             let factor = match mimic.multiplier {
                 1.0 => String::new(),
                 multiplier => format!("({multiplier:?})*"),
@@ -237,28 +232,27 @@ impl<'a> Tree<'a> {
             };
             line(format!("mimic_{own} = \"{own} - {factor}{other}{offset}\""));
         }
-        if self.robot.joints.iter().any(|joint| self.is_damped(joint)) {
+        let damped: Vec<(&Joint, &str)> =
+            self.robot.joints.iter().filter_map(|joint| Some((joint, self.names.damping(joint)?))).collect();
+        if !damped.is_empty() {
             line("\n[forces]".into());
         }
-        for joint in self.robot.joints.iter().filter(|joint| self.is_damped(joint)) {
-            let x = &self.coordinates[joint.name.as_str()];
-            line(format!("\"{x}'\" = \"-{x}_damping*{x}'\""));
+        for (joint, damping) in damped {
+            for velocity in self.names.velocities(joint) {
+                line(format!("\"{velocity}\" = \"-{damping}*{velocity}\""));
+            }
         }
         text
     }
 
-    fn is_damped(&self, joint: &Joint) -> bool {
-        joint.damping != 0.0 && joint.kind.is_single()
-    }
-
     /// The section of a body.
     fn body(&self, link: &Link, joint: Option<&Joint>, floats: bool) -> String {
-        let mut text = format!("\n[bodies.{}]", self.bodies[link.name.as_str()]);
+        let mut text = format!("\n[bodies.{}]", self.names.body(&link.name));
         let mut line = |line: String| {
             text.push('\n');
             text += &line;
         };
-        if link.name != self.bodies[link.name.as_str()] {
+        if link.name != self.names.body(&link.name) {
             line(format!("# the link {}", one_line(&link.name)));
         }
         link.meshes.iter().for_each(|mesh| line(format!("# mesh: {}", one_line(mesh))));
@@ -270,7 +264,7 @@ impl<'a> Tree<'a> {
                         joint.limits.iter().map(|(key, value)| format!("{key} {value}")).collect();
                     line(format!("# limits of the joint {}: {}", one_line(&joint.name), limits.join(", ")));
                 }
-                line(format!("parent = \"{}\"", self.bodies[joint.parent.as_str()]));
+                line(format!("parent = \"{}\"", self.names.body(&joint.parent)));
                 line(self.joint(joint));
             }
         }
@@ -306,8 +300,8 @@ impl<'a> Tree<'a> {
         if !turns.is_empty() {
             let _ = write!(text, ", turns = [{}]", turns.join(", "));
         }
-        match self.coordinates.get(joint.name.as_str()) {
-            Some(x) if *x != self.bodies[joint.child.as_str()] => {
+        match self.names.coordinate(joint) {
+            Some(x) if x != self.names.body(&joint.child) => {
                 let _ = write!(text, ", coordinates = [\"{x}\"]");
             }
             _ => {}
@@ -364,19 +358,6 @@ fn along_axes_of_the_link(inertial: &Inertial) -> Vec<f64> {
         true => vec![xx, yy, zz],
         false => vec![xx, yy, zz, xy, yz, xz],
     }
-}
-
-/// The name, with invalid characters replaced, and longer where it is taken.
-fn unused(name: &str, taken: &mut HashSet<String>) -> String {
-    let mut own: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    if !is_name(&own) {
-        own.insert(0, '_');
-        own.truncate(200); // a name has at most 255 bytes
-    }
-    while !taken.insert(own.clone()) {
-        own.push('_');
-    }
-    own
 }
 
 fn quoted(text: &str) -> String {

@@ -3,10 +3,15 @@
 use pc_mech::Equations;
 use pc_model::{Assembly, Flow, Model, Variables};
 use pc_report::Check;
-use pc_verify::{Agreement, Options, Second, VerifyError, verify};
+use pc_verify::{Agreement, Options, Outlet, Second, VerifyError, verify, vouch};
 
 use crate::args::forms::RunForm;
+use crate::args::options::VerifyArguments;
 use crate::error::CliError;
+use crate::report::text::say;
+
+/// The random states at which equations that leave are compared, besides the start.
+const NEAR: usize = 3;
 
 /// The properties of a model, compared with a second derivation.
 ///
@@ -25,6 +30,43 @@ pub fn checked<'g>(
     let check = Check::new(model, assembly, equations)?.compared(second);
     assembly.within_limits()?;
     Ok(check)
+}
+
+/// Compares equations that are about to leave in some form with a second derivation, unless that is not wanted, and says where
+/// it could not be done.
+///
+/// # Errors
+/// [`CliError::Verify`] if the derivations disagree: nothing is to leave then.
+pub fn vouched(
+    model: &Model,
+    assembly: &Assembly<'_>,
+    outlet: Outlet,
+    asked: VerifyArguments,
+) -> Result<(), CliError> {
+    if asked.no_verify {
+        return Ok(());
+    }
+    if let Some(why) = compared(model, assembly, outlet)? {
+        assembly.within_limits()?;
+        say(format_args!("note: not compared with a second derivation: {why}\n"));
+    }
+    Ok(())
+}
+
+/// As [`vouched`]; returns why equations could not be compared.
+///
+/// # Errors
+/// [`CliError::Verify`] if the derivations disagree.
+pub fn compared(
+    model: &Model,
+    assembly: &Assembly<'_>,
+    outlet: Outlet,
+) -> Result<Option<VerifyError>, CliError> {
+    match vouch(model, assembly, outlet, NEAR) {
+        Ok(_) => Ok(None),
+        Err(error @ VerifyError::Disagreement(_)) => Err(CliError::Verify(Box::new(error))),
+        Err(error) => Ok(Some(error)),
+    }
 }
 
 /// The comparison of a motion with a second derivation, at some of its states.

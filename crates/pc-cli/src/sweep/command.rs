@@ -64,6 +64,9 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     let threads =
         arguments.threads.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let (work, depends_on) = begun(arguments, model, design, threads)?;
+    if !arguments.no_verify {
+        work.vouched()?;
+    }
     let sheet = Sheet::new(arguments.of, &names, work.members().columns());
     if picture.is_some() {
         let counts: Vec<u64> = arguments.vary.iter().map(|vary| vary.values.count()).collect();

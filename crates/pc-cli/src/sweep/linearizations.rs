@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use pc_analysis::{Eigenvalue, Linearization};
-use pc_model::Model;
+use pc_model::{Model, Variables};
 use pc_solve::{Ending, Ensemble, EnsembleError};
+use pc_verify::Outlet;
 
 use super::design::Design;
 use super::record::{Record, Status};
@@ -17,6 +18,7 @@ use crate::exit_code;
 use crate::linear::ground::Ground;
 use crate::linear::near::Varied;
 use crate::report::notes::say_dropped;
+use crate::report::verification::compared;
 
 /// Linearizes the equations of each member at a state near its start.
 pub(crate) struct Linearizations {
@@ -97,6 +99,16 @@ fn stability(linear: &Linearization) -> String {
 impl Work for Linearizations {
     fn members(&self) -> &Members {
         &self.members
+    }
+
+    fn vouched(&self) -> Result<(), CliError> {
+        for model in self.members.samples() {
+            let graph = model.graph();
+            // A member that is refused says so in its record.
+            let Ok(assembly) = model.assemble(&graph) else { continue };
+            compared(&model, &assembly, Outlet::Equations(Variables::QuasiVelocities))?;
+        }
+        Ok(())
     }
 
     fn records(

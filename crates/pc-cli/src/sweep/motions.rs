@@ -20,6 +20,7 @@ use crate::motion::memory;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
 use crate::report::text::short;
+use crate::report::verification::Verification;
 
 /// Integrates each member.
 pub(crate) struct Motions {
@@ -167,6 +168,18 @@ impl Work for Motions {
 
     fn rows(&self) -> usize {
         self.rows
+    }
+
+    /// With the equations that the members are integrated by, be they their own or those of all.
+    fn vouched(&self) -> Result<(), CliError> {
+        for model in self.members.samples() {
+            let graph = model.graph();
+            // A member that is refused says so in its record.
+            let (Ok(assembly), Ok(flow)) = (model.assemble(&graph), self.flow(&model)) else { continue };
+            let mut verification = Verification::new(&model, &assembly, self.form);
+            verification.compare(&flow, &assembly, "the start", self.plan.t_start, &flow.start)?;
+        }
+        Ok(())
     }
 
     /// As far as that can be, side by side in vectors.

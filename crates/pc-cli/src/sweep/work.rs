@@ -21,6 +21,12 @@ pub(crate) trait Work {
     /// The models, and what stands in their rows.
     fn members(&self) -> &Members;
 
+    /// Compares some members with a second derivation of each, before any begins.
+    ///
+    /// # Errors
+    /// [`CliError::Verify`] if that disagrees.
+    fn vouched(&self) -> Result<(), CliError>;
+
     /// Rows of a member.
     fn rows(&self) -> usize {
         1
@@ -87,6 +93,14 @@ impl Members {
         // Memory is each member's own, time that of all.
         model.within(self.model.budget().beside());
         model
+    }
+
+    /// The models of the first member, of one in the middle and of the last.
+    pub(crate) fn samples(&self) -> Vec<Model> {
+        let last = self.design.members().saturating_sub(1);
+        let mut members = vec![0, last / 2, last];
+        members.dedup();
+        members.into_iter().map(|member| self.model(&self.blank(member))).collect()
     }
 
     /// Whether the limit of time has passed.

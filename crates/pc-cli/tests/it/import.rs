@@ -240,3 +240,74 @@ fn what_is_wrong_is_shown_where_it_stands() {
     }
     assert!(complaints.is_empty(), "{}", complaints.join("\n\n"));
 }
+
+fn text_of(urdf: &str) -> (String, Vec<String>) {
+    model_of_urdf(&Source::new("r.urdf", urdf), false).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A link of mass 2 on a joint, on a base that stands.
+fn on_joint(joint: &str) -> String {
+    format!(
+        r#"<robot name="r"><link name="base"/>
+        <link name="l"><inertial><mass value="2"/><inertia ixx="0.5" ixy="0" ixz="0" iyy="0.5" iyz="0" izz="0.5"/></inertial></link>
+        {joint}</robot>"#
+    )
+}
+
+/// m v̇ = −d v + m g and I ω̇ = −d ω, each velocity of a joint with several of them: a planar joint normal to y falls along −z = −`x`
+/// of its plane, a free body along −z.
+#[test]
+fn each_velocity_of_a_joint_is_damped() {
+    let joint = |kind: &str| {
+        on_joint(&format!(
+            r#"<joint name="j" type="{kind}"><parent link="base"/><child link="l"/><axis xyz="0 1 0"/>
+            <dynamics damping="3"/></joint>"#
+        ))
+    };
+    let mut planar = flow(&text_of(&joint("planar")).0);
+    alike(
+        &rates(&mut planar, &[0.0, 0.0, 0.0, 0.1, 0.2, 0.3])[3..],
+        &[-9.81 - 1.5 * 0.1, -1.5 * 0.2, -6.0 * 0.3],
+    );
+    let mut free = flow(&text_of(&joint("floating")).0);
+    let start = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.0, 0.0];
+    alike(
+        &rates(&mut free, &start)[7..],
+        // v̇ = g − ω × v − d v/m in body axes
+        &[0.0, 0.2 * 0.1, -9.81 - 1.5 * 0.1, -6.0 * 0.2, 0.0, 0.0],
+    );
+}
+
+/// A joint may be called what would be the name of another's damping, or of a coordinate of a body.
+#[test]
+fn names_made_of_others_are_not_taken() {
+    let urdf = r#"<robot name="r"><link name="base"/>
+        <link name="l"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <link name="k"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <link name="h"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <joint name="a" type="planar"><parent link="base"/><child link="l"/><axis xyz="0 1 0"/><dynamics damping="3"/></joint>
+        <joint name="l_x" type="revolute"><parent link="l"/><child link="k"/><dynamics damping="0.5"/></joint>
+        <joint name="l_x_damping" type="revolute"><parent link="k"/><child link="h"/></joint></robot>"#;
+    let (text, left_out) = text_of(urdf);
+    assert!(left_out.is_empty(), "{left_out:?}");
+    assert_eq!(
+        flow(&text).motion.names()[..5],
+        ["l__x", "l__y", "l__φ", "l_x", "l_x_damping"].map(str::to_owned)
+    );
+    assert!(text.contains("\"l_x'\" = \"-l_x_damping_*l_x'\""), "{text}");
+}
+
+/// A joint that does not move follows nothing.
+#[test]
+fn a_fixed_joint_does_not_mimic() {
+    let (text, left_out) = text_of(
+        r#"<robot name="r"><link name="base"/>
+        <link name="l"><inertial><mass value="1"/><origin xyz="0.1 0 0"/>
+        <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link><link name="k"/>
+        <joint name="a" type="revolute"><parent link="base"/><child link="l"/><axis xyz="0 1 0"/></joint>
+        <joint name="b" type="fixed"><parent link="l"/><child link="k"/><axis xyz="0 1 0"/><mimic joint="a"/></joint></robot>"#,
+    );
+    assert_eq!(left_out, ["the joint `b` is fixed: that it mimics `a` is left out"]);
+    // (I + m r²) ä = m g r cos a
+    alike(&rates(&mut flow(&text), &[0.3, 0.0]), &[0.0, 9.81 * 0.1 * 0.3_f64.cos() / 0.11]);
+}

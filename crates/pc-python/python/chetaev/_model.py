@@ -32,6 +32,7 @@ def changes(
     reactions: bool = False,
     limit_memory: int | None = None,
     limit_time: float | None = None,
+    verify: bool = True,
 ) -> dict[str, Any]:
     """What a model is changed by before it is derived, as the native part takes it."""
     return {
@@ -45,6 +46,7 @@ def changes(
         "reactions": reactions,
         "limit_memory": limit_memory,
         "limit_time": limit_time,
+        "verify": verify,
     }
 
 
@@ -235,6 +237,9 @@ class Model:
             Whether the reactions of constraints are columns of motions.
         limit_memory, limit_time : optional
             Bytes of expressions, and seconds of one derivation.
+        verify : bool
+            Whether the equations are compared with a second derivation, at the start and near it; where the two disagree,
+            :class:`DisagreementError` is raised.
 
         Examples
         --------
