@@ -39,5 +39,5 @@ pub use error::ReportError;
 pub use page::player::animation;
 pub use page::report::report;
 pub use record::{Columns, Kind, Record, Samples, UnknownColumn};
-pub use remarks::{NEGATIVE_ENERGY, dropped};
+pub use remarks::{NEGATIVE_ENERGY, changing_masses, dropped};
 pub use scene::{Scene, SceneShape};

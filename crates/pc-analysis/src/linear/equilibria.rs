@@ -73,11 +73,22 @@ pub struct FoundEquilibrium {
     pub linearization: Linearization,
     /// The results on its stability.
     pub motion: NearbySteadyMotion,
-    /// The dimension of its family, without that due to cyclic coordinates; 0 if it is isolated.
+    /// The dimension of its family, without that due to cyclic coordinates; 0 if it is isolated, also where the first approximation
+    /// has a kernel, as at the minimum of x⁴.
     pub family: usize,
     /// The number of members of the family that were found.
     pub members: usize,
+    /// The greatest distance of a member from this one, of components relative to 1 + |y|.
+    reach: f64,
 }
+
+/// Where a kernel of the first approximation belongs to an isolated equilibrium, Newton's method ends somewhere within about this
+/// distance of it, relative to 1 + |y|: the rates are below its tolerance there.
+const FLAT: f64 = 0.02;
+
+/// How far from an equilibrium others of its family are looked for, relative to 1 + |y|, and in how many directions.
+const BESIDE: f64 = 0.3;
+const DIRECTIONS: usize = 3;
 
 /// Steps of Newton's method.
 const MOST_STEPS: usize = 60;
@@ -153,8 +164,20 @@ impl EquilibriumSearch {
                 found.motion.second_variation = found.by_stiffness()?;
             }
             match list.iter_mut().find(|known| known.is_of_family(&found)) {
-                Some(known) => known.members += 1,
+                Some(known) => {
+                    known.members += 1;
+                    known.reach = known.reach.max(domain.distance(&known.state, &found.state));
+                }
                 None => list.push(found),
+            }
+        }
+        for found in list.iter_mut().filter(|found| found.family > 0 && found.reach <= FLAT) {
+            let mut beside = (0..DIRECTIONS).filter_map(|number| {
+                let guess = domain.beside(number, &found.state);
+                linearizer.equilibrium(t, start, &guess, &at_rest, steepest)
+            });
+            if !beside.any(|other| domain.distance(&found.state, &other) > FLAT) {
+                (found.family, found.members) = (0, 1);
             }
         }
         let place = |a: &FoundEquilibrium, b: &FoundEquilibrium| {
@@ -280,11 +303,27 @@ impl Domain {
     }
 
     fn is_same(&self, a: &[f64], b: &[f64]) -> bool {
-        a.iter().zip(b).zip(&self.periods).all(|((a, b), period)| {
+        self.distance(a, b) <= SAME
+    }
+
+    /// The greatest difference of components modulo periods, relative to 1 + |a|.
+    fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+        let components = a.iter().zip(b).zip(&self.periods).map(|((a, b), period)| {
             let distance = (a - b).abs();
             let around = period.map_or(distance, |period| (period - distance).abs());
-            distance.min(around) <= SAME * (1.0 + a.abs())
-        })
+            distance.min(around) / (1.0 + a.abs())
+        });
+        components.fold(0.0, f64::max)
+    }
+
+    /// A place beside a state, in one of a few directions that are parallel to no plane of the components.
+    fn beside(&self, number: usize, state: &[f64]) -> Vec<f64> {
+        let mut beside = state.to_vec();
+        for (edge, prime) in self.edges.iter().zip(primes()) {
+            let part = ((number + 1) as f64 * f64::from(prime).sqrt()).fract();
+            beside[edge.place] += BESIDE * (1.0 + state[edge.place].abs()) * (2.0 * part - 1.0);
+        }
+        beside
     }
 
     fn named(&self, names: &[String]) -> Vec<(String, f64, f64)> {
@@ -392,6 +431,7 @@ impl Linearizer {
             motion: described,
             family,
             members: 1,
+            reach: 0.0,
         })
     }
 }

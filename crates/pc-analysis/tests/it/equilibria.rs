@@ -127,6 +127,21 @@ fn families_are_recognised() {
     assert!((x.hypot(y) - 1.0).abs() < EXACT && found[1].state[0].abs() < EXACT);
 }
 
+/// The first approximation at the only equilibrium of xⁿ + y² has a kernel, n > 2, and no others are near. Newton's method goes to
+/// that of x³ from everywhere, in halves of the way.
+#[test]
+fn an_isolated_equilibrium_with_a_kernel_is_no_family() {
+    let graph = Graph::new();
+    for (n, start) in [(3, [0.0; 4]), (3, [0.5, 0.3, 0.0, 0.0]), (4, [0.0; 4]), (6, [0.0; 4])] {
+        let system = on_a_plane(&graph, |x, y| x.powi(n) + y.square());
+        let found = search(&system, &start, &EquilibriumSearch::default()).unwrap().list;
+        let [one] = found.as_slice() else { panic!("{} of x^{n} + y²", found.len()) };
+        assert_eq!((one.family, one.members), (0, 1), "x^{n}");
+        // 3 x² is below the tolerance of the rates.
+        assert!(one.state.iter().all(|y| y.abs() < 1e-5), "{:?}", one.state);
+    }
+}
+
 /// A force that decays with distance vanishes nowhere, although Newton's method goes to where it is small.
 #[test]
 fn nothing_is_found_at_infinity() {

@@ -8,7 +8,7 @@ use crate::args::input;
 use crate::args::options::DeriveArguments;
 use crate::error::CliError;
 use crate::output::standard_output::print;
-use crate::report::notes::{say_dropped, say_moved};
+use crate::report::notes::{say_changing_masses, say_dropped, say_moved};
 use crate::report::verification::vouched;
 
 /// Prints the equations of a model.
@@ -24,6 +24,7 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly);
     say_moved(&assembly);
+    say_changing_masses(&assembly);
     let layout = Layout { width: arguments.width.into(), brief: arguments.brief, inline: arguments.inline };
     let page = page(form.into(), arguments.format.into(), &layout, model.title(), &assembly)?;
     assembly.within_limits()?;

@@ -28,7 +28,9 @@ use crate::motion::table::Table;
 use crate::output::destination::Destination;
 use crate::output::stream::Stream;
 use crate::plot::error::PlotError;
-use crate::report::notes::{choice, say_choice, say_moved, say_negative_energy, say_undetermined};
+use crate::report::notes::{
+    choice, say_changing_masses, say_choice, say_moved, say_negative_energy, say_undetermined,
+};
 use crate::report::verification::Verification;
 use crate::report::{summary, text};
 
@@ -112,6 +114,7 @@ fn integrate_into(
     let assembly = model.assemble(&graph)?;
     say_moved(&assembly);
     say_negative_energy(&assembly);
+    say_changing_masses(&assembly);
     if assembly.constraints.held().is_none() && assembly.has_multipliers() {
         let (_, free) = assembly.equations_of(Variables::QuasiVelocities)?;
         if let Some(remark) = choice(&assembly, &free.independent) {

@@ -2,7 +2,7 @@
 
 use pc_mech::{Constraint, Expr};
 use pc_model::{Assembly, ConstraintFormulation};
-use pc_report::{NEGATIVE_ENERGY, dropped};
+use pc_report::{NEGATIVE_ENERGY, changing_masses, dropped};
 
 use crate::report::text::{say, short, wrapped};
 
@@ -68,6 +68,13 @@ pub fn say_moved(assembly: &Assembly<'_>) {
                 say(format_args!("note: the start was moved onto the constraints:\n      {lines}\n"));
             }
         }
+    }
+}
+
+/// Says on standard error which masses change in time, and how what they lose moves.
+pub fn say_changing_masses(assembly: &Assembly<'_>) {
+    if let Some(remark) = changing_masses(assembly) {
+        say(format_args!("note: {remark}\n"));
     }
 }
 

@@ -220,3 +220,43 @@ fn source_has_states_and_takes_inputs_as_arguments() {
     assert!(header.contains("The tables of inputs are not part of this source"), "{header}");
     assert!(!header.contains("T_END"), "a motion with a constant input would be another");
 }
+
+/// m ż = −∫ m g dt where the lost mass is left at rest, and z̈ = −g where it goes on falling: which of the two holds is said.
+#[test]
+fn a_mass_that_is_lost_leaves_at_rest_unless_a_force_says_otherwise() {
+    let falling = |force: &str| {
+        written(&format!(
+            r#"
+[parameters]
+k = 0.1
+g = 9.81
+[states]
+m = {{ rate = "-k", start = 1.0 }}
+[coordinates]
+z = 0
+[bodies.drop]
+mass = "m"
+position = ["0", "0", "z"]
+{force}
+[gravity]
+acceleration = [0, 0, "-g"]
+[simulation]
+t_end = 2
+"#
+        ))
+    };
+    let note = "the mass of drop changes in time: what is lost or taken up is at rest, D_t (m v) = F; for what leaves or comes \
+                with a velocity u add the force d(m)*u";
+    let speed = |force: &str| {
+        let (_directory, model) = falling(force);
+        let output = pc(&["run", &model, "--samples", "2"]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(String::from_utf8_lossy(&output.stderr).contains(&format!("note: {note}\n")));
+        table(&String::from_utf8(output.stdout).expect("text")).1[1][2]
+    };
+    // (m0 t − k t²/2)/(m0 − k t) of g, to the tolerance of the run
+    assert_close(&[speed("")], &[-9.81 * 1.8 / 0.8], 1e-8);
+    assert_close(&[speed("force = [0, 0, \"d(m)*z'\"]")], &[-9.81 * 2.0], 1e-8);
+    let (_directory, model) = falling("");
+    assert!(ok(&["check", &model]).contains(note));
+}

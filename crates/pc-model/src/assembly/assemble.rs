@@ -80,6 +80,7 @@ impl<'g> Assembler<'g, '_> {
             .collect();
         let lagrangian = self.lagrangian(&x_dot)?;
         let bodies = self.bodies(&eta, &x_dot)?;
+        let changing_masses = self.changing_masses()?;
         let tree = self.tree(&x_dot)?;
         let gravity = self.gravity()?;
         let dissipation = self.dissipation(&x_dot)?;
@@ -171,6 +172,7 @@ impl<'g> Assembler<'g, '_> {
             definitions: self.scope.meanings(&x_dot),
             given,
             action,
+            changing_masses,
             document: self.model.shared_document(),
         })
     }

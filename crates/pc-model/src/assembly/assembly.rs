@@ -36,6 +36,8 @@ pub struct Assembly<'g> {
     pub given: Vec<(Expr<'g>, Expr<'g>)>,
     /// The solution of Hamilton–Jacobi's equation in the text, if there is one.
     pub action: Option<Action<'g>>,
+    /// The bodies whose masses change by time or first-order states: D_t (m v) = F, so that what they lose or take up is at rest.
+    pub changing_masses: Vec<String>,
     /// The text, in which errors have their places.
     pub(crate) document: Arc<Document>,
 }

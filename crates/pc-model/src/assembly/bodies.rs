@@ -27,6 +27,19 @@ impl<'g> Assembler<'g, '_> {
         self.model.document().bodies.iter().map(|body| self.body(body, eta, x_dot)).collect()
     }
 
+    /// The bodies whose masses change by time or first-order states.
+    pub(super) fn changing_masses(&mut self) -> Result<Vec<String>, ModelError> {
+        let changing = [vec![self.graph.symbol("t")], self.scope.states()].concat();
+        let mut names = Vec::new();
+        for body in &self.model.document().bodies {
+            let mass = self.scope.resolve(&body.mass, Stage::Inertia)?;
+            if changing.iter().any(|&y| mass.depends_on(y)) {
+                names.push(body.name.text.clone());
+            }
+        }
+        Ok(names)
+    }
+
     /// The entry of `[gravity]`.
     pub(super) fn gravity(&mut self) -> Result<Option<[Expr<'g>; 3]>, ModelError> {
         let gravity = self.model.document().gravity.as_ref();

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 use crate::check::measure::Measure;
 use crate::check::{agreement, combinations, frame, integrals, steady};
-use crate::remarks::{NEGATIVE_ENERGY, dropped};
+use crate::remarks::{NEGATIVE_ENERGY, changing_masses, dropped};
 
 /// The properties of a model before it is run.
 #[derive(Clone, Debug)]
@@ -30,6 +30,8 @@ pub struct Check<'g> {
     pub(super) algebra: String,
     pub(super) mass_rank: usize,
     negative_energy: bool,
+    /// What is said of masses that change in time.
+    changing_masses: Option<String>,
     /// The number of its rows.
     free: usize,
     t_start: f64,
@@ -95,6 +97,7 @@ impl<'g> Check<'g> {
                 &equations.mass_matrix().nonzero_rows(),
             ),
             negative_energy: assembly.has_negative_energy(),
+            changing_masses: changing_masses(assembly),
             free: equations.mass_matrix().rows(),
             t_start: assembly.t_start,
             start: assembly.start.clone(),
@@ -196,7 +199,7 @@ impl<'g> Check<'g> {
     fn mass_matrix_lines(&self) -> Vec<String> {
         let rank = format!("symmetric, rank {} of {}", self.mass_rank, self.free);
         let negative = self.negative_energy.then(|| NEGATIVE_ENERGY.to_owned());
-        [rank].into_iter().chain(negative).collect()
+        [rank].into_iter().chain(negative).chain(self.changing_masses.clone()).collect()
     }
 
     fn constraint_lines(&self) -> Vec<String> {
@@ -230,6 +233,7 @@ impl<'g> Check<'g> {
             "algebra": self.algebra,
             "mass_matrix_rank": self.mass_rank,
             "negative_energy": self.negative_energy,
+            "changing_masses": self.changing_masses,
             "start_residual": self.start_residual,
             "integrals": integrals,
             "invariant_measure": self.measure.object(),

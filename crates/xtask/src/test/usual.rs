@@ -24,15 +24,21 @@ const PROGRAMS: [(&str, u64); 11] = [
 ];
 
 /// The tests that take more than ten seconds: `--quick` leaves them out.
-pub(crate) const LONG: [(&str, &str); 9] = [
+pub(crate) const LONG: [(&str, &str); 15] = [
     ("pc-cli it", "browser::the_page_of_a_bicycle"),
+    ("pc-cli it", "browser::the_page_of_a_car_with_trailers"),
+    ("pc-cli it", "browser::the_page_of_a_heavy_top"),
+    ("pc-cli it", "checkpoint::a_run_with_events_gives_the_same_bytes_from_each_checkpoint"),
     ("pc-cli it", "help::the_examples_run"),
     ("pc-cli it", "program::models_and_algebras_are_listed"),
     ("pc-cli it", "report::the_page_of_a_platform_on_six_legs_is_below_a_megabyte"),
     ("pc-cli it", "sweep_of::what_was_killed_goes_on_and_gives_the_same_bytes"),
     ("pc-cli it", "theory::all_models_have_a_theory"),
     ("pc-cli it", "verdicts::check_and_linearize_agree_on_stability"),
+    ("pc-model it", "definitions::ten_thousand_nested_definitions_need_no_deep_stack"),
     ("pc-report pages", "pages_of_all_models"),
+    ("pc-tests it", "mechanisms::a_bicycle_rides_alike_in_rates_of_roll_and_steer_and_in_velocities"),
+    ("pc-tests it", "printed_pages::accelerations_that_are_read_back_are_those_of_the_run"),
     ("pc-tests it", "random_models::random_models_agree_with_independent_computations"),
 ];
 
