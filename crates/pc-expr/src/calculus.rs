@@ -2,7 +2,8 @@
 //!
 //! `derivative` sweeps backwards for gradients and forwards along a direction; `substitution` puts
 //! expressions in place of symbols. `collect` rebuilds an expression as a polynomial by its `powers` of each
-//! symbol; `independence` rids the coefficients of symbols that cancel, with the help of `numbers`;
+//! symbol; `independence` rids the coefficients of symbols that cancel, with the help of `numbers` and,
+//! where constants are rounded, of `rounding`;
 //! `polynomial` writes the result out. `potential` finds a function by its gradient; `root_powers` makes
 //! powers of roots recognisable; `typeset` rewrites expressions for readers and measures them by `columns`;
 //! `multiplied_out` opens brackets where sines and cosines then merge; `breaks` and `seams` are the
@@ -20,6 +21,7 @@ pub(crate) mod polynomial;
 pub(crate) mod potential;
 pub(crate) mod powers;
 pub(crate) mod root_powers;
+mod rounding;
 pub(crate) mod seams;
 pub(crate) mod substitution;
 pub(crate) mod typeset;

@@ -4,7 +4,7 @@
 //! `prime_field` (arithmetic in GF(2⁶¹−c)), `fingerprint` (values in two of them), `roots` (values that
 //! contain roots), `circle_point` (sines and cosines); the graph gives each node such a value. Questions
 //! about several nodes at once follow: `rank`, by independent `blocks`, and `linear_relations`, by
-//! elimination in `echelon`.
+//! elimination in `echelon`. Where constants are rounded, numbers decide, weighed by their `running_error`.
 
 pub(crate) mod blocks;
 pub(crate) mod circle_point;
@@ -14,3 +14,4 @@ pub(crate) mod linear_relations;
 pub(crate) mod prime_field;
 pub(crate) mod rank;
 pub(crate) mod roots;
+pub(crate) mod running_error;

@@ -70,6 +70,7 @@ pub use graph::transcription::Transcription;
 pub use identity::blocks::independent_blocks;
 pub use identity::echelon::ResidueEchelon;
 pub use identity::prime_field::Residue;
+pub use identity::running_error::Weighed;
 pub use kernel::evaluator::{Backend, Evaluator, compile};
 #[cfg(feature = "jit")]
 pub use kernel::jit::{Jit, JitError, JitOptions};

@@ -1,10 +1,9 @@
 //! Frobenius' theorem for the velocities that a frame allows.
 
 use nalgebra::{DMatrix, DVector};
-use pc_expr::Expr;
+use pc_expr::{Expr, Weighed};
 
 use crate::frame::frame::Frame;
-use crate::identity::running_error::Weighed;
 use crate::identity::sample::{Neighbourhood, TRIALS};
 
 /// Whether the velocities that a frame allows, ẋ = b η + b_0 (3), are those of motions on submanifolds.

@@ -1,8 +1,7 @@
 //! Points at which expressions jump.
 
-use pc_expr::{Break, Expr, Graph};
+use pc_expr::{Break, Expr, Graph, Weighed};
 
-use crate::identity::running_error::Weighed;
 use crate::identity::sample::{Neighbourhood, TRIALS};
 
 /// Newton's steps to a surface: what is not reached with so many is not looked at.

@@ -1,9 +1,8 @@
 //! Numerical values of expressions at pseudo-random points, for tests that the graph cannot decide exactly.
 
-use pc_expr::{Expr, Function, Graph, Scalar, SymbolPlaces, independent_blocks};
+use pc_expr::{Expr, Function, Graph, Scalar, SymbolPlaces, Weighed, independent_blocks};
 
 use crate::identity::magnitudes::magnitudes;
-use crate::identity::running_error::Weighed;
 use crate::linear_algebra::matrix::Matrix;
 
 /// The number of points at which an identity that the graph leaves open is tested.
@@ -234,10 +233,7 @@ impl<'g> Neighbourhood<'g> {
 /// Whether expressions contain functions of several pieces.
 fn in_pieces<'g>(graph: &'g Graph, expressions: &[Expr<'g>]) -> bool {
     let symbols = graph.symbols_of(expressions);
-    let has_pieces = |f: Function| {
-        matches!(f, Function::Abs | Function::Sign | Function::Min | Function::Max | Function::Step)
-    };
-    expressions.iter().any(|&expression| graph.applies(expression, &symbols, has_pieces))
+    expressions.iter().any(|&expression| graph.applies(expression, &symbols, Function::is_piecewise))
 }
 
 /// The rank of a matrix with these values of its nonzero entries, block by block.

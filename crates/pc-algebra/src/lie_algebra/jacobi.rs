@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use pc_expr::{Number, Scalar};
+use pc_expr::{Number, Scalar, Weighed};
 
 use crate::error::AlgebraError;
-use crate::identity::running_error::Weighed;
 
 /// The triple r < s < u of which (a, b, c) is a cyclic permutation, if it is one.
 pub(crate) fn cyclic(a: usize, b: usize, c: usize) -> Option<(usize, usize, usize)> {

@@ -363,3 +363,46 @@ along = "x*F_rod_bob_x + z*F_rod_bob_z"
         assert!(slope("C", i, 1).abs() < 1e-12, "{i}: {}", slope("C", i, 1));
     }
 }
+
+/// A mass m on a rod, tied to a spring-loaded wheel by φ' = x' cos φ + y' φ: about the lowest point
+/// m x'' = 2u + 2x λ − μ, φ'' = μ − 2φ, φ'' = x'' and 0 = u − m g − 2λ, so that (m + 1) x'' = 2u − m g x − 2φ and
+/// the reaction of the tie is μ = x'' + 2φ.
+#[test]
+fn reactions_of_conditions_on_velocities_have_slopes_beside_those_of_positions() {
+    let text = r#"
+[inputs]
+u = 0
+[coordinates]
+x = 0
+y = -1
+"φ" = 0
+[constraints]
+rod = "x^2 + y^2 - 1"
+tie = "φ' - x'*cos(φ) - y'*φ"
+[lagrangian]
+kinetic = "φ'^2/2"
+potential = "φ^2"
+[bodies.bob]
+mass = 2
+position = ["x", "y", 0]
+[gravity]
+acceleration = [0, -9.75, 0]
+[forces]
+x = "2*u"
+y = "u"
+[outputs]
+tension = "-2*λ_rod"
+tied = "λ_tie"
+"#;
+    let all: Value = serde_json::from_str(&said(text, "linearize", &["--format", "json"])).expect("JSON");
+    assert_eq!(all["components"], serde_json::json!(["x", "φ", "x'"]));
+    let by_state = [0.0, 0.0, 0.0, -6.5, 4.0 / 3.0, 0.0];
+    for (matrix, expected) in [("C", &by_state[..]), ("D", &[-1.0, 2.0 / 3.0])] {
+        let rows =
+            all[matrix].as_array().expect("rows").iter().flat_map(|row| row.as_array().expect("a row"));
+        let found: Vec<f64> = rows.map(|x| x.as_f64().expect("a number")).collect();
+        assert_eq!(found.len(), expected.len());
+        // A few roundings of numbers up to 20.
+        assert!(found.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-12), "{matrix}: {found:?}");
+    }
+}

@@ -1,6 +1,8 @@
 //! Expressions written without the symbols that they do not depend on.
 //!
-//! A symbol that cancels is replaced by a number at which, by its fingerprint, the value stays the same.
+//! A symbol that cancels is replaced by a number at which, by its fingerprint, the value stays the
+//! same. Where constants are rounded there may be no such number; then the derivative decides, by its
+//! `rounding`.
 
 use std::collections::HashSet;
 
@@ -64,24 +66,52 @@ impl Graph {
     /// e, which does not depend on the symbol z, written without it: without new divisors, or with one that
     /// vanishes only at unlikely places.
     pub(crate) fn without_symbol<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
-        let is_without = |form: &Expr<'g>| !form.is_undefined() && !self.symbols_of(&[*form]).contains(&z);
-        let mut odd = None;
-        for form in self.forms_without(e, z, true).filter(is_without) {
+        self.equal_form_without(e, z).or_else(|| self.rounded_form_without(e, z)).unwrap_or(e)
+    }
+
+    /// The same if e does not depend on z, exactly or but for the rounding of its constants; e itself otherwise.
+    fn without_idle_symbol<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
+        // With jumps the slope says nothing: that of atan(tan z) − z is zero.
+        let jumps = || self.symbols_of(&self.seams(&[e])).contains(&z);
+        let is_idle = || !jumps() && self.is_rounding(e.derivative(z));
+        let rounded = || is_idle().then(|| self.rounded_form_without(e, z)).flatten();
+        self.equal_form_without(e, z).or_else(rounded).unwrap_or(e)
+    }
+
+    /// A form without z that has the fingerprint of e.
+    fn equal_form_without<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Option<Expr<'g>> {
+        let forms = self.forms_without(e, z, true).filter(|&form| self.is_without(form, z));
+        self.regular_or_last(e, forms)
+    }
+
+    /// A form without z, where e does not depend on it. Where constants are rounded, those of each form are
+    /// rounded anew, so that none has the fingerprint of e. At 0 nothing is left of what cancels.
+    fn rounded_form_without<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Option<Expr<'g>> {
+        let forms = [Number::ZERO, Number::ONE, ODD].into_iter().map(|value| self.at(e, z, value));
+        self.regular_or_last(e, forms.filter(|&form| self.is_without(form, z)))
+    }
+
+    /// The first of the forms of e without a new divisor, else the last, which is the oddest.
+    fn regular_or_last<'g>(&'g self, e: Expr<'g>, forms: impl Iterator<Item = Expr<'g>>) -> Option<Expr<'g>> {
+        let mut last = None;
+        for form in forms {
+            last = Some(form);
             if self.is_as_regular(form, e) {
-                return form;
+                break;
             }
-            odd = Some(form);
         }
-        // Where constants are rounded, every form has a slightly different value.
-        let rounded = || {
-            [ODD, Number::ONE, Number::ZERO].into_iter().map(|value| self.at(e, z, value)).find(is_without)
-        };
-        odd.or_else(rounded).unwrap_or(e)
+        last
+    }
+
+    /// Whether a form has values, and no symbol z.
+    fn is_without<'g>(&'g self, form: Expr<'g>, z: Expr<'g>) -> bool {
+        !form.is_undefined() && !self.symbols_of(&[form]).contains(&z)
     }
 
     /// `outputs` written without symbols other than `known`, as far as they do not depend on them. Such a
     /// symbol cancels; it appears where a result has the value of an older and cheaper expression that
-    /// contains it.
+    /// contains it. Where constants are rounded, it cancels if the derivative along it is no more than
+    /// [rounding](crate::Weighed::rest).
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -99,13 +129,7 @@ impl Graph {
         if foreign(outputs).is_empty() {
             return outputs.to_vec();
         }
-        let without = |e: Expr<'g>, z: Expr<'g>| {
-            let is_without =
-                |form: &Expr<'g>| !form.is_undefined() && !self.symbols_of(&[*form]).contains(&z);
-            let mut forms = self.forms_without(e, z, true).filter(is_without).peekable();
-            let first = forms.peek().copied();
-            forms.find(|&form| self.is_as_regular(form, e)).or(first).unwrap_or(e)
-        };
+        let without = |e, z| self.without_idle_symbol(e, z);
         outputs.iter().map(|&e| foreign(&[e]).into_iter().fold(e, without)).collect()
     }
 

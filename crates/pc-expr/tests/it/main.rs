@@ -21,6 +21,7 @@ mod programs;
 mod random;
 mod regularity;
 mod roots;
+mod rounded_constants;
 mod scale;
 mod signs;
 mod substitution;

@@ -2,7 +2,7 @@
 //!
 //! The bound is an expression, compiled with its function, as a projection compares with it at each state of
 //! a motion; a numerical weight, which identifies zeros at a few points of a derivation, is in
-//! `pc-algebra/src/identity/running_error.rs`.
+//! `pc-expr/src/identity/running_error.rs`.
 
 use std::ops::{Add, Mul, Neg};
 
