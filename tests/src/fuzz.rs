@@ -3,6 +3,7 @@
 //! ```text
 //! seed, number ─ generator ─► Specimen ─ start ─► Start ─ text ─► a model, and its twin in ordinary velocities
 //!                                                                    │ execution: every form that the product has
+//!                                                                    │ program: commands of `pc` on the same text
 //!                             shrink ◄─ Finding ◄─ comparison ◄──────┘
 //!                             campaign: many numbers, a report
 //! ```
@@ -20,6 +21,7 @@ pub mod examination;
 pub mod execution;
 pub mod expression;
 pub mod generator;
+pub mod program;
 pub mod random;
 mod regular;
 pub mod report;
@@ -28,3 +30,4 @@ pub mod specimen;
 pub mod start;
 pub mod text;
 mod trees;
+pub mod units;

@@ -1,11 +1,15 @@
 //! `cargo xtask fuzz`: random models against independent computations.
 
-use crate::command::{announce_and_run, cargo};
+use std::process::Command;
+
+use crate::command::{announce_and_run, cargo, target_directory};
 use crate::error::Error;
 use crate::setup;
 
-/// Runs the differential tester of `pc-tests` with the arguments as they are.
+/// Runs the differential tester of `pc-tests` with the arguments as they are, beside the program that it calls.
 pub(crate) fn run(arguments: &[String]) -> Result<(), Error> {
     setup::native_tools()?;
-    announce_and_run(cargo(&["run", "--release", "-p", "pc-tests", "--bin", "fuzz", "--"]).args(arguments))
+    let packages = ["-p", "pc-tests", "-p", "pc-cli"];
+    announce_and_run(cargo(&["build", "--release", "--bin", "fuzz", "--bin", "pc"]).args(packages))?;
+    announce_and_run(Command::new(target_directory()?.join("release/fuzz")).args(arguments))
 }

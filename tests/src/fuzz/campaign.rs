@@ -6,7 +6,9 @@ use std::thread;
 use std::time::Duration;
 
 use super::examination::{self, Examined, Thoroughness};
+use super::program::{Program, Session};
 use super::trees;
+use super::units::Units;
 
 /// What is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +30,7 @@ impl Subject {
 }
 
 /// Which models are examined.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Campaign {
     /// What they are models of.
     pub subject: Subject,
@@ -42,6 +44,12 @@ pub struct Campaign {
     pub threads: usize,
     /// Every so many models one is emitted and compiled; 0 for none.
     pub emitted_every: u64,
+    /// The program, where its commands are tried.
+    pub program: Option<Program>,
+    /// Every so many models its commands are tried on one; 0 for none.
+    pub program_every: u64,
+    /// Every so many models one is run in other units; 0 for none.
+    pub units_every: u64,
     /// How long a model may take.
     pub limit: Duration,
 }
@@ -49,8 +57,11 @@ pub struct Campaign {
 impl Campaign {
     /// How model number `index` is examined.
     pub fn thoroughness(&self, index: u64) -> Thoroughness {
-        let emitted = self.emitted_every > 0 && index.is_multiple_of(self.emitted_every);
-        Thoroughness { emitted, limit: self.limit }
+        let falls = |every: u64| every > 0 && index.is_multiple_of(every);
+        let program = self.program.clone().filter(|_| falls(self.program_every));
+        let commands = program.map(|program| Session::new(program, self.seed, index));
+        let units = falls(self.units_every).then(|| Units::of(self.seed, index));
+        Thoroughness { emitted: falls(self.emitted_every), commands, units, limit: self.limit }
     }
 
     /// What came of the models, in their order, whatever the number of threads; `done` sees each as soon as it is, in

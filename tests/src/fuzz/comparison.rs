@@ -154,15 +154,19 @@ fn same_events(a: &Motion, b: &Motion) -> bool {
 }
 
 /// The size of a column, at least 1.
-fn size(motion: &Motion, column: usize) -> f64 {
+pub(super) fn size(motion: &Motion, column: usize) -> f64 {
     motion.rows.iter().fold(1.0, |size, row| f64::max(size, row[column].abs()))
 }
 
-/// How far a number may be off: none where looser tolerances move it so far that it judges nothing.
-fn allowance(motion: &Motion, row: usize, column: usize) -> Option<f64> {
+/// How far looser tolerances move a number: none where it is so far that it judges nothing.
+pub(super) fn resolved(motion: &Motion, row: usize, column: usize) -> Option<f64> {
     let moved = motion.moved.as_ref()?.rows[row][column];
-    let size = size(motion, column);
-    (moved <= RESOLVED * size).then_some(TOLERANCE * size + GROWTH * moved)
+    (moved <= RESOLVED * size(motion, column)).then_some(moved)
+}
+
+/// How far a number may be off: none where it is not resolved.
+fn allowance(motion: &Motion, row: usize, column: usize) -> Option<f64> {
+    resolved(motion, row, column).map(|moved| TOLERANCE * size(motion, column) + GROWTH * moved)
 }
 
 /// Whether looser tolerances move the last row of a column beyond use, though not that of the other motion.
@@ -241,6 +245,8 @@ fn drift(kind: &'static str, name: &str, motion: &Motion) -> Option<Finding> {
 fn is_conservative(specimen: &Specimen) -> bool {
     let mut specimen = specimen.clone();
     let acts = !specimen.forces.is_empty()
+        || !specimen.states.is_empty()
+        || !specimen.inputs.is_empty()
         || !specimen.dissipation.is_empty()
         || specimen.bodies.iter().any(|body| body.force.is_some());
     let drifts = specimen.has_drift();

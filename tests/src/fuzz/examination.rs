@@ -10,10 +10,12 @@ use super::comparison::{self, Finding};
 use super::emission;
 use super::execution::{Forms, GIVEN_UP, Refusal, execute};
 use super::generator;
+use super::program::{Session, Tally};
 use super::regular::stays_regular;
 use super::specimen::Specimen;
 use super::start::Start;
 use super::text;
+use super::units::Units;
 
 /// A finding in the motion that a model is compared with.
 const TWIN_DISAGREES: &str = "second derivation disagrees in ordinary velocities";
@@ -23,6 +25,9 @@ const SINGULAR: &str = "integration, up to where the frame is singular";
 
 /// A motion that ends, in ordinary velocities as well.
 const BOTH: &str = "integration, in ordinary velocities, too";
+
+/// The motion in quasi-velocities, with the second derivation.
+const TWICE: Forms = Forms { second: true, ..Forms::ONE };
 
 /// The main thread of the program has as much.
 const STACK: usize = 8 << 20;
@@ -45,10 +50,14 @@ pub struct Examined {
 }
 
 /// How a specimen is examined.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Thoroughness {
     /// With a compiler for emitted source.
     pub emitted: bool,
+    /// By commands of the program.
+    pub commands: Option<Session>,
+    /// In other units.
+    pub units: Option<Units>,
     /// How long it may take.
     pub limit: Duration,
 }
@@ -63,8 +72,9 @@ pub fn examine_specimen(specimen: &Specimen, thoroughness: Thoroughness) -> Exam
     let Some(start) = Start::of(specimen) else { return Examined::default() };
     let (text, twin) = (text::model(specimen, &start), text::twin(specimen, &start));
     let (copy, texts) = (specimen.clone(), (text.clone(), twin.clone()));
+    let limit = thoroughness.limit;
     let work = move || examine_texts(&copy, &start, &texts.0, texts.1.as_deref(), thoroughness);
-    Examined { text, twin, ..bounded(thoroughness.limit, work) }
+    Examined { text, twin, ..bounded(limit, work) }
 }
 
 /// Work in a thread of its own, for so long; a panic is a finding.
@@ -93,6 +103,12 @@ impl Examined {
         Examined { refusals: vec![Refusal { stage, message }], ..Examined::default() }
     }
 
+    /// Adds what came of commands.
+    pub(super) fn add(&mut self, tally: Tally) {
+        self.findings.extend(tally.findings);
+        self.refusals.extend(tally.refusals);
+    }
+
     /// Whether something of this kind was found.
     pub fn has(&self, kind: &str) -> bool {
         self.findings.iter().any(|finding| finding.kind == kind)
@@ -109,13 +125,11 @@ fn examine_texts(
     let mut examined = Examined::default();
     let undetermined = comparison::is_undetermined(specimen);
     let execution =
-        match execute("model.toml", text, Forms { all: true, emitted: thoroughness.emitted, second: true }) {
+        match execute("model.toml", text, Forms { all: true, emitted: thoroughness.emitted, ..TWICE }) {
             Ok(execution) => execution,
             Err(refusal) => {
                 examined.rightly_refused = undetermined;
-                let twin = twin.map(|twin| {
-                    execute("twin.toml", twin, Forms { all: false, emitted: false, second: true })
-                });
+                let twin = twin.map(|twin| execute("twin.toml", twin, TWICE));
                 match (refusal.stage, twin) {
                     (GIVEN_UP, Some(Ok(twin))) if stays_regular(specimen, start, &twin.motion) => {
                         examined.findings.push(Finding {
@@ -142,8 +156,16 @@ fn examine_texts(
     if let Some(Ok(emission)) = &execution.emitted {
         examined.findings.extend(emission::compare(emission));
     }
+    let rescaled = thoroughness.units.and_then(|units| units.examine(specimen, &execution));
+    examined.findings.extend(rescaled.iter().flat_map(|rescaled| rescaled.findings.clone()));
+    if let Some(commands) = thoroughness.commands {
+        if let Some(rescaled) = &rescaled {
+            examined.add(commands.clone().follow_in_other_units(text, &rescaled.text));
+        }
+        examined.add(commands.examine(text, &execution));
+    }
     let Some(twin) = twin else { return examined };
-    match execute("twin.toml", twin, Forms { all: false, emitted: false, second: true }) {
+    match execute("twin.toml", twin, TWICE) {
         Ok(twin) => {
             let second = comparison::second(&twin).map(|finding| Finding { kind: TWIN_DISAGREES, ..finding });
             examined.findings.extend(second);
@@ -191,7 +213,8 @@ mod tests {
     use crate::fuzz::report::Report;
     use crate::fuzz::specimen::{Coordinate, Frame};
 
-    const SHORT: Thoroughness = Thoroughness { emitted: false, limit: Duration::from_secs(3600) };
+    const SHORT: Thoroughness =
+        Thoroughness { emitted: false, commands: None, units: None, limit: Duration::from_secs(3600) };
 
     /// Two masses on a line in quasi-velocities, one of which is said to be another than it is.
     fn with_definition(first: &str) -> Specimen {
@@ -239,10 +262,13 @@ mod tests {
             count: 8,
             threads: 1,
             emitted_every: 0,
+            program: None,
+            program_every: 0,
+            units_every: 4,
             limit: Duration::from_secs(3600),
         };
         let one = campaign.run(|_, _| ());
-        let several = Campaign { threads: 3, ..campaign }.run(|_, _| ());
+        let several = Campaign { threads: 3, ..campaign.clone() }.run(|_, _| ());
         let texts = |results: &[(u64, Examined)]| -> Vec<String> {
             results.iter().map(|(index, examined)| format!("{index} {}", examined.text)).collect()
         };

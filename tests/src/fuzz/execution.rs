@@ -165,6 +165,13 @@ pub struct Forms {
     pub emitted: bool,
     /// Beside its second derivation.
     pub second: bool,
+    /// The absolute tolerance of its motions, smaller where lengths are.
+    pub atol: f64,
+}
+
+impl Forms {
+    /// The motion in quasi-velocities alone.
+    pub const ONE: Forms = Forms { all: false, emitted: false, second: false, atol: ATOL };
 }
 
 /// Runs a text; what it is called names emitted source.
@@ -179,15 +186,15 @@ pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusa
     let assembly = model.assemble(&graph).map_err(|e| Refusal::new("model", &e))?;
     let mut flow =
         Flow::new(&model, &assembly, Variables::QuasiVelocities).map_err(|e| Refusal::new("model", &e))?;
-    let motion = follow(&mut flow, &model, &assembly)?;
+    let motion = follow(&mut flow, &model, &assembly, forms.atol)?;
     let resets = assembly.events.iter().any(|event| !event.resets.is_empty());
     let keeps_energy = assembly.keeps_energy() && !resets;
     let canonical = forms.all.then(|| {
         let flow = Flow::new(&model, &assembly, Variables::Momenta);
         let mut flow = flow.map_err(|error| Refusal::new("canonical form", &error))?;
-        follow(&mut flow, &model, &assembly)
+        follow(&mut flow, &model, &assembly, forms.atol)
     });
-    let projected = (forms.all && keeps_energy).then(|| projected(model.clone()));
+    let projected = (forms.all && keeps_energy).then(|| projected(model.clone(), forms.atol));
     let equations = assembly.equations().map_err(|error| Refusal::new("independent velocities", &error));
     let conserved = match (&equations, forms.all) {
         (Ok(equations), true) => Ok(conserved(equations)),
@@ -200,13 +207,13 @@ pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusa
     Ok(Execution { motion, canonical, projected, keeps_energy, conserved, emitted, second })
 }
 
-fn projected(mut model: Model) -> Result<Motion, Refusal> {
+fn projected(mut model: Model, atol: f64) -> Result<Motion, Refusal> {
     let refused = |error: ModelError| Refusal::new("projection", &error);
     model.keep("energy").map_err(|error| Refusal::new("projection", &error))?;
     let graph = Graph::new();
     let assembly = model.assemble(&graph).map_err(refused)?;
     let mut flow = Flow::new(&model, &assembly, Variables::QuasiVelocities).map_err(refused)?;
-    follow(&mut flow, &model, &assembly)
+    follow(&mut flow, &model, &assembly, atol)
 }
 
 fn conserved(equations: &Equations<'_>) -> Vec<String> {
@@ -240,9 +247,11 @@ fn emission<'g>(name: &str, assembly: &Assembly<'g>, equations: &Equations<'g>) 
 }
 
 /// The motion, and how far looser tolerances move it.
-fn follow(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>) -> Result<Motion, Refusal> {
-    let motion = integrate(flow, model, assembly, 1.0)?;
-    let moved = integrate(flow, model, assembly, LOOSE).ok().and_then(|loose| moved(&motion, &loose));
+fn follow(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>, atol: f64) -> Result<Motion, Refusal> {
+    let motion = integrate(flow, model, assembly, [RTOL, atol])?;
+    let moved = integrate(flow, model, assembly, [RTOL * LOOSE, atol * LOOSE])
+        .ok()
+        .and_then(|loose| moved(&motion, &loose));
     Ok(Motion { moved, ..motion })
 }
 
@@ -265,12 +274,17 @@ fn moved(motion: &Motion, loose: &Motion) -> Option<Moved> {
     Some(Moved { rows, happenings: happenings.collect() })
 }
 
-fn integrate(flow: &mut Flow, model: &Model, assembly: &Assembly<'_>, loose: f64) -> Result<Motion, Refusal> {
+fn integrate(
+    flow: &mut Flow,
+    model: &Model,
+    assembly: &Assembly<'_>,
+    [rtol, atol]: [f64; 2],
+) -> Result<Motion, Refusal> {
     let t_start = assembly.t_start;
     let t_end = model.document().simulation.t_end.as_ref().map_or(t_start, |t| t.value);
     let last = (SAMPLES - 1) as f64;
     let times: Vec<f64> = (0..SAMPLES).map(|i| t_start + (t_end - t_start) * (i as f64 / last)).collect();
-    let options = Options::default().relative_tolerance(RTOL * loose).absolute_tolerance(ATOL * loose);
+    let options = Options::default().relative_tolerance(rtol).absolute_tolerance(atol);
     let options = options.max_steps(MOST_STEPS);
     let start = flow.start.clone();
     let solved =

@@ -23,13 +23,15 @@ pub enum Expression {
     Power(Box<Expression>, f64),
     /// A function of the format with its arguments.
     Call(&'static str, Vec<Expression>),
+    /// The total derivative by time, d(..), which has no value here.
+    Rate(Box<Expression>),
 }
 
 /// Values of symbols, each with a rate of change.
 pub type Values = HashMap<String, Dual64>;
 
 impl Expression {
-    /// The expression of a text, without d() and with constant exponents.
+    /// The expression of a text, with constant exponents.
     ///
     /// # Errors
     /// [`ParseError`] where it is none.
@@ -89,6 +91,11 @@ impl Expression {
         Expression::Power(Box::new(self), exponent)
     }
 
+    /// d(..)
+    pub fn rate(self) -> Expression {
+        Expression::Rate(Box::new(self))
+    }
+
     /// Whether it is the number 0.
     pub fn is_zero(&self) -> bool {
         *self == Expression::Number(0.0)
@@ -112,6 +119,7 @@ impl Expression {
             }
             Expression::Power(base, exponent) => power(base.value(values), *exponent),
             Expression::Call(function, arguments) => call(function, &all(arguments)),
+            Expression::Rate(_) => Dual64::from(f64::NAN),
         }
     }
 
@@ -135,6 +143,7 @@ impl Expression {
             }
             Expression::Power(base, exponent) => base.substitute(replacements).power(*exponent),
             Expression::Call(function, arguments) => Expression::Call(function, all(arguments)),
+            Expression::Rate(of) => of.substitute(replacements).rate(),
         }
     }
 
@@ -147,7 +156,7 @@ impl Expression {
                 parts.iter().any(|part| part.mentions(name))
             }
             Expression::Quotient(a, b) => a.mentions(name) || b.mentions(name),
-            Expression::Power(base, _) => base.mentions(name),
+            Expression::Power(base, _) | Expression::Rate(base) => base.mentions(name),
         }
     }
 
@@ -195,6 +204,10 @@ impl Expression {
                     }
                 }
             }
+            Expression::Rate(of) => {
+                smaller.push((**of).clone());
+                smaller.extend(of.smaller().into_iter().map(Expression::rate));
+            }
         }
         smaller
     }
@@ -205,7 +218,7 @@ fn of_tree(ast: &Ast) -> Expression {
         AstKind::Number(number) => Expression::Number(*number),
         AstKind::Name(name) => Expression::symbol(name),
         AstKind::Velocity(name) => Expression::velocity(name),
-        AstKind::TotalDerivative(_) => Expression::Number(f64::NAN),
+        AstKind::TotalDerivative(of) => of_tree(of).rate(),
         AstKind::Negate(part) => of_tree(part).times(-1.0),
         AstKind::Sum(terms) => Expression::sum(
             terms
@@ -301,6 +314,7 @@ impl fmt::Display for Expression {
                 let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
                 write!(f, "{function}({})", arguments.join(", "))
             }
+            Expression::Rate(of) => write!(f, "d({of})"),
         }
     }
 }

@@ -10,16 +10,16 @@ use super::specimen::{Frame, Specimen};
 const LIMIT: Duration = Duration::from_secs(40);
 
 /// The shortest specimen that was found to have a finding of this kind, with what came of it.
-pub fn shrink(specimen: &Specimen, kind: &str, thoroughness: Thoroughness) -> (Specimen, Examined) {
+pub fn shrink(specimen: &Specimen, kind: &str, thoroughness: &Thoroughness) -> (Specimen, Examined) {
     let end = Instant::now() + LIMIT;
-    let mut best = (specimen.clone(), examine_specimen(specimen, thoroughness));
+    let mut best = (specimen.clone(), examine_specimen(specimen, thoroughness.clone()));
     let mut place = 0;
     while Instant::now() < end {
         // On from where the last one was found: what was tried before it is not worth while once more at once.
         let candidates = candidates(&best.0);
         let order = (0..candidates.len()).map(|i| (i + place) % candidates.len());
         let shorter = order.take_while(|_| Instant::now() < end).find_map(|i| {
-            let examined = examine_specimen(&candidates[i], thoroughness);
+            let examined = examine_specimen(&candidates[i], thoroughness.clone());
             examined.has(kind).then(|| (i, candidates[i].clone(), examined))
         });
         let Some((i, specimen, examined)) = shorter else { break };

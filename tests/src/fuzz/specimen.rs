@@ -118,8 +118,8 @@ pub struct Constraint {
 pub struct Body {
     /// Its name.
     pub name: String,
-    /// Its mass.
-    pub mass: f64,
+    /// Its mass, which first-order states may change.
+    pub mass: Expression,
     /// Where it is.
     pub position: [Expression; 3],
     /// The force on it.
@@ -211,11 +211,11 @@ pub struct Specimen {
     pub forces: Vec<(String, Expression)>,
     /// Bodies.
     pub bodies: Vec<Body>,
-    /// The acceleration with which bodies fall.
-    pub gravity: Option<[f64; 3]>,
-    /// First-order states, which stand in forces.
+    /// The acceleration with which bodies fall, of inputs and time.
+    pub gravity: Option<[Expression; 3]>,
+    /// First-order states, which stand in forces, energies and masses.
     pub states: Vec<State>,
-    /// Inputs, which stand in forces.
+    /// Inputs, which stand in forces, potentials and gravity.
     pub inputs: Vec<(String, Input)>,
     /// Functions that are asked for.
     pub outputs: Vec<(String, Expression)>,
@@ -292,8 +292,10 @@ impl Specimen {
         all.extend(self.kinetic.iter_mut().chain(&mut self.potential).chain(&mut self.dissipation));
         all.extend(self.forces.iter_mut().chain(&mut self.outputs).map(|(_, value)| value));
         for body in &mut self.bodies {
+            all.push(&mut body.mass);
             all.extend(body.position.iter_mut().chain(body.force.iter_mut().flatten()));
         }
+        all.extend(self.gravity.iter_mut().flatten());
         all.extend(self.states.iter_mut().map(|state| &mut state.rate));
         for event in &mut self.events {
             all.push(&mut event.when);

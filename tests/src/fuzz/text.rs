@@ -179,7 +179,7 @@ impl Text {
         );
         specimen.bodies.iter().for_each(|body| self.body(body, turned));
         if let Some(gravity) = &specimen.gravity {
-            let _ = writeln!(self.0, "[gravity]\nacceleration = {gravity:?}");
+            let _ = writeln!(self.0, "[gravity]\nacceleration = {}", list(gravity));
         }
         let state =
             |state: &State| format!("{{ start = {}, rate = \"{}\" }}", number(state.start), state.rate);
@@ -194,7 +194,7 @@ impl Text {
     }
 
     fn body(&mut self, body: &Body, turned: bool) {
-        let _ = writeln!(self.0, "[bodies.{}]\nmass = {}", body.name, number(body.mass));
+        let _ = writeln!(self.0, "[bodies.{}]\nmass = {}", body.name, quoted(&body.mass));
         let _ = writeln!(self.0, "position = {}", list(&body.position));
         if let Some(force) = &body.force {
             let _ = writeln!(self.0, "force = {}", list(force));

@@ -1,5 +1,5 @@
 //! The differential tester: `cargo xtask fuzz models|trees [--count N] [--seed S] [--model K] [--threads T]
-//! [--save DIR]`.
+//! [--program-every N] [--save DIR]`.
 //!
 //! It runs random models over the whole text format and compares what the product makes of them with independent
 //! computations. The same seed gives the same models with any number of threads; `--model K` shows one of them, `--save DIR`
@@ -89,7 +89,7 @@ fn show_shrunk(campaign: &Campaign, index: u64, kind: &str) {
         return;
     }
     let specimen = generator::specimen(campaign.seed, index);
-    let (_, examined) = shrink(&specimen, kind, campaign.thoroughness(index));
+    let (_, examined) = shrink(&specimen, kind, &campaign.thoroughness(index));
     println!("\n# model {index} of seed {}, shrunk: {kind}", campaign.seed);
     show(&examined);
 }

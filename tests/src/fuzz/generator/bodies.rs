@@ -1,6 +1,7 @@
 //! Bodies of a random model.
 
 use super::Builder;
+use super::functions::with;
 use crate::fuzz::expression::Expression;
 use crate::fuzz::specimen::{Body, Turning};
 
@@ -14,13 +15,17 @@ impl Builder {
             false => Expression::Number(0.0),
         };
         let position = [entry(self), entry(self), entry(self)];
-        let mass = self.random.decimal(0.2, 0.9);
+        let mass = Expression::Number(self.random.decimal(0.2, 0.9));
         let force = self.random.chance(35).then(|| {
             let third = match self.random.chance(50) {
                 true => Expression::Number(self.random.decimal(-2.0, 2.0)),
                 false => entry(self),
             };
-            [Expression::Number(0.0), Expression::Number(0.0), third]
+            let first = match self.random.chance(30) {
+                true => with("cos(3*t)", &[]).times(self.random.decimal(-0.8, 0.8)),
+                false => Expression::Number(0.0),
+            };
+            [first, Expression::Number(0.0), third]
         });
         let turning = match self.random.below(100) {
             0..40 if !moving.is_empty() => Some(Turning::About {
@@ -36,7 +41,7 @@ impl Builder {
         self.specimen.bodies.push(Body { name: "B".to_owned(), mass, position, force, turning });
     }
 
-    /// A direction in which bodies fall.
+    /// A direction in which bodies fall, which an input or the time may shake.
     pub(super) fn gravity(&mut self) {
         if self.specimen.bodies.is_empty() || !self.random.chance(40) {
             return;
@@ -44,6 +49,14 @@ impl Builder {
         let mut along =
             [0.0; 3].map(|_| if self.random.chance(30) { 0.0 } else { self.random.decimal(-2.0, 2.0) });
         along[2] -= 2.0;
+        let mut along = along.map(Expression::Number);
+        let shakes = match self.specimen.inputs.first() {
+            Some((input, _)) if self.random.chance(40) => Some(Expression::symbol(input)),
+            _ => self.random.chance(15).then(|| with("sin(2*t)", &[])),
+        };
+        if let Some(shakes) = shakes {
+            along[1] = shakes.times(self.random.decimal(-1.5, 1.5));
+        }
         self.specimen.gravity = Some(along);
     }
 

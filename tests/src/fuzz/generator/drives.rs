@@ -1,4 +1,4 @@
-//! What drives a random model from outside: first-order states, inputs and pulses, all by forces.
+//! What drives a random model from outside: first-order states, inputs and pulses.
 
 use super::Builder;
 use super::functions::with;
@@ -34,6 +34,25 @@ impl Builder {
         let start = self.random.decimal(-0.5, 0.5);
         self.specimen.states.push(State { name: "c1".to_owned(), start, rate });
         self.push(Expression::symbol("c1"));
+        if self.random.chance(35) {
+            self.weigh();
+        }
+        if self.random.chance(25) {
+            self.specimen.outputs.push(("out2".to_owned(), Expression::symbol("c1").rate()));
+        }
+    }
+
+    /// Has the state change a mass: that of a body, or a term of the kinetic energy.
+    fn weigh(&mut self) {
+        let factor = with("1.3 + 0.3*tanh(c1)", &[]);
+        let weighed = |of: &Expression| Expression::product(vec![of.clone(), factor.clone()]);
+        match self.specimen.bodies.first_mut() {
+            Some(body) if self.random.chance(50) => body.mass = weighed(&body.mass),
+            _ => {
+                let term = self.random.below(self.specimen.kinetic.len());
+                self.specimen.kinetic[term] = weighed(&self.specimen.kinetic[term]);
+            }
+        }
     }
 
     fn input(&mut self) {
@@ -53,7 +72,14 @@ impl Builder {
             }
         };
         self.specimen.inputs.push(("u1".to_owned(), input));
-        self.push(Expression::symbol("u1"));
+        let shown = self.shown();
+        match self.random.chance(35) && !shown.is_empty() {
+            true => {
+                let pushed = self.function(false, &shown).times(self.random.decimal(-1.0, 1.0));
+                self.specimen.potential.push(Expression::product(vec![Expression::symbol("u1"), pushed]));
+            }
+            false => self.push(Expression::symbol("u1")),
+        }
     }
 
     /// A short pulse, often on a system at rest.

@@ -140,7 +140,17 @@ impl Builder {
         }
     }
 
-    /// Functions of the state, accelerations and reactions.
+    /// A function of accelerations that is not linear in them.
+    fn accelerated(&mut self, rate: &Expression) -> Expression {
+        let moving = self.moving();
+        let velocity = match moving.is_empty() {
+            true => rate.clone(),
+            false => Expression::velocity(self.random.pick(&moving)),
+        };
+        Expression::product(vec![velocity.rate(), rate.clone()])
+    }
+
+    /// Functions of the state, their rates, accelerations and reactions.
     pub(super) fn outputs(&mut self) {
         if !self.random.chance(25) {
             return;
@@ -152,7 +162,14 @@ impl Builder {
             }
             _ => {
                 let rate = Expression::symbol(self.random.pick(&rates));
-                Expression::product(vec![self.function(false, &shown), rate])
+                let weighed = Expression::product(vec![self.function(false, &shown), rate.clone()]);
+                match self.random.below(5) {
+                    0 => rate.rate(),
+                    1 => weighed.rate(),
+                    2 => self.function(false, &shown).rate(),
+                    3 => self.accelerated(&rate),
+                    _ => weighed,
+                }
             }
         };
         self.specimen.outputs.push(("out".to_owned(), value));

@@ -1,6 +1,6 @@
 //! Random trees.
 
-use super::pose::{Vector, applied, at_start, sum, transposed};
+use super::pose::{Matrix, Vector, applied, at_start, sum, transposed};
 use crate::fuzz::random::Random;
 
 /// How a body moves against its parent.
@@ -94,10 +94,29 @@ impl Body {
 /// What closes a loop.
 #[derive(Clone, Debug)]
 pub(super) struct Loop {
-    pub(super) bodies: [usize; 2],
+    pub(super) name: &'static str,
+    /// The second may be the world.
+    pub(super) bodies: (usize, Option<usize>),
     pub(super) at: [Vector; 2],
-    /// Of a rod; of none, the points are one.
-    pub(super) length: Option<f64>,
+    pub(super) closing: Closing,
+}
+
+/// What two points of a loop have in common.
+#[derive(Clone, Debug)]
+pub(super) enum Closing {
+    /// A rod of this length.
+    Rod(f64),
+    /// A place.
+    Point,
+    /// A place and an axis, in the axes of each body.
+    Revolute([Vector; 2]),
+}
+
+/// The coordinate of the first body, moved as x + a (1 − cos ω t).
+#[derive(Clone, Debug)]
+pub(super) struct Drive {
+    pub(super) amplitude: f64,
+    pub(super) frequency: f64,
 }
 
 /// Bodies on joints.
@@ -105,7 +124,8 @@ pub(super) struct Loop {
 pub(super) struct Tree {
     pub(super) bodies: Vec<Body>,
     pub(super) gravity: Vector,
-    pub(super) closed: Option<Loop>,
+    pub(super) loops: Vec<Loop>,
+    pub(super) drive: Option<Drive>,
     /// A body with a place on it that is observed.
     pub(super) observed: (usize, Vector),
 }
@@ -134,7 +154,7 @@ impl Tree {
 pub(super) fn tree(seed: u64, index: u64) -> Tree {
     let mut random = Random::new(seed, index);
     let count = 1 + random.below(6);
-    let closes = count > 1 && random.chance(25);
+    let closes = count > 1 && random.chance(30);
     let mut bodies = Vec::new();
     for i in 0..count {
         bodies.push(body(&mut random, i, closes));
@@ -145,14 +165,36 @@ pub(super) fn tree(seed: u64, index: u64) -> Tree {
     }
     let gravity = if random.chance(70) { vector(&mut random, 5.0) } else { [0.0; 3] };
     let observed = (random.below(count), vector(&mut random, 1.0));
-    let mut tree = Tree { bodies, gravity, closed: None, observed };
-    if closes {
-        let closed = closed(&mut random, &tree);
-        // Between parts of one rigid body a loop is no constraint.
-        tree.closed =
-            Some(closed).filter(|closed| tree.rigid(closed.bodies[0]) != tree.rigid(closed.bodies[1]));
+    let mut tree = Tree { bodies, gravity, loops: Vec::new(), drive: None, observed };
+    match closes {
+        true => close(&mut random, &mut tree),
+        false => tree.drive = drive(&mut random, &mut tree.bodies),
     }
     tree
+}
+
+/// One loop, sometimes two.
+fn close(random: &mut Random, tree: &mut Tree) {
+    let names = if random.chance(30) { &["c", "d"][..] } else { &["c"] };
+    for &name in names {
+        let closed = closed(random, tree, name);
+        // Between parts of one rigid body a loop is no constraint.
+        let (first, second) = closed.bodies;
+        if tree.rigid(first) != second.and_then(|second| tree.rigid(second)) {
+            tree.loops.push(closed);
+        }
+    }
+}
+
+/// A first body that is moved from outside, from rest, so that what hangs on it has a moving anchor.
+fn drive(random: &mut Random, bodies: &mut [Body]) -> Option<Drive> {
+    let (anchor, others) = bodies.split_first_mut()?;
+    let single = matches!(anchor.kind, Kind::Revolute | Kind::Prismatic);
+    let hangs = others.iter().any(|body| body.kind != Kind::Fixed);
+    (single && hangs && random.chance(12)).then(|| {
+        anchor.eta = vec![0.0];
+        Drive { amplitude: random.decimal(-0.5, 0.5), frequency: random.decimal(0.5, 3.0) }
+    })
 }
 
 fn vector(random: &mut Random, size: f64) -> Vector {
@@ -193,6 +235,9 @@ fn body(random: &mut Random, i: usize, closes: bool) -> Body {
     let moments = [0; 3].map(|_| random.decimal(0.3, 0.5));
     let products = [0; 3].map(|_| random.decimal(-0.05, 0.05));
     let single = matches!(kind, Kind::Revolute | Kind::Prismatic | Kind::Screw);
+    // Of four decades where some are heavy and some light.
+    let heavy = if random.chance(25) { 10f64.powf(random.number(-2.0, 2.0)) } else { 1.0 };
+    let tensor = [moments[0], moments[1], moments[2], products[0], products[1], products[2]];
     Body {
         name: format!("b{i}"),
         parent,
@@ -201,9 +246,9 @@ fn body(random: &mut Random, i: usize, closes: bool) -> Body {
         pitch: random.decimal(-0.5, 0.5),
         at: vector(random, 1.0),
         turns,
-        mass: random.decimal(0.2, 2.0),
+        mass: heavy * random.decimal(0.2, 2.0),
         centre: if random.chance(80) { vector(random, 0.5) } else { [0.0; 3] },
-        inertia: [moments[0], moments[1], moments[2], products[0], products[1], products[2]],
+        inertia: tensor.map(|moment| heavy * moment),
         x,
         eta,
         spring: (single && random.chance(40)).then(|| random.decimal(0.5, 5.0)),
@@ -213,20 +258,30 @@ fn body(random: &mut Random, i: usize, closes: bool) -> Body {
     }
 }
 
-/// A rod or a common point between two bodies, as they stand at the start.
-fn closed(random: &mut Random, tree: &Tree) -> Loop {
+/// A rod, a common point or a common axis between two bodies, or one and the world, as they stand at the start.
+fn closed(random: &mut Random, tree: &Tree, name: &'static str) -> Loop {
     let first = random.below(tree.bodies.len());
     let second = (first + 1 + random.below(tree.bodies.len() - 1)) % tree.bodies.len();
+    let second = random.chance(75).then_some(second);
     let poses = at_start(tree);
-    let place = |body: usize, at: &Vector| sum(&poses[body].1, &applied(&poses[body].0, at));
+    let still = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]);
+    let (one, other) = (poses[first], second.map_or(still, |second| poses[second]));
+    let place = |pose: &(Matrix, Vector), at: &Vector| sum(&pose.1, &applied(&pose.0, at));
     let mut at = [vector(random, 1.0), vector(random, 1.0)];
-    if random.chance(60) {
-        let (a, b) = (place(first, &at[0]), place(second, &at[1]));
+    let bodies = (first, second);
+    let kind = random.below(100);
+    if kind < 50 {
+        let (a, b) = (place(&one, &at[0]), place(&other, &at[1]));
         let length = (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum::<f64>().sqrt();
-        return Loop { bodies: [first, second], at, length: Some(length) };
+        return Loop { name, bodies, at, closing: Closing::Rod(length) };
     }
-    let common = place(first, &at[0]);
-    let from = std::array::from_fn(|i| common[i] - poses[second].1[i]);
-    at[1] = applied(&transposed(&poses[second].0), &from);
-    Loop { bodies: [first, second], at, length: None }
+    let common = place(&one, &at[0]);
+    let from = std::array::from_fn(|i| common[i] - other.1[i]);
+    at[1] = applied(&transposed(&other.0), &from);
+    if kind < 80 {
+        return Loop { name, bodies, at, closing: Closing::Point };
+    }
+    let axis = vector(random, 1.0);
+    let beside = applied(&transposed(&other.0), &applied(&one.0, &axis));
+    Loop { name, bodies, at, closing: Closing::Revolute([axis, beside]) }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::generator::{Body, Kind, Loop, Tree};
+use super::generator::{Body, Closing, Drive, Kind, Loop, Tree};
 use super::pose::{Vector, about_written, turned, unit};
 
 /// What the quasi-velocity of a coordinate is called in the text without joints, where kinematics have to be written.
@@ -44,13 +44,15 @@ pub(super) fn on_joints(tree: &Tree) -> String {
     let (body, at) = &tree.observed;
     line(&mut text, format!("\n[points.P]\nbody = \"b{body}\"\nat = {at:?}"));
     line(&mut text, "\n[outputs]\no1 = \"P_z\"\no2 = \"P_x'\"".to_owned());
-    if let Some(Loop { bodies: [first, second], at, length }) = &tree.closed {
-        let kind = if length.is_some() { "rod" } else { "point" };
-        line(
-            &mut text,
-            format!("\n[loops.c]\nkind = \"{kind}\"\nbodies = [\"b{first}\", \"b{second}\"]\nat = {at:?}"),
-        );
-        length.iter().for_each(|length| line(&mut text, format!("length = {length:?}")));
+    for Loop { name, bodies: (first, second), at, closing } in &tree.loops {
+        let second = second.map_or_else(|| "world".to_owned(), |second| format!("b{second}"));
+        let (kind, entry) = match closing {
+            Closing::Rod(length) => ("rod", format!("length = {length:?}")),
+            Closing::Point => ("point", String::new()),
+            Closing::Revolute(axis) => ("revolute", format!("axis = {axis:?}")),
+        };
+        let bodies = format!("bodies = [\"b{first}\", \"{second}\"]");
+        line(&mut text, format!("\n[loops.{name}]\nkind = \"{kind}\"\n{bodies}\nat = {at:?}\n{entry}"));
     }
     common(&mut text, tree);
     text
@@ -77,35 +79,72 @@ pub(super) fn written_out(tree: &Tree) -> String {
         poses(&mut text, i, body);
     }
     let (observed, at) = &tree.observed;
-    for (i, place) in placed(*observed, at).iter().enumerate() {
+    for (i, place) in placed(Some(*observed), at).iter().enumerate() {
         line(&mut text, format!("P_{} = \"{place}\"", ["x", "y", "z"][i]));
     }
     for (i, body) in tree.bodies.iter().enumerate() {
-        let place = placed(i, &body.centre).map(|place| format!("\"{place}\"")).join(", ");
+        let place = placed(Some(i), &body.centre).map(|place| format!("\"{place}\"")).join(", ");
         let rotation: Vec<String> = (0..9).map(|e| format!("\"R{i}_{}{}\"", e / 3, e % 3)).collect();
         line(&mut text, format!("\n[bodies.{}]\nmass = {:?}\nposition = [{place}]", body.name, body.mass));
         line(&mut text, format!("rotation = [{}]\ninertia = {:?}", rotation.join(", "), body.inertia));
         loads(&mut text, body);
     }
     line(&mut text, "\n[outputs]\no1 = \"P_z\"\no2 = \"d(P_x)\"".to_owned());
-    if let Some(Loop { bodies: [first, second], at, length }) = &tree.closed {
-        let (a, b) = (placed(*first, &at[0]), placed(*second, &at[1]));
-        let apart: [String; 3] = std::array::from_fn(|i| format!("({} - ({}))", a[i], b[i]));
+    if !tree.loops.is_empty() {
         line(&mut text, "\n[constraints]".to_owned());
-        match length {
-            Some(length) => {
-                let squares = apart.map(|apart| format!("{apart}^2")).join(" + ");
-                line(&mut text, format!("c_1 = \"{squares} - {length:?}^2\""));
-            }
-            None => {
-                for (i, apart) in apart.iter().enumerate() {
-                    line(&mut text, format!("c_{} = \"{apart}\"", i + 1));
-                }
-            }
+    }
+    for closed in &tree.loops {
+        for (i, constraint) in closing(closed).iter().enumerate() {
+            line(&mut text, format!("{}_{} = \"{constraint}\"", closed.name, i + 1));
         }
     }
     common(&mut text, tree);
     text
+}
+
+/// What vanishes in a loop.
+fn closing(closed: &Loop) -> Vec<String> {
+    let ((first, second), at) = (closed.bodies, &closed.at);
+    let (a, b) = (placed(Some(first), &at[0]), placed(second, &at[1]));
+    let apart: [String; 3] = std::array::from_fn(|i| format!("({} - ({}))", a[i], b[i]));
+    match &closed.closing {
+        Closing::Rod(length) => {
+            let squares = apart.map(|apart| format!("{apart}^2")).join(" + ");
+            vec![format!("{squares} - {length:?}^2")]
+        }
+        Closing::Point => apart.to_vec(),
+        Closing::Revolute([n, m]) => {
+            let along = directed(second, m);
+            let across = perpendicular(n).map(|across| {
+                let across = directed(Some(first), &across);
+                let terms: Vec<String> = (0..3).map(|i| format!("{}*{}", across[i], along[i])).collect();
+                terms.join(" + ")
+            });
+            apart.into_iter().chain(across).collect()
+        }
+    }
+}
+
+/// Two directions that are perpendicular to a third and not to be told from each other by it.
+fn perpendicular(n: &Vector) -> [Vector; 2] {
+    let cross = |a: &Vector, b: &Vector| {
+        std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
+    };
+    let smallest = (0..3).min_by(|&i, &j| n[i].abs().total_cmp(&n[j].abs())).unwrap_or(0);
+    let aside: Vector = std::array::from_fn(|i| if i == smallest { 1.0 } else { 0.0 });
+    let across = cross(n, &aside);
+    [across, cross(n, &across)]
+}
+
+/// A direction on a body, or in the world, in space.
+fn directed(body: Option<usize>, along: &Vector) -> [String; 3] {
+    std::array::from_fn(|r| {
+        let entry = |k: usize| match body {
+            Some(body) => format!("R{body}_{r}{k}*({:?})", along[k]),
+            None => format!("({:?})", if r == k { along[k] } else { 0.0 }),
+        };
+        format!("({} + {} + {})", entry(0), entry(1), entry(2))
+    })
 }
 
 /// What a column of the one text is called in the other.
@@ -171,6 +210,11 @@ fn common(text: &mut String, tree: &Tree) {
         dampers.map(|(damper, name)| format!("{name} = \"-{damper:?}*{name}'\"\n")).collect();
     if !dampers.is_empty() {
         _ = write!(text, "\n[forces]\n{}", dampers.concat());
+    }
+    if let Some(Drive { amplitude, frequency }) = &tree.drive {
+        let (name, x) = (&tree.bodies[0].name, tree.bodies[0].x[0]);
+        let moved = format!("{name} - ({x:?}) - ({amplitude:?})*(1 - cos({frequency:?}*t))");
+        _ = writeln!(text, "\n[constraints]\ndrive = \"{moved}\"");
     }
     _ = writeln!(text, "\n[simulation]\nt_end = {T_END:?}");
 }
@@ -291,10 +335,11 @@ fn product_written(a: &[[String; 3]; 3], b: &[[String; 3]; 3]) -> [[String; 3]; 
     })
 }
 
-/// A place on body number i in space.
-fn placed(i: usize, at: &Vector) -> [String; 3] {
-    std::array::from_fn(|r| {
-        let terms: Vec<String> = (0..3).map(|k| format!("R{i}_{r}{k}*({:?})", at[k])).collect();
-        format!("(p{i}_{r} + {})", terms.join(" + "))
+/// A place on a body, or in the world, in space.
+fn placed(body: Option<usize>, at: &Vector) -> [String; 3] {
+    let from = directed(body, at);
+    std::array::from_fn(|r| match body {
+        Some(body) => format!("(p{body}_{r} + {})", from[r]),
+        None => from[r].clone(),
     })
 }
