@@ -1435,6 +1435,19 @@ pc_status pc_system_start(const pc_system *system,
                           pc_error **error);
 
 /**
+ * Writes the absolute tolerance of each component of the state with which the program `pc` would
+ * run the system from its start to t_end: that of the text, else min(1e-12, relative·s) for a
+ * component of the scale s at the start, where f is evaluated once, but no less than rounding of
+ * the largest. pc_solver_options takes them as absolute_tolerances.
+ */
+pc_status pc_system_absolute_tolerances(const pc_system *system,
+                                        double relative,
+                                        double t_end,
+                                        double *values,
+                                        size_t length,
+                                        pc_error **error);
+
+/**
  * Writes the values of all parameters.
  */
 pc_status pc_system_parameters(const pc_system *system,

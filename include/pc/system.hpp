@@ -102,6 +102,13 @@ public:
         detail::call(pc_system_start, get(), &start.first, start.second.data(), start.second.size());
         return start;
     }
+    /// The absolute tolerance of each component with which the program `pc` would run the system to t_end.
+    vector absolute_tolerances(double relative, double t_end) const
+    {
+        vector values(dim());
+        detail::call(pc_system_absolute_tolerances, get(), relative, t_end, values.data(), values.size());
+        return values;
+    }
     /// The derivative of the state at the start by a parameter.
     vector start_by_parameter(std::size_t parameter) const
     {

@@ -13,6 +13,7 @@ use pc_cli::motion::run::Run;
 use pc_cli::output::destination::Destination;
 use pc_cli::report::text;
 use pc_mech::Graph;
+use pc_model::document::AbsoluteTolerance;
 use pc_model::{Builtin, Model};
 use pc_print::{Form, Layout, Page, columns, page};
 use pc_report::picture::Wanted;
@@ -73,7 +74,7 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
         t_end: 10.0,
         samples,
         rtol: 1e-12,
-        atol: 1e-14,
+        atol: AbsoluteTolerance { all: Some(1e-14), each: Vec::new() },
         max_step: None,
         samples_per_step: None,
         accumulation: None,

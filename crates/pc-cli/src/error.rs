@@ -88,6 +88,9 @@ pub enum CliError {
         /// The method.
         method: Method,
     },
+    /// `--atol` of something that is no component of the state.
+    #[error("--atol: {0}")]
+    Tolerance(#[source] UnknownStart),
     /// `--keep` of something that has no start value.
     #[error("--keep: {0}")]
     UnknownStart(#[from] UnknownStart),
@@ -303,6 +306,7 @@ impl CliError {
             | CliError::Sensitivities(_)
             | CliError::NoSensitivities { .. }
             | CliError::UnknownStart(_)
+            | CliError::Tolerance(_)
             | CliError::SetTwice { .. }
             | CliError::Definitions { .. }
             | CliError::BadValue { .. }

@@ -1,7 +1,7 @@
 //! The computation of a motion, from a plan to a finished run.
 //!
 //! In go a model and a command line, out comes a [`Run`](run::Run). Read `plan` first, the request,
-//! and `memory`, whether its rows fit. A `checkpoint`, with its `identity` and `checkpoint_error`,
+//! with the `tolerances` of the components of the state, and `memory`, whether its rows fit. A `checkpoint`, with its `identity` and `checkpoint_error`,
 //! continues an interrupted run; `sensitivities` are derivatives by parameters; `given` integrates
 //! a motion whose rows are written at once. `progress` and `interrupt` are the bar and Ctrl-C.
 //! `fine` is the motion between its rows, for pictures; `table` and `run` are the results.
@@ -18,3 +18,4 @@ pub(crate) mod progress;
 pub mod run;
 pub(crate) mod sensitivities;
 pub mod table;
+pub mod tolerances;

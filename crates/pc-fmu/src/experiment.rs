@@ -1,7 +1,7 @@
 //! How an FMU integrates, and over which time.
 
 use pc_model::document::{Method, Simulation};
-use pc_model::{Assembly, Model};
+use pc_model::{Assembly, Flow, Model, Variables};
 
 use crate::error::FmuError;
 use crate::options::{FmuOptions, FmuSolver};
@@ -9,8 +9,11 @@ use crate::options::{FmuOptions, FmuSolver};
 /// Rows of a table, unless the model says another number.
 const SAMPLES: usize = 201;
 
+/// The absolute tolerance of components of ordinary scale.
+const USUAL: f64 = 1e-12;
+
 /// The settings of a simulation.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Experiment {
     pub(crate) solver: FmuSolver,
     pub(crate) t_start: f64,
@@ -18,15 +21,17 @@ pub(crate) struct Experiment {
     /// The time between two rows of a table.
     pub(crate) interval: Option<f64>,
     pub(crate) relative: f64,
-    pub(crate) absolute: f64,
+    /// Names of components of the state with their absolute tolerances.
+    absolute: Vec<(String, f64)>,
 }
 
 impl Experiment {
     /// # Errors
-    /// [`FmuError::Step`]
+    /// [`FmuError::Step`]; [`FmuError::Model`] if there are no equations.
     pub(crate) fn new(
         model: &Model,
         assembly: &Assembly<'_>,
+        variables: Variables,
         options: &FmuOptions,
     ) -> Result<Experiment, FmuError> {
         let simulation: &Simulation = &model.document().simulation;
@@ -45,8 +50,22 @@ impl Experiment {
         let rows = simulation.samples.as_ref().map_or(SAMPLES, |samples| samples.value);
         let interval = t_end.map(|t| (t - t_start) / (rows.max(2) - 1) as f64);
         let relative = simulation.rtol.as_ref().map_or(1e-9, |rtol| rtol.value);
-        let absolute = simulation.atol.as_ref().map_or(1e-12, |atol| atol.value);
+        let given = simulation.atol.as_ref().map(|atol| atol.value.clone()).unwrap_or_default();
+        let mut flow = Flow::new(model, assembly, variables)?;
+        let tolerances =
+            flow.absolute_tolerances(&given, (t_start, t_end.unwrap_or(t_start + 1.0)), relative);
+        let absolute = flow.motion.names().iter().cloned().zip(tolerances).collect();
         Ok(Experiment { solver, t_start, t_end, interval, relative, absolute })
+    }
+
+    /// The absolute tolerance of a component of the state.
+    pub(crate) fn absolute(&self, name: &str) -> f64 {
+        self.absolute.iter().find(|(known, _)| known == name).map_or(USUAL, |&(_, tolerance)| tolerance)
+    }
+
+    /// The scale of a component of the state, as importers want to know it.
+    pub(crate) fn nominal(&self, name: &str) -> f64 {
+        self.absolute(name) / USUAL
     }
 
     /// How long it takes, the scale of small times.

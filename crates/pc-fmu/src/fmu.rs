@@ -72,8 +72,8 @@ impl Fmu {
         variables: Variables,
         options: &FmuOptions,
     ) -> Result<Fmu, FmuError> {
-        let experiment = Experiment::new(model, assembly, options)?;
         let contents = Contents::new(model, assembly, variables)?;
+        let experiment = Experiment::new(model, assembly, variables, options)?;
         let identifier = Language::C.identifiers(&[&options.name], &[]).remove(0);
         let prefix = format!("{identifier}_model");
         let emit = EmitOptions::new(Language::C, prefix.as_str()).title(model.title());

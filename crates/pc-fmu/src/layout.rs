@@ -55,7 +55,6 @@ pub(crate) fn layout(
     define("FIXED_STEP", constant(step));
     define("MAX_STEP", constant(simulation.max_step.as_ref().map_or(f64::INFINITY, |step| step.value)));
     define("RELATIVE", constant(experiment.relative));
-    define("ABSOLUTE", constant(experiment.absolute));
     define("T_START", constant(experiment.t_start));
     define("HORIZON", constant(experiment.length()));
     define("SAMPLES", simulation.samples_per_step.as_ref().map_or(SAMPLES, |n| n.value).to_string());
@@ -82,6 +81,10 @@ pub(crate) fn layout(
     };
     let string = "char *const ";
     array(string, "state_names", strings(&mut contents.states.iter().map(|s| &s.name)), "\"\"");
+    let absolute = contents.states.iter().map(|state| constant(experiment.absolute(&state.name)));
+    array("double ", "absolute_tolerances", absolute.collect(), "0.0");
+    let nominal = contents.states.iter().map(|state| constant(experiment.nominal(&state.name)));
+    array("double ", "nominal_values", nominal.collect(), "1.0");
     let exact = contents.states.iter().map(|state| u8::from(state.number.is_some()).to_string());
     array("int ", "start_is_exact", exact.collect(), "0");
     array(string, "parameter_names", strings(&mut contents.parameters.iter().map(|p| &p.name)), "\"\"");

@@ -3,8 +3,8 @@
 //! TOML becomes a [`Document`]. Read the result first: `expression`, with the places that `text_map` finds in
 //! the file, and `contents`, section by section. Then how it is read: `reading` reads bytes, `syntax` TOML,
 //! `reader` gives typed access to it, `hidden` lists characters that labels cannot have; `sections`,
-//! `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation` read
-//! the sections, `hanging` declares the coordinates of joints, `checks` tests conditions between the
+//! `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation`, with
+//! its `tolerance`s, read the sections, `hanging` declares the coordinates of joints, `checks` tests conditions between the
 //! sections, and `parse` combines these. `schema` is the format for editors.
 
 pub(crate) mod bodies;
@@ -26,6 +26,7 @@ pub(crate) mod sections;
 pub(crate) mod simulation;
 pub(crate) mod syntax;
 pub(crate) mod text_map;
+pub(crate) mod tolerance;
 pub(crate) mod tree;
 
 pub use contents::{
@@ -42,3 +43,4 @@ pub use reading::{MOST_BYTES, read_bounded, read_file_bounded};
 pub use schema::SCHEMA;
 pub use simulation::MOST_SAMPLES;
 pub use text_map::TextMap;
+pub use tolerance::AbsoluteTolerance;

@@ -4,7 +4,7 @@
 //! the variables of their state, `free_form`, those of independent quasi-velocities, whose start is given by
 //! `formulas`, and `compile`, their motion, evaluated at the start; `reading` converts states to coordinates,
 //! quasi-velocities and first-order states; `events` are the model's events on them, `constrained_resets` the
-//! states that constraints allow after these, and `flow` combines all of these; `prototype` gives a flow other
+//! states that constraints allow after these, and `flow` combines all of these; `tolerances` are by the scales of a flow; `prototype` gives a flow other
 //! numbers without deriving it again.
 
 pub(crate) mod compile;
@@ -17,4 +17,5 @@ pub(crate) mod free_form;
 pub(crate) mod prototype;
 pub(crate) mod reading;
 pub(crate) mod start_slopes;
+pub(crate) mod tolerances;
 pub(crate) mod variables;

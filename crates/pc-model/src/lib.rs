@@ -59,6 +59,7 @@ pub use flow::events::FlowEvents;
 pub use flow::flow::Flow;
 pub use flow::free_form::FreeForm;
 pub use flow::prototype::Prototype;
+pub use flow::tolerances::absolute_tolerances;
 pub use flow::variables::Variables;
 pub use model::builtin::{BUILTIN, Builtin, CLASSICS, TREES};
 pub use model::given::GivenQuasiVelocity;

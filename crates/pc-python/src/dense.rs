@@ -46,8 +46,8 @@ impl SystemCore {
     fn dense(&self, py: Python<'_>, end: f64, plan: Plan) -> PyResult<DenseCore> {
         let (mut model, mut flow) = self.now();
         let cancel = renewed(&mut model);
-        let options = plan.options(&cancel)?;
         let (t_start, dim) = (self.inventory.t_start, self.dim());
+        let options = plan.options((&model, &mut flow), (t_start, end), &cancel)?;
         let work = move || {
             deep(|| {
                 let solve = Solve::new(&mut flow.motion, t_start, &flow.start);

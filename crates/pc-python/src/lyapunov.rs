@@ -22,9 +22,10 @@ impl SystemCore {
     ) -> PyResult<(Vec<f64>, Vec<f64>)> {
         let (mut model, mut flow) = self.now();
         let cancel = renewed(&mut model);
-        let options = plan.options(&cancel)?;
         let t_start = self.inventory.t_start;
         let (intervals, transient) = intervals;
+        let end = t_start + interval * f64::from(intervals.saturating_add(transient));
+        let options = plan.options((&model, &mut flow), (t_start, end), &cancel)?;
         let work = move || {
             deep(|| {
                 let wanted = LyapunovOptions::new(count, interval, intervals).transient(transient);

@@ -1,10 +1,11 @@
 //! A model, and what is printed of it.
 
+use std::collections::HashMap;
 use std::time::Duration;
 
 use pc_expr::{Cancel, Limits};
 use pc_mech::{EmitOptions, Language};
-use pc_model::document::{EquationForm, Method};
+use pc_model::document::{AbsoluteTolerance, EquationForm, Method};
 use pc_model::{Assembly, Builtin, Document, Model, Variables, deep};
 use pc_print::{Form, Layout, Page, Theory, TheoryOptions, displayed_equations, page};
 use pc_report::Check;
@@ -75,6 +76,20 @@ fn form_of(form: EquationForm) -> &'static str {
         EquationForm::LiePoisson => "lie-poisson",
         EquationForm::Orthonormal => "orthonormal",
         EquationForm::Hamel => "hamel",
+    }
+}
+
+/// As a tolerance is given: a number, or a mapping of names.
+#[derive(IntoPyObject)]
+enum GivenTolerance {
+    All(f64),
+    Each(HashMap<String, f64>),
+}
+
+fn absolute(given: AbsoluteTolerance) -> GivenTolerance {
+    match given.all {
+        Some(all) => GivenTolerance::All(all),
+        None => GivenTolerance::Each(given.each.into_iter().collect()),
     }
 }
 
@@ -243,7 +258,7 @@ impl ModelCore {
         settings.set_item("t_end", number(&simulation.t_end))?;
         settings.set_item("samples", simulation.samples.as_ref().map(|samples| samples.value))?;
         settings.set_item("rtol", number(&simulation.rtol))?;
-        settings.set_item("atol", number(&simulation.atol))?;
+        settings.set_item("atol", simulation.atol.as_ref().map(|atol| atol.value.clone()).map(absolute))?;
         settings.set_item("max_step", number(&simulation.max_step))?;
         settings.set_item("accumulation", number(&simulation.accumulation))?;
         settings.set_item("samples_per_step", simulation.samples_per_step.as_ref().map(|n| n.value))?;

@@ -176,11 +176,12 @@ impl SystemCore {
         plan: Plan,
         sensitivities: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (mut model, flow) = self.now();
+        let (mut model, mut flow) = self.now();
         let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
         let cancel = renewed(&mut model);
         let (variables, t_start) = (self.variables, self.inventory.t_start);
-        let options = plan.options(&cancel)?;
+        let end = times.last().copied().unwrap_or(t_start);
+        let options = plan.options((&model, &mut flow), (t_start, end), &cancel)?;
         let work =
             move || deep(|| integrated(model, flow, variables, (t_start, &times), &options, &sensitivities));
         attended(py, &cancel, |_| Ok(()), work)?.into_dict(py, &events)

@@ -1,7 +1,11 @@
 //! The settings of an integration.
 
+use std::collections::BTreeMap;
+
 use pc_expr::{Cancel, Deadline, Limits};
-use pc_solve::{Accumulation, Method, Options};
+use pc_model::document::AbsoluteTolerance;
+use pc_model::{Flow, Model};
+use pc_solve::{Accumulation, Method, Options, Tolerance};
 use pyo3::prelude::*;
 
 use crate::error::Error;
@@ -12,19 +16,46 @@ use crate::error::Error;
 pub(crate) struct Plan {
     method: String,
     rtol: f64,
-    atol: f64,
+    atol: Option<Absolute>,
     max_step: Option<f64>,
     samples_per_step: Option<u32>,
     accumulation: Option<f64>,
     limit_time: Option<f64>,
 }
 
+/// Absolute tolerances: a number, or a mapping of names.
+#[derive(Clone, FromPyObject)]
+enum Absolute {
+    All(f64),
+    Each(BTreeMap<String, f64>),
+}
+
+impl Absolute {
+    fn given(&self) -> AbsoluteTolerance {
+        match self {
+            Absolute::All(all) => AbsoluteTolerance { all: Some(*all), each: Vec::new() },
+            Absolute::Each(each) => {
+                let each = each.iter().map(|(name, &tolerance)| (name.clone(), tolerance));
+                AbsoluteTolerance { all: None, each: each.collect() }
+            }
+        }
+    }
+}
+
 impl Plan {
-    /// The options of an integration that `cancel` ends.
+    /// The options of an integration of the flow of a model over a span of time, which `cancel` ends.
     ///
     /// # Errors
-    /// [`Error::Choice`] for an unknown method.
-    pub(crate) fn options(&self, cancel: &Cancel) -> Result<Options, Error> {
+    /// [`Error::Choice`] for an unknown method, [`Error::Start`] for a tolerance of what is no component of the state.
+    pub(crate) fn options(
+        &self,
+        (model, flow): (&Model, &mut Flow),
+        span: (f64, f64),
+        cancel: &Cancel,
+    ) -> Result<Options, Error> {
+        let given = self.atol.as_ref().map_or_else(AbsoluteTolerance::default, Absolute::given);
+        let given = model.absolute_tolerance(given)?;
+        let absolute = Tolerance::each(flow.absolute_tolerances(&given, span, self.rtol));
         let method = match self.method.as_str() {
             "adams" => Method::Adams,
             "bdf" => Method::Bdf,
@@ -40,7 +71,7 @@ impl Plan {
         let limits = Limits { cancel: cancel.clone(), time, ..Limits::default() };
         let mut options = Options::new(method)
             .relative_tolerance(self.rtol)
-            .absolute_tolerance(self.atol)
+            .absolute_tolerance(absolute)
             .deadline(Deadline::new(&limits));
         if let Some(parts) = self.samples_per_step {
             options = options.samples_per_step(parts);

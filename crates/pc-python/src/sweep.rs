@@ -170,8 +170,11 @@ impl SystemCore {
         threads: Option<NonZeroUsize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (mut model, _) = self.now();
+        let (mut model, mut flow) = self.now();
         let cancel: Cancel = renewed(&mut model);
+        let t_start = self.inventory.t_start;
+        let end = times.last().copied().unwrap_or(t_start);
+        let options = plan.options((&model, &mut flow), (t_start, end), &cancel)?;
         let members = (values.len() / targets.len().max(1)) as u64;
         let work = Members {
             model,
@@ -179,9 +182,9 @@ impl SystemCore {
             prototype: self.prototype.clone(),
             targets,
             values,
-            t_start: self.inventory.t_start,
+            t_start,
             times,
-            options: plan.options(&cancel)?,
+            options,
             all_rows,
             columns: self.inventory.columns.clone(),
         };

@@ -119,3 +119,23 @@ def test_canonical_equations_give_the_same_motion() -> None:
     assert (momenta.mass_matrix(0.0, momenta.y0) == np.diag([2.0, 2.0, 1.0])).all()
     one, other = momenta.run(5.0), model.system().run(5.0)
     assert np.abs(one["ω1"] - other["ω1"]).max() < 1e-7
+
+
+def test_a_small_component_has_a_tolerance_of_its_own() -> None:
+    # A charge q = a cos 2t beside an angle φ = cos t.
+    text = """
+[coordinates]
+q = 1e-15
+"φ" = 1
+[lagrangian]
+kinetic = "(q'^2 + φ'^2)/2"
+potential = "2*q^2 + φ^2/2"
+"""
+    system = chetaev.Model.from_text(text).system()
+    motion = system.run(5.0, samples=11, atol={"q": 1e-25, "q'": 1e-25})
+    # Tolerances of 1e-9 over three periods.
+    assert np.allclose(motion["q"] / 1e-15, np.cos(2 * motion.t), rtol=0, atol=1e-7)
+    by_text = chetaev.Model.from_text(text + '[simulation]\natol = { q = 1e-25, "q\'" = 1e-25 }\n').system()
+    assert (by_text.run(5.0, samples=11)["q"] == motion["q"]).all()
+    with pytest.raises(chetaev.ChetaevError, match="`p` has no start value"):
+        system.run(5.0, atol={"p": 1e-9})

@@ -9,8 +9,10 @@ use crate::equations::Derived;
 use crate::error::VerifyError;
 use crate::outlet::{Outlet, vouch};
 use crate::place::Place;
+use crate::resets::Jump;
 use crate::rounding::Rounding;
 use crate::second::Second;
+use crate::slopes::Slope;
 
 fn model(text: &str) -> Model {
     Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
@@ -487,5 +489,73 @@ fn wrong_equations_leave_in_no_form() {
     for outlet in outlets() {
         let outcome = second.vouches(&model, &assembly, outlet, 0);
         assert!(matches!(outcome, Err(VerifyError::Disagreement(_))), "{outlet:?}: {outcome:?}");
+    }
+}
+
+/// ẍ = −k sin x + u: along (δx, δu) its rate changes by −k cos x δx + δu, and the output x² + u by 2x δx + δu.
+fn slope_of_a_pendulum(by_x: f64, by_u: f64) -> Result<crate::Agreement, VerifyError> {
+    let model = model(
+        "[parameters]\nk = 2.5\n[coordinates]\nx = 0.7\n[quasi_velocities]\n\"x'\" = -0.4\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
+         potential = \"-k*cos(x)\"\n[inputs]\nu = 0.3\n[forces]\nx = \"u\"\n[outputs]\no = \"x^2 + u\"\n",
+    );
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).unwrap();
+    let flow = Flow::new(&model, &assembly, Variables::QuasiVelocities).unwrap();
+    let second = Second::new(&model, &assembly).unwrap();
+    let slope = Slope {
+        name: "the derivative".to_owned(),
+        state: vec![2.0, 0.0],
+        parameters: vec![("u".to_owned(), 3.0)],
+        rates: vec![("x".to_owned(), 0.0), ("x'".to_owned(), 2.0 * by_x + 3.0 * by_u)],
+        observed: vec![("o".to_owned(), 4.0 * 0.7 + 3.0)],
+    };
+    second.slope_agrees((&model, &assembly), &flow, (0.0, &[0.7, -0.4]), &slope)
+}
+
+#[test]
+fn a_right_derivative_agrees_and_a_wrong_one_does_not() {
+    let right = -2.5 * 0.7f64.cos();
+    let agreement = slope_of_a_pendulum(right, 1.0).unwrap();
+    // Differences of the fourth order at steps of 1e-3, with rounding of some 1e-13.
+    assert!(agreement.error < 1e-9 && agreement.not_compared.is_empty(), "{agreement:?}");
+    for (by_x, by_u) in [(right, 0.0), (right * 1.001, 1.0), (0.0, 1.0), (right, f64::NAN)] {
+        match slope_of_a_pendulum(by_x, by_u) {
+            Err(VerifyError::Disagreement(found)) => {
+                assert_eq!(found.quantity, "the derivative of the rate of x'");
+                assert!((found.second - (2.0 * right + 3.0)).abs() < 1e-9, "{found:?}");
+            }
+            other => panic!("{by_x}, {by_u}: {other:?}"),
+        }
+    }
+}
+
+/// A ball on a table with a counter: v⁺ = −e v⁻ − n, n⁺ = n + 1.
+fn bounce(after: [f64; 3]) -> Result<crate::Agreement, VerifyError> {
+    let model = model(
+        "[parameters]\ne = 0.8\n[coordinates]\nz = 1\n[lagrangian]\nkinetic = \"z'^2/2\"\npotential = \"z\"\n[states]\n\
+         n = { start = 2, rate = \"0\" }\n[events.bounce]\nwhen = \"z\"\ndirection = \"falling\"\nreset = { \"z'\" = \"-e*z' - n\", n = \
+         \"n + 1\" }\n",
+    );
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).unwrap();
+    let flow = Flow::new(&model, &assembly, Variables::QuasiVelocities).unwrap();
+    let jump = Jump { event: "bounce", t: 0.5, before: &[0.0, -1.5, 2.0], after: &after };
+    Second::new(&model, &assembly).unwrap().reset_agrees(&model, &flow, &jump)
+}
+
+#[test]
+fn a_reset_is_that_of_the_text() {
+    // −0.8 · −1.5 − 2, rounded.
+    assert!(bounce([0.0, -0.8, 3.0]).unwrap().error < 1e-15);
+    for (wrong, quantity) in [([0.0, 1.2, 3.0], "z'"), ([0.0, -0.8, 2.0], "n"), ([0.1, -0.8, 3.0], "z")] {
+        match bounce(wrong) {
+            Err(VerifyError::Disagreement(found)) => {
+                assert_eq!(
+                    (found.form.as_str(), found.quantity.as_str()),
+                    ("after the event bounce", quantity)
+                );
+            }
+            other => panic!("{wrong:?}: {other:?}"),
+        }
     }
 }

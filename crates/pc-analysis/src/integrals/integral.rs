@@ -63,6 +63,8 @@ pub enum ConservationVerdict<'g> {
         /// The part of its terms that is left in their sum at the start, from 0 to 1: no more than rounding where the function is
         /// an integral.
         part_left: Option<f64>,
+        /// The same at states near the start, where the start alone does not refute it and every state near it is possible.
+        near: Option<f64>,
     },
 }
 

@@ -1,6 +1,6 @@
 //! The integrals of a motion: declared ones, the energy, momenta, Casimirs, and those of an ansatz.
 
-use pc_mech::{Equations, Expr, Graph, Neighbourhood, System};
+use pc_mech::{Equations, Expr, Graph, Identity, Neighbourhood, System};
 
 use crate::brackets::poisson_bracket::PoissonBracket;
 use crate::integrals::cyclic_displacements::CyclicDisplacement;
@@ -117,7 +117,16 @@ impl<'a, 'g> Search<'a, 'g> {
         let value = self.graph.evaluate(&[rate], &self.near.centre).ok();
         let at_start = value.map(|values| values[0]).filter(|value| value.is_finite());
         let part_left = self.rates.part_left(function, &self.near.centre).ok().flatten();
-        ConservationVerdict::Rate { rate, at_start, part_left }
+        let is_refuted =
+            part_left.is_some_and(|left| matches!(Identity::of(left), Identity::Disproved { .. }));
+        let near = (!is_refuted && self.is_free()).then(|| self.near.residual(self.graph, &[vec![rate]]));
+        ConservationVerdict::Rate { rate, at_start, part_left, near }
+    }
+
+    /// Whether every state near the start is possible: no constraints, and no relations among the coordinates.
+    fn is_free(&self) -> bool {
+        let frame = self.system().frame();
+        self.unconstrained && frame.coordinates().len() == frame.rank()
     }
 
     pub(super) fn bind(&self, function: Expr<'g>) -> Expr<'g> {

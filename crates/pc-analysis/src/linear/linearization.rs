@@ -28,6 +28,8 @@ pub struct Linearization {
     pub distance: f64,
     /// The names of the r components of the reduced state.
     pub components: Vec<String>,
+    /// E in δy = E δ(reduced): all components of the state by those r, up to the first order.
+    pub extension: Matrix<f64>,
     /// The cyclic coordinates that are left out, with their rates.
     pub cyclic: Vec<(String, f64)>,
     /// A, r × r.
@@ -198,6 +200,7 @@ impl Linearizer {
             residual,
             distance: 0.0,
             components: kept.iter().map(|&i| self.names()[i].clone()).collect(),
+            extension: extension.clone(),
             cyclic: left_out.iter().map(named).collect(),
             modes: modes(&state_matrix, &spectrum)?,
             second_order: self.second_order(&evaluated, &rates, scale, is_steady)?,

@@ -153,19 +153,19 @@ impl Parts<'_> {
     /// if their velocities are independent.
     fn completed(&self, independent: &[usize]) -> Option<Vec<usize>> {
         let (l, jacobian) = (self.reduced.velocities, self.jacobian);
+        let row = |i: usize| self.velocity_row(i);
         // A coordinate whose rate depends on another cyclic one has no equation with constant coefficients.
         let is_free =
             |&i: &usize| self.cyclic.iter().all(|&j| jacobian[(i, j)] == 0.0) && !self.acted_on.contains(&i);
         let more: Vec<usize> = self.cyclic.iter().copied().filter(is_free).collect();
-        let row = |i: usize| self.velocity_row(i);
+        let mut left: Vec<Vec<f64>> = more.iter().map(|&i| row(i)).collect();
         let own: Vec<Vec<f64>> = independent.iter().map(|&i| row(i)).collect();
         let matrix = |rows: &[Vec<f64>]| Matrix::from_fn(rows.len(), l, |i, j| rows[i][j]);
-        let size = jacobian.entries().iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        let size = largest(&own).max(largest(&left));
         if independent_rows(&matrix(&own), ZERO * size).len() < own.len() {
             return None;
         }
         // The cyclic ones add the parts of their rows that are independent of the others.
-        let mut left: Vec<Vec<f64>> = more.iter().map(|&i| row(i)).collect();
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for own in own {
             let mut direction = own;
@@ -191,8 +191,7 @@ impl Parts<'_> {
     fn with_own_velocities(&self) -> usize {
         let rows: Vec<Vec<f64>> = (0..self.quasi_velocities.start).map(|i| self.velocity_row(i)).collect();
         let all = Matrix::from_fn(rows.len(), self.reduced.velocities, |i, s| rows[i][s]);
-        let size = all.entries().iter().fold(0.0f64, |size, x| size.max(x.abs()));
-        independent_rows(&all, ZERO * size).len()
+        independent_rows(&all, ZERO * largest(&rows)).len()
     }
 
     /// The rate of a coordinate by the independent quasi-velocities.
@@ -200,6 +199,11 @@ impl Parts<'_> {
         let first = self.reduced.coordinates;
         (first..first + self.reduced.velocities).map(|column| self.moved[(i, column)]).collect()
     }
+}
+
+/// The largest entry. Accelerations are not among them: those of stiff springs are larger by orders of magnitude.
+fn largest(rows: &[Vec<f64>]) -> f64 {
+    rows.iter().flatten().fold(0.0f64, |size, x| size.max(x.abs()))
 }
 
 /// Removes from a row its component along a direction of length 1.

@@ -2,7 +2,7 @@
 
 use std::ffi::c_char;
 
-use ::pc_model::deep;
+use ::pc_model::{absolute_tolerances, deep};
 
 use crate::api::model::pc_model;
 use crate::api::options::{pc_system_options, take};
@@ -176,6 +176,37 @@ pub unsafe extern "C" fn pc_system_start(
     };
     // SAFETY: `error` is null or a place for a pointer.
     unsafe { entry(error, start) }
+}
+
+/// Writes the absolute tolerance of each component of the state with which the program `pc` would
+/// run the system from its start to t_end: that of the text, else min(1e-12, relative·s) for a
+/// component of the scale s at the start, where f is evaluated once, but no less than rounding of
+/// the largest. pc_solver_options takes them as absolute_tolerances.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_absolute_tolerances(
+    system: *const pc_system,
+    relative: f64,
+    t_end: f64,
+    values: *mut f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let scale = |inventory: &Inventory, inner: &mut Inner| {
+        finite(relative, "relative")?;
+        finite(t_end, "t_end")?;
+        // SAFETY: null or room for `length` numbers, as the preamble demands.
+        let values = unsafe { room(values, length, inventory.dim(), "values") }?;
+        let (t_start, start) = inventory.start();
+        let usual = absolute_tolerances(&mut inner.field, start, (t_start, t_end), relative);
+        let written = inventory.model.document().simulation.atol.as_ref();
+        let names: Vec<String> =
+            inventory.names.iter().map(|name| name.to_string_lossy().into_owned()).collect();
+        let all = written.map_or(usual.clone(), |written| written.value.over(&names, &usual));
+        values.copy_from_slice(&all);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, scale) }
 }
 
 /// Writes the values of all parameters.

@@ -381,3 +381,23 @@ fn equations_are_printed_and_emitted() {
     call(emit).unwrap();
     assert!(taken(header).contains("void top_rhs(") && taken(source).contains("#include \"top.h\""));
 }
+
+/// A charge of 1e-9 beside an angle: those of the program, by the scale of each, and as the text has them.
+#[test]
+fn absolute_tolerances_are_those_of_the_program() {
+    let text = "[coordinates]\nq = 1e-9\na = 1\n[lagrangian]\nkinetic = \"(q'^2 + a'^2)/2\"\npotential = \"2*q^2 + a^2/2\"\n";
+    let tolerances = |text: &str, relative: f64| {
+        let system = Model::text(text).unwrap().system(pc_form::PC_POINCARE).unwrap();
+        let mut values = [f64::NAN; 4];
+        call(|error| unsafe {
+            // SAFETY: a live system, and room for as many numbers as said.
+            pc_system_absolute_tolerances(system.0, relative, 10.0, values.as_mut_ptr(), 4, error)
+        })
+        .map(|()| values)
+    };
+    assert_eq!(tolerances(text, 1e-9), Ok([1e-16, 1e-12, 1e-16, 1e-12]));
+    assert_eq!(tolerances(text, 1e-3), Ok([1e-12; 4]));
+    let given = format!("{text}[simulation]\natol = {{ q = 1e-20 }}\n");
+    assert_eq!(tolerances(&given, 1e-9), Ok([1e-20, 1e-12, 1e-16, 1e-12]));
+    assert_eq!(tolerances(text, f64::NAN).unwrap_err().message, "relative is NaN, but must be finite");
+}

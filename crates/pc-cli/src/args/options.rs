@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use pc_model::document::MOST_SAMPLES;
+use pc_model::document::{AbsoluteTolerance, MOST_SAMPLES};
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::drawn::DrawnArguments;
@@ -173,9 +173,10 @@ pub struct IntegrationArguments {
     /// Relative tolerance; else that of the file, else 1e-9
     #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = positive)]
     pub rtol: Option<f64>,
-    /// Absolute tolerance; else that of the file, else 1e-12
-    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = positive)]
-    pub atol: Option<f64>,
+    /// Absolute tolerance of all components of the state, or of one by its name (repeatable, or separated by commas); else that
+    /// of the file, else min(1e-12, rtol times the scale of the component at the start)
+    #[arg(long, value_name = "A|NAME=A", allow_hyphen_values = true, value_delimiter = ',', value_parser = tolerance)]
+    pub atol: Vec<ToleranceSetting>,
     /// Largest step; else that of the file, else unlimited
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = positive)]
     pub max_step: Option<f64>,
@@ -186,6 +187,24 @@ pub struct IntegrationArguments {
     /// else auto
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
+}
+
+/// `A`, or `NAME=A` for one component of the state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ToleranceSetting {
+    /// The component; none for all.
+    pub name: Option<String>,
+    /// The tolerance.
+    pub value: f64,
+}
+
+impl IntegrationArguments {
+    /// The absolute tolerances that are given.
+    pub(crate) fn absolute(&self) -> AbsoluteTolerance {
+        let all = self.atol.iter().rev().find(|setting| setting.name.is_none()).map(|setting| setting.value);
+        let own = |setting: &ToleranceSetting| Some((setting.name.clone()?, setting.value));
+        AbsoluteTolerance { all, each: self.atol.iter().filter_map(own).collect() }
+    }
 }
 
 /// Arguments of `pc run`.
@@ -401,6 +420,19 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err("write a finite number, such as 10 or 1e-3".to_owned()),
     }
+}
+
+pub(crate) fn tolerance(text: &str) -> Result<ToleranceSetting, String> {
+    let (name, value) = match text.split_once('=') {
+        Some((name, value)) => (Some(name.trim().to_owned()), value.trim()),
+        None if text.trim().parse::<f64>().is_err() => {
+            return Err(
+                "write a tolerance, as in `--atol 1e-12`, or NAME=A, as in `--atol x=1e-15`".to_owned()
+            );
+        }
+        None => (None, text),
+    };
+    Ok(ToleranceSetting { name, value: positive(value)? })
 }
 
 pub(crate) fn positive(text: &str) -> Result<f64, String> {

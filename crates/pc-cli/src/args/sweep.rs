@@ -150,7 +150,7 @@ impl SweepArguments {
             ("--t-end", self.t_end.is_some()),
             ("--rows", self.rows.is_some()),
             ("--rtol", rtol.is_some()),
-            ("--atol", atol.is_some()),
+            ("--atol", !atol.is_empty()),
             ("--max-step", max_step.is_some()),
             ("--samples-per-step", events.samples_per_step.is_some()),
             ("--accumulation", events.accumulation.is_some()),

@@ -7,7 +7,7 @@ use crate::args::compare::CompareArguments;
 use crate::args::forms::RunForm;
 use crate::args::input;
 use crate::args::options::{Format, Setting};
-use crate::commands::run::integrate;
+use crate::commands::run::{integrate, integrate_again};
 use crate::compare::comparison::Comparison;
 use crate::compare::error::CompareError;
 use crate::compare::page::{Pair, differences};
@@ -37,15 +37,30 @@ pub fn command(arguments: &CompareArguments) -> Result<(), CliError> {
     if arguments.second.is_none() && forms[0] == forms[1] {
         return Err(CompareError::OneMotion.into());
     }
-    let a = integrate(&first, forms[0], || Ok(plan))?;
+    let a = integrate(&first, forms[0], || Ok(plan.clone()))?;
     if is_stopped(&a) {
         return a.outcome();
     }
-    let b = integrate(&second, forms[1], || Ok(other))?;
+    let b = integrate(&second, forms[1], || Ok(other.clone()))?;
     if is_stopped(&b) {
         return b.outcome();
     }
-    let comparison = Comparison::new(&a, &b, arguments)?;
+    let mut comparison = Comparison::new(&a, &b, None, arguments)?;
+    if !comparison.is_same() {
+        // Two motions, or errors of integration.
+        let finer = |model: &Model, form: RunForm, (plan, run): (&Plan, &Run)| {
+            integrate_again(model, form, || Ok(plan.finer(&run.tolerances)))
+        };
+        let again = finer(&first, forms[0], (&plan, &a))
+            .and_then(|c| Ok((c, finer(&second, forms[1], (&other, &b))?)));
+        // Where smaller tolerances cannot be met, there is nothing to tell errors by.
+        if let Ok((c, d)) = &again
+            && !is_stopped(c)
+            && !is_stopped(d)
+        {
+            comparison = Comparison::new(&a, &b, Some((c, d)), arguments)?;
+        }
+    }
     let name = |form: RunForm| Variables::from(form).name();
     let pair = Pair { first: (&a, name(forms[0])), second: (&b, name(forms[1])) };
     print(|out| match arguments.format {

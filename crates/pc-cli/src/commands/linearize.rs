@@ -17,7 +17,7 @@ use crate::linear::file::{Contents, Destination};
 use crate::linear::ground::{Ground, placed};
 use crate::linear::locus::Locus;
 use crate::linear::near::{CyclicChoice, Varied, near};
-use crate::linear::{json, text};
+use crate::linear::{compared, json, text};
 use crate::output::csv::field;
 use crate::output::destination::Destination as Picture;
 use crate::output::standard_output::print;
@@ -58,6 +58,7 @@ pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
     let (t, start) = (ground.assembly.t_start, ground.start.clone());
     let linear = near(&mut ground.linearizer, t, &start, &arguments.state, CyclicChoice::OfState)
         .map_err(|error| placed(&ground.assembly, error, true))?;
+    compared::compare(&model, &ground.assembly, &linear, arguments.verify)?;
     let stability = ground.stability(&linear);
     ground.assembly.within_limits()?;
     let page = || text::page(model.title(), &linear, stability.as_ref(), arguments.state.at() != At::Start);

@@ -8,7 +8,8 @@ use pc_model::{Assembly, Flow, Model, Variables};
 use pc_print::energy_remark;
 use pc_report::dropped;
 use pc_report::picture::{Drawing, Picture, Wanted};
-use pc_solve::{self as solver, Events, Solution, Solve, Trajectory};
+use pc_solve::{self as solver, Events, Occurrence, Solution, Solve, Trajectory};
+use pc_verify::Jump;
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::forms::RunForm;
@@ -25,6 +26,7 @@ use crate::motion::progress::Progress;
 use crate::motion::run::{Ending, Run};
 use crate::motion::sensitivities::Derivatives;
 use crate::motion::table::Table;
+use crate::motion::tolerances::note_largest;
 use crate::output::destination::Destination;
 use crate::output::stream::Stream;
 use crate::plot::error::PlotError;
@@ -53,7 +55,7 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
     let form = Plan::form(&model, arguments);
-    let asked = Asked { verify: !arguments.no_verify, fine: picture.is_some() };
+    let asked = Asked { verify: !arguments.no_verify, fine: picture.is_some(), notes: true };
     // A picture needs all rows.
     let mut stream = destination.stream().filter(|_| picture.is_none());
     let run = integrate_into(stream.as_mut(), &model, form, asked, &arguments.checkpoints, || {
@@ -87,7 +89,20 @@ pub fn integrate(
     form: RunForm,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
-    let asked = Asked { verify: true, fine: true };
+    let asked = Asked { verify: true, fine: true, notes: true };
+    integrate_into(None, model, form, asked, &CheckpointArguments::default(), plan)
+}
+
+/// As [`integrate`], of a model that was compared with its second derivation before.
+///
+/// # Errors
+/// [`CliError`] if there is no motion at all.
+pub(crate) fn integrate_again(
+    model: &Model,
+    form: RunForm,
+    plan: impl FnOnce() -> Result<Plan, CliError>,
+) -> Result<Run, CliError> {
+    let asked = Asked { verify: false, fine: false, notes: false };
     integrate_into(None, model, form, asked, &CheckpointArguments::default(), plan)
 }
 
@@ -98,6 +113,8 @@ struct Asked {
     verify: bool,
     /// Whether the run has the motion between its rows.
     fine: bool,
+    /// Whether what there is to know of the equations is said.
+    notes: bool,
 }
 
 /// As [`integrate`], with checkpoints; writes the rows to `stream` as they are computed where they
@@ -112,19 +129,13 @@ fn integrate_into(
 ) -> Result<Run, CliError> {
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
-    say_moved(&assembly);
-    say_negative_energy(&assembly);
-    say_changing_masses(&assembly);
-    if assembly.constraints.held().is_none() && assembly.has_multipliers() {
-        let (_, free) = assembly.equations_of(Variables::QuasiVelocities)?;
-        if let Some(remark) = choice(&assembly, &free.independent) {
-            say_choice(&remark);
-        }
-        energy_remark(&assembly).into_iter().for_each(say_choice);
+    if asked.notes {
+        say_notes(&assembly)?;
     }
-    say_undetermined(&assembly);
     let mut flow = Flow::new(model, &assembly, form.into())?;
     let plan = plan()?;
+    let tolerances = plan.tolerances(&mut flow);
+    let options = plan.options(&tolerances);
     let numbers = memory::numbers(&flow, &plan, checkpoints.path().is_some());
     let (rows, limits) = (plan.samples as u64, model.budget().limits());
     let alone = checkpoints.path().is_none() && plan.sensitivities.is_empty();
@@ -154,13 +165,13 @@ fn integrate_into(
     };
     let start = Instant::now();
     let (solved, error) = match (&mut checkpoints, &mut derivatives, &mut given) {
-        (Some(checkpoints), ..) => checkpoints.solve(&flow, &plan, observer)?,
-        (None, None, Some(given)) => given.follow(&mut flow, &plan, observer),
+        (Some(checkpoints), ..) => checkpoints.solve(&flow, (&plan, &options), observer)?,
+        (None, None, Some(given)) => given.follow(&mut flow, (&plan, &options), observer),
         (None, Some(derivatives), _) => {
-            derivatives.follow(&mut flow, plan.t_start, &plan.times(), &plan.options(), observer)
+            derivatives.follow(&mut flow, plan.t_start, &plan.times(), &options, observer)
         }
         (None, None, None) => Solve::new(&mut flow.motion, plan.t_start, &flow.start)
-            .method(&plan.options())
+            .method(&options)
             .events(&mut flow.events)
             .follow(&plan.times(), observer),
     };
@@ -177,6 +188,13 @@ fn integrate_into(
         && !verification.is_long(&flow)
     {
         verification.compare(&flow, &assembly, "the end", t, y)?;
+        if let Some(derivatives) = &derivatives {
+            let slopes = derivatives.slopes(&mut flow.clone(), t, y);
+            verification.compare_derivatives(model, &assembly, &flow, (t, y), &slopes)?;
+        }
+    }
+    if let Some(verification) = &mut verification {
+        compare_resets(verification, model, &assembly, &flow, &occurrences)?;
     }
     let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
     let is_full = given.as_ref().is_some_and(Given::has_failed);
@@ -187,20 +205,28 @@ fn integrate_into(
         (Some(solver::Ending::Stopped) | None, None) if is_full => Ending::Unwritten,
         (Some(solver::Ending::Stopped) | None, None) => Ending::Interrupted,
     };
+    let mut largest = Vec::new();
     let (table, constraints) = match given {
-        Some(given) => (given.table, given.constraints),
+        Some(given) => {
+            largest = given.largest;
+            (given.table, given.constraints)
+        }
         None => (
             Table::with_derivatives(&mut flow, &trajectory, derivatives.as_ref()),
             residuals(&mut flow, &trajectory),
         ),
     };
+    trajectory.iter().for_each(|(_, y)| note_largest(&mut largest, y));
     let statistics = *trajectory.statistics();
-    let fine =
-        again.as_mut().and_then(|flow| fine::table(flow, &plan, statistics.steps, statistics.current_time));
+    let fine = again
+        .as_mut()
+        .and_then(|flow| fine::table(flow, (&plan, &options), statistics.steps, statistics.current_time));
     Ok(Run {
         title: model.title().to_owned(),
         parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
         state: flow.motion.names().to_vec(),
+        never_exceeded: tolerances.never_exceeded(&written_start(model), &largest),
+        tolerances,
         table,
         constraints,
         dropped: dropped(&assembly),
@@ -215,6 +241,46 @@ fn integrate_into(
         verification,
         wall,
     })
+}
+
+/// Compares the state after the first occurrence of each event that has a reset.
+fn compare_resets(
+    verification: &mut Verification,
+    model: &Model,
+    assembly: &Assembly<'_>,
+    flow: &Flow,
+    occurrences: &[Occurrence],
+) -> Result<(), CliError> {
+    for (place, event) in assembly.events.iter().enumerate().filter(|(_, event)| !event.resets.is_empty()) {
+        let first = occurrences.iter().find(|occurrence| occurrence.event == place);
+        if let Some(Occurrence { time, state_before, state_after, .. }) = first {
+            let name = event.name.as_str();
+            let jump = Jump { event: name, t: *time, before: state_before, after: state_after };
+            verification.compare_reset(model, flow, &jump)?;
+        }
+    }
+    Ok(())
+}
+
+/// The start values as the text or the command line has them.
+fn written_start(model: &Model) -> Vec<(String, f64)> {
+    model.start().map(|values| model.start_names().into_iter().zip(values).collect()).unwrap_or_default()
+}
+
+/// What a person may want to know of the equations.
+fn say_notes(assembly: &Assembly<'_>) -> Result<(), CliError> {
+    say_moved(assembly);
+    say_negative_energy(assembly);
+    say_changing_masses(assembly);
+    if assembly.constraints.held().is_none() && assembly.has_multipliers() {
+        let (_, free) = assembly.equations_of(Variables::QuasiVelocities)?;
+        if let Some(remark) = choice(assembly, &free.independent) {
+            say_choice(&remark);
+        }
+        energy_remark(assembly).into_iter().for_each(say_choice);
+    }
+    say_undetermined(assembly);
+    Ok(())
 }
 
 /// Whether forces or the Lagrangian jump where the state changes.

@@ -29,11 +29,17 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Compares two runs at the times that both have.
+    /// Compares two runs at the times that both have. Where `finer` has both once more, at smaller tolerances, twice the changes by
+    /// these are allowed besides: errors of integration, which may have grown along the motion.
     ///
     /// # Errors
     /// [`CompareError`] where there is nothing to compare, or names are unknown.
-    pub fn new(first: &Run, second: &Run, arguments: &CompareArguments) -> Result<Comparison, CompareError> {
+    pub fn new(
+        first: &Run,
+        second: &Run,
+        finer: Option<(&Run, &Run)>,
+        arguments: &CompareArguments,
+    ) -> Result<Comparison, CompareError> {
         let allowance = Allowance { relative: arguments.tolerance, absolute: arguments.absolute };
         let times: Vec<f64> = (first.table.column(0).zip(second.table.column(0)))
             .take_while(|(a, b)| a == b)
@@ -49,20 +55,23 @@ impl Comparison {
             return Err(CompareError::NothingShared { first: names.to_vec(), second: others.to_vec() });
         }
         let is_wanted = |name: &&String| arguments.columns.is_empty() || arguments.columns.contains(name);
-        let difference = |name: &str, a: Vec<f64>, b: Vec<f64>| {
+        let difference = |name: &str, [a, b]: [Vec<f64>; 2], finer: Option<[Vec<f64>; 2]>| {
+            let uncertain = finer.map_or_else(Vec::new, |[c, d]| uncertain([&a, &b], [&c, &d]));
             let values: Vec<_> = times.iter().zip(a.iter().zip(&b)).map(|(&t, (&a, &b))| (t, a, b)).collect();
-            Difference::new(name.to_owned(), &values, allowance)
+            Difference::new(name.to_owned(), &values, allowance, &uncertain)
         };
         let mut differences = Vec::new();
         for name in shared.iter().filter(is_wanted) {
-            let found = difference(name, column(first, name), column(second, name));
+            let both = |(a, b): (&Run, &Run)| [column(a, name), column(b, name)];
+            let found = difference(name, both((first, second)), finer.map(both));
             // Lagrangians that differ by a constant or a factor give the same motion but different
             // energies.
             let is_aside = name == ENERGY && arguments.columns.is_empty();
             differences.push(if is_aside { found.aside() } else { found });
         }
         for (label, a, b) in &pairs {
-            differences.push(difference(label, a.column(first)?, b.column(second)?));
+            let both = |(first, second): (&Run, &Run)| Ok([a.column(first)?, b.column(second)?]);
+            differences.push(difference(label, both((first, second))?, finer.map(both).transpose()?));
         }
         let without = |names: &[String], others: &[String]| -> Vec<String> {
             names.iter().filter(|name| !others.contains(name)).cloned().collect()
@@ -82,6 +91,29 @@ impl Comparison {
     pub fn is_same(&self) -> bool {
         self.ends.is_none() && self.differences.iter().all(Difference::is_allowed)
     }
+}
+
+/// Until each time, twice what smaller tolerances change in both columns; infinite from where they have other rows.
+fn uncertain(columns: [&[f64]; 2], finer: [&[f64]; 2]) -> Vec<f64> {
+    let rows = columns[0].len().min(columns[1].len());
+    let change = |i: usize| -> f64 {
+        columns
+            .iter()
+            .zip(&finer)
+            .map(|(column, finer)| match finer.get(i) {
+                Some(finer) if column[i].is_finite() => (column[i] - finer).abs(),
+                Some(_) => 0.0,
+                None => f64::INFINITY,
+            })
+            .sum()
+    };
+    let mut most = 0.0f64;
+    (0..rows)
+        .map(|i| {
+            most = most.max(2.0 * change(i));
+            most
+        })
+        .collect()
 }
 
 /// The expressions that are compared, with their labels.

@@ -11,8 +11,10 @@ pub struct Difference {
     pub time: f64,
     /// The largest finite value of both columns.
     pub scale: f64,
-    /// The largest difference allowed.
+    /// The largest difference allowed, where the motions are certain.
     pub allowed: f64,
+    /// How far errors of integration move the columns, at most; 0 where that was not needed.
+    pub uncertain: f64,
     /// The first time at which the difference is larger.
     pub since: Option<f64>,
     /// Whether a difference in this column makes the motions different.
@@ -36,8 +38,14 @@ impl Allowance {
 }
 
 impl Difference {
-    /// The difference of the values (t, a, b).
-    pub fn new(name: String, values: &[(f64, f64, f64)], allowance: Allowance) -> Difference {
+    /// The difference of the values (t, a, b); until each time errors of integration move them by as much as `uncertain` says, or
+    /// by nothing where it has no more.
+    pub fn new(
+        name: String,
+        values: &[(f64, f64, f64)],
+        allowance: Allowance,
+        uncertain: &[f64],
+    ) -> Difference {
         let finite = values.iter().flat_map(|&(_, a, b)| [a, b]).filter(|value| value.is_finite());
         let scale = finite.fold(0.0f64, |scale, value| scale.max(value.abs()));
         let allowed = allowance.at(scale);
@@ -47,15 +55,17 @@ impl Difference {
             time: values.first().map_or(0.0, |v| v.0),
             scale,
             allowed,
+            uncertain: uncertain.last().copied().unwrap_or(0.0),
             since: None,
             counts: true,
         };
-        for &(t, a, b) in values {
+        let uncertain = uncertain.iter().copied().chain(std::iter::repeat(0.0));
+        for (&(t, a, b), uncertain) in values.iter().zip(uncertain) {
             let apart = apart(a, b);
             if apart > difference.largest {
                 (difference.largest, difference.time) = (apart, t);
             }
-            if apart > allowed && difference.since.is_none() {
+            if apart > allowed + uncertain && difference.since.is_none() {
                 difference.since = Some(t);
             }
         }
@@ -88,7 +98,19 @@ mod tests {
     use super::*;
 
     fn of(values: &[(f64, f64, f64)], relative: f64, absolute: f64) -> Difference {
-        Difference::new("x".to_owned(), values, Allowance { relative, absolute })
+        Difference::new("x".to_owned(), values, Allowance { relative, absolute }, &[])
+    }
+
+    #[test]
+    fn errors_of_integration_are_allowed_once_they_have_grown() {
+        let values = [(0.0, 0.0, 0.0), (1.0, 1e-9, -1e-9), (2.0, 7e-9, 0.0)];
+        let allowance = Allowance { relative: 1e-6, absolute: 1e-9 };
+        let of = |uncertain: &[f64]| Difference::new("x".to_owned(), &values, allowance, uncertain).since;
+        assert_eq!(of(&[]), Some(1.0));
+        assert_eq!(of(&[0.0, 2e-9, 1e-8]), None);
+        // What is not yet uncertain then is a difference.
+        assert_eq!(of(&[0.0, 0.0, 1e-8]), Some(1.0));
+        assert_eq!(of(&[0.0, 2e-9, 2e-9]), Some(2.0));
     }
 
     #[test]

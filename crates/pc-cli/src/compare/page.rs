@@ -23,7 +23,7 @@ impl Pair<'_> {
         let side = |(run, form): (&Run, &str)| {
             vec![
                 one_line(&run.title).into_owned(),
-                format!("{form}, {}, {}", run.plan.in_words(), ending(run)),
+                format!("{form}, {}, {}", run.plan.in_words(&run.tolerances), ending(run)),
             ]
         };
         let start = self.first.0.plan.t_start;
@@ -33,7 +33,10 @@ impl Pair<'_> {
         let compared = format!("{} times, {} to {until}", comparison.rows, short(start, 10));
         text += &labelled("compared", LABEL, &[compared]);
         let allowance = comparison.allowance;
-        let allowed = format!("{:e} of the largest value, and {:e}", allowance.relative, allowance.absolute);
+        let again = comparison.differences.iter().any(|found| found.uncertain > 0.0);
+        let errors = if again { ", and twice what smaller tolerances change" } else { "" };
+        let allowed =
+            format!("{:e} of the largest value, and {:e}{errors}", allowance.relative, allowance.absolute);
         text += &labelled("allowed", LABEL, &[allowed]);
         let width = comparison.differences.iter().map(|found| columns(&found.name)).max().unwrap_or(0);
         let lines: Vec<String> = comparison.differences.iter().map(|found| line(found, width)).collect();
@@ -64,6 +67,7 @@ impl Pair<'_> {
                 "time": found.time,
                 "scale": found.scale,
                 "allowed": found.allowed,
+                "uncertain": found.uncertain,
                 "since": found.since,
                 "counts": found.counts,
                 "same": found.since.is_none(),
@@ -103,7 +107,12 @@ fn line(found: &Difference, width: usize) -> String {
 /// What differs, a phrase for each.
 pub(crate) fn differences(comparison: &Comparison) -> Vec<String> {
     let phrase = |found: &Difference| {
-        format!("{} by {}, where {} is allowed", found.name, small(found.largest), small(found.allowed))
+        format!(
+            "{} by {}, where {} is allowed",
+            found.name,
+            small(found.largest),
+            small(found.allowed + found.uncertain)
+        )
     };
     let too_far = comparison.differences.iter().filter(|found| !found.is_allowed()).map(phrase);
     too_far.chain(comparison.ends.clone()).collect()

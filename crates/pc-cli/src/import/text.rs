@@ -102,7 +102,7 @@ impl<'a> Tree<'a> {
         Ok(Tree { source, robot, order, names })
     }
 
-    /// An error unless everything that moves has mass.
+    /// An error unless everything that moves has mass, or follows what has: a joint that mimics another needs none of its own.
     fn check_masses(&self) -> Result<(), UrdfError> {
         let mut carries: HashSet<&str> = HashSet::new();
         for (link, joint) in self.order.iter().rev() {
@@ -115,7 +115,7 @@ impl<'a> Tree<'a> {
             let Some(joint) = joint else { continue };
             if carries.contains(link.name.as_str()) {
                 carries.insert(&joint.parent);
-            } else if joint.kind != Kind::Fixed {
+            } else if joint.kind != Kind::Fixed && joint.mimic.is_none() {
                 let message = format!(
                     "the link `{}` can move, and neither it nor what hangs on it has mass",
                     link.name
@@ -267,6 +267,9 @@ impl<'a> Tree<'a> {
                 line(format!("parent = \"{}\"", self.names.body(&joint.parent)));
                 line(self.joint(joint));
             }
+        }
+        if link.inertial.is_none() && joint.is_some_and(|joint| joint.mimic.is_some()) {
+            line("mass = 0.0\ninertia = [0.0, 0.0, 0.0]".to_owned());
         }
         if let Some(inertial) = &link.inertial {
             line(format!("mass = {:?}", inertial.mass));

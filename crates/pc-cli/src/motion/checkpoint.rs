@@ -8,7 +8,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use pc_model::{Flow, Model};
-use pc_solve::{Checkpoint, CheckpointError, Ending, Solution, SolveError, SolveFailure, solve_checkpointed};
+use pc_solve::{
+    Checkpoint, CheckpointError, Ending, Options, Solution, SolveError, SolveFailure, solve_checkpointed,
+};
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::forms::RunForm;
@@ -99,7 +101,7 @@ impl Checkpoints {
     pub(crate) fn solve(
         &mut self,
         flow: &Flow,
-        plan: &Plan,
+        (plan, options): (&Plan, &Options),
         step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
     ) -> Result<(Solution, Option<SolveError>), CliError> {
         let from = self.from.take().unwrap_or_else(|| Checkpoint::start(plan.t_start, &flow.start));
@@ -125,8 +127,8 @@ impl Checkpoints {
         // The equations as compiled, without memory of earlier evaluations; the checkpoint knows
         // the values of kept integrals after a reset.
         let parts = || (flow.motion.clone(), flow.events.clone());
-        let (times, options) = (plan.times(), plan.options());
-        let solved = solve_checkpointed(&options, parts, from, &times, self.every, save, step);
+        let times = plan.times();
+        let solved = solve_checkpointed(options, parts, from, &times, self.every, save, step);
         let (motion, error) = SolveFailure::split(solved);
         let is_ended = error.as_ref().is_some_and(|error: &SolveError| error.ended().is_some());
         if motion.ending == Some(Ending::Stopped) || is_ended {

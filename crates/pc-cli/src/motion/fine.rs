@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use pc_model::Flow;
-use pc_solve::{Method, Segment, Solve};
+use pc_solve::{Method, Options, Segment, Solve};
 
 use crate::motion::interrupt;
 use crate::motion::plan::Plan;
@@ -45,7 +45,12 @@ fn side(breaks: &[f64], t: f64, inside: f64) -> f64 {
 /// The states at the ends of steps and between them, with those before and after events and jumps
 /// of inputs, as a table; none where they do not reach as far as `reached`. The motion is
 /// integrated again, so that its rows do not depend on this.
-pub(crate) fn table(flow: &mut Flow, plan: &Plan, steps: u64, reached: f64) -> Option<Table> {
+pub(crate) fn table(
+    flow: &mut Flow,
+    (plan, options): (&Plan, &Options),
+    steps: u64,
+    reached: f64,
+) -> Option<Table> {
     let columns = 1 + flow.names.len() + flow.motion.observable_names().len();
     // Nearly straight motions have few, long steps.
     let points = points(plan.method).max((FEWEST / (steps as usize).max(1)).min(MOST_POINTS));
@@ -64,8 +69,7 @@ pub(crate) fn table(flow: &mut Flow, plan: &Plan, steps: u64, reached: f64) -> O
             states.push((t, state));
         }
     };
-    let options = plan.options();
-    let solve = Solve::new(&mut flow.motion, plan.t_start, &start).method(&options).events(&mut flow.events);
+    let solve = Solve::new(&mut flow.motion, plan.t_start, &start).method(options).events(&mut flow.events);
     let segment = |segment: Segment| {
         let (from, to) = segment.span();
         keep(side(&breaks, from, to), &segment);

@@ -3,12 +3,13 @@
 use std::ops::ControlFlow;
 
 use pc_model::Flow;
-use pc_solve::{Solution, Solve, SolveError, SolveFailure};
+use pc_solve::{Options, Solution, Solve, SolveError, SolveFailure};
 
 use crate::error::CliError;
 use crate::motion::interrupt;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
+use crate::motion::tolerances::note_largest;
 use crate::output::stream::Stream;
 
 /// A record of the rows that were written.
@@ -20,6 +21,8 @@ pub(crate) struct Given<'s, 'p> {
     pub(crate) table: Table,
     /// The largest residual of each constraint.
     pub(crate) constraints: Vec<(String, f64)>,
+    /// The largest magnitude of each component of the state.
+    pub(crate) largest: Vec<f64>,
     /// The last output.
     pub(crate) last: Option<(f64, Vec<f64>)>,
 }
@@ -31,7 +34,7 @@ impl<'s, 'p> Given<'s, 'p> {
         let table = Table::given(flow);
         stream.begin(table.columns())?;
         let constraints = flow.constraint_names().into_iter().map(|name| (name, 0.0)).collect();
-        Ok(Given { flow: flow.clone(), stream, table, constraints, last: None })
+        Ok(Given { flow: flow.clone(), stream, table, constraints, largest: Vec::new(), last: None })
     }
 
     /// Integrates the motion as far as possible, without its states; the error says why not
@@ -39,12 +42,11 @@ impl<'s, 'p> Given<'s, 'p> {
     pub(crate) fn follow(
         &mut self,
         flow: &mut Flow,
-        plan: &Plan,
+        (plan, options): (&Plan, &Options),
         step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
     ) -> (Solution, Option<SolveError>) {
-        let options = plan.options();
         let solve =
-            Solve::new(&mut flow.motion, plan.t_start, &flow.start).method(&options).events(&mut flow.events);
+            Solve::new(&mut flow.motion, plan.t_start, &flow.start).method(options).events(&mut flow.events);
         SolveFailure::split(solve.run_given(&plan.times(), |t, y| self.take(t, y), step))
     }
 
@@ -60,6 +62,7 @@ impl<'s, 'p> Given<'s, 'p> {
         }
         self.table.give(&mut self.flow, t, y);
         note_residuals(&mut self.constraints, &mut self.flow, t, y);
+        note_largest(&mut self.largest, y);
         self.last = Some((t, y.to_vec()));
         match self.table.rows().next_back() {
             Some(row) => self.stream.row(row),

@@ -2,6 +2,7 @@
 //! same command continues it.
 
 use pc_model::Model;
+use pc_model::document::AbsoluteTolerance;
 use pc_solve::Accumulation;
 
 use crate::args::forms::RunForm;
@@ -16,7 +17,7 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
         ("--project", model.kept().join(", ")),
         ("--t-end", plan.t_end.to_string()),
         ("--rtol", format!("{:e}", plan.rtol)),
-        ("--atol", format!("{:e}", plan.atol)),
+        ("--atol", given(&plan.atol)),
         ("--max-step", plan.max_step.map_or("none".to_owned(), |length| format!("{length:e}"))),
         ("--samples-per-step", plan.samples_per_step.map_or("4".to_owned(), |parts| parts.to_string())),
         ("--accumulation", format!("{:e}", plan.accumulation.unwrap_or(Accumulation::default().within))),
@@ -24,6 +25,14 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
         ("--form", format!("{form:?}").to_lowercase()),
     ];
     of_work(model, plan)
+}
+
+/// Absolute tolerances as they are given.
+fn given(atol: &AbsoluteTolerance) -> String {
+    let all = atol.all.map(|value| format!("{value:e}"));
+    let each = atol.each.iter().map(|(name, value)| format!("{name}={value:e}"));
+    let given: Vec<String> = all.into_iter().chain(each).collect();
+    if given.is_empty() { "by scale".to_owned() } else { given.join(",") }
 }
 
 /// Of some work on a model: version, parameters, start, what the work itself depends on, and the text of the model.

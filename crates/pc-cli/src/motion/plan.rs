@@ -1,7 +1,7 @@
 //! The plan of a run, from the command line, else the model file, else the defaults.
 
-use pc_model::Model;
-use pc_model::document;
+use pc_model::document::{self, AbsoluteTolerance};
+use pc_model::{Flow, Model};
 use pc_solve::{Accumulation, Deadline, Method, Options};
 
 use crate::args::forms::RunForm;
@@ -9,6 +9,7 @@ use crate::args::options;
 use crate::args::options::RunArguments;
 use crate::error::CliError;
 use crate::motion::sensitivities;
+use crate::motion::tolerances::Tolerances;
 
 /// The method of this name on the command line.
 fn of_arguments(method: options::Method) -> Method {
@@ -35,6 +36,11 @@ fn of_file(method: document::Method) -> Method {
 /// Default number of rows of a table.
 const SAMPLES: usize = 201;
 
+/// Tolerances that are much smaller.
+const FINER: f64 = 1e-2;
+/// Rounding is no smaller in a few operations.
+const LEAST: f64 = 1e-14;
+
 /// Time span, rows, method, tolerances and limit of the steps of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -46,8 +52,8 @@ pub struct Plan {
     pub samples: usize,
     /// Relative tolerance.
     pub rtol: f64,
-    /// Absolute tolerance.
-    pub atol: f64,
+    /// Absolute tolerances, as far as they are given.
+    pub atol: AbsoluteTolerance,
     /// Largest length of a step, if it is limited.
     pub max_step: Option<f64>,
     /// The number of parts of each step that are searched for events, if given.
@@ -72,7 +78,8 @@ impl Plan {
     /// The plan for a model, from the command line and the file.
     ///
     /// # Errors
-    /// [`CliError::NoEnd`], [`CliError::EndIsStart`], [`CliError::Sensitivities`], [`CliError::NoSensitivities`].
+    /// [`CliError::NoEnd`], [`CliError::EndIsStart`], [`CliError::Sensitivities`], [`CliError::NoSensitivities`],
+    /// [`CliError::Tolerance`].
     pub fn new(model: &Model, arguments: &RunArguments) -> Result<Plan, CliError> {
         let simulation = &model.document().simulation;
         let t_start = simulation.t_start.as_ref().map_or(0.0, |t| t.value);
@@ -93,7 +100,7 @@ impl Plan {
             t_end,
             samples: arguments.samples.or(simulation.samples.as_ref().map(|n| n.value)).unwrap_or(SAMPLES),
             rtol: arguments.integration.rtol.or(simulation.rtol.as_ref().map(|r| r.value)).unwrap_or(1e-9),
-            atol: arguments.integration.atol.or(simulation.atol.as_ref().map(|a| a.value)).unwrap_or(1e-12),
+            atol: model.absolute_tolerance(arguments.integration.absolute()).map_err(CliError::Tolerance)?,
             max_step: arguments.integration.max_step.or(simulation.max_step.as_ref().map(|h| h.value)),
             samples_per_step: arguments
                 .integration
@@ -119,11 +126,16 @@ impl Plan {
         inner.chain([self.t_end]).collect()
     }
 
+    /// The absolute tolerance of each component of the state of a flow.
+    pub fn tolerances(&self, flow: &mut Flow) -> Tolerances {
+        Tolerances::new(&self.atol, flow, (self.t_start, self.t_end), self.rtol)
+    }
+
     /// Method, tolerances, the limit of steps and that of time for the integrator.
-    pub fn options(&self) -> Options {
+    pub fn options(&self, tolerances: &Tolerances) -> Options {
         let mut options = Options::new(self.method)
             .relative_tolerance(self.rtol)
-            .absolute_tolerance(self.atol)
+            .absolute_tolerance(tolerances.tolerance())
             .deadline(self.deadline.clone());
         if let Some(parts) = self.samples_per_step {
             options = options.samples_per_step(parts);
@@ -137,9 +149,15 @@ impl Plan {
         }
     }
 
+    /// The same at tolerances of a hundredth of those of a run: what this changes are errors of integration.
+    pub(crate) fn finer(&self, tolerances: &Tolerances) -> Plan {
+        let rtol = (self.rtol * FINER).max(LEAST);
+        Plan { rtol, atol: tolerances.times(FINER), ..self.clone() }
+    }
+
     /// Method, tolerances and the limit of steps in words.
-    pub fn in_words(&self) -> String {
+    pub fn in_words(&self, tolerances: &Tolerances) -> String {
         let limit = self.max_step.map_or_else(String::new, |length| format!(", steps to {length:e}"));
-        format!("{}, rtol {:e}, atol {:e}{limit}", self.method, self.rtol, self.atol)
+        format!("{}, rtol {:e}, atol {}{limit}", self.method, self.rtol, tolerances.in_words())
     }
 }

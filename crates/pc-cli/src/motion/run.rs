@@ -6,6 +6,7 @@ use pc_solve::{SolveError, Spent, Statistics};
 
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
+use crate::motion::tolerances::Tolerances;
 use crate::report::verification::Verification;
 
 /// A motion as far as it was computed, with a record of the run.
@@ -19,6 +20,10 @@ pub struct Run {
     pub plan: Plan,
     /// Names of the components of the state that was integrated.
     pub state: Vec<String>,
+    /// Their absolute tolerances.
+    pub tolerances: Tolerances,
+    /// What is said of components that never exceed theirs.
+    pub never_exceeded: Vec<String>,
     /// The table as far as it was reached.
     pub table: Table,
     /// The motion between its rows too, with the points that pictures need, where that was

@@ -8,6 +8,9 @@ use pc_solve::{
     solve_with_sensitivities_and_events,
 };
 
+use pc_expr::VectorField;
+use pc_verify::Slope;
+
 use crate::args::forms::RunForm;
 use crate::error::CliError;
 
@@ -73,6 +76,36 @@ impl Derivatives {
         let SensitivitySolution { trajectory, occurrences, ending } = reached;
         self.matrices = trajectory.iter().map(|(_, _, matrix)| matrix.to_vec()).collect();
         (Solution { trajectory: trajectory.motion().clone(), occurrences, ending }, error)
+    }
+
+    /// The rates (∂f/∂y) ∂y/∂p + ∂f/∂p at the last output, which the integration is made of; none where the field has no derivatives
+    /// of its own.
+    pub(crate) fn slopes(&self, flow: &mut Flow, t: f64, state: &[f64]) -> Vec<Slope> {
+        let (motion, dim) = (&mut flow.motion, state.len());
+        let mut by_state = vec![f64::NAN; dim * dim];
+        let mut by_parameters = vec![f64::NAN; dim * motion.parameters_len()];
+        let has_both = motion.has_jacobian() && motion.has_parameter_jacobian();
+        let Some(last) = self.matrices.last().filter(|_| has_both) else { return Vec::new() };
+        let known = motion.jacobian(t, state, &mut by_state).is_ok()
+            && motion.parameter_jacobian(t, state, &mut by_parameters).is_ok();
+        if !known {
+            return Vec::new();
+        }
+        let names = motion.names().to_vec();
+        let slope = |(column, (&j, name)): (&[f64], (&usize, &String))| {
+            let rate = |i: usize| {
+                let moving: f64 = (0..dim).map(|k| by_state[i + k * dim] * column[k]).sum();
+                (names[i].clone(), moving + by_parameters[i + j * dim])
+            };
+            Slope {
+                name: format!("the derivative by {name}"),
+                state: column.to_vec(),
+                parameters: vec![(name.clone(), 1.0)],
+                rates: (0..dim).map(rate).collect(),
+                observed: Vec::new(),
+            }
+        };
+        last.chunks(dim).zip(self.parameters.iter().zip(&self.names)).map(slope).collect()
     }
 
     /// Names of the columns: ∂x/∂p for each x of a motion, then for the next p.

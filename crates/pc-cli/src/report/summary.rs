@@ -31,7 +31,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
     let mut entries: Vec<(&'static str, Vec<String>)> = Vec::new();
     let mut line = |label: &'static str, lines: &[String]| entries.push((label, lines.to_vec()));
 
-    line("method", &[plan.in_words()]);
+    line("method", &[plan.in_words(&run.tolerances)]);
     let rows = run.table.len();
     let reached = match &run.ending {
         Ending::Completed => format!("{rows} rows"),
@@ -53,6 +53,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
     if !run.constraints.is_empty() {
         line("held", &held(run));
     }
+    line("digits", &run.never_exceeded);
     line("values", &not_finite(run));
     let dropped = run.dropped.iter().map(|(name, reason)| format!("{name} {reason}"));
     line("dropped", &dropped.collect::<Vec<_>>());
@@ -194,7 +195,7 @@ pub fn json(run: &Run) -> Value {
         "ending": run.ending.word(),
         "method": plan.method.to_string().to_lowercase(),
         "rtol": plan.rtol,
-        "atol": plan.atol,
+        "atol": run.tolerances.json(),
         "max_step": plan.max_step,
         "t_start": plan.t_start,
         "t_end": plan.t_end,

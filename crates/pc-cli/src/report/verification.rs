@@ -3,7 +3,7 @@
 use pc_mech::Equations;
 use pc_model::{Assembly, Flow, Model, Variables};
 use pc_report::Check;
-use pc_verify::{Agreement, Options, Outlet, Second, VerifyError, verify, vouch};
+use pc_verify::{Agreement, Jump, Options, Outlet, Second, Slope, VerifyError, verify, vouch};
 
 use crate::args::forms::RunForm;
 use crate::args::options::VerifyArguments;
@@ -76,13 +76,23 @@ pub struct Verification {
     form: &'static str,
     /// Where it was compared, with the results.
     outcomes: Vec<(&'static str, Result<Agreement, VerifyError>)>,
+    /// Of derivatives, with differences.
+    derivatives: Vec<Result<Agreement, VerifyError>>,
+    /// Of states after events, with the names of these.
+    resets: Vec<(String, Result<Agreement, VerifyError>)>,
 }
 
 impl Verification {
     /// The second derivation of a model in a form, not compared anywhere yet.
     pub fn new(model: &Model, assembly: &Assembly<'_>, form: RunForm) -> Verification {
         let form = Variables::from(form).name();
-        Verification { second: Second::new(model, assembly), form, outcomes: Vec::new() }
+        Verification {
+            second: Second::new(model, assembly),
+            form,
+            outcomes: Vec::new(),
+            derivatives: Vec::new(),
+            resets: Vec::new(),
+        }
     }
 
     /// Whether one comparison takes too long, that is, more than some milliseconds.
@@ -111,6 +121,70 @@ impl Verification {
         Ok(())
     }
 
+    /// Compares derivatives of rates at one state with differences of the second derivation's.
+    ///
+    /// # Errors
+    /// [`CliError::Verify`] if they disagree.
+    pub fn compare_derivatives(
+        &mut self,
+        model: &Model,
+        assembly: &Assembly<'_>,
+        flow: &Flow,
+        (t, state): (f64, &[f64]),
+        slopes: &[Slope],
+    ) -> Result<(), CliError> {
+        let Ok(second) = &self.second else { return Ok(()) };
+        for slope in slopes {
+            let outcome = second.slope_agrees((model, assembly), flow, (t, state), slope);
+            if let Err(error @ VerifyError::Disagreement(_)) = outcome {
+                return Err(CliError::Verify(Box::new(error)));
+            }
+            self.derivatives.push(outcome);
+        }
+        Ok(())
+    }
+
+    /// Compares the state after an event with the definitions of its reset.
+    ///
+    /// # Errors
+    /// [`CliError::Verify`] if they disagree.
+    pub fn compare_reset(&mut self, model: &Model, flow: &Flow, jump: &Jump<'_>) -> Result<(), CliError> {
+        let Ok(second) = &self.second else { return Ok(()) };
+        let outcome = second.reset_agrees(model, flow, jump);
+        if let Err(error @ VerifyError::Disagreement(_)) = outcome {
+            return Err(CliError::Verify(Box::new(error)));
+        }
+        self.resets.push((jump.event.to_owned(), outcome));
+        Ok(())
+    }
+
+    /// The comparison of states after events in words.
+    fn of_resets(&self) -> Vec<String> {
+        let is_known = self.resets.iter().any(|(_, outcome)| outcome.is_ok());
+        let unknown =
+            self.resets.iter().filter_map(|(event, outcome)| Some((event, outcome.as_ref().err()?)));
+        let unknown = unknown.map(|(event, error)| format!("not the state after {event}: {error}"));
+        is_known
+            .then(|| "the first state after each reset, by its definition".to_owned())
+            .into_iter()
+            .chain(unknown)
+            .collect()
+    }
+
+    /// The comparison of derivatives in words.
+    fn of_derivatives(&self) -> Option<String> {
+        let known: Vec<&Agreement> =
+            self.derivatives.iter().filter_map(|outcome| outcome.as_ref().ok()).collect();
+        match (known.is_empty(), self.derivatives.first()) {
+            (_, None) => None,
+            (false, _) => {
+                let worst = known.iter().fold(0.0f64, |worst, agreement| worst.max(agreement.error));
+                Some(format!("the rates of the derivatives at the end, by its differences, to {worst:.0e}"))
+            }
+            (true, Some(first)) => first.as_ref().err().map(|error| format!("not the derivatives: {error}")),
+        }
+    }
+
     /// The comparison in words.
     pub fn lines(&self) -> Vec<String> {
         if let Err(error) = &self.second {
@@ -135,6 +209,8 @@ impl Verification {
             let closely = if worst == 0.0 { "the last digit".to_owned() } else { format!("{worst:.0e}") };
             lines.insert(0, format!("by a second derivation, which agrees to {closely} at {places}{along}"));
         }
+        lines.extend(self.of_resets());
+        lines.extend(self.of_derivatives());
         lines.dedup();
         lines
     }

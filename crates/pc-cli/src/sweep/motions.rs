@@ -19,6 +19,7 @@ use crate::motion::interrupt;
 use crate::motion::memory;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
+use crate::motion::tolerances::Tolerances;
 use crate::report::text::short;
 use crate::report::verification::Verification;
 
@@ -28,6 +29,8 @@ pub(crate) struct Motions {
     form: RunForm,
     plan: Plan,
     times: Vec<f64>,
+    /// By the scale of the model itself, so that members in one vector share them.
+    tolerances: Tolerances,
     options: Options,
     /// Whether all rows are wanted instead of the last, with the drifts.
     all_rows: bool,
@@ -53,7 +56,7 @@ impl Motions {
         all_rows: bool,
         threads: usize,
     ) -> Result<Motions, CliError> {
-        let (table, prototype) = begun(&model, &design, form.into());
+        let Begin { table, tolerances, prototype } = begun(&model, &design, &plan, form.into());
         let shown = table.as_ref().map_or_else(|| written(&model), Columns::of);
         // Of each member at work its trajectory, its table, its record and the bytes of that.
         let numbers = (4 * shown.names.len() * threads) as u64;
@@ -63,7 +66,8 @@ impl Motions {
             members: Members::new(model, design, columns),
             form,
             times: plan.times(),
-            options: plan.options(),
+            options: plan.options(&tolerances),
+            tolerances,
             all_rows,
             rows: if all_rows { plan.samples } else { 1 },
             plan,
@@ -202,7 +206,7 @@ impl Work for Motions {
 
     fn said(&self) -> Vec<(&'static str, String)> {
         let span = format!("{} to {}", short(self.plan.t_start, 10), short(self.plan.t_end, 10));
-        vec![("method", self.plan.in_words()), ("time", span)]
+        vec![("method", self.plan.in_words(&self.tolerances)), ("time", span)]
     }
 
     fn done(&self) -> String {
@@ -243,24 +247,36 @@ fn written(model: &Model) -> Columns {
     Columns { names: [state, kept, named(&document.outputs)].concat(), conserved }
 }
 
-/// The table of the model without its rows and, where the members differ from it by numbers alone, its equations; where it has no
-/// motion the table of the first member that has one. It is the same for each shard.
-fn begun(model: &Model, design: &Design, variables: Variables) -> (Option<Table>, Option<Prototype>) {
+/// What is known before the first member is begun.
+#[derive(Default)]
+struct Begin {
+    /// The table without its rows; none where no member has a motion.
+    table: Option<Table>,
+    tolerances: Tolerances,
+    /// The equations, where the members differ from the model by numbers alone.
+    prototype: Option<Prototype>,
+}
+
+/// What is known by the model itself; where it has no motion by the first member that has one. It is the same for each shard.
+fn begun(model: &Model, design: &Design, plan: &Plan, variables: Variables) -> Begin {
+    let of = |flow: &mut Flow| (Some(Table::of(flow)), plan.tolerances(flow));
     let graph = model.graph();
     let own = model.assemble(&graph).ok().and_then(|assembly| {
-        let flow = Flow::new(model, &assembly, variables).ok()?;
-        Some((Table::of(&flow), Prototype::of(model, &assembly, variables, flow)))
+        let mut flow = Flow::new(model, &assembly, variables).ok()?;
+        let (table, tolerances) = of(&mut flow);
+        Some(Begin { table, tolerances, prototype: Prototype::of(model, &assembly, variables, flow) })
     });
-    if let Some((table, prototype)) = own {
-        return (Some(table), prototype);
+    if let Some(begin) = own {
+        return begin;
     }
     let in_time = |_: &u64| model.budget().deadline().passed().is_none();
-    let table = (0..design.members()).take_while(in_time).find_map(|member| {
+    let first = (0..design.members()).take_while(in_time).find_map(|member| {
         let mut model = design.model(model, &design.values(member));
         model.within(model.budget().beside());
-        derived(&model, variables).ok().map(|flow| Table::of(&flow))
+        let (table, tolerances) = of(&mut derived(&model, variables).ok()?);
+        Some(Begin { table, tolerances, prototype: None })
     });
-    (table, None)
+    first.unwrap_or_default()
 }
 
 /// The flow of a model, derived anew.

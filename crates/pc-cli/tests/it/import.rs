@@ -311,3 +311,22 @@ fn a_fixed_joint_does_not_mimic() {
     // (I + m r²) ä = m g r cos a
     alike(&rates(&mut flow(&text), &[0.3, 0.0]), &[0.0, 9.81 * 0.1 * 0.3_f64.cos() / 0.11]);
 }
+
+/// A finger without mass that follows an arm: a pendulum of length 0.3 with the moments m r² + I, by the energy.
+#[test]
+fn a_link_without_mass_may_follow_another() {
+    let urdf = r#"<robot name="r"><link name="base"/><link name="arm"><inertial><mass value="2"/><origin xyz="0.3 0 0"/>
+<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link><link name="tip"/>
+<joint name="a" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/></joint>
+<joint name="b" type="revolute"><parent link="arm"/><child link="tip"/><axis xyz="0 1 0"/><mimic joint="a" multiplier="2"/></joint></robot>"#;
+    let (text, left_out) = model_of_urdf(&Source::new("r.urdf", urdf), false).unwrap();
+    assert!(left_out.is_empty(), "{left_out:?}");
+    let mut flow = flow(&text);
+    assert_eq!(flow.names[..2], ["a", "b"]);
+    let (a, rate) = (0.4, 1.5);
+    let mut rates = [f64::NAN; 4];
+    flow.motion.rhs(0.0, &[a, 2.0 * a, rate, 2.0 * rate], &mut rates).unwrap();
+    let expected = 2.0 * 9.81 * 0.3 * f64::cos(a) / (2.0 * 0.09 + 0.1);
+    assert!((rates[2] - expected).abs() < 1e-12 * expected, "{rates:?}");
+    assert!((rates[3] - 2.0 * expected).abs() < 1e-12 * expected, "{rates:?}");
+}

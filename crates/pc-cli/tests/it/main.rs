@@ -44,6 +44,7 @@ mod random;
 mod report;
 mod rolling_and_slipping;
 mod said_of_runs;
+mod second_routes;
 mod sensitivities;
 mod shards;
 mod standard_streams;

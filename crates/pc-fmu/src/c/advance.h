@@ -15,7 +15,7 @@ static double first_length(Instance *instance, double farthest)
     const Motion *m = &instance->motion;
     double state = 0.0, rates = 0.0, second = 0.0, later[FMU_STATES + 1];
     for (int s = 0; s < FMU_STATES; s++) {
-        const double w = weight(m, m->y[s]);
+        const double w = weight(m, s, m->y[s]);
         state += m->y[s]/w*(m->y[s]/w);
         rates += m->rates[s]/w*(m->rates[s]/w);
     }
@@ -28,7 +28,7 @@ static double first_length(Instance *instance, double farthest)
     if (!all_finite(later, FMU_STATES))
         return h;
     for (int s = 0; s < FMU_STATES; s++) {
-        const double change = (later[s] - m->rates[s])/weight(m, m->y[s]);
+        const double change = (later[s] - m->rates[s])/weight(m, s, m->y[s]);
         second += change*change;
     }
     const double largest = fmax(sqrt(second)/h, rates);

@@ -137,7 +137,7 @@ static void noise_after_reset(Motion *m, const int *due, const double *values)
     double perturbation[FMU_EVENTS] = {0.0}, at[FMU_EVENTS];
     for (int s = 0; s < FMU_STATES; s++) {
         const double held = m->y[s];
-        m->y[s] += m->relative*fabs(held) + m->absolute;
+        m->y[s] += m->relative*fabs(held) + m->absolute*absolute_tolerances[s];
         fmu_events(m->t, m->y, m->p, at);
         m->y[s] = held;
         for (int i = 0; i < FMU_EVENTS; i++)

@@ -323,7 +323,7 @@ EXPORT fmi2Status FMI(fmi2GetNominalsOfContinuousStates)(fmi2Component c, fmi2Re
 {
     (void)c;
     for (size_t i = 0; i < count; i++)
-        nominals[i] = 1.0;
+        nominals[i] = i < FMU_STATES ? nominal_values[i] : 1.0;
     return fmi2OK;
 }
 

@@ -315,7 +315,7 @@ EXPORT fmi3Status FMI(fmi3GetNominalsOfContinuousStates)(fmi3Instance c, fmi3Flo
 {
     (void)c;
     for (size_t i = 0; i < count; i++)
-        nominals[i] = 1.0;
+        nominals[i] = i < FMU_STATES ? nominal_values[i] : 1.0;
     return fmi3OK;
 }
 

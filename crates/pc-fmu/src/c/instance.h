@@ -27,7 +27,7 @@ typedef struct {
     int given[FMU_STATES + 1]; /* whether a start value was set */
     int fresh, seen;           /* whether the rates, and what is observed, belong to t, y and p */
     double rates[FMU_STATES + 1], observed[FMU_OBSERVED + 1];
-    double relative, absolute; /* tolerances of the integration */
+    double relative, absolute; /* the relative tolerance, and the part of the absolute ones that counts */
     double next;               /* how long the next step is tried; 0 where nothing is known */
     /* On which side of zero the function of each event is, and what it has to exceed to have left zero. */
     int side[FMU_EVENTS + 1];
@@ -101,7 +101,7 @@ static void set_defaults(Motion *m)
     m->t = m->t_start = FMU_T_START;
     m->horizon = FMU_HORIZON;
     m->relative = FMU_RELATIVE;
-    m->absolute = FMU_ABSOLUTE;
+    m->absolute = 1.0;
     for (int i = 0; i < FMU_PARAMETERS; i++)
         m->p[i] = default_parameters[i];
     follow(m);

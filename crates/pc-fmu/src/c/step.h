@@ -4,9 +4,9 @@
 
 #include "instance.h"
 
-static double weight(const Motion *m, double y)
+static double weight(const Motion *m, int s, double y)
 {
-    return m->relative*fabs(y) + m->absolute;
+    return m->relative*fabs(y) + m->absolute*absolute_tolerances[s];
 }
 
 #if FMU_SOLVER == FMU_DOP853
@@ -45,7 +45,7 @@ static double step(Instance *instance, double t, const double *y, const double *
             e5 += dop853_e5[j]*instance->stages[j][s];
             e3 += (dop853_a[12][j] - dop853_b3[j])*instance->stages[j][s];
         }
-        const double w = instance->motion.relative*fmax(fabs(instance->step_start[s]), fabs(end[s])) + instance->motion.absolute;
+        const double w = weight(&instance->motion, s, fmax(fabs(instance->step_start[s]), fabs(end[s])));
         fifth += e5/w*(e5/w);
         third += e3/w*(e3/w);
     }
@@ -147,7 +147,7 @@ static double size_of(const Motion *m, const double *v, const double *y, int par
     double sum = 0.0;
     for (int n = 0; n < parts; n++)
         for (int s = 0; s < FMU_STATES; s++) {
-            const double e = v[n*FMU_STATES + s]/weight(m, y[s]);
+            const double e = v[n*FMU_STATES + s]/weight(m, s, y[s]);
             sum += e*e;
         }
     return sqrt(sum/(parts*FMU_STATES));

@@ -137,7 +137,7 @@ static void set_experiment(Motion *m, int with_tolerance, double tolerance, doub
     m->t = m->t_start = start;
     if (with_tolerance && tolerance > 0.0) {
         m->relative = fmax(tolerance, 10.0*DBL_EPSILON);
-        m->absolute = FMU_ABSOLUTE*fmin(1.0, m->relative/FMU_RELATIVE);
+        m->absolute = fmin(1.0, m->relative/FMU_RELATIVE);
     }
     if (with_stop && stop > start)
         m->horizon = stop - start;

@@ -51,6 +51,9 @@ impl MeaningError {
                 "the exponential function is written `exp(x)`; another e is declared, for example in [parameters]".into()
             }
             MeaningError::UnknownName { name, known } => suggest(name, known, "declare it, for example in [parameters]"),
+            MeaningError::UnknownComponent { name, known } => {
+                suggest(name, known, &format!("the components are {}", listed(known)))
+            }
             MeaningError::UnknownIntegral { name, known } => {
                 suggest(name, known, &format!("the integrals are {}", listed(known)))
             }

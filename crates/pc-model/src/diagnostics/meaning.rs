@@ -448,6 +448,14 @@ pub enum MeaningError {
         /// Whether a velocity moves no mass there.
         is_massless: bool,
     },
+    /// A tolerance of what is no component of the state.
+    #[error("`{name}` is no component of the state")]
+    UnknownComponent {
+        /// The name.
+        name: String,
+        /// Coordinates, quasi-velocities or velocities, and first-order states.
+        known: Vec<String>,
+    },
     /// An integral to be kept that the model does not have.
     #[error("`{name}` is not an integral")]
     UnknownIntegral {

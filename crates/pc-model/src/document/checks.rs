@@ -5,6 +5,7 @@ use std::collections::hash_map::Entry;
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, Role};
+use crate::diagnostics::meaning::MeaningError;
 use crate::document::contents::Document;
 use crate::document::expression::Name;
 
@@ -43,7 +44,33 @@ pub(super) fn require_motion(document: &Document) -> Result<(), ModelError> {
     Ok(())
 }
 
+/// Tolerances are those of components of the state.
+pub(super) fn check_tolerances(document: &Document) -> Result<(), ModelError> {
+    let Some(given) = &document.simulation.atol else { return Ok(()) };
+    let known = document.start_names();
+    match given.value.each.iter().find(|(name, _)| !known.contains(name)) {
+        Some((name, _)) => {
+            let kind = MeaningError::UnknownComponent { name: name.clone(), known };
+            Err(document.error(&given.place, kind))
+        }
+        None => Ok(()),
+    }
+}
+
 impl Document {
+    /// The names that have a start value: coordinates, quasi-velocities, or velocities x' where none is declared, and
+    /// first-order states.
+    pub(crate) fn start_names(&self) -> Vec<String> {
+        let coordinates = self.coordinates.iter().map(|x| x.name.text.clone());
+        let quasi_velocities = self.quasi_velocities.iter().map(|eta| eta.name.text.clone());
+        let mut names: Vec<String> = coordinates.chain(quasi_velocities).collect();
+        if self.quasi_velocities.is_empty() {
+            names.extend(self.coordinates.iter().map(|x| format!("{}'", x.name.text)));
+        }
+        names.extend(self.states.iter().map(|state| state.name.text.clone()));
+        names
+    }
+
     /// The names of the one namespace, each with its role.
     pub(crate) fn declared_names(&self) -> Vec<(&Name, Role)> {
         let quasi = self.quasi_velocities.iter().map(|quasi| (&quasi.name, Role::QuasiVelocity));

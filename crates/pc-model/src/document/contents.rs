@@ -8,6 +8,7 @@ use crate::document::draw::Draw;
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::inertia::Inertia;
 use crate::document::joints::{Point, TreeBody};
+use crate::document::tolerance::AbsoluteTolerance;
 
 /// A model as written. Every list is in the order of the file.
 #[derive(Clone, Debug, Default)]
@@ -315,8 +316,8 @@ pub struct Simulation {
     pub samples: Option<Located<usize>>,
     /// Relative tolerance, positive.
     pub rtol: Option<Located<f64>>,
-    /// Absolute tolerance, positive.
-    pub atol: Option<Located<f64>>,
+    /// Absolute tolerances, positive.
+    pub atol: Option<Located<AbsoluteTolerance>>,
     /// Largest length of a step, positive.
     pub max_step: Option<Located<f64>>,
     /// The number of parts of each step that are searched for events, at least 1.

@@ -39,6 +39,7 @@ impl Document {
         checks::require_motion(&document)?;
         checks::require_energy(&document)?;
         checks::require_bodies(&document)?;
+        checks::check_tolerances(&document)?;
         Ok(document)
     }
 

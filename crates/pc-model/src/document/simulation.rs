@@ -6,7 +6,8 @@ use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::document::contents::{EquationForm, Event, Method, Simulation};
-use crate::document::expression::{Located, NamedExpression};
+use crate::document::expression::{Located, Name, NamedExpression};
+use crate::document::tolerance::AbsoluteTolerance;
 
 /// The most rows of a table: each is held in memory.
 pub const MOST_SAMPLES: usize = 10_000_000;
@@ -22,7 +23,7 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
             "t_end" => result.t_end = Some(item.number()?),
             "samples" => result.samples = Some(samples(&item)?),
             "rtol" => result.rtol = Some(tolerance(&item, "rtol = 1e-9")?),
-            "atol" => result.atol = Some(tolerance(&item, "atol = 1e-12")?),
+            "atol" => result.atol = Some(item.located(absolute(&item)?)),
             "max_step" => {
                 result.max_step = Some(positive(&item, "a length greater than 0", "max_step = 0.01")?);
             }
@@ -132,6 +133,22 @@ fn tolerance(item: &Item<'_>, example: &'static str) -> Result<Located<f64>, Mod
     positive(item, "a tolerance greater than 0", example)
 }
 
+/// One number, or one for each of some names.
+fn absolute(item: &Item<'_>) -> Result<AbsoluteTolerance, ModelError> {
+    if !item.is_table() {
+        return Ok(AbsoluteTolerance { all: Some(tolerance(item, "atol = 1e-12")?.value), each: Vec::new() });
+    }
+    let entries = item.table("a table of names", "{ x = 1e-15 }")?;
+    let own =
+        |entry: Item<'_>| Ok((component(&entry)?.text, tolerance(&entry, "atol = { x = 1e-15 }")?.value));
+    Ok(AbsoluteTolerance { all: None, each: entries.items().map(own).collect::<Result<_, _>>()? })
+}
+
+/// The name of a component of the state. `x'` is the velocity of a coordinate: the prime stays in the name.
+fn component(entry: &Item<'_>) -> Result<Name, ModelError> {
+    if entry.velocity().is_some() { Ok(entry.label()) } else { entry.name() }
+}
+
 fn positive(
     item: &Item<'_>,
     expected: &'static str,
@@ -176,11 +193,8 @@ fn event(item: &Item<'_>) -> Result<Event, ModelError> {
 
 fn resets(item: &Item<'_>) -> Result<Vec<NamedExpression>, ModelError> {
     let entries = item.table("a table", "{ name = \"…\" }")?;
-    let reset = |entry: Item<'_>| {
-        // `x'` is the velocity of a coordinate: the prime stays in the name.
-        let name = if entry.velocity().is_some() { entry.label() } else { entry.name()? };
-        Ok(NamedExpression { name, expression: entry.expression()? })
-    };
+    let reset =
+        |entry: Item<'_>| Ok(NamedExpression { name: component(&entry)?, expression: entry.expression()? });
     entries.items().map(reset).collect()
 }
 

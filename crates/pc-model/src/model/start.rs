@@ -2,6 +2,7 @@
 
 use crate::assembly::start;
 use crate::diagnostics::error::ModelError;
+use crate::document::tolerance::AbsoluteTolerance;
 use crate::model::model::Model;
 
 /// A name that has no start value.
@@ -58,15 +59,20 @@ impl Model {
     /// The names that have a start value: coordinates, quasi-velocities, or velocities x' where none is declared, and
     /// first-order states.
     pub fn start_names(&self) -> Vec<String> {
-        let document = self.document();
-        let coordinates = document.coordinates.iter().map(|x| x.name.text.clone());
-        let quasi_velocities = document.quasi_velocities.iter().map(|eta| eta.name.text.clone());
-        let mut names: Vec<String> = coordinates.chain(quasi_velocities).collect();
-        if document.quasi_velocities.is_empty() {
-            names.extend(document.coordinates.iter().map(|x| format!("{}'", x.name.text)));
+        self.document().start_names()
+    }
+
+    /// These absolute tolerances, and those of the text where none is given.
+    ///
+    /// # Errors
+    /// [`UnknownStart`] for a name that has no start value.
+    pub fn absolute_tolerance(&self, given: AbsoluteTolerance) -> Result<AbsoluteTolerance, UnknownStart> {
+        let known = self.start_names();
+        if let Some((name, _)) = given.each.iter().find(|(name, _)| !known.contains(name)) {
+            return Err(UnknownStart { name: name.clone(), known });
         }
-        names.extend(document.states.iter().map(|state| state.name.text.clone()));
-        names
+        let written = self.document().simulation.atol.as_ref();
+        Ok(written.map_or(given.clone(), |written| given.or(&written.value)))
     }
 
     /// Gives a coordinate or quasi-velocity another start value than that of the file.

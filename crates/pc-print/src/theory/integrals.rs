@@ -101,7 +101,7 @@ pub(crate) fn section<'g>(
     options: &TheoryOptions,
 ) -> Section<'g> {
     let entry = |integral: &Integral<'g>| {
-        let (verdict, words) = verdict(ground, integral);
+        let (verdict, words) = verdict(integral);
         let of_rate = match integral.verdict {
             ConservationVerdict::Rate { rate, .. } => {
                 let rate = ground.free.graph().shorten(&[rate], ground.free.quasi_velocities())[0];
@@ -121,7 +121,7 @@ pub(crate) fn section<'g>(
 }
 
 /// The verdict on an integral: if its rate is not proved to vanish, numbers at the start may refute it.
-fn verdict(ground: &Ground<'_, '_>, integral: &Integral<'_>) -> (Verdict, Option<String>) {
+fn verdict(integral: &Integral<'_>) -> (Verdict, Option<String>) {
     let between = integral.jumps.then(|| "between events".to_owned());
     match integral.verdict {
         ConservationVerdict::Conserved => (Verdict::Proved, between),
@@ -130,20 +130,14 @@ fn verdict(ground: &Ground<'_, '_>, integral: &Integral<'_>) -> (Verdict, Option
         ConservationVerdict::NoFunction => {
             (Verdict::Open, Some("it is not a function of time and state alone".to_owned()))
         }
-        ConservationVerdict::Rate { at_start, rate, part_left } => {
+        ConservationVerdict::Rate { at_start, part_left, near, .. } => {
             let verdict = part_left.map_or(Verdict::Open, |left| Verdict::of(Identity::of(left)));
             let at_start = at_start.map(|rate| format!("its rate at the start is {}", short(rate, 4)));
-            let frame = ground.free.frame();
-            // Points other than the start are used only if all states are possible.
-            let is_free = ground.is_unbound() && frame.coordinates().len() == frame.rank();
-            match verdict {
-                Verdict::Disproved { .. } => (verdict, at_start),
-                _ if is_free => {
-                    let residual = ground.near.residual(ground.free.graph(), &[vec![rate]]);
-                    (Verdict::of(Identity::of(residual)), at_start)
-                }
+            match (verdict, near) {
+                (Verdict::Disproved { .. }, _) => (verdict, at_start),
+                (_, Some(left)) => (Verdict::of(Identity::of(left)), at_start),
                 // A vanishing number at one state is not a proof.
-                _ => (Verdict::Open, at_start),
+                (_, None) => (Verdict::Open, at_start),
             }
         }
     }

@@ -188,8 +188,10 @@ class System(_native.SystemCore):
     def _plan(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """The settings of an integration: those given, else those of the text, else the defaults."""
         written = self._model.simulation
-        plan: dict[str, Any] = {"method": "auto", "rtol": 1e-9, "atol": 1e-12}
-        for name in ("method", "rtol", "atol", "max_step", "samples_per_step", "accumulation"):
+        plan: dict[str, Any] = {"method": "auto", "rtol": 1e-9, "atol": given.get("atol")}
+        if isinstance(plan["atol"], Mapping):
+            plan["atol"] = dict(plan["atol"])
+        for name in ("method", "rtol", "max_step", "samples_per_step", "accumulation"):
             value = given.get(name)
             plan[name] = plan.get(name) if value is None and written[name] is None else (
                 written[name] if value is None else value
@@ -225,7 +227,7 @@ class System(_native.SystemCore):
         times: npt.ArrayLike | None = None,
         method: str | None = None,
         rtol: float | None = None,
-        atol: float | None = None,
+        atol: float | Mapping[str, float] | None = None,
         max_step: float | None = None,
         events: Mapping[str, object] | None = None,
         samples_per_step: int | None = None,
@@ -248,8 +250,11 @@ class System(_native.SystemCore):
             The times of the rows instead.
         method : str, optional
             ``"auto"`` (the default), ``"adams"``, ``"bdf"``, ``"dop853"`` or ``"taylor"``.
-        rtol, atol : float, optional
-            Relative and absolute tolerance of a step.
+        rtol : float, optional
+            Relative tolerance of a step.
+        atol : float or mapping, optional
+            Absolute tolerance of a step: of all components of the state, or of some by their names. Else it is that of the text,
+            else min(1e-12, rtol s) for a component of the scale s at the start, where rounding leaves as much.
         max_step : float, optional
             The largest length of a step.
         events : mapping, optional

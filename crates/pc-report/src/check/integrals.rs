@@ -36,6 +36,11 @@ fn words(verdict: ConservationVerdict<'_>, jumps: bool) -> String {
         {
             format!("not conserved: changes at the rate {} at the start", short(rate, 4))
         }
+        ConservationVerdict::Rate { at_start: Some(_), near: Some(left), .. }
+            if matches!(Identity::of(left), Identity::Disproved { .. }) =>
+        {
+            "not conserved, though it does not change at the start".to_owned()
+        }
         ConservationVerdict::Rate { at_start: Some(_), .. } => {
             "not proved to be conserved, though it does not change at the start".to_owned()
         }

@@ -9,6 +9,16 @@ pub enum Tolerance {
     Vector(Vec<f64>),
 }
 
+impl Tolerance {
+    /// One for each component; the same for all where they are equal.
+    pub fn each(tolerances: Vec<f64>) -> Tolerance {
+        match tolerances.split_first() {
+            Some((first, rest)) if rest.iter().all(|other| other == first) => Tolerance::Scalar(*first),
+            _ => Tolerance::Vector(tolerances),
+        }
+    }
+}
+
 impl From<f64> for Tolerance {
     fn from(tolerance: f64) -> Self {
         Tolerance::Scalar(tolerance)

@@ -27,7 +27,8 @@ pub(crate) struct Settings {
     pub(crate) t_start: f64,
     pub(crate) t_end: f64,
     pub(crate) rtol: f64,
-    pub(crate) atol: f64,
+    /// That of all components, where they have the same.
+    pub(crate) atol: Option<f64>,
     pub(crate) method: c_int,
 }
 
@@ -88,7 +89,7 @@ fn read(text: &str) -> (Motion, Settings) {
         t_start: real("t_start"),
         t_end: real("t_end"),
         rtol: real("rtol"),
-        atol: real("atol"),
+        atol: summary["atol"].as_f64(),
         method: match summary["method"].as_str().unwrap() {
             "auto" => pc_method::PC_AUTO as c_int,
             "bdf" => pc_method::PC_BDF as c_int,
@@ -238,13 +239,6 @@ extern "C" fn note(
 /// in the program, the equations are not evaluated beyond the end.
 pub(crate) fn by_library(model: &str, asked: &Asked<'_>, settings: &Settings) -> (Motion, usize) {
     let &Settings { t_start, t_end, rtol, atol, method } = settings;
-    let options = pc_solver_options {
-        method,
-        relative_tolerance: rtol,
-        absolute_tolerance: atol,
-        stop_time: t_end,
-        ..Default::default()
-    };
     let last = SAMPLES - 1;
     let inner = (0..last).map(|i| t_start + (t_end - t_start) * (i as f64 / last as f64));
     let times: Vec<f64> = inner.chain([t_end]).collect();
@@ -252,6 +246,24 @@ pub(crate) fn by_library(model: &str, asked: &Asked<'_>, settings: &Settings) ->
     let mut record = Record { system: System::new(model, asked), rows: Vec::new(), events: Vec::new() };
     let (mut solver, mut work, mut time) = (ptr::null_mut(), pc_statistics::default(), f64::NAN);
     let (system, user): (_, *mut c_void) = (record.system.handle, (&raw mut record).cast());
+    // SAFETY: a live system.
+    let dim = unsafe { pc_system_dim(system.as_ref()) };
+    let mut tolerances = vec![f64::NAN; dim];
+    let data = tolerances.as_mut_ptr();
+    // SAFETY: a live system, and room as said.
+    call(|error| unsafe { pc_system_absolute_tolerances(system, rtol, t_end, data, dim, error) }).unwrap();
+    // Those by the scales of components are found here once more.
+    if let Some(all) = atol {
+        tolerances.fill(all);
+    }
+    let options = pc_solver_options {
+        method,
+        relative_tolerance: rtol,
+        absolute_tolerances: tolerances.as_ptr(),
+        absolute_tolerances_length: dim,
+        stop_time: t_end,
+        ..Default::default()
+    };
     // SAFETY: live handles, arrays as long as said, a record that outlives the solver, which is freed once.
     let outcome = unsafe {
         let new = |error| pc_solver_new(system, &options, 0.0, ptr::null(), 0, &raw mut solver, error);

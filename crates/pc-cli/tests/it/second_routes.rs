@@ -1,0 +1,77 @@
+//! Second routes of derivatives, resets and verdicts, through the commands that users type.
+
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+fn pc(model: &str, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
+    command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("pc starts");
+    // A built-in model leaves the input unread.
+    let _ = child.stdin.take().expect("a pipe").write_all(model.as_bytes());
+    child.wait_with_output().expect("pc ends")
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).expect("UTF-8")
+}
+
+/// z'' = −k, with bounces.
+const BALL: &str = "[parameters]\nk = 2\n[coordinates]\nz = 1\n[lagrangian]\nkinetic = \"z'^2/2\"\npotential = \"k*z\"\n[events.bounce]\n\
+                    when = \"z\"\ndirection = \"falling\"\nreset = { \"z'\" = \"-0.8*z'\" }\n[simulation]\nt_end = 3\nsamples = 3\n";
+
+#[test]
+fn derivatives_and_resets_are_compared_and_said() {
+    let output = pc(BALL, &["run", "-", "--method", "adams", "--sensitivities", "k"]);
+    let said = text(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("\n           the first state after each reset, by its definition\n"), "{said}");
+    assert!(
+        said.contains("\n           the rates of the derivatives at the end, by its differences, to "),
+        "{said}"
+    );
+    let silent = pc(BALL, &["run", "-", "--method", "adams", "--sensitivities", "k", "--no-verify"]);
+    assert!(!text(&silent.stderr).contains("by its"), "{}", text(&silent.stderr));
+    assert_eq!(output.stdout, silent.stdout);
+}
+
+/// What vanishes at the start alone is refuted by states near it.
+#[test]
+fn what_changes_off_the_start_is_not_conserved() {
+    let model = "[coordinates]\nx = 1\ny = 0.5\n[quasi_velocities]\n\"x'\" = -0.7\n\"y'\" = 0.3\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n\
+                 potential = \"y^2\"\n[integrals]\nflat = \"x'^2*(y - 0.5)^2*(y' - 0.3)^3\"\npx = \"x'\"\n";
+    let output = pc(model, &["check", "-"]);
+    let checked = text(&output.stdout);
+    assert!(checked.contains("flat    not conserved, though it does not change at the start\n"), "{checked}");
+    assert!(checked.contains("px      conserved (proved)\n"), "{checked}");
+}
+
+/// Two masses of 1 and 2·10⁻⁶ on a spring of 10⁶: accelerations of 5·10¹¹ say nothing of which velocities are independent.
+#[test]
+fn a_stiff_spring_leaves_its_velocities_independent() {
+    let model = "[coordinates]\nx = 0\ny = 0\n[lagrangian]\nkinetic = \"(x'^2 + 2e-6*y'^2)/2\"\npotential = \"1e6*(x - y)^2/2\"\n";
+    let output = pc(model, &["linearize", "-", "--format", "json"]);
+    let linear: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(linear["second_order"]["K"], serde_json::json!([[1e6, -1e6], [-1e6, 1e6]]), "{linear}");
+}
+
+/// At coarse tolerances the two forms are apart by errors of integration, which smaller ones tell from a difference.
+#[test]
+fn errors_of_integration_are_no_difference() {
+    let coarse = ["--t-end", "10", "--rtol", "1e-5", "--atol", "1e-8", "--samples", "21"];
+    let forms =
+        pc("", &[&["compare", "pendulum-chain", "--form", "poincare,canonical"], &coarse[..]].concat());
+    let said = text(&forms.stdout);
+    assert!(said.contains("and twice what smaller tolerances change"), "{said}");
+    assert!(
+        forms.status.success() && said.contains("verdict   the same motion in what is compared"),
+        "{said}"
+    );
+    // A thousandth more of gravity is no error of integration.
+    let other = BALL.replace("k = 2", "k = 2.002");
+    let directory = tempfile::tempdir().expect("a directory");
+    let file = directory.path().join("other.toml");
+    std::fs::write(&file, other).expect("written");
+    let pair = pc(BALL, &["compare", "-", file.to_str().expect("UTF-8"), "--rtol", "1e-5"]);
+    assert_eq!(pair.status.code(), Some(1), "{}", text(&pair.stdout));
+}
