@@ -11,7 +11,7 @@ use crate::second::Second;
 
 /// A reset is evaluated in some operations, and its state projected where quaternions have length 1.
 const APART: f64 = 1e-12;
-/// Positions are projected onto constraints to rounding of their terms, in units of the largest coordinate.
+/// Velocities are projected onto constraints to this part of their terms: positions that are off by rounding turn them.
 const OFF: f64 = 1e-9;
 
 /// What an event does to a state.
@@ -97,10 +97,14 @@ impl Second {
         if !names.constraints.is_empty() {
             let all: Vec<usize> = (0..names.constraints.len()).collect();
             let residuals = self.derivation.constraints(&all, &after, &Rounding::none())?;
-            let size = largest(&after.x).max(largest(&after.w)) * OFF / APART;
-            let pair =
-                |(name, residual): (&String, f64)| (format!("the constraint {name}"), residual, 0.0, size);
-            return Ok(names.constraints.iter().zip(residuals).map(pair).collect());
+            let rows = self.derivation.constraint_matrix(&all, &after, &Rounding::none())?;
+            // After a stop velocities are the rounding of those before.
+            let fastest = largest(&before.w).max(largest(&after.w)) * OFF / APART;
+            let pair = |(name, (residual, row)): (&String, (f64, Vec<f64>))| {
+                let size = fastest * row.iter().map(|entry| entry.abs()).sum::<f64>();
+                (format!("the constraint {name}"), residual, 0.0, size)
+            };
+            return Ok(names.constraints.iter().zip(residuals.into_iter().zip(rows)).map(pair).collect());
         }
         let events = &model.document().events;
         let resets =

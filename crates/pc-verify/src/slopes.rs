@@ -167,7 +167,8 @@ impl Moved<'_> {
         let sides = after.iter().zip(&before).zip(here).map(|((after, before), here)| Sides {
             central: (after.value - before.value) / (2.0 * h),
             apart: (after.value + before.value - 2.0 * here.value) / h,
-            rounding: ROUNDINGS * after.size.max(before.size).max(here.size) / h,
+            // Below the smallest normal number every operation loses digits.
+            rounding: (ROUNDINGS * after.size.max(before.size).max(here.size)).max(f64::MIN_POSITIVE) / h,
         });
         Ok(sides.collect())
     }

@@ -559,3 +559,49 @@ fn a_reset_is_that_of_the_text() {
         }
     }
 }
+
+/// A bead on a circle that turns back, with its constraint in any units: (x, y)·(u, v) = 0 after the reset.
+fn turn(factor: f64, after: [f64; 4]) -> Result<crate::Agreement, VerifyError> {
+    let model = model(&format!(
+        "[coordinates]\nx = 0.6\ny = -0.8\n[quasi_velocities]\n\"x'\" = 0.8\n\"y'\" = 0.6\n[constraints]\nrod = \"{factor:e}*(x^2 + y^2 - \
+         1)\"\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n[events.wall]\nwhen = \"x - 0.6\"\nreset = {{ \"x'\" = \"-x'/2\" }}\n"
+    ));
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).unwrap();
+    let flow = Flow::new(&model, &assembly, Variables::QuasiVelocities).unwrap();
+    let jump = Jump { event: "wall", t: 0.0, before: &[0.6, -0.8, 0.8, 0.6], after: &after };
+    Second::new(&model, &assembly).unwrap().reset_agrees(&model, &flow, &jump)
+}
+
+#[test]
+fn a_reset_under_a_constraint_is_compared_in_its_units() {
+    for factor in [1e-12, 1.0, 1e12] {
+        // Off by some roundings, and stopped up to these.
+        for after in [[0.6, -0.8, -0.4, -0.3 + 1e-15], [0.6, -0.8, 1e-17, 3e-17]] {
+            assert!(turn(factor, after).is_ok(), "{factor}, {after:?}: {:?}", turn(factor, after));
+        }
+        match turn(factor, [0.6, -0.8, -0.4, 0.6]) {
+            Err(VerifyError::Disagreement(found)) => assert_eq!(found.quantity, "the constraint rod"),
+            other => panic!("{factor}: {other:?}"),
+        }
+    }
+}
+
+/// Slopes of the size of the smallest numbers are 0 but for digits that these do not have.
+#[test]
+fn what_is_below_the_normal_numbers_is_no_difference() {
+    let model = model("[coordinates]\nx = 0\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"x^3/3\"\n");
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).unwrap();
+    let flow = Flow::new(&model, &assembly, Variables::QuasiVelocities).unwrap();
+    let second = Second::new(&model, &assembly).unwrap();
+    let slope = |rate: f64| Slope {
+        name: "the derivative".to_owned(),
+        state: vec![3e-320, 0.0],
+        rates: vec![("x'".to_owned(), rate)],
+        ..Slope::default()
+    };
+    let agrees = |rate| second.slope_agrees((&model, &assembly), &flow, (0.0, &[3e-320, 0.0]), &slope(rate));
+    assert!(agrees(2.3e-322).is_ok(), "{:?}", agrees(2.3e-322));
+    assert!(matches!(agrees(1e-200), Err(VerifyError::Disagreement(_))));
+}
