@@ -1,11 +1,13 @@
 //! Events: their functions, and their location.
 //!
 //! `events` defines events given by closures, and occurrences; `samples` holds values along a step,
-//! which `closer` refines where there is doubt; `root_finding` locates the first zero along a step,
+//! which `closer` refines where there is doubt and `edges` continues where functions have no value;
+//! `root_finding` locates the first zero along a step,
 //! which `breaks` tells from jumps and poles.
 
 pub(crate) mod breaks;
 pub(crate) mod closer;
+pub(crate) mod edges;
 pub(crate) mod events;
 pub(crate) mod root_finding;
 pub(crate) mod samples;

@@ -142,6 +142,7 @@ fn integrate_into(
     let stream = stream.filter(|_| alone && memory::is_much(rows, numbers, limits));
     // Of rows that are written at once, only the times are held.
     memory::allow(rows, if stream.is_some() { 1 } else { numbers }, limits)?;
+    let begins = checkpoints.resume.is_none();
     let mut checkpoints = Checkpoints::new(checkpoints, model, &plan, form)?;
     let mut derivatives = match plan.sensitivities.as_slice() {
         [] => None,
@@ -159,8 +160,10 @@ fn integrate_into(
     let mut given = stream.map(|stream| Given::new(&flow, stream)).transpose()?;
     interrupt::catch();
     let mut progress = Progress::new(plan.t_start, plan.t_end);
-    let observer = |t: f64, _: &[f64]| {
+    let mut first = None; // the end of the first step
+    let observer = |t: f64, y: &[f64]| {
         progress.at(t);
+        first.get_or_insert_with(|| (t, y.to_vec()));
         if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let start = Instant::now();
@@ -196,6 +199,8 @@ fn integrate_into(
     if let Some(verification) = &mut verification {
         compare_resets(verification, model, &assembly, &flow, &occurrences)?;
     }
+    let passed_at_start =
+        first.filter(|_| begins).map(|first| beyond_at_once(&mut flow, &plan, first)).unwrap_or_default();
     let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
     let is_full = given.as_ref().is_some_and(Given::has_failed);
     let ending = match (ending, error) {
@@ -236,11 +241,25 @@ fn integrate_into(
         statistics,
         plan,
         events,
+        passed_at_start,
         occurrences: occurrences.iter().map(|occurrence| (occurrence.event, occurrence.time)).collect(),
         ending,
         verification,
         wall,
     })
+}
+
+/// The events whose functions are zero at the start and go on in the direction of the event: this is
+/// no passage. The sides are those at the end of the first step, or of the part of it before an
+/// event.
+fn beyond_at_once(flow: &mut Flow, plan: &Plan, (t, y): (f64, Vec<f64>)) -> Vec<usize> {
+    let count = flow.events.events().len();
+    let (mut before, mut after) = (vec![f64::NAN; count], vec![f64::NAN; count]);
+    let start = flow.start.clone();
+    let evaluated = flow.events.evaluate(plan.t_start, &start, &mut before).is_ok()
+        && flow.events.evaluate(t, &y, &mut after).is_ok();
+    let goes = |&i: &usize| before[i] == 0.0 && flow.events.events()[i].crosses().leaves(-after[i]);
+    if evaluated { (0..count).filter(goes).collect() } else { Vec::new() }
 }
 
 /// Compares the state after the first occurrence of each event that has a reset.

@@ -39,6 +39,9 @@ pub struct Run {
     pub keeps_energy: bool,
     /// The names of the events that the model has.
     pub events: Vec<String>,
+    /// The numbers of the events whose functions are zero at the start and go on in their direction,
+    /// which is no occurrence.
+    pub passed_at_start: Vec<usize>,
     /// The occurrences, in order: the numbers of events, and their times.
     pub occurrences: Vec<(usize, f64)>,
     /// How it ended.

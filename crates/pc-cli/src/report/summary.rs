@@ -115,6 +115,8 @@ fn work_done(run: &Run) -> String {
 
 /// Up to this number, all occurrences of an event are listed.
 const FEW: usize = 5;
+/// What is said of an event whose function is zero at the start and goes beyond.
+const AT_START: &str = "   (zero at the start and beyond it from there on, which is no passage)";
 
 fn events(run: &Run) -> Vec<String> {
     let width = run.events.iter().map(|name| columns(name)).max().unwrap_or(0);
@@ -129,7 +131,8 @@ fn events(run: &Run) -> Vec<String> {
             }
             all => format!("{} times: {}", all.len(), all.join(", ")),
         };
-        format!("{name:width$}  {when}")
+        let start = if run.passed_at_start.contains(&event) { AT_START } else { "" };
+        format!("{name:width$}  {when}{start}")
     };
     run.events.iter().enumerate().map(line).collect()
 }

@@ -237,6 +237,37 @@ fn a_terminal_event_ends_the_run_well() {
     );
 }
 
+/// Two points at height 0: one falls at once, below the floor, the other is thrown up and lands.
+#[test]
+fn a_function_that_is_zero_at_the_start_and_goes_beyond_is_said() {
+    let thrown = |speed: f64| {
+        let model = format!(
+            "[coordinates]\ny = 0.0\n[quasi_velocities]\n\"y'\" = {speed}\n[lagrangian]\nkinetic = \"y'^2/2\"\n\
+             potential = \"2*y\"\n[events.floor]\nwhen = \"y\"\ndirection = \"falling\"\n[simulation]\nt_end = 1.5\n"
+        );
+        let output = pc(&model, &["run", "-"]);
+        assert_eq!(output.status.code(), Some(0));
+        said(&output)
+    };
+    let remark = "zero at the start and beyond it from there on";
+    let falls = thrown(0.0);
+    assert!(falls.contains("does not occur   (") && falls.contains(remark), "{falls}");
+    let lands = thrown(1.0);
+    assert!(lands.contains("floor  once: 1\n") && !lands.contains(remark), "{lands}");
+}
+
+/// √(1 − x) − 0.2 is zero at x = 0.96, and has no value beyond 1.
+#[test]
+fn a_terminal_zero_before_an_edge_ends_the_run() {
+    let model = "[coordinates]\nx = 0.0\n[quasi_velocities]\n\"x'\" = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
+                 [events.edge]\nwhen = \"sqrt(1 - x) - 0.2\"\nterminal = true\n[simulation]\nt_end = 2.0\n";
+    for method in ["adams", "bdf", "dop853", "taylor", "auto"] {
+        let output = pc(model, &["run", "-", "--method", method]);
+        assert_eq!(output.status.code(), Some(0), "{method}: {}", said(&output));
+        assert!(said(&output).contains("ended by the event edge at 0.96,"), "{method}: {}", said(&output));
+    }
+}
+
 #[test]
 fn bounces_that_accumulate_end_a_run_with_their_limit() {
     let output = pc("", &["run", "bouncing-ball", "--t-end", "9", "--samples", "10", "--set", "e=0.5"]);

@@ -2,7 +2,8 @@
 //!
 //! Over an interval of time the functions and their first two derivatives are enclosed by interval arithmetic
 //! [Moore 1966], the motion being a polynomial. A function whose enclosure excludes zero has no root there;
-//! one whose rate excludes zero has at most one; other intervals are halved.
+//! one whose rate excludes zero has at most one; other intervals are halved. Where the sign changes from one interval
+//! without a root to the next, the function jumps between them.
 
 use std::sync::Arc;
 
@@ -56,6 +57,9 @@ pub struct RootSeparation {
     local: Vec<f64>,
     open: Vec<(f64, f64)>,
     at_middle: Vec<Jet>,
+    /// The signs of the outputs in the last two intervals; 0 where they may have a root.
+    signs: Vec<i8>,
+    signs_before: Vec<i8>,
 }
 
 impl RootSeparation {
@@ -73,7 +77,9 @@ impl RootSeparation {
         let at_middle = Vec::with_capacity(program.outputs_len());
         // An interval is halved some fifty times.
         let open = Vec::with_capacity(64);
-        RootSeparation { program, used, registers, local: Vec::with_capacity(64), open, at_middle }
+        let signs = vec![0; program.outputs_len()];
+        let (local, signs_before) = (Vec::with_capacity(64), signs.clone());
+        RootSeparation { program, used, registers, local, open, at_middle, signs, signs_before }
     }
 
     /// The program.
@@ -106,6 +112,7 @@ impl RootSeparation {
         }
         self.open.clear();
         self.open.push((first, last));
+        self.signs_before.fill(0);
         // The end of the last interval that may contain a root.
         let (mut looked, mut run, mut roots) = (0, first, 0);
         let (mut vague, mut given_up) = (0, false);
@@ -119,6 +126,19 @@ impl RootSeparation {
                 self.open.push((middle, b));
                 self.open.push((a, middle));
                 continue;
+            }
+            // An output may jump where one interval ends and the next one begins.
+            let flips = self.signs.iter().zip(&self.signs_before).any(|(now, before)| now * before < 0);
+            self.signs_before.copy_from_slice(&self.signs);
+            if flips && clear {
+                if a != run {
+                    places.push(0.5 * (run + a));
+                }
+                if roots == ENOUGH {
+                    break;
+                }
+                places.push(a);
+                (run, roots) = (a, roots + 1);
             }
             if !clear {
                 // The gap between two intervals that may contain roots is divided in its middle.
@@ -157,13 +177,18 @@ impl RootSeparation {
         let around = Interval { lo: -radius, hi: radius };
         let squares = Interval { lo: 0.0, hi: 0.5 * radius * radius };
         let (mut clear, mut single) = (true, true);
-        for (output, &at) in self.program.outputs().iter().zip(&self.at_middle) {
+        self.signs.fill(0);
+        for (k, (output, &at)) in self.program.outputs().iter().zip(&self.at_middle).enumerate() {
             let jet = self.registers[output.index()];
             let excludes = |interval: Interval| interval.lo > 0.0 || interval.hi < 0.0;
             let values =
                 [jet.value, at.value + jet.rate * around, at.value + at.rate * around + jet.bend * squares];
             // A function that is identically 0 counts as free of roots.
-            if values.into_iter().any(excludes) || jet.value == Interval::ZERO {
+            if let Some(values) = values.into_iter().find(|values| excludes(*values)) {
+                self.signs[k] = if values.lo > 0.0 { 1 } else { -1 };
+                continue;
+            }
+            if jet.value == Interval::ZERO {
                 continue;
             }
             clear = false;

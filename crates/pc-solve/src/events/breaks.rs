@@ -29,8 +29,9 @@ const STEADY: f64 = 1e-3;
 /// rounding.
 const RESOLVED: f64 = 1e-6;
 
-/// How each function changes its sign between `a` and `b`, close to each other. Where the distances,
-/// in multiples of `rounding`, begin before the step, or a function fails, nothing is known.
+/// How each function changes its sign between `a` and `b`, close to each other, from the values at
+/// the distances, in multiples of `rounding`, on both sides; on one, where they begin before the
+/// step or a function fails on the other.
 pub(crate) fn breaks<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     a: &Sample,
     b: &Sample,
@@ -38,14 +39,15 @@ pub(crate) fn breaks<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     look: &mut Look<'_, F>,
 ) -> Vec<Break> {
     let (direction, start) = (b.t - a.t, look.room.start);
-    let mut side = |from: f64, sign: f64| -> Option<Vec<Sample>> {
+    let mut side = |from: f64, sign: f64| -> Vec<Sample> {
         let offset = |k: i32| (rounding * RATIO.powi(k)).copysign(sign * direction);
-        (1..=DISTANCES).map(|k| look.at(from + offset(k)).ok()).collect()
+        let samples: Option<_> = (1..=DISTANCES).map(|k| look.at(from + offset(k)).ok()).collect();
+        samples.unwrap_or_default()
     };
     let farthest = rounding * RATIO.powi(DISTANCES);
     let has_room = (a.t - start).abs() >= farthest;
-    let sides = if has_room { side(a.t, -1.0).zip(side(b.t, 1.0)) } else { None };
-    let Some((before, after)) = sides else { return vec![Break::None; a.values.len()] };
+    let before = if has_room { side(a.t, -1.0) } else { Vec::new() };
+    let after = side(b.t, 1.0);
     let kind = |i: usize| {
         let values = |samples: &[Sample]| samples.iter().map(|sample| sample.values[i]).collect::<Vec<f64>>();
         kind((a.values[i], &values(&before)), (b.values[i], &values(&after)), look.room.largest[i])
@@ -55,12 +57,17 @@ pub(crate) fn breaks<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     kinds
 }
 
-/// The same from the values at the bracket and at growing distances on each side of it.
+/// The same from the values at the bracket and at growing distances on each side of it, or on one:
+/// where both are empty nothing is known.
 fn kind((a, before): (f64, &[f64]), (b, after): (f64, &[f64]), largest: f64) -> Break {
-    let falls = |values: &[f64]| {
-        values.windows(2).all(|pair| pair[0] * pair[1] > 0.0 && pair[0].abs() >= FALL * pair[1].abs())
+    if before.is_empty() && after.is_empty() {
+        return Break::None;
+    }
+    let falls = |at: f64, values: &[f64]| {
+        let is_one_side = values.iter().all(|value| value * at > 0.0);
+        is_one_side && values.windows(2).all(|pair| pair[0].abs() >= FALL * pair[1].abs())
     };
-    if falls(before) && falls(after) && before[0] * after[0] < 0.0 {
+    if falls(a, before) && falls(b, after) && a * b < 0.0 {
         return Break::Pole;
     }
     let jump = (b - a).abs();

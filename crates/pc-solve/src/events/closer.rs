@@ -17,16 +17,18 @@ const SAFETY: f64 = 3.0;
 const MOST: usize = 256;
 /// Intervals shorter than this fraction of the whole are not halved.
 const SHORTEST: f64 = 1.0 / 4096.0;
+/// An interval in whose middle the functions fail is divided at this fraction.
+const BESIDE: f64 = 0.4375;
 
 /// Adds samples between `left` and the last of `samples` where a function may have more roots than
 /// its signs show.
 ///
-/// Where the functions fail, the samples end; the failure is returned.
+/// Where the functions fail, the samples end; the time and the failure are returned.
 pub(crate) fn look_closer<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     left: &Sample,
     samples: &mut Vec<Sample>,
     look: &mut Look<'_, F>,
-) -> Option<E> {
+) -> Option<(f64, E)> {
     let shortest = SHORTEST * (samples.last()?.t - left.t).abs();
     let mut k = 0;
     while k < samples.len() && samples.len() < MOST {
@@ -36,12 +38,17 @@ pub(crate) fn look_closer<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
             k += 1;
             continue;
         }
-        match look.at(start + 0.5 * (end - start)) {
-            Ok(middle) => samples.insert(k, middle),
-            Err(failure) => {
-                samples.drain(k..).for_each(|sample| look.room.take_back(sample));
-                return Some(failure);
-            }
+        let middle = start + 0.5 * (end - start);
+        match look.at(middle) {
+            Ok(sample) => samples.insert(k, sample),
+            // The functions may have a pole there alone.
+            Err(failure) => match look.at(start + BESIDE * (end - start)) {
+                Ok(sample) => samples.insert(k, sample),
+                Err(_) => {
+                    samples.drain(k..).for_each(|sample| look.room.take_back(sample));
+                    return Some((middle, failure));
+                }
+            },
         }
         // The previous interval has a new neighbour.
         k = k.saturating_sub(1);

@@ -4,12 +4,15 @@ use pc_expr::Direction;
 
 use crate::events::breaks::{Break, breaks};
 use crate::events::closer::look_closer;
+use crate::events::edges::{approach, edge};
 use crate::events::samples::{Look, Sample};
 
 /// Times within this relative difference are the same: events between them are simultaneous.
-const SAME: f64 = 64.0 * f64::EPSILON;
+pub(super) const SAME: f64 = 64.0 * f64::EPSILON;
 /// A passage is bracketed by two times with this relative difference.
 const LOCATED: f64 = 4.0 * f64::EPSILON;
+/// In intervals of this many times that width, functions without a value have a pole.
+const NARROW: f64 = 64.0;
 
 /// The side of zero on which each function is.
 #[derive(Debug)]
@@ -179,18 +182,22 @@ impl Sides {
             match look.at(t) {
                 Ok(next) => samples.push(next),
                 Err(error) => {
-                    fault = Some(error);
-                    break;
+                    fault = approach(&left, &mut samples, (t, error), to, look);
+                    if fault.is_some() {
+                        break;
+                    }
                 }
             }
         }
-        if !look.separated {
-            fault = look_closer(&left, &mut samples, look).or(fault);
+        if !look.separated
+            && let Some(failed) = look_closer(&left, &mut samples, look)
+        {
+            fault = Some(edge(&left, &mut samples, failed, look));
         }
         let mut hidden = Vec::new();
         for k in 1..samples.len() {
             let before = if k == 1 { &left } else { &samples[k - 2] };
-            hidden.extend(self.hidden([before, &samples[k - 1], &samples[k]], look)?);
+            hidden.extend(self.hidden([before, &samples[k - 1], &samples[k]], look));
         }
         if !hidden.is_empty() {
             samples.extend(hidden);
@@ -293,7 +300,7 @@ impl Sides {
         &self,
         three: [&Sample; 3],
         look: &mut Look<'_, F>,
-    ) -> Result<Vec<Sample>, E> {
+    ) -> Vec<Sample> {
         let mut found = Vec::new();
         for i in 0..self.sides.len() {
             let side = self.sides[i];
@@ -309,7 +316,8 @@ impl Sides {
                 if predicted > 0.25 * least {
                     break;
                 }
-                let lowest = look.at(t)?;
+                // A function without a value there is not beyond zero.
+                let Ok(lowest) = look.at(t) else { break };
                 let u = lowest.values[i] * side;
                 if u < 0.0 {
                     found.push(lowest);
@@ -326,7 +334,7 @@ impl Sides {
                 };
             }
         }
-        Ok(found)
+        found
     }
 
     /// Locates the first passage, touch or pole between `a`, before it, and `b`, after it: by the
@@ -365,7 +373,20 @@ impl Sides {
                 crossed.map(secant).fold(1.0, f64::min)
             };
             let edge = 0.5 * tolerance / width.abs();
-            let middle = look.at(a.t + fraction.clamp(edge, 1.0 - edge) * width)?;
+            let (from, to) = (a.t, b.t);
+            let place = |fraction: f64| from + fraction.clamp(edge, 1.0 - edge) * (to - from);
+            let middle = match look.at(place(fraction)) {
+                Ok(middle) => middle,
+                Err(error) => match beside(fraction).into_iter().find_map(|part| look.at(place(part)).ok()) {
+                    Some(middle) => middle,
+                    None if width.abs() <= NARROW * tolerance => break, // a pole that is met exactly
+                    None => {
+                        let (before, error) = self.before_edge(&a, (place(fraction), error), look);
+                        b = before.ok_or(error)?;
+                        continue;
+                    }
+                },
+            };
             if middle.t == a.t || middle.t == b.t {
                 look.room.take_back(middle);
                 break; // there is no time between
@@ -382,7 +403,9 @@ impl Sides {
             }
             b_moved = Some(moves_b);
         }
-        let after = look.at(b.t + (SAME * scale).copysign(b.t - a.t))?;
+        // A function may have no value beyond its zero.
+        let after = look.at(b.t + (SAME * scale).copysign(b.t - a.t));
+        let after = after.unwrap_or_else(|_| look.copy(&b));
         let seen = |i: usize| sides.crossed(i, b.values[i]) || sides.crossed(i, after.values[i]);
         let is_back = |i: usize| after.values[i] * sides.sides[i] > sides.noise[i];
         let passing: Vec<usize> =
@@ -415,6 +438,24 @@ impl Sides {
         [a, other].into_iter().for_each(|sample| look.room.take_back(sample));
         Ok((Located::Crossing(Crossing { at, events, noise, beyond }), poles))
     }
+
+    /// The first sample at which a function has passed through zero before the functions fail at the
+    /// time `failed`, if there is one; and the failure nearest to `a`.
+    fn before_edge<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
+        &self,
+        a: &Sample,
+        failed: (f64, E),
+        look: &mut Look<'_, F>,
+    ) -> (Option<Sample>, E) {
+        let mut samples = Vec::new();
+        let failure = edge(a, &mut samples, failed, look);
+        (samples.into_iter().find(|sample| self.any_crossed(&sample.values)), failure)
+    }
+}
+
+/// Other fractions of an interval than one at which functions have no value.
+fn beside(fraction: f64) -> [f64; 2] {
+    [0.75 * fraction, 0.25 + 0.75 * fraction]
 }
 
 /// The lowest point of the parabola through three points in order, if it lies between the outer

@@ -17,6 +17,7 @@ mod dop853_coefficients;
 mod ensemble;
 mod event_cascades;
 mod event_checkpoints;
+mod event_edges;
 mod event_failures;
 mod event_passages;
 mod event_steps;

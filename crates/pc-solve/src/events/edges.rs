@@ -1,0 +1,63 @@
+//! Where functions have no value along a step: at a pole that is met exactly, and beyond an edge of
+//! their domain.
+//!
+//! Functions may have passed through zero before such an edge, √(1 − t) − 0.2 at t = 0.96 for
+//! example, although the next sample lies beyond it: samples are therefore taken up to the edge.
+
+use crate::events::root_finding::SAME;
+use crate::events::samples::{Look, Sample};
+
+/// Distances from a place without a value, in roundings of the time, at which functions are
+/// evaluated on both sides of it.
+const BESIDE: f64 = 1.0;
+
+/// Continues the samples after `left` where the functions have failed at a time: by samples on both
+/// sides of it, as of a pole, if these have values; else by samples up to the edge, with the failure
+/// beyond it. At the end of the search, `to`, the values just before it stand for those there.
+pub(super) fn approach<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
+    left: &Sample,
+    samples: &mut Vec<Sample>,
+    (t, failure): (f64, E),
+    to: f64,
+    look: &mut Look<'_, F>,
+) -> Option<E> {
+    let from = samples.last().unwrap_or(left).t;
+    let distance = (BESIDE * SAME * t.abs().max(1e-3 * (to - left.t).abs())).copysign(to - left.t);
+    if (t - distance - from) * distance > 0.0
+        && let (Ok(before), Ok(after)) = (look.at(t - distance), look.at(t + distance))
+    {
+        if (to - after.t) * distance > 0.0 {
+            samples.extend([before, after]);
+        } else {
+            samples.push(Sample { t: to, ..before });
+        }
+        return None;
+    }
+    Some(edge(left, samples, (t, failure), look))
+}
+
+/// Adds samples between the last one, or `left`, and the time at which the functions have failed,
+/// ever nearer to the edge beyond which they fail; returns the failure nearest to it.
+pub(super) fn edge<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
+    left: &Sample,
+    samples: &mut Vec<Sample>,
+    (mut beyond, mut failure): (f64, E),
+    look: &mut Look<'_, F>,
+) -> E {
+    let mut inside = samples.last().unwrap_or(left).t;
+    let least = f64::EPSILON * inside.abs().max(beyond.abs());
+    while (beyond - inside).abs() > least {
+        let middle = inside + 0.5 * (beyond - inside);
+        if middle == inside || middle == beyond {
+            break; // there is no time between
+        }
+        match look.at(middle) {
+            Ok(sample) => {
+                inside = middle;
+                samples.push(sample);
+            }
+            Err(nearer) => (beyond, failure) = (middle, nearer),
+        }
+    }
+    failure
+}
