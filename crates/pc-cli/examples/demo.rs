@@ -76,6 +76,7 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
         rtol: 1e-12,
         atol: AbsoluteTolerance { all: Some(1e-14), each: Vec::new() },
         max_step: None,
+        max_steps: None,
         samples_per_step: None,
         accumulation: None,
         method: Method::Adams,

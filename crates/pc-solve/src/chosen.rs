@@ -9,9 +9,10 @@ use crate::cvode::cvode::Cvode;
 use crate::dop853::setup::Dop853;
 #[cfg(not(feature = "cvode"))]
 use crate::error::InputError;
-use crate::error::SolveError;
+use crate::error::{IntegrationError, SolveError};
 use crate::integration::limits::Limits;
 use crate::integration::method::IntegrationMethod;
+use crate::integration::since::Since;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::method::Method;
@@ -19,19 +20,43 @@ use crate::settings::options::Options;
 use crate::taylor::stepper::Taylor;
 
 /// The method chosen by [`Options`].
+///
+/// It integrates over the time since its start, so that the steps of a motion from t₀ = 10⁹ have as
+/// many digits as those of one from 0; the field is evaluated at t₀ plus that time.
 #[derive(Debug)]
-#[non_exhaustive]
-pub enum Chosen<F: VectorField> {
-    /// [`Method::Adams`] or [`Method::Bdf`].
+pub struct Chosen<F: VectorField> {
+    method: Engine<Since<F>>,
+    /// The time from which the method counts.
+    origin: f64,
+    /// The current time, and the end of the last step.
+    time: f64,
+    end: f64,
+    stop_time: Option<f64>,
+}
+
+/// A method.
+#[derive(Debug)]
+enum Engine<F: VectorField> {
     #[cfg(feature = "cvode")]
     Cvode(Box<Cvode<F>>),
-    /// [`Method::Dop853`].
     Dop853(Box<Dop853<F>>),
-    /// [`Method::Taylor`].
     Taylor(Box<Taylor<F>>),
-    /// [`Method::Auto`].
     #[cfg(feature = "cvode")]
     Auto(Box<Auto<F>>),
+}
+
+/// Forwards a call to the method.
+macro_rules! each {
+    ($chosen:expr, $method:ident => $call:expr) => {
+        match $chosen {
+            #[cfg(feature = "cvode")]
+            Engine::Cvode($method) => $call,
+            Engine::Dop853($method) => $call,
+            Engine::Taylor($method) => $call,
+            #[cfg(feature = "cvode")]
+            Engine::Auto($method) => $call,
+        }
+    };
 }
 
 impl<F: VectorField> Chosen<F> {
@@ -41,23 +66,93 @@ impl<F: VectorField> Chosen<F> {
     /// As for `Cvode::new`, [`Dop853::new`], [`Taylor::new`] and `Auto::new`;
     /// [`InputError::NoCvode`](crate::InputError::NoCvode).
     pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
-        match options.method {
-            Method::Dop853 => Ok(Chosen::Dop853(Box::new(Dop853::new(field, t0, y0, options)?))),
-            Method::Taylor => Ok(Chosen::Taylor(Box::new(Taylor::new(field, t0, y0, options)?))),
+        let stop_time = options.stop_time;
+        let (field, start, options) = counted(field, t0, options);
+        let method = match options.method {
+            Method::Dop853 => Engine::Dop853(Box::new(Dop853::new(field, start, y0, &options)?)),
+            Method::Taylor => Engine::Taylor(Box::new(Taylor::new(field, start, y0, &options)?)),
             #[cfg(feature = "cvode")]
-            Method::Bdf | Method::Adams => Ok(Chosen::Cvode(Box::new(Cvode::new(field, t0, y0, options)?))),
+            Method::Bdf | Method::Adams => Engine::Cvode(Box::new(Cvode::new(field, start, y0, &options)?)),
             #[cfg(feature = "cvode")]
-            Method::Auto => Ok(Chosen::Auto(Box::new(Auto::new(field, t0, y0, options)?))),
+            Method::Auto => Engine::Auto(Box::new(Auto::new(field, start, y0, &options)?)),
             #[cfg(not(feature = "cvode"))]
-            method => Err(InputError::NoCvode { method }.into()),
+            method => return Err(InputError::NoCvode { method }.into()),
+        };
+        Ok(Chosen::of(method, t0, stop_time))
+    }
+
+    /// Starts by CVODES as `begin` does, at a time from which the method counts.
+    ///
+    /// # Errors
+    /// Those of `begin`.
+    #[cfg(feature = "cvode")]
+    pub(crate) fn by_cvode(
+        field: F,
+        t0: f64,
+        options: &Options,
+        begin: impl FnOnce(Since<F>, f64, &Options) -> Result<Cvode<Since<F>>, SolveError>,
+    ) -> Result<Self, SolveError> {
+        let stop_time = options.stop_time;
+        let (field, start, options) = counted(field, t0, options);
+        Ok(Chosen::of(Engine::Cvode(Box::new(begin(field, start, &options)?)), t0, stop_time))
+    }
+
+    fn of(method: Engine<Since<F>>, t0: f64, stop_time: Option<f64>) -> Self {
+        Chosen { method, origin: t0, time: t0, end: t0, stop_time }
+    }
+
+    fn since(&self) -> &Since<F> {
+        each!(&self.method, method => method.field())
+    }
+
+    /// The time at s since the origin.
+    fn at(&self, s: f64) -> f64 {
+        match self.stop_time {
+            Some(stop) if s == stop - self.origin => stop,
+            _ => self.since().time(s),
+        }
+    }
+
+    /// The time since the origin of a time in the last step; one that rounding puts outside is moved
+    /// to its ends.
+    fn inside(&self, t: f64) -> f64 {
+        if self.origin == 0.0 {
+            return t;
+        }
+        let LastStep { start, end, .. } = each!(&self.method, method => method.last_step());
+        if t == self.end {
+            return end;
+        }
+        let (s, rounding) = (t - self.origin, f64::EPSILON * t.abs());
+        let (least, most) = if end < start { (end, start) } else { (start, end) };
+        if s < least && s >= least - rounding {
+            least
+        } else if s > most && s <= most + rounding {
+            most
+        } else {
+            s
         }
     }
 }
 
-#[cfg(feature = "cvode")]
-impl<F: VectorField> From<Cvode<F>> for Chosen<F> {
-    fn from(cvode: Cvode<F>) -> Self {
-        Chosen::Cvode(Box::new(cvode))
+/// The field with its time counted from the start, the start in that time, and the options for it.
+fn counted<F: VectorField>(field: F, t0: f64, options: &Options) -> (Since<F>, f64, Options) {
+    if !t0.is_finite() {
+        return (Since::new(field, 0.0), t0, options.clone()); // which the method refuses
+    }
+    let options = Options { stop_time: options.stop_time.map(|stop| stop - t0), ..options.clone() };
+    (Since::new(field, t0), 0.0, options)
+}
+
+/// An error of the method, in the times of the integration.
+fn dated(error: SolveError, origin: f64) -> SolveError {
+    match error {
+        SolveError::Integration(error) if origin != 0.0 => {
+            let IntegrationError { reason, time, state, failure } = *error;
+            let (reason, time) = (reason.since(origin), origin + time);
+            SolveError::Integration(Box::new(IntegrationError { reason, time, state, failure }))
+        }
+        other => other,
     }
 }
 
@@ -71,69 +166,69 @@ impl<F: VectorField> IntegrationMethod<F> for Options {
     }
 }
 
-/// Forwards a call to the method.
-macro_rules! each {
-    ($chosen:expr, $method:ident => $call:expr) => {
-        match $chosen {
-            #[cfg(feature = "cvode")]
-            Chosen::Cvode($method) => $call,
-            Chosen::Dop853($method) => $call,
-            Chosen::Taylor($method) => $call,
-            #[cfg(feature = "cvode")]
-            Chosen::Auto($method) => $call,
-        }
-    };
-}
-
 impl<F: VectorField> Stepper for Chosen<F> {
     type Field = F;
 
     fn field(&self) -> &F {
-        each!(self, method => method.field())
+        &self.since().field
     }
 
     fn field_mut(&mut self) -> &mut F {
-        each!(self, method => method.field_mut())
+        &mut each!(&mut self.method, method => method.field_mut()).field
     }
 
     fn into_field(self) -> F {
-        each!(self, method => method.into_field())
+        each!(self.method, method => method.into_field()).field
     }
 
     fn limits(&self) -> &Limits {
-        each!(self, method => method.limits())
+        each!(&self.method, method => method.limits())
     }
 
     fn limits_mut(&mut self) -> &mut Limits {
-        each!(self, method => method.limits_mut())
+        each!(&mut self.method, method => method.limits_mut())
     }
 
     fn last_step(&self) -> LastStep {
-        each!(self, method => method.last_step())
+        let LastStep { start, degree, .. } = each!(&self.method, method => method.last_step());
+        LastStep { start: self.at(start), end: self.end, degree }
+    }
+
+    fn end_time(&self) -> f64 {
+        self.end
     }
 
     fn end_state(&self) -> &[f64] {
-        each!(self, method => method.end_state())
+        each!(&self.method, method => method.end_state())
     }
 
     fn time(&self) -> f64 {
-        each!(self, method => method.time())
+        self.time
     }
 
     fn stand_at(&mut self, t: f64) {
-        each!(self, method => method.stand_at(t));
+        let s = self.inside(t);
+        self.time = t;
+        each!(&mut self.method, method => method.stand_at(s));
     }
 
     fn step(&mut self, towards: f64) -> Result<(), SolveError> {
-        each!(self, method => method.step(towards))
+        let (towards, origin) = (towards - self.origin, self.origin);
+        let stepped = each!(&mut self.method, method => method.step(towards));
+        self.end = self.at(each!(&self.method, method => method.end_time()));
+        self.time = self.end;
+        stepped.map_err(|error| dated(error, origin))
     }
 
     fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
-        each!(self, method => method.interpolate(t, order))
+        let (s, origin) = (self.inside(t), self.origin);
+        each!(&mut self.method, method => method.interpolate(s, order)).map_err(|error| dated(error, origin))
     }
 
     fn centre(&self) -> f64 {
-        each!(self, method => method.centre())
+        let centre = each!(&self.method, method => method.centre());
+        let end = each!(&self.method, method => method.end_time());
+        if centre == end { self.end } else { self.at(centre) }
     }
 
     fn restart(
@@ -143,38 +238,51 @@ impl<F: VectorField> Stepper for Chosen<F> {
         columns: &[f64],
         direction: Option<f64>,
     ) -> Result<(), SolveError> {
-        each!(self, method => method.restart(t, y, columns, direction))
+        let s = t - self.origin;
+        each!(&mut self.method, method => method.field_mut()).read_breaks();
+        each!(&mut self.method, method => method.restart(s, y, columns, direction))
+            .map_err(|error| dated(error, self.origin))?;
+        (self.time, self.end) = (t, t);
+        Ok(())
     }
 
     fn stop_time(&self) -> Option<f64> {
-        each!(self, method => method.stop_time())
+        self.stop_time
     }
 
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), SolveError> {
-        each!(self, method => method.set_stop_time(t))
+        let stop = t.map(|t| t - self.origin);
+        each!(&mut self.method, method => method.set_stop_time(stop))?;
+        self.stop_time = t;
+        Ok(())
     }
 
     fn statistics(&self) -> Statistics {
-        each!(self, method => method.statistics())
+        let work = each!(&self.method, method => method.statistics());
+        let stiff_from = work.stiff_from.map(|t| self.origin + t);
+        Statistics { current_time: self.at(work.current_time), stiff_from, ..work }
     }
 
     fn polynomial<'a>(&'a mut self, room: &'a mut Vec<f64>) -> Result<PolynomialMotion<'a>, SolveError> {
-        each!(self, method => method.polynomial(room))
+        let origin = self.origin;
+        let motion = each!(&mut self.method, method => method.polynomial(room));
+        let motion = motion.map_err(|error| dated(error, origin))?;
+        Ok(PolynomialMotion { start: origin + motion.start, ..motion })
     }
 
     fn tolerance(&self, i: usize, y: f64) -> f64 {
-        each!(self, method => method.tolerance(i, y))
+        each!(&self.method, method => method.tolerance(i, y))
     }
 
     fn least_size(&self) -> f64 {
-        each!(self, method => method.least_size())
+        each!(&self.method, method => method.least_size())
     }
 
     fn columns(&self) -> Result<Vec<f64>, SolveError> {
-        each!(self, method => method.columns())
+        each!(&self.method, method => method.columns()).map_err(|error| dated(error, self.origin))
     }
 
     fn column_parameters(&self) -> &[Option<usize>] {
-        each!(self, method => method.column_parameters())
+        each!(&self.method, method => method.column_parameters())
     }
 }

@@ -11,6 +11,6 @@ pub(crate) mod solve;
 
 pub use input::InputError;
 pub use non_finite::NonFinite;
-pub use reason::Reason;
+pub use reason::{Reason, Shrinks};
 pub use return_code::Code;
 pub use solve::{IntegrationError, SolveError};

@@ -5,9 +5,9 @@
 //! `method`, which starts one; then `integration`, which is built on them: `front` makes a step and
 //! searches it for events, `run` goes from event to event, `step` gives single steps and their
 //! polynomials, `occur` applies events, `saltation` their effect on derivatives; an `observer` is
-//! told of outputs, steps and events. `limits` bounds an integration, `checks` validates its input;
+//! told of outputs, steps and events. `limits` bounds an integration, `pace` ends one that hardly gets on, `checks` validates its input;
 //! `trajectory` and `dense_output` hold motions. `fn_field` turns closures into vector fields,
-//! `breaks` ends steps where a field is not smooth.
+//! `breaks` ends steps where a field is not smooth, `since` counts its time from the start.
 
 pub(crate) mod breaks;
 pub(crate) mod checks;
@@ -19,8 +19,10 @@ pub(crate) mod limits;
 pub(crate) mod method;
 pub(crate) mod observer;
 pub(crate) mod occur;
+pub(crate) mod pace;
 pub(crate) mod run;
 pub(crate) mod saltation;
+pub(crate) mod since;
 pub(crate) mod statistics;
 pub(crate) mod step;
 pub(crate) mod stepper;

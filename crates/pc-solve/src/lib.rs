@@ -186,7 +186,7 @@ pub use ensemble::ensemble::{Ensemble, EnsembleError, MemberError, Panicked};
 pub use ensemble::random::member_stream;
 #[cfg(feature = "cvode")]
 pub use ensemble::stop::Stop;
-pub use error::{Code, InputError, IntegrationError, NonFinite, Reason, SolveError};
+pub use error::{Code, InputError, IntegrationError, NonFinite, Reason, Shrinks, SolveError};
 pub use events::events::{Accumulation, FnEvents, NoEvents, Occurrence};
 pub use integration::dense_output::{DenseOutput, Segment};
 pub use integration::fn_field::{FnField, from_fn};

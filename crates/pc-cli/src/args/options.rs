@@ -180,6 +180,9 @@ pub struct IntegrationArguments {
     /// Largest step; else that of the file, else unlimited
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = positive)]
     pub max_step: Option<f64>,
+    /// The most steps from one row to the next; else 500000. Events are no steps
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub max_steps: Option<u64>,
     /// Events.
     #[command(flatten)]
     pub events: EventArguments,

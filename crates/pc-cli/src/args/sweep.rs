@@ -145,13 +145,14 @@ pub struct MergeArguments {
 impl SweepArguments {
     /// The first option that says nothing of what is found of each member.
     pub(crate) fn idle(&self) -> Option<&'static str> {
-        let IntegrationArguments { rtol, atol, max_step, events, method } = &self.integration;
+        let IntegrationArguments { rtol, atol, max_step, max_steps, events, method } = &self.integration;
         let of_runs = [
             ("--t-end", self.t_end.is_some()),
             ("--rows", self.rows.is_some()),
             ("--rtol", rtol.is_some()),
             ("--atol", !atol.is_empty()),
             ("--max-step", max_step.is_some()),
+            ("--max-steps", max_steps.is_some()),
             ("--samples-per-step", events.samples_per_step.is_some()),
             ("--accumulation", events.accumulation.is_some()),
             ("--method", method.is_some()),

@@ -13,6 +13,7 @@ pub(crate) type Identity = Vec<(String, String)>;
 
 /// Of the motion of a model.
 pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
+    let most = plan.max_steps.map(|most| ("--max-steps", most.to_string()));
     let plan = [
         ("--project", model.kept().join(", ")),
         ("--t-end", plan.t_end.to_string()),
@@ -24,7 +25,7 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
         ("--method", plan.method.to_string().to_lowercase()),
         ("--form", format!("{form:?}").to_lowercase()),
     ];
-    of_work(model, plan)
+    of_work(model, plan.into_iter().chain(most))
 }
 
 /// Absolute tolerances as they are given.

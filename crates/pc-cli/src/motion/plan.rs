@@ -56,6 +56,8 @@ pub struct Plan {
     pub atol: AbsoluteTolerance,
     /// Largest length of a step, if it is limited.
     pub max_step: Option<f64>,
+    /// The most steps from one row to the next, if given.
+    pub max_steps: Option<u64>,
     /// The number of parts of each step that are searched for events, if given.
     pub samples_per_step: Option<u32>,
     /// The fraction of the first interval at which events count as accumulated, if given.
@@ -102,6 +104,7 @@ impl Plan {
             rtol: arguments.integration.rtol.or(simulation.rtol.as_ref().map(|r| r.value)).unwrap_or(1e-9),
             atol: model.absolute_tolerance(arguments.integration.absolute()).map_err(CliError::Tolerance)?,
             max_step: arguments.integration.max_step.or(simulation.max_step.as_ref().map(|h| h.value)),
+            max_steps: arguments.integration.max_steps,
             samples_per_step: arguments
                 .integration
                 .events
@@ -142,6 +145,9 @@ impl Plan {
         }
         if let Some(within) = self.accumulation {
             options = options.accumulation(Accumulation { within, ..Accumulation::default() });
+        }
+        if let Some(most) = self.max_steps {
+            options = options.max_steps(most);
         }
         match self.max_step {
             Some(length) => options.max_step(length),

@@ -34,6 +34,7 @@ impl TimeDependence {
             parts: Vec::new(),
             mixed: Vec::new(),
             sampled: false,
+            origin: 0.0,
             room: Vec::new(),
             times: Surprises::default(),
         };
@@ -54,6 +55,18 @@ impl TimeDependence {
             }
         }
         if explicit { TimeDependence::Known(Box::new(profile)) } else { TimeDependence::Absent }
+    }
+
+    /// The same of times that are counted from `origin`.
+    #[must_use]
+    pub fn since(self, origin: f64) -> TimeDependence {
+        match self {
+            TimeDependence::Known(mut profile) => {
+                profile.origin += origin;
+                TimeDependence::Known(profile)
+            }
+            other => other,
+        }
     }
 
     /// The time dependence after an unknown term is added to the rates.
@@ -94,6 +107,8 @@ pub struct TimeProfile {
     mixed: Vec<Watched>,
     /// Whether there are steep functions of t and the state that are only sampled.
     sampled: bool,
+    /// The time from which the times of queries and answers are counted.
+    origin: f64,
     /// Storage for the counts of features of each function of a part, and for the result.
     room: Vec<Seen>,
     times: Surprises,
@@ -178,6 +193,8 @@ impl TimeProfile {
         enough: bool,
     ) -> &Surprises {
         let direction = if to < t { -1.0 } else { 1.0 };
+        let origin = self.origin;
+        let (t, to, end) = (origin + t, origin + to, origin + end);
         let TimeProfile { parts, mixed, room, times, .. } = self;
         times.forget();
         for Watched { part, scan } in parts {
@@ -196,7 +213,9 @@ impl TimeProfile {
         for times in [&mut times.few, &mut times.many] {
             times.sort_unstable_by(|a, b| ((a - b) * direction).total_cmp(&0.0));
             times.dedup();
+            times.iter_mut().for_each(|time| *time -= origin);
         }
+        times.until = times.until.map(|until| until - origin);
         times
     }
 }

@@ -30,8 +30,13 @@ impl<F: VectorField> Integration<Chosen<F>> {
         let (t, y) = (checkpoint.time, &checkpoint.state[..]);
         let stepper = match (sensitivities.is_empty(), checkpoint.sensitivities.is_empty()) {
             (true, true) => Chosen::new(field, t, y, options)?,
-            (false, true) => Cvode::with_sensitivities(field, t, y, options, sensitivities)?.into(),
-            (_, false) => Cvode::begin_at(field, checkpoint, options, sensitivities)?.into(),
+            (false, true) => Chosen::by_cvode(field, t, options, |field, start, options| {
+                Cvode::with_sensitivities(field, start, y, options, sensitivities)
+            })?,
+            (_, false) => Chosen::by_cvode(field, t, options, |field, start, options| {
+                let checkpoint = Checkpoint { time: start, ..checkpoint.clone() };
+                Cvode::begin_at(field, &checkpoint, options, sensitivities)
+            })?,
         };
         Ok(Integration::resumed(stepper, checkpoint))
     }

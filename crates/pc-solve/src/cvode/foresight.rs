@@ -36,7 +36,7 @@ impl Foresight {
         let most = if places.are_absent() { 0 } else { options.method.highest_order() as usize + 1 };
         Foresight {
             places: Some(places),
-            relative_tolerance: options.relative_tolerance,
+            relative_tolerance: options.resolved_tolerance(),
             absolute_tolerance: options.absolute_tolerance.clone(),
             evaluations: 0,
             polynomial: vec![vec![0.0; dim]; most],

@@ -146,7 +146,7 @@ impl Parts {
 
 /// Sets the tolerances and limits of CVODES, which has been initialised.
 fn apply(options: &Options, memory: &Memory, context: &mut Context) -> Result<(), SolveError> {
-    let rtol = options.relative_tolerance;
+    let rtol = options.resolved_tolerance();
     match &options.absolute_tolerance {
         Tolerance::Scalar(atol) => {
             // SAFETY: the memory is initialised.

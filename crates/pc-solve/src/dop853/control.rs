@@ -39,7 +39,7 @@ impl Control {
         };
         absolute.resize(row, 1.0);
         Control {
-            relative: options.relative_tolerance,
+            relative: options.resolved_tolerance(),
             absolute,
             longest: options.max_step.unwrap_or(f64::INFINITY),
             shortest: options.min_step.unwrap_or(0.0),

@@ -28,6 +28,16 @@ pub enum Reason {
         last: f64,
     },
 
+    /// Many steps together have advanced by almost nothing of what is left.
+    Crawls {
+        /// The number of these steps.
+        steps: u64,
+        /// By how much they have advanced.
+        by: f64,
+        /// What shrinks them.
+        cause: Shrinks,
+    },
+
     /// The [deadline](crate::Options::deadline) passed.
     Ended(Spent),
 
@@ -155,14 +165,63 @@ pub enum Reason {
     },
 }
 
+/// What keeps steps short.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Shrinks {
+    /// Turns of the explicit dependence of the field on time.
+    Time,
+    /// The component of this name, whose rate is the largest by the tolerances.
+    Component(String),
+}
+
+impl fmt::Display for Shrinks {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Shrinks::Time => {
+                f.write_str("the explicit dependence on time, which turns or jumps at ever new places")
+            }
+            Shrinks::Component(name) => write!(f, "{name}, whose rate is the largest by the tolerances"),
+        }
+    }
+}
+
 impl Reason {
+    /// The same where its times are counted from `origin`.
+    pub(crate) fn since(mut self, origin: f64) -> Reason {
+        match &mut self {
+            Reason::Adjoint(reason) => **reason = (**reason).clone().since(origin),
+            Reason::Steps { t, .. }
+            | Reason::EndsEarly { t, .. }
+            | Reason::Overflow { t, .. }
+            | Reason::Projection { t }
+            | Reason::Unresolved { t }
+            | Reason::Rates { t }
+            | Reason::Sliding { t, .. }
+            | Reason::Event { t, .. }
+            | Reason::Reset { t, .. }
+            | Reason::Grazing { t, .. }
+            | Reason::Together { t, .. }
+            | Reason::Cascade { t, .. }
+            | Reason::Saltation { t }
+            | Reason::Accumulation { t, .. } => *t += origin,
+            Reason::Cvode { .. }
+            | Reason::Crawls { .. }
+            | Reason::Ended(_)
+            | Reason::Functional
+            | Reason::Collapsed { .. }
+            | Reason::Stalled => {}
+        }
+        self
+    }
+
     /// The return code of CVODES, if that is the reason.
     pub(super) fn code(&self) -> Option<Code> {
         match self {
             Reason::Cvode { code, .. } => Some(*code),
             Reason::Adjoint(reason) => reason.code(),
             // The name that CVODE has for it, for any method.
-            Reason::Steps { .. } => Some(Code::TooMuchWork),
+            Reason::Steps { .. } | Reason::Crawls { .. } => Some(Code::TooMuchWork),
             Reason::Ended(_)
             | Reason::Overflow { .. }
             | Reason::Projection { .. }
@@ -199,6 +258,10 @@ impl Reason {
             Reason::Steps { steps, t, last } => write!(
                 f,
                 "{steps} steps were not enough to reach the output at t = {t}: the last, of length {last:.1e}, ended at t = {time}"
+            ),
+            Reason::Crawls { steps, by, cause } => write!(
+                f,
+                "the last {steps} steps up to t = {time} have together advanced by {by:.1e}: they are kept short by {cause}"
             ),
             Reason::Ended(spent) => write!(f, "{spent}, after reaching t = {time}"),
             Reason::Adjoint(reason) => {

@@ -10,6 +10,7 @@ use crate::events::events::{Accumulation, History, NoEvents};
 use crate::events::root_finding::Sides;
 use crate::events::samples::{Room, Sample};
 use crate::integration::checks::{check_inequalities, check_length, finite};
+use crate::integration::pace::Pace;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
 
@@ -89,6 +90,9 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) restarted: bool,
     /// Whether the motion has been restarted, by a reset for example.
     pub(crate) jumped: bool,
+    /// How it gets on, and whether its mark is a time that was reached.
+    pub(crate) pace: Pace,
+    pub(crate) is_paced: bool,
 }
 
 /// How a [`run`](Integration::run) ended.
@@ -142,6 +146,8 @@ impl<S: Stepper> Integration<S> {
             separation: None,
             restarted: false,
             jumped: false,
+            pace: Pace::default(),
+            is_paced: false,
         }
     }
 
@@ -192,6 +198,8 @@ impl<S: Stepper> Integration<S> {
             separation: None,
             restarted: self.restarted,
             jumped: self.jumped,
+            pace: Pace::default(),
+            is_paced: false,
         };
         integration.front.values = integration.evaluate(t, &state)?;
         integration.sides.pass(&integration.front.values);

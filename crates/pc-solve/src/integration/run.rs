@@ -120,9 +120,14 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             self.check_steps(steps, t)?;
             // So that it is at the front if the field or the observer panics.
             self.engine.stand_at(self.front.t);
+            let makes_step = self.engine.end_time() == self.front.t;
             self.go_on(end)?;
             self.engine.stand_at(self.front.t);
-            steps += 1;
+            // What is left of a step after an event is none.
+            if makes_step {
+                steps += 1;
+                self.note_pace(end)?;
+            }
             if observer.step(self.front.t, &self.front_state).is_break() {
                 return Ok(Some(Ending::Stopped));
             }

@@ -91,7 +91,8 @@ impl Options {
         Options { inequalities, ..self }
     }
 
-    /// Relative tolerance, positive.
+    /// Relative tolerance, positive. Below ε = 2.2e-16 it is ε, for Adams' and BDF formulas 2 ε;
+    /// Taylor's method, which carries the rounding of the state along, has finer ones.
     pub fn relative_tolerance(self, relative_tolerance: f64) -> Self {
         Options { relative_tolerance, ..self }
     }
@@ -189,6 +190,16 @@ impl Options {
             Method::Dop853 | Method::Taylor | Method::Auto => None,
         };
         refused.map_or(Ok(()), |what| Err(InputError::Explicit { method: self.method, what }))
+    }
+
+    /// The relative tolerance for methods whose states are rounded: at least ε, since an error below
+    /// that is not seen, and steps shortened for it only add rounding. CVODES needs twice that.
+    pub(crate) fn resolved_tolerance(&self) -> f64 {
+        let least = match self.method {
+            Method::Adams | Method::Bdf => 2.0 * f64::EPSILON,
+            Method::Auto | Method::Dop853 | Method::Taylor => f64::EPSILON,
+        };
+        self.relative_tolerance.max(least)
     }
 
     /// The limits, which do not depend on the method.

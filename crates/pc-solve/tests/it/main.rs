@@ -23,6 +23,7 @@ mod event_passages;
 mod event_steps;
 mod events;
 mod failures;
+mod far_times;
 mod fields;
 mod forcing;
 mod gradients;

@@ -6,6 +6,9 @@ use crate::settings::method::Method;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
+/// A start farther from 0 than this many spans is not one for lanes.
+const FARTHEST: f64 = 1e4;
+
 /// Times, tolerances and limits, as far as lanes support them.
 #[derive(Debug, Clone)]
 pub(crate) struct Plan {
@@ -40,12 +43,14 @@ impl Plan {
         let direction = 1.0_f64.copysign(end - start);
         let ahead = (times[0] - start) * direction >= 0.0;
         let monotonic = times.windows(2).all(|pair| (pair[1] - pair[0]) * direction > 0.0);
-        (ahead && monotonic)
+        // The times of lanes are not counted from the start: they would lose digits.
+        let is_near = start.abs() <= FARTHEST * (end - start).abs();
+        (ahead && monotonic && is_near)
             .then(|| Plan {
                 start,
                 times: times.to_vec(),
                 direction,
-                relative: options.relative_tolerance,
+                relative: options.resolved_tolerance(),
                 absolute: options.absolute_tolerance.clone(),
                 longest: options.max_step,
                 first: options.initial_step,
