@@ -103,15 +103,12 @@ fn method_of(method: Method) -> &'static str {
     }
 }
 
-/// The random states at which equations that leave are compared, besides the start.
-const NEAR: usize = 3;
-
 /// Compares equations that leave with a second derivation. It is no error if that cannot be made: `check` says why.
 ///
 /// # Errors
 /// [`Error::Verify`] if the derivations disagree.
 pub(crate) fn vouched(model: &Model, assembly: &Assembly<'_>, outlet: Outlet) -> Result<(), Error> {
-    match vouch(model, assembly, outlet, NEAR) {
+    match vouch(model, assembly, outlet) {
         Err(error @ VerifyError::Disagreement(_)) => Err(error.into()),
         _ => Ok(()),
     }

@@ -43,6 +43,9 @@ fn tabulated(
     Ok(constants)
 }
 
+/// The remainder that rounding may leave of brackets, relative to their terms.
+const CLOSED: f64 = 1e-8;
+
 /// The constants for which the brackets close at many points at the time of a place: by least squares,
 /// refused unless unique and without residual.
 fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
@@ -50,13 +53,14 @@ fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     let exact = Rounding::none();
     let mut random = Random::new(k as u64);
     let (mut fields, mut brackets): (Vec<f64>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+    let mut terms = 0.0f64; // the largest of those of brackets
     let resting = |x: Vec<f64>| Place { x, w: vec![0.0; k], ..at.clone() };
     let points = 4 + 2 * k;
     let mut found = 0;
     for attempt in 0..8 * points {
         let scale = if attempt == 0 { 0.0 } else { 0.5 };
-        let place = resting(at.x.iter().map(|x| x + scale * (1.0 + x.abs()) * random.signed()).collect());
-        let Ok((frame, commutators)) = commutators(derivation, &place, &exact) else { continue };
+        let place = resting(derivation.units.displaced(at, scale, &mut random));
+        let Ok((frame, commutators, size)) = commutators(derivation, &place, &exact) else { continue };
         if frame.iter().chain(&commutators).flatten().any(|value| !value.is_finite()) {
             continue;
         }
@@ -64,6 +68,7 @@ fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
             fields.extend(frame.iter().map(|b| b[i]));
             brackets.push(commutators.iter().map(|bracket| bracket[i]).collect());
         }
+        terms = terms.max(size);
         found += 1;
         if found == points {
             break;
@@ -76,7 +81,7 @@ fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     let mut solved = &inverse * &right;
     solved -= &inverse * (&b * &solved - &right); // corrects the error of the pseudo-inverse
     let rest = &b * &solved - &right;
-    if rank < k || !within(rest.amax(), 1e-8 * (1.0 + right.amax())) {
+    if rank < k || !within(rest.amax(), CLOSED * terms) {
         return Err(Unable::NoBrackets.into());
     }
     let mut constants = Constants::zero(k);
@@ -86,13 +91,13 @@ fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     Ok(constants)
 }
 
-/// b_s, and [X_r, X_s] for r < s in the order of the pairs, with 0 for time.
+/// b_s, and [X_r, X_s] for r < s in the order of the pairs, with 0 for time; and the size of their largest terms.
 #[allow(clippy::type_complexity)] // two lists of vectors
 fn commutators(
     derivation: &Derivation,
     at: &Place,
     rounding: &Rounding,
-) -> Result<(Vec<Vec<f64>>, Vec<Vec<f64>>), Irregular> {
+) -> Result<(Vec<Vec<f64>>, Vec<Vec<f64>>, f64), Irregular> {
     let k = at.w.len();
     let drift = derivation.still(at, rounding).velocities()?.to_vec();
     let frame = derivation.frame(at, rounding)?;
@@ -108,10 +113,11 @@ fn commutators(
         let point = derivation.twice(at, &at.along_velocity(s - 1), &direction(r), rounding);
         Ok(point.velocities()?.iter().map(|u| u.eps.eps).collect())
     };
-    let mut brackets = Vec::new();
+    let (mut brackets, mut size) = (Vec::new(), 0.0f64);
     for (r, s) in (0..=k).flat_map(|r| (r + 1..=k).map(move |s| (r, s))) {
         let (left, right) = (moved(r, s)?, moved(s, r)?);
+        size = left.iter().chain(&right).fold(size, |size, term| size.max(term.abs()));
         brackets.push(left.iter().zip(right).map(|(a, b)| a - b).collect());
     }
-    Ok((frame, brackets))
+    Ok((frame, brackets, size))
 }

@@ -10,6 +10,7 @@ use crate::point::Point;
 use crate::rounding::Rounding;
 use crate::structure::Structure;
 use crate::text::Text;
+use crate::units::Units;
 
 /// A quasi-velocity that is not declared, but completes those defined by `is` to the number of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +44,8 @@ pub(crate) struct Derivation {
     pub(crate) structure: Structure,
     /// Which second derivatives of L by velocities vanish.
     pub(crate) couplings: Couplings,
+    /// The sizes of what states consist of.
+    pub(crate) units: Units,
 }
 
 impl Derivation {

@@ -59,10 +59,9 @@ impl Derivation {
         for number in 0..PLACES {
             // At any place, also off the surface of a frame or of constraints.
             let scale = if number == 0 { 0.0 } else { MOVED };
-            let mut moved = |values: &[f64]| -> Vec<f64> {
-                values.iter().map(|value| value + scale * (1.0 + value.abs()) * random.signed()).collect()
-            };
-            let place = Place { x: moved(&near.x), w: moved(&near.w), ..near.clone() };
+            let (x, w) =
+                (self.units.displaced(near, scale, &mut random), self.units.faster(near, scale, &mut random));
+            let place = Place { x, w, ..near.clone() };
             let Ok(sides) = self.sides(body, components, &place) else { continue };
             known.extend(Some(sides).filter(Sides::are_finite));
         }

@@ -67,6 +67,7 @@ mod tests;
 mod text;
 mod tolerance;
 mod tree;
+mod units;
 mod unsteady;
 mod velocities;
 

@@ -22,22 +22,18 @@ pub enum Outlet {
     Page(Form),
 }
 
-/// Compares equations that leave in one form with the second derivation: at the start, and at `near` random states near it.
+/// The random states at which equations that leave are compared, besides the start.
+const NEAR: usize = 3;
+
+/// Compares equations that leave in one form with the second derivation: at the start, and at three random states near it.
 ///
 /// Those of a large model are compared along random virtual velocities, as [`Second::agrees`] does, in the form that is
 /// integrated; others of its forms are left out, and the agreement says so.
 ///
 /// # Errors
 /// As for [`verify`](crate::verify).
-pub fn vouch(
-    model: &Model,
-    assembly: &Assembly<'_>,
-    outlet: Outlet,
-    near: usize,
-) -> Result<Agreement, VerifyError> {
-    assembly.stage("the second derivation", || {
-        Second::new(model, assembly)?.vouches(model, assembly, outlet, near)
-    })
+pub fn vouch(model: &Model, assembly: &Assembly<'_>, outlet: Outlet) -> Result<Agreement, VerifyError> {
+    assembly.stage("the second derivation", || Second::new(model, assembly)?.vouches(model, assembly, outlet))
 }
 
 impl Second {
@@ -46,7 +42,6 @@ impl Second {
         model: &Model,
         assembly: &Assembly<'_>,
         outlet: Outlet,
-        near: usize,
     ) -> Result<Agreement, VerifyError> {
         let mut agreement = self.nothing_yet();
         let graph = model.graph();
@@ -87,6 +82,6 @@ impl Second {
                 Compared::Wholly(vec![First::flow("poincare", flow, self, assembly, &mut agreement)])
             }
         };
-        self.compare_near_start(compared, near, assembly, agreement)
+        self.compare_near_start(compared, NEAR, assembly, agreement)
     }
 }

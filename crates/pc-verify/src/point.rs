@@ -240,7 +240,10 @@ impl<'a, T: Number> Point<'a, T> {
     /// The value of a parameter, or of an input at this time, which has no known rate.
     pub(crate) fn parameter(&self, j: usize) -> f64 {
         match self.text.tables.iter().find(|(place, _)| *place == j) {
-            Some((_, table)) => table.at(self.t.real()).unwrap_or(f64::NAN),
+            Some((_, table)) => {
+                let shifts = self.text.shifts.iter().filter(|(place, _)| *place == j).map(|(_, by)| by);
+                table.at(self.t.real()).unwrap_or(f64::NAN) + shifts.sum::<f64>()
+            }
             None => self.text.parameters[j],
         }
     }

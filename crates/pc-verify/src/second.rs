@@ -15,6 +15,7 @@ use crate::resultant::Resultant;
 use crate::rounding::{Random, Rounding};
 use crate::structure::Structure;
 use crate::text::{Text, Velocities};
+use crate::units::Units;
 
 /// The number of terms that can be evaluated in some milliseconds.
 pub(crate) const LONG: usize = 100_000;
@@ -73,6 +74,7 @@ impl Second {
             completing: Vec::new(),
             structure: Structure::Frame,
             couplings: Couplings::of(&text),
+            units: Units::default(),
             text,
         };
         // The velocities of the energy are chosen by the first derivation.
@@ -100,6 +102,7 @@ impl Second {
         let w = w.map_err(|irregular| refused(stated(irregular)))?;
         let z = eta[eta.len() - derivation.text.state_rates.len()..].to_vec();
         let start = Place { t: assembly.t_start, x: x.to_vec(), w, z };
+        derivation.units = derivation.units_at(&start);
         if let Velocities::Quasi(_) = derivation.text.velocities {
             derivation.structure = Structure::new(&derivation.text, derivation.rank(&start), start.w.len())?;
         }
@@ -317,6 +320,17 @@ fn completing(text: &Text, name: &str) -> Option<Completing> {
 }
 
 impl Derivation {
+    /// The sizes of what states near a start consist of.
+    fn units_at(&self, start: &Place) -> Units {
+        match self.text.velocities {
+            Velocities::Ordinary(_) => Units::of(start, None),
+            Velocities::Quasi(_) => {
+                let frame = self.frame(start, &Rounding::none());
+                Units::of(start, Some(&frame.unwrap_or_else(|_| vec![Vec::new(); start.w.len()])))
+            }
+        }
+    }
+
     /// The rank of b: the largest at some points near a place.
     fn rank(&self, near: &Place) -> usize {
         let exact = Rounding::none();
@@ -324,7 +338,7 @@ impl Derivation {
         let mut largest = 0;
         for number in 0..RANK_POINTS {
             let scale = if number == 0 { 0.0 } else { 0.1 };
-            let x = near.x.iter().map(|x| x + scale * (1.0 + x.abs()) * random.signed()).collect();
+            let x = self.units.displaced(near, scale, &mut random);
             let Ok(frame) = self.frame(&Place { x, ..near.clone() }, &exact) else { continue };
             let b = nalgebra::DMatrix::from_fn(near.x.len(), near.w.len(), |i, s| frame[s][i]);
             largest = fitting_inverse(&b).map_or(largest, |(_, rank)| largest.max(rank));

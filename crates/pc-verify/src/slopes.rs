@@ -10,7 +10,6 @@ use crate::quantity::Quantity;
 use crate::rounding::{Rounding, within};
 use crate::second::{LONG, Second};
 use crate::sized::Sized;
-use crate::text::Text;
 
 /// A direction in which the state and parameters of a flow change, with the derivatives along it that leave.
 #[derive(Clone, Debug, Default)]
@@ -177,19 +176,19 @@ impl Moved<'_> {
     fn at(&self, along: f64) -> Result<Vec<Sized>, Irregular> {
         let state: Vec<f64> =
             self.state.iter().zip(&self.slope.state).map(|(y, by)| y + along * by).collect();
-        let mut model = self.model.clone();
-        for (name, by) in &self.slope.parameters {
-            let value = model.parameters().find(|(known, _)| known == name).map(|(_, value)| value);
-            // Names that the caller has from the model.
-            let _ = value.map(|value| model.set(name, value + along * by));
-        }
         let mut second = self.second.clone();
-        let mut flow = self.flow.clone();
-        if !self.slope.parameters.is_empty() {
-            second.derivation.text.parameters = Text::new(&model)?.parameters;
-            let values: Vec<f64> = model.parameters().map(|(_, value)| value).collect();
-            flow = flow.with_values(&values, state.clone());
+        let mut values: Vec<f64> = self.model.parameters().map(|(_, value)| value).collect();
+        let text = &mut second.derivation.text;
+        for (name, by) in &self.slope.parameters {
+            // A name that the caller has from the model.
+            let Some(place) = self.model.parameters().position(|(known, _)| known == name) else { continue };
+            values[place] += along * by;
+            text.shifts.push((place, along * by));
         }
+        text.parameters.clone_from(&values);
+        let flow = self.flow.clone();
+        let mut flow =
+            if self.slope.parameters.is_empty() { flow } else { flow.with_values(&values, state.clone()) };
         let row = second.row(&mut flow, self.t, &state);
         let place = second.place(self.t, &row)?;
         let here = Here::new(&second.derivation, second.derivation.at(&place, &Rounding::none())?)?;

@@ -42,12 +42,9 @@ impl Derivation {
         let time = self.within_tables(near.t, scale * random.signed());
         let along: Vec<f64> = near.w.iter().map(|_| scale * random.signed()).collect();
         let mut at = self.moved(near, time, &along)?;
-        let fastest = near.w.iter().fold(0.0f64, |fastest, w| fastest.max(w.abs()));
-        for w in &mut at.w {
-            *w += scale * (1.0 + fastest) * random.signed();
-        }
-        for z in &mut at.z {
-            *z += scale * (1.0 + z.abs()) * random.signed();
+        at.w = self.units.faster(near, scale, random);
+        for (z, unit) in at.z.iter_mut().zip(&self.units.z) {
+            *z += scale * (unit + z.abs()) * random.signed();
         }
         self.on_constraints(at)
     }
@@ -58,19 +55,29 @@ impl Derivation {
         if !is_known(t + step) && is_known(t - step) { -step } else { step }
     }
 
+    /// The velocities by which coordinates change by their own size in a unit of time.
+    fn sizes(&self, at: &Place) -> Vec<f64> {
+        match self.text.velocities {
+            Velocities::Ordinary(_) => {
+                at.x.iter().zip(&self.units.x).map(|(x, unit)| unit + x.abs()).collect()
+            }
+            Velocities::Quasi(_) => self.units.w.clone(),
+        }
+    }
+
     /// The place reached from another one by the motion with velocity b ξ + τ b_0 for a unit of time, during
-    /// which t grows by τ: it stays on the leaf of the frame.
-    fn moved(&self, from: &Place, tau: f64, xi: &[f64]) -> Result<Place, Irregular> {
+    /// which t grows by τ: it stays on the leaf of the frame. The step is ξ in terms of its sizes there.
+    fn moved(&self, from: &Place, tau: f64, step: &[f64]) -> Result<Place, Irregular> {
+        let xi: Vec<f64> = self.sizes(from).iter().zip(step).map(|(size, step)| size * step).collect();
         if let Velocities::Ordinary(_) = self.text.velocities {
-            let size = |x: &f64| 1.0 + x.abs();
-            let x = from.x.iter().zip(xi).map(|(x, step)| x + size(x) * step).collect();
+            let x = from.x.iter().zip(xi).map(|(x, step)| x + step).collect();
             return Ok(Place { t: from.t + tau, x, ..from.clone() });
         }
         let (mut x, mut s, mut length) = (from.x.clone(), 0.0, 1.0f64);
         while s < 1.0 {
-            let rate = |s: f64, x: &[f64]| self.leading(from.t + tau * s, x, tau, xi);
+            let rate = |s: f64, x: &[f64]| self.leading(from.t + tau * s, x, tau, &xi);
             let step = f64::min(length, 1.0 - s);
-            match extrapolated(rate, s, &x, step) {
+            match extrapolated(rate, s, (&x, &self.units.x), step) {
                 Ok(reached) => {
                     x = reached;
                     s += step;
@@ -110,12 +117,8 @@ impl Derivation {
                     .still(&at, &exact)
                     .all(&positions.iter().map(|&a| self.text.constraints[a].clone()).collect::<Vec<_>>())?;
                 let step = shortest(&self.constraint_matrix(&positions, &at, &exact)?, &rest, at.w.len())?;
-                let step: Vec<f64> = match self.text.velocities {
-                    Velocities::Ordinary(_) => {
-                        step.iter().zip(&at.x).map(|(step, x)| step / (1.0 + x.abs())).collect()
-                    }
-                    Velocities::Quasi(_) => step,
-                };
+                let step: Vec<f64> =
+                    step.iter().zip(self.sizes(&at)).map(|(step, size)| step / size).collect();
                 at = self.moved(&at, 0.0, &step)?;
                 Ok(size(&step))
             })?;
@@ -125,7 +128,7 @@ impl Derivation {
                 let rest = self.constraints(&all, &at, &exact)?;
                 let step = shortest(&self.constraint_matrix(&all, &at, &exact)?, &rest, at.w.len())?;
                 at.w.iter_mut().zip(&step).for_each(|(w, step)| *w += step);
-                Ok(size(&step) / (1.0 + size(&at.w)))
+                Ok(size(&step) / (size(&self.units.w) + size(&at.w)))
             })?;
             // Velocities that vanish up to rounding.
             let fastest = size(&at.w);
@@ -173,7 +176,7 @@ const PARTS: [usize; 8] = [2, 4, 6, 8, 10, 12, 14, 16];
 fn extrapolated(
     rate: impl Fn(f64, &[f64]) -> Result<Vec<f64>, Irregular>,
     s: f64,
-    x: &[f64],
+    (x, units): (&[f64], &[f64]),
     step: f64,
 ) -> Result<Vec<f64>, Irregular> {
     let start = rate(s, x)?;
@@ -197,7 +200,8 @@ fn extrapolated(
             );
         }
         let settled = row.last().zip(next.last()).is_some_and(|(last, this)| {
-            this.iter().zip(last).all(|(a, b)| (a - b).abs() <= SETTLED * (1.0 + a.abs()))
+            let near = |((a, b), unit): ((&f64, &f64), &f64)| (a - b).abs() <= SETTLED * (unit + a.abs());
+            this.iter().zip(last).zip(units).all(near)
         });
         if settled {
             return Ok(next.pop().unwrap_or_default());

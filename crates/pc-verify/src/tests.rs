@@ -468,7 +468,7 @@ fn whatever_leaves_is_compared() {
     let (graph, model) = (Graph::new(), pendulum("1"));
     let assembly = model.assemble(&graph).unwrap();
     for outlet in outlets() {
-        let agreement = vouch(&model, &assembly, outlet, 3).unwrap();
+        let agreement = vouch(&model, &assembly, outlet).unwrap();
         let form = match outlet {
             Outlet::Equations(variables) => variables.name().to_owned(),
             Outlet::Source(Variables::QuasiVelocities) => "emit".to_owned(),
@@ -487,7 +487,7 @@ fn wrong_equations_leave_in_no_form() {
     let assembly = model.assemble(&graph).unwrap();
     let second = Second::new(&other, &assembly).unwrap();
     for outlet in outlets() {
-        let outcome = second.vouches(&model, &assembly, outlet, 0);
+        let outcome = second.vouches(&model, &assembly, outlet);
         assert!(matches!(outcome, Err(VerifyError::Disagreement(_))), "{outlet:?}: {outcome:?}");
     }
 }

@@ -20,6 +20,8 @@ pub(crate) struct Text {
     pub(crate) parameters: Vec<f64>,
     /// The tables among them, with their indices.
     pub(crate) tables: Vec<(usize, Arc<Table>)>,
+    /// What is added to the values of tables, by their indices.
+    pub(crate) shifts: Vec<(usize, f64)>,
     /// ż of the first-order states.
     pub(crate) state_rates: Vec<Term>,
     /// The acceleration of gravity.
@@ -116,6 +118,7 @@ impl Text {
         Ok(Text {
             parameters: model.parameters().map(|(_, value)| value).collect(),
             tables: tables.into_iter().map(|(place, table)| (place, Arc::clone(table))).collect(),
+            shifts: Vec::new(),
             state_rates: document.states.iter().map(|z| term(&z.rate)).collect::<Result<_, _>>()?,
             gravity: document.gravity.as_ref().map_or(Ok(Vec::new()), |g| terms(&g.acceleration))?,
             definitions: tree.definitions(&names)?,

@@ -1,6 +1,6 @@
 //! Rank and index: dimensions at almost all elements of an algebra and of its dual.
 
-use pc_expr::{Residue, ResidueEchelon};
+use pc_expr::{Number, Residue, ResidueEchelon};
 
 use crate::error::AlgebraError;
 use crate::lie_algebra::lie_algebra::LieAlgebra;
@@ -68,7 +68,7 @@ impl LieAlgebra {
     /// The structure constants that are not 0, modulo the prime.
     fn residues(&self) -> Result<Vec<(usize, usize, usize, Residue)>, AlgebraError> {
         self.exact()?; // names a constant that is not rational
-        let residue = |(r, s, m, c)| Some((r, s, m, Residue::of_number(c)?));
+        let residue = |(r, s, m, c): (usize, usize, usize, Number)| Some((r, s, m, c.residue()?));
         Ok(self.nonzero().filter_map(residue).collect())
     }
 }

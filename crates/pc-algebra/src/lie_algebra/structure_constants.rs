@@ -19,6 +19,10 @@ const LARGEST: i64 = 1 << 53;
 pub(crate) fn exact(value: Number) -> Option<BigRational> {
     match value {
         Number::Rational { num, den } => Some(BigRational::new(num.into(), den.into())),
+        Number::Scaled { num, den, exponent } => {
+            let ten = BigRational::from_integer(10.into());
+            Some(BigRational::new(num.into(), den.into()) * ten.pow(exponent.into()))
+        }
         Number::Real(_) => None,
     }
 }

@@ -10,9 +10,6 @@ use crate::args::options::VerifyArguments;
 use crate::error::CliError;
 use crate::report::text::say;
 
-/// The random states at which equations that leave are compared, besides the start.
-const NEAR: usize = 3;
-
 /// The properties of a model, compared with a second derivation.
 ///
 /// # Errors
@@ -62,7 +59,7 @@ pub fn compared(
     assembly: &Assembly<'_>,
     outlet: Outlet,
 ) -> Result<Option<VerifyError>, CliError> {
-    match vouch(model, assembly, outlet, NEAR) {
+    match vouch(model, assembly, outlet) {
         Ok(_) => Ok(None),
         Err(error @ VerifyError::Disagreement(_)) => Err(CliError::Verify(Box::new(error))),
         Err(error) => Ok(Some(error)),

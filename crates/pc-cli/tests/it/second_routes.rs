@@ -1,16 +1,6 @@
 //! Second routes of derivatives, resets and verdicts, through the commands that users type.
 
-use std::io::Write;
-use std::process::{Command, Output, Stdio};
-
-fn pc(model: &str, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
-    command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().expect("pc starts");
-    // A built-in model leaves the input unread.
-    let _ = child.stdin.take().expect("a pipe").write_all(model.as_bytes());
-    child.wait_with_output().expect("pc ends")
-}
+use crate::piped::pc;
 
 fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).expect("UTF-8")
@@ -53,6 +43,20 @@ fn a_stiff_spring_leaves_its_velocities_independent() {
     let output = pc(model, &["linearize", "-", "--format", "json"]);
     let linear: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(linear["second_order"]["K"], serde_json::json!([[1e6, -1e6], [-1e6, 1e6]]), "{linear}");
+}
+
+/// ẍ = −x + 2 u with u(0) = 0.3 of a table: B = (0, 2), as for an input that is given by a number.
+#[test]
+fn the_derivative_by_an_input_of_a_table_agrees() {
+    for input in ["0.3", "{ times = [-1, 0, 1], values = [0, 0.3, 0.1], interpolation = \"cubic\" }"] {
+        let model = format!(
+            "[coordinates]\nx = 0.5\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"x^2/2\"\n[inputs]\nu = {input}\n[forces]\nx = \"2*u\"\n"
+        );
+        let output = pc(&model, &["linearize", "-", "--at", "start", "--format", "json"]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let linear: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert_eq!(linear["B"], serde_json::json!([[0.0], [2.0]]), "{linear}");
+    }
 }
 
 /// At coarse tolerances the two forms are apart by errors of integration, which smaller ones tell from a difference.

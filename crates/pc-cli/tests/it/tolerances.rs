@@ -1,16 +1,8 @@
 //! Absolute tolerances by component: what small motions are right to, and what is said.
 
-use std::io::Write;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
-fn pc(model: &str, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
-    command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().expect("pc starts");
-    // A refused command line leaves the input unread.
-    let _ = child.stdin.take().expect("a pipe").write_all(model.as_bytes());
-    child.wait_with_output().expect("pc ends")
-}
+use crate::piped::pc;
 
 fn said(output: &Output, code: i32) -> String {
     let text = String::from_utf8(output.stderr.clone()).expect("UTF-8");

@@ -36,7 +36,7 @@ fn in_units(text: &str, [length, time, mass]: [i32; 3]) -> String {
 /// A model by its name, with the columns of its motion and the powers of length, time and mass in their units.
 type Scaled = (&'static str, &'static str, &'static [(&'static str, [i32; 3])]);
 
-const SCALED: [Scaled; 6] = [
+const SCALED: [Scaled; 10] = [
     (
         "an operator that grows small with the distance",
         "[coordinates]\nx = \"L{0.4}\"\ny = \"L{0.1}\"\n[quasi_velocities]\nu = \"V{0.7}\"\nv = \"V{1.1}\"\n\
@@ -78,6 +78,38 @@ const SCALED: [Scaled; 6] = [
          [constraints]\nplane = \"z' - L{y}*tanh(L{z})*x'\"\n\
          [lagrangian]\nkinetic = \"E{}*(V{x'}^2 + V{y'}^2 + V{z'}^2)/2\"\n",
         &[("x", [1, 0, 0]), ("z", [1, 0, 0]), ("x'", [1, -1, 0]), ("y'", [1, -1, 0]), ("energy", [2, -2, 1])],
+    ),
+    (
+        "a constraint that is another one times a function",
+        "[coordinates]\nx = \"L{0.4}\"\ny = \"L{1.1}\"\nz = \"L{0.9}\"\n[quasi_velocities]\n\"x'\" = \"V{0.2}\"\n\"z'\" = \"V{0.8}\"\n\
+         [constraints]\nk0 = \"L{y}*V{x'} + 0.7*atan(L{y})*V{y'}\"\nk1 = \"L{x}^2*(L{y}*V{x'} + 0.7*atan(L{y})*V{y'})\"\n\
+         [lagrangian]\nkinetic = \"E{}*(V{x'}^2 + V{y'}^2 + V{z'}^2)/2\"\n",
+        &[("x", [1, 0, 0]), ("y", [1, 0, 0]), ("z", [1, 0, 0]), ("y'", [1, -1, 0]), ("energy", [2, -2, 1])],
+    ),
+    (
+        "a constraint on positions and a part of it",
+        "[coordinates]\nx = \"L{0}\"\ny = \"L{1}\"\n[quasi_velocities]\n\
+         v = { is = \"V{y'} + 0.48*(1 + L{y}^2)*V{x'}\", start = 0.26 }\nw = { is = \"V{x'}\", start = 0.5 }\n\
+         [constraints]\nk0 = \"L{y}^2 + 0.88*atan(L{x}) - 1\"\nk1 = \"0.66*(L{y}^2 + 0.88*atan(L{x})) - 0.66\"\n\
+         [lagrangian]\nkinetic = \"E{}*(v^2 + w^2)\"\n",
+        &[("x", [1, 0, 0]), ("y", [1, 0, 0]), ("v", [0, 0, 0]), ("w", [0, 0, 0]), ("energy", [2, -2, 1])],
+    ),
+    (
+        "quasi-velocities by quotients",
+        "[coordinates]\nx = \"L{0.4}\"\ny = \"L{0.9}\"\nq = \"L{0.7}\"\n[quasi_velocities]\n\
+         u = { is = \"(V{y'} + 0.4*(2 + sin(L{y}))*(V{x'}/(1 + tanh(L{x}))))*(2 + L{y}^2)\", start = 0.1 }\n\
+         v = { is = \"V{x'}/(1 + tanh(L{x}))\", start = 0.3 }\n\
+         w = { is = \"V{q'} - (V{y'} + 0.4*(2 + sin(L{y}))*(V{x'}/(1 + tanh(L{x}))))*(2 + L{y}^2)/(2 + L{q}^2)\" }\n\
+         [lagrangian]\nkinetic = \"E{}*(u^2 + v^2 + w^2)\"\n",
+        &[("x", [1, 0, 0]), ("y", [1, 0, 0]), ("q", [1, 0, 0]), ("w", [0, 0, 0]), ("energy", [2, -2, 1])],
+    ),
+    (
+        "a frame that a constraint completes",
+        "[coordinates]\nx = \"L{1}\"\ny = \"L{0.5}\"\nf = \"L{0.6}\"\nq = \"L{0.7}\"\n[quasi_velocities]\n\
+         u = { is = \"(1 + tanh(L{f}))*V{x'}\", start = -0.7 }\nv = { is = \"L{q}^2*V{y'}\", start = -0.2 }\n\
+         w = { is = \"L{q}^2*V{q'} + V{y'}\", start = -0.4 }\n[constraints]\nk0 = \"L{f} + 1.13*L{x} - 1.73\"\n\
+         [lagrangian]\nkinetic = \"E{}*(V{x'}^2 + V{y'}^2 + V{f'}^2 + V{q'}^2)\"\n",
+        &[("x", [1, 0, 0]), ("y", [1, 0, 0]), ("q", [1, 0, 0]), ("w", [0, 0, 0]), ("energy", [2, -2, 1])],
     ),
 ];
 

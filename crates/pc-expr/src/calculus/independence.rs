@@ -9,6 +9,7 @@ use std::collections::HashSet;
 use rustc_hash::FxHashMap;
 
 use crate::graph::dag::Dag;
+use crate::graph::evaluate::Scalar;
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
 use crate::graph::graph::Graph;
@@ -105,7 +106,25 @@ impl Graph {
 
     /// Whether a form has values, and no symbol z.
     fn is_without<'g>(&'g self, form: Expr<'g>, z: Expr<'g>) -> bool {
-        !form.is_undefined() && !self.symbols_of(&[form]).contains(&z)
+        self.has_values(form) && !self.symbols_of(&[form]).contains(&z)
+    }
+
+    /// Whether the functions of numbers in a form are numbers: exp(z), written at z = 10⁶, has no value.
+    fn has_values<'g>(&'g self, form: Expr<'g>) -> bool {
+        let Atom::Node(root) = form.atom_in(self) else { return !form.is_undefined() };
+        self.with(|dag| {
+            let number = |&arg: &NodeId| match dag.node(arg) {
+                Node::Constant(c) => Some(c.to_f64()),
+                _ => None,
+            };
+            Cone::below(dag, [Atom::Node(root)]).order.iter().all(|&node| match dag.node(node) {
+                Node::Call { function, args } => {
+                    let args: Option<Vec<f64>> = Dag::args(function, &args).iter().map(number).collect();
+                    args.is_none_or(|args| f64::call(function, &args).is_normal())
+                }
+                _ => true,
+            })
+        })
     }
 
     /// `outputs` written without symbols other than `known`, as far as they do not depend on them. Such a
@@ -151,7 +170,7 @@ impl Graph {
         ]
         .into_iter()
         .map(move |(value, circle)| self.at_point(e, z, whole.then_some(value), circle))
-        .filter(move |&form| self.is_same_value(form, e))
+        .filter(move |&form| self.is_same_value(form, e) && self.has_values(form))
     }
 
     /// The composite angles, such as Ω t in sin Ω t and cos Ω t, of which e contains both sine and cosine.
@@ -257,5 +276,19 @@ fn call_node(dag: &mut Dag, function: Function, angle: NodeId) -> Option<NodeId>
     match dag.call(function, &[Atom::Node(angle)]) {
         Atom::Node(node) => Some(node),
         Atom::Constant(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_of_numbers_out_of_range_have_no_values() {
+        let graph = Graph::new();
+        let x = graph.symbol("x");
+        let steep = (1e6 * x).exp() + x.square();
+        let at = |value: i32| graph.at(steep, x, Number::integer(value));
+        assert!(graph.has_values(steep) && graph.has_values(at(0)) && !graph.has_values(at(1)));
     }
 }

@@ -193,7 +193,7 @@ impl Graph {
 
 /// A factor that is not a rational number.
 fn rounded<'g>(c: Number) -> impl Iterator<Item = (Expr<'g>, i32)> {
-    matches!(c, Number::Real(_)).then(|| (Expr::from(c), 1)).into_iter()
+    (!matches!(c, Number::Rational { .. })).then(|| (Expr::from(c), 1)).into_iter()
 }
 
 /// The sine and the cosine of an angle.

@@ -5,7 +5,6 @@ use crate::graph::function::{Function, Parity};
 use crate::graph::node::{Atom, Candidate, Node, NodeId};
 use crate::graph::normal_form::MAX_EXPONENT;
 use crate::graph::number::Number;
-use crate::identity::fingerprint::Fingerprint;
 
 impl Dag {
     /// f(x…)
@@ -96,8 +95,7 @@ impl Dag {
         match atom {
             Atom::Constant(c) => {
                 let candidate = Candidate::Constant(c);
-                self.find(&candidate)
-                    .unwrap_or_else(|| self.push(&candidate, Fingerprint::constant(c).into()))
+                self.find(&candidate).unwrap_or_else(|| self.push(&candidate, c.fingerprint().into()))
             }
             Atom::Node(node) => match self.representative(node) {
                 (node, sign) if sign.is_one() => node,

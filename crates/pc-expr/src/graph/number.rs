@@ -1,7 +1,10 @@
-//! Constants: exact rationals while they stay small, rounded reals beyond.
+//! Constants: exact rationals while they stay small or are small times a power of ten, rounded reals beyond.
 
 use std::fmt;
 use std::hash::{Hash, Hasher};
+
+use crate::identity::fingerprint::Fingerprint;
+use crate::identity::prime_field::Residue;
 
 /// Largest numerator and denominator kept exactly: both, and so their quotient, are then correctly rounded in f64.
 const EXACT: i128 = 1 << 53;
@@ -9,19 +12,33 @@ const EXACT: i128 = 1 << 53;
 /// A constant of the graph.
 ///
 /// An `f64` that is given to the graph counts as the decimal number it prints as, so that `0.1 + 0.2` is 3/10 and
-/// like terms cancel exactly. Results that no small rational can hold are rounded to `f64`.
+/// like terms cancel exactly; so do those with powers of units such as 10⁻⁹. Results that are no small rational, nor one times a power
+/// of ten, are rounded to `f64`.
 #[derive(Clone, Copy, Debug)]
 pub enum Number {
     /// `num / den` in lowest terms, `den > 0`, both at most 2⁵³ in size.
     Rational {
-        /// Numerator, carrying the sign.
+        /// Numerator.
         num: i64,
         /// Denominator, positive.
         den: i64,
     },
+    /// `num / den · 10^exponent`, which is no small rational: in lowest terms, both at most 2⁵³ in size, `den > 0` without a factor 2 or 5,
+    /// and `num` without a factor 10.
+    Scaled {
+        /// Numerator.
+        num: i64,
+        /// Denominator, positive.
+        den: i64,
+        /// Exponent of ten.
+        exponent: i16,
+    },
     /// Any other value, NaN (undefined) included.
     Real(f64),
 }
+
+/// The most digits of a number that is meant as a decimal. What has more is the rounded result of a computation.
+const DIGITS: usize = 15;
 
 impl Number {
     /// 0
@@ -46,15 +63,77 @@ impl Number {
     fn reduce(num: i128, den: i128) -> Number {
         match den {
             0 => Number::UNDEFINED,
-            _ => Number::small(num, den).unwrap_or_else(|| Number::from(num as f64 / den as f64)),
+            _ => Number::exact(num, den, 0).unwrap_or_else(|| Number::from(num as f64 / den as f64)),
         }
     }
 
+    /// `num / den · 10^exponent` for `den ≠ 0`, if that can be held and is within the range of f64.
+    fn exact(num: i128, den: i128, exponent: i32) -> Option<Number> {
+        if num == 0 {
+            return Some(Number::ZERO);
+        }
+        let divisor = gcd(num.unsigned_abs(), den.unsigned_abs()).cast_signed() * den.signum();
+        let (mut num, mut den, mut exponent) = (num / divisor, den / divisor, exponent);
+        if exponent == 0 && num.abs() <= EXACT && den <= EXACT {
+            return Some(Number::Rational { num: num as i64, den: den as i64 });
+        }
+        for (factor, other) in [(10, 1), (2, 5), (5, 2)] {
+            while den % factor == 0 {
+                (num, den, exponent) = (num.checked_mul(other)?, den / factor, exponent - 1);
+            }
+        }
+        while num % 10 == 0 {
+            (num, exponent) = (num / 10, exponent + 1);
+        }
+        let power = |exponent: i32| 10i128.checked_pow(exponent.max(0).unsigned_abs());
+        let whole = || num.checked_mul(power(exponent)?).zip(den.checked_mul(power(-exponent)?));
+        if let Some(small) = whole().and_then(|(num, den)| Number::small(num, den)) {
+            return Some(small);
+        }
+        let held = num.abs() <= EXACT && den <= EXACT;
+        let scaled =
+            Number::Scaled { num: num as i64, den: den as i64, exponent: i16::try_from(exponent).ok()? };
+        (held && scaled.to_f64().is_normal()).then_some(scaled)
+    }
+
+    /// Numerator, denominator and exponent of ten of an exact number.
+    fn parts(self) -> Option<(i128, i128, i32)> {
+        match self {
+            Number::Rational { num, den } => Some((num.into(), den.into(), 0)),
+            Number::Scaled { num, den, exponent } => Some((num.into(), den.into(), exponent.into())),
+            Number::Real(_) => None,
+        }
+    }
+
+    /// The value at the random point of each of two prime fields: that of the number itself.
+    pub(crate) fn fingerprint(self) -> Fingerprint {
+        match self {
+            Number::Rational { num, den: 1 } => Fingerprint::integer(num),
+            Number::Rational { num, den } => {
+                Fingerprint::integer(num).times(Fingerprint::integer(den).powi(-1))
+            }
+            Number::Scaled { num, den, exponent } => {
+                let quotient = Fingerprint::integer(num).times(Fingerprint::integer(den).powi(-1));
+                quotient.times(Fingerprint::integer(10).powi(exponent.into()))
+            }
+            Number::Real(value) => Fingerprint::dyadic(value),
+        }
+    }
+
+    /// Its residue; `None` for a rounded number. Denominators are below the prime, so none is 0.
+    pub fn residue(self) -> Option<Residue> {
+        (!self.is_rounded()).then(|| self.fingerprint().first())
+    }
+
+    /// Whether the exact value is unknown.
+    pub fn is_rounded(self) -> bool {
+        matches!(self, Number::Real(_))
+    }
+
     fn whole(value: i128) -> Number {
-        if value.abs() <= EXACT {
-            Number::Rational { num: value as i64, den: 1 }
-        } else {
-            Number::Real(value as f64)
+        match value.abs() <= EXACT {
+            true => Number::Rational { num: value as i64, den: 1 },
+            false => Number::reduce(value, 1),
         }
     }
 
@@ -71,6 +150,11 @@ impl Number {
     pub fn to_f64(self) -> f64 {
         match self {
             Number::Rational { num, den } => num as f64 / den as f64,
+            Number::Scaled { num, den, exponent } => {
+                // Correctly rounded for decimals.
+                let decimal = |num: i64| format!("{num}e{exponent}").parse().unwrap_or(f64::NAN);
+                if den == 1 { decimal(num) } else { num as f64 / den as f64 * decimal(1) }
+            }
             Number::Real(value) => value,
         }
     }
@@ -88,7 +172,7 @@ impl Number {
     /// Whether this is below 0.
     pub fn is_negative(self) -> bool {
         match self {
-            Number::Rational { num, .. } => num < 0,
+            Number::Rational { num, .. } | Number::Scaled { num, .. } => num < 0,
             Number::Real(value) => value < 0.0,
         }
     }
@@ -96,7 +180,7 @@ impl Number {
     /// Whether this is a number at all: not NaN and not infinite.
     pub fn is_finite(self) -> bool {
         match self {
-            Number::Rational { .. } => true,
+            Number::Rational { .. } | Number::Scaled { .. } => true,
             Number::Real(value) => value.is_finite(),
         }
     }
@@ -120,6 +204,10 @@ impl Number {
     pub fn recip(self) -> Number {
         match self {
             Number::Rational { num, den } => Number::ratio(den, num),
+            Number::Scaled { num, den, exponent } => {
+                let exact = Number::exact(den.into(), num.into(), -i32::from(exponent));
+                exact.unwrap_or_else(|| Number::from(1.0 / self.to_f64()))
+            }
             Number::Real(value) => Number::from(1.0 / value),
         }
     }
@@ -168,6 +256,7 @@ impl Number {
         let power = self.powi(exponent);
         let out_of_range = match power {
             Number::Rational { num, .. } => num == 0,
+            Number::Scaled { .. } => false,
             Number::Real(value) => !value.is_normal(),
         };
         (!out_of_range || exponent == 1 || self.is_zero() || !self.is_finite()).then_some(power)
@@ -195,7 +284,7 @@ fn gcd(mut a: u128, mut b: u128) -> u128 {
 }
 
 impl From<f64> for Number {
-    /// The shortest decimal that rounds to `value`, exactly, where it is a small rational.
+    /// The shortest decimal that rounds to `value`, exactly, where it is a small rational or has few digits.
     fn from(value: f64) -> Number {
         if !value.is_finite() {
             return Number::Real(value);
@@ -203,20 +292,24 @@ impl From<f64> for Number {
         if value.fract() == 0.0 && value.abs() <= EXACT as f64 {
             return Number::Rational { num: value as i64, den: 1 };
         }
-        let within = (1.0 / EXACT as f64..=EXACT as f64).contains(&value.abs());
-        within.then(|| decimal(value)).flatten().unwrap_or(Number::Real(value))
+        decimal(value).unwrap_or(Number::Real(value))
     }
 }
 
-/// Reads the shortest decimal expansion of `value` as digits · 10^exponent, if that is a small rational.
+/// Reads the shortest decimal expansion of `value` as digits · 10^exponent, if that is a small rational, or has so few
+/// digits that it is meant.
 fn decimal(value: f64) -> Option<Number> {
     let text = format!("{value:e}");
     let (mantissa, exponent) = text.split_once('e')?;
     let fraction_digits = mantissa.split_once('.').map_or(0, |(_, fraction)| fraction.len() as i32);
     let digits: i64 = mantissa.replace('.', "").parse().ok()?;
-    let power = fraction_digits - exponent.parse::<i32>().ok()?;
-    let den = 10i128.checked_pow(u32::try_from(power).ok()?)?;
-    Number::small(digits.into(), den)
+    let number = Number::exact(digits.into(), 1, exponent.parse::<i32>().ok()? - fraction_digits)?;
+    // Of the size of a rounding error of 1, it may be one.
+    let is_meant = || {
+        digits.unsigned_abs().to_string().len() <= DIGITS
+            && !(f64::EPSILON / 16.0..f64::EPSILON * 64.0).contains(&value.abs())
+    };
+    (matches!(number, Number::Rational { .. }) || is_meant()).then_some(number)
 }
 
 impl From<i32> for Number {
@@ -230,6 +323,7 @@ impl std::ops::Neg for Number {
     fn neg(self) -> Number {
         match self {
             Number::Rational { num, den } => Number::Rational { num: -num, den },
+            Number::Scaled { num, den, exponent } => Number::Scaled { num: -num, den, exponent },
             Number::Real(value) => Number::Real(-value),
         }
     }
@@ -246,7 +340,7 @@ impl std::ops::Add for Number {
                 let [a, b, c, d] = [a, b, c, d].map(i128::from);
                 Number::reduce(a * d + c * b, b * d)
             }
-            _ => Number::from(self.to_f64() + other.to_f64()),
+            _ => sum(self, other).unwrap_or_else(|| Number::from(self.to_f64() + other.to_f64())),
         }
     }
 }
@@ -262,9 +356,25 @@ impl std::ops::Mul for Number {
                 let [a, b, c, d] = [a, b, c, d].map(i128::from);
                 Number::reduce(a * c, b * d)
             }
-            _ => Number::from(self.to_f64() * other.to_f64()),
+            _ => product(self, other).unwrap_or_else(|| Number::from(self.to_f64() * other.to_f64())),
         }
     }
+}
+
+/// a + b, if both are exact and the sum can be held.
+fn sum(a: Number, b: Number) -> Option<Number> {
+    let ((a, b, e), (c, d, f)) = (a.parts()?, b.parts()?);
+    let least = e.min(f);
+    let aligned = |num: i128, den: i128, exponent: i32| {
+        num.checked_mul(den)?.checked_mul(10i128.checked_pow((exponent - least).unsigned_abs())?)
+    };
+    Number::exact(aligned(a, d, e)?.checked_add(aligned(c, b, f)?)?, b * d, least)
+}
+
+/// a b, if both are exact and the product can be held.
+fn product(a: Number, b: Number) -> Option<Number> {
+    let ((a, b, e), (c, d, f)) = (a.parts()?, b.parts()?);
+    Number::exact(a * c, b * d, e + f)
 }
 
 impl PartialEq for Number {
@@ -272,6 +382,10 @@ impl PartialEq for Number {
     fn eq(&self, other: &Number) -> bool {
         match (self, other) {
             (Number::Rational { num: a, den: b }, Number::Rational { num: c, den: d }) => a == c && b == d,
+            (
+                Number::Scaled { num: a, den: b, exponent: e },
+                Number::Scaled { num: c, den: d, exponent: f },
+            ) => a == c && b == d && e == f,
             (Number::Real(a), Number::Real(b)) => a.to_bits() == b.to_bits(),
             _ => false,
         }
@@ -284,6 +398,7 @@ impl Hash for Number {
     fn hash<H: Hasher>(&self, state: &mut H) {
         match self {
             Number::Rational { num, den } => (num, den).hash(state),
+            Number::Scaled { num, den, exponent } => (num, den, exponent).hash(state),
             Number::Real(value) => value.to_bits().hash(state),
         }
     }
@@ -301,7 +416,7 @@ impl fmt::Display for Number {
                 let value = self.to_f64();
                 if Number::from(value) == *self { decimal_text(value, f) } else { write!(f, "{num}/{den}") }
             }
-            Number::Real(value) => decimal_text(value, f),
+            Number::Scaled { .. } | Number::Real(_) => decimal_text(self.to_f64(), f),
         }
     }
 }
@@ -332,6 +447,29 @@ mod tests {
         {
             assert_eq!(Number::from(value).to_f64().to_bits(), value.to_bits(), "{value}");
         }
+    }
+
+    /// Powers of units, which are no small rationals, cancel as others do.
+    #[test]
+    fn powers_of_ten_are_exact() {
+        let [unit, back] = [1e-9, 1e9].map(Number::from);
+        let power = unit.powi(4);
+        assert_eq!((power.to_f64(), power.is_rounded()), (1e-36, false));
+        assert_eq!(power * back.powi(4), Number::ONE);
+        assert_eq!(power * back.powi(3), unit);
+        assert_eq!(power + -power, Number::ZERO);
+        assert_eq!(power, Number::from(1e-36));
+        let third = Number::ratio(1, 3) * power;
+        assert_eq!(third + third + third, power);
+        assert_ne!(third, Number::from(third.to_f64()), "a third is no decimal");
+        assert_eq!((third * power.recip(), third.recip() * third), (Number::ratio(1, 3), Number::ONE));
+    }
+
+    #[test]
+    fn results_of_other_computations_are_rounded() {
+        assert!(Number::from(std::f64::consts::SQRT_2 * 1e-20).is_rounded());
+        assert!((Number::from(1e-20) * Number::from(6.123233995736766e-17)).is_rounded());
+        assert!(!Number::from(1.5e-20).is_rounded() && !Number::from(6.02214076e23).is_rounded());
     }
 
     #[test]

@@ -155,7 +155,7 @@ impl Graph {
     /// assert!(!graph.is_decidable(&[x, y.sqrt()]) && !graph.is_decidable(&[2f64.sqrt() * x]));
     /// ```
     pub fn is_decidable<'g>(&'g self, values: &[Expr<'g>]) -> bool {
-        let rounded = |c: Number| matches!(c, Number::Real(_));
+        let rounded = Number::is_rounded;
         let roots: Vec<Atom> = values.iter().map(|value| value.atom_in(self)).collect();
         if roots.iter().any(|root| matches!(root, Atom::Constant(c) if rounded(*c))) {
             return false;

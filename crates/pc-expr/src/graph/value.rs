@@ -43,19 +43,18 @@ impl Dag {
     /// The value of a candidate: its fingerprint, and its terms if there are roots in it.
     pub(crate) fn value_of(&mut self, candidate: &Candidate<'_>) -> Value {
         match *candidate {
-            Candidate::Constant(c) => Fingerprint::constant(c).into(),
+            Candidate::Constant(c) => c.fingerprint().into(),
             Candidate::Symbol(name) => Fingerprint::symbol(name).into(),
             Candidate::Sum(constant, terms) => {
                 if terms.iter().all(|&(node, _)| self.is_plain(node)) {
-                    let plain = terms.iter().fold(Fingerprint::constant(constant), |sum, &(node, q)| {
+                    let plain = terms.iter().fold(constant.fingerprint(), |sum, &(node, q)| {
                         sum.plus(self.scaled_fingerprint(node, q))
                     });
                     return plain.into();
                 }
-                let scaled =
-                    |&(node, q): &(NodeId, Number)| self.value(node).scaled(Fingerprint::constant(q));
+                let scaled = |&(node, q): &(NodeId, Number)| self.value(node).scaled(q.fingerprint());
                 let mut values: Vec<Value> = terms.iter().map(scaled).collect();
-                values.push(Fingerprint::constant(constant).into());
+                values.push(constant.fingerprint().into());
                 self.roots_mut().plus(&values)
             }
             Candidate::Product(factors) => {
@@ -87,7 +86,7 @@ impl Dag {
         } else if (-q).is_one() {
             value.negated()
         } else {
-            value.times(Fingerprint::constant(q))
+            value.times(q.fingerprint())
         }
     }
 
@@ -98,7 +97,7 @@ impl Dag {
             Function::Exp => self.exponential(args[0]),
             Function::Sinh | Function::Cosh | Function::Tanh => {
                 let exp = self.exponential(args[0]);
-                let half = Fingerprint::constant(Number::ratio(1, 2));
+                let half = Number::ratio(1, 2).fingerprint();
                 let roots = self.roots_mut();
                 let inverse = roots.inverse(&exp);
                 let cosh = roots.plus(&[exp.clone(), inverse.clone()]).scaled(half);
@@ -126,7 +125,7 @@ impl Dag {
     /// |u|, as a product over the factors of u.
     fn absolute(&mut self, u: NodeId) -> Value {
         let (c, factors) = self.factors_of(u);
-        let mut product: Value = Fingerprint::constant(c.abs()).into();
+        let mut product: Value = c.abs().fingerprint().into();
         for (node, e) in factors {
             let size = self.size_of(node);
             let power = self.roots_mut().power(&size, e);
@@ -193,7 +192,7 @@ impl Dag {
             }
         }
         if !c.abs().is_one() && !c.is_zero() {
-            known.push((Fingerprint::constant(c.abs()).into(), 1));
+            known.push((c.abs().fingerprint().into(), 1));
         }
         let signed = |value: Value| if c.is_negative() { value.negated() } else { value };
         let rest = match open[..] {
@@ -233,7 +232,7 @@ impl Dag {
                 Function::Exp => (self.value(args[0]), Number::integer(e)),
                 _ => (self.logarithm(args[0]), Number::ratio(e.into(), 2)),
             };
-            sum.push(inner.scaled(Fingerprint::constant(e)));
+            sum.push(inner.scaled(e.fingerprint()));
             false
         });
         let PowerProduct { known, rest } = self.power_product(c, factors);
@@ -368,7 +367,7 @@ impl Dag {
         if !constant.is_zero() {
             linear.push(match multiple(constant) {
                 Some(m) => LinearTerm { node: None, z: Fingerprint::ONE, m },
-                None => LinearTerm { node: None, z: Fingerprint::constant(constant), m: FRACTION },
+                None => LinearTerm { node: None, z: constant.fingerprint(), m: FRACTION },
             });
         }
         linear

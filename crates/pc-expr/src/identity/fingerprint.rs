@@ -9,7 +9,6 @@
 //! values. Every other function is an unknown keyed by its arguments. A fingerprint depends on names and
 //! structure only, so two graphs agree on it.
 
-use crate::graph::number::Number;
 use crate::identity::prime_field::{Residue, mix};
 
 type First = Residue<1>;
@@ -22,18 +21,13 @@ impl Fingerprint {
     pub(crate) const ZERO: Fingerprint = Fingerprint(First::ZERO, Second::ZERO);
     pub(crate) const ONE: Fingerprint = Fingerprint(First::ONE, Second::ONE);
 
-    pub(crate) fn constant(c: Number) -> Fingerprint {
-        match c {
-            Number::Rational { num, den: 1 } => Fingerprint::integer(num),
-            Number::Rational { num, den } => {
-                Fingerprint::integer(num).times(Fingerprint::integer(den).powi(-1))
-            }
-            Number::Real(value) => Fingerprint(Residue::dyadic(value), Residue::dyadic(value)),
-        }
-    }
-
     pub(crate) fn integer(value: i64) -> Fingerprint {
         Fingerprint(Residue::integer(value), Residue::integer(value))
+    }
+
+    /// That of a finite f64, which is a dyadic rational.
+    pub(crate) fn dyadic(value: f64) -> Fingerprint {
+        Fingerprint(Residue::dyadic(value), Residue::dyadic(value))
     }
 
     pub(crate) fn symbol(name: &str) -> Fingerprint {

@@ -12,7 +12,6 @@ use crate::graph::node::{Atom, Folding, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 use crate::identity::echelon::ResidueEchelon;
-use crate::identity::fingerprint::Fingerprint;
 use crate::identity::prime_field::Residue;
 
 /// This many points in a row without a new equation end the search.
@@ -193,7 +192,7 @@ impl<'g> Sampler<'g> {
 }
 
 fn constant(c: Number) -> Residue {
-    Fingerprint::constant(c).first()
+    c.fingerprint().first()
 }
 
 fn value(graph: &Graph, expression: Expr<'_>) -> Residue {

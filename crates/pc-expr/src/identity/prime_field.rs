@@ -1,7 +1,5 @@
 //! Arithmetic in the prime fields GF(2⁶¹−c), in which expressions are tested for identity.
 
-use crate::graph::number::Number;
-
 /// Largest numerator and denominator that [`Residue::small_rational`] recognises.
 const SMALL: u64 = 1 << 20;
 
@@ -13,7 +11,7 @@ const SMALL: u64 = 1 << 20;
 ///
 /// ```
 /// use pc_expr::{Number, Residue};
-/// let third: Residue = Residue::of_number(Number::ratio(1, 3)).expect("rational");
+/// let third = Number::ratio(1, 3).residue().expect("rational");
 /// assert_eq!(third * Residue::integer(6), Residue::integer(2));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -48,14 +46,6 @@ impl<const C: u64> Residue<C> {
     pub fn integer(value: i64) -> Residue<C> {
         let size = Residue::reduce(u128::from(value.unsigned_abs()));
         if value < 0 { -size } else { size }
-    }
-
-    /// The residue of a rational number; `None` for a rounded one. Denominators are below p, so none is 0.
-    pub fn of_number(value: Number) -> Option<Residue<C>> {
-        match value {
-            Number::Rational { num, den } => Some(Residue::integer(num) * Residue::integer(den).inverse()),
-            Number::Real(_) => None,
-        }
     }
 
     /// A finite f64 is the dyadic rational m·2^e, exactly.
@@ -204,11 +194,10 @@ mod tests {
 
     #[test]
     fn fractions_multiply_exactly() {
-        let residue = |num, den| Residue::<1>::of_number(Number::ratio(num, den)).expect("rational");
+        let residue = |num, den| Residue::<1>::integer(num) * Residue::integer(den).inverse();
         assert_eq!(residue(-2, 3) * residue(9, 4), residue(-3, 2));
         assert_eq!(residue(-2, 3) + residue(1, 6), residue(-1, 2));
         assert_eq!(residue(1, 3) - residue(1, 3), Residue::ZERO);
-        assert_eq!(Residue::<1>::of_number(Number::UNDEFINED), None);
     }
 
     #[test]

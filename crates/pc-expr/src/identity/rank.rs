@@ -6,7 +6,6 @@
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
 use crate::graph::node::Atom;
-use crate::graph::number::Number;
 use crate::identity::blocks::independent_blocks;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::roots::Value;
@@ -38,11 +37,11 @@ impl Graph {
     ) -> usize {
         self.with(|dag| {
             let value = |x: &Expr<'g>| match x.atom() {
-                Atom::Constant(c) => Fingerprint::constant(c).into(),
+                Atom::Constant(c) => c.fingerprint().into(),
                 Atom::Node(id) => dag.value(id),
             };
             let row = |&i: &usize| {
-                let mut row = vec![Value::from(Fingerprint::constant(Number::ZERO)); of_columns.len()];
+                let mut row = vec![Value::from(Fingerprint::ZERO); of_columns.len()];
                 for (j, x) in &rows[i] {
                     if let Ok(place) = of_columns.binary_search(j) {
                         row[place] = value(x);

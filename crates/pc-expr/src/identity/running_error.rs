@@ -122,7 +122,7 @@ impl Scalar for Weighed {
         const LEAST: f64 = f64::EPSILON / 16.0;
         const MOST: f64 = f64::EPSILON * 64.0;
         match value {
-            Number::Rational { .. } => Weighed::from_f64(value.to_f64()),
+            Number::Rational { .. } | Number::Scaled { .. } => Weighed::from_f64(value.to_f64()),
             Number::Real(value) if (LEAST..MOST).contains(&value.abs()) => {
                 Weighed { value, weight: 1.0, lost: false }
             }

@@ -53,7 +53,7 @@ pub(crate) fn number(c: Number) -> Piece {
 /// The numerator and denominator of q if a number is the double nearest to q π, q > 0 a simple fraction.
 pub(crate) fn multiple_of_pi(c: Number) -> Option<(i32, i32)> {
     let value = match c {
-        Number::Real(value) => value,
+        Number::Scaled { .. } | Number::Real(_) => c.to_f64(),
         // A double nearest to a multiple of π has this many digits.
         Number::Rational { den, .. } if den > 1 << 30 => c.to_f64(),
         Number::Rational { .. } => return None,
