@@ -146,6 +146,16 @@ impl<F: VectorField> Stepper for Chosen<F> {
         each!(self, method => method.restart(t, y, columns, direction))
     }
 
+    fn enter_piece(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        columns: &[f64],
+        direction: Option<f64>,
+    ) -> Result<(), SolveError> {
+        each!(self, method => method.enter_piece(t, y, columns, direction))
+    }
+
     fn stop_time(&self) -> Option<f64> {
         each!(self, method => method.stop_time())
     }
