@@ -23,6 +23,22 @@ impl Program {
     /// ```
     /// The outputs after ẏ are those of f above all surfaces.
     ///
+    /// ```
+    /// # use pc_expr::{Backend, Evaluator, Graph, Inputs, Normals, Program};
+    /// // v̇ = push − 3 side with the sign of v for the side: along v = 0 the body rests.
+    /// let graph = Graph::new();
+    /// let [v, push, side] = graph.symbols(["v", "push", "side"]);
+    /// let inputs = Inputs { time: None, state: vec![v], parameters: vec![push, side] };
+    /// let program = Program::new(&graph, &inputs, &[push - 3.0 * side])?;
+    /// let slope = Program::new(&graph, &inputs, &[1.into()])?;
+    /// let normals = Normals { program: &slope, entries: &[(0, 0, 1)] };
+    /// let mut rests = Evaluator::new(program.sliding(&[1], normals), Backend::Interpreter);
+    /// let mut rate = [f64::NAN];
+    /// rests.eval(0.0, &[0.0], &[2.0, 1.0], &mut rate);
+    /// assert!(rate[0].abs() < 1e-15);
+    /// # Ok::<(), pc_expr::ExprError>(())
+    /// ```
+    ///
     /// # Panics
     /// If the programs do not have the same inputs, or a side is no parameter.
     pub fn sliding(&self, sides: &[usize], normals: Normals<'_>) -> Program {

@@ -130,6 +130,8 @@ struct Place<'a> {
     direction: f64,
     /// The smallest significant size of a component.
     least: f64,
+    /// The longest time that matters.
+    span: f64,
 }
 
 /// Whether sides are consistent with the motion that they lead to.
@@ -228,7 +230,11 @@ impl Place<'_> {
                 let is_led_back = match sliding.resting[i] {
                     None => sliding.slopes[i] * self.direction < 0.0,
                     // In the second derivative the direction of time does not matter.
-                    Some(rate) => sliding.slopes[i] < 0.0 && rate.abs() <= self.least_rate(&sliding.rates),
+                    Some(rate) => {
+                        let slope = sliding.slopes[i];
+                        slope < 0.0
+                            && rate.abs() <= self.least_rate(&sliding.rates).max(ROUNDINGS * slope.abs())
+                    }
                 };
                 let stays = is_led_back && weight.abs() <= 1.0 + BEYOND;
                 if !stays {
@@ -254,12 +260,16 @@ impl Place<'_> {
     fn leads_ahead(&mut self, surface: usize, sides: &[f64], rates: &[f64]) -> Result<bool, Failure> {
         let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
         let length = largest(rates);
-        let time = if length > 0.0 { largest(self.y).max(self.least) / length } else { 1.0 };
+        let time = if length > 0.0 { largest(self.y).max(self.least) / length } else { 1.0 }.min(self.span);
         let (values, rounding) = self.functions(sides);
         let mut next = values.clone();
         for part in AHEAD {
             let h = part * time * self.direction;
-            let y = self.runge_kutta(sides, h, rates)?;
+            let y = match self.runge_kutta(sides, h, rates) {
+                Ok(y) => y,
+                Err(failure) if failure.is_recoverable() => break,
+                Err(failure) => return Err(failure),
+            };
             self.field.functions(self.t + h, &y, &mut next);
             let moved = (next[surface] - values[surface]) * sides[surface];
             if moved.abs() > 4.0 * rounding[surface].max(f64::MIN_POSITIVE) {
@@ -335,8 +345,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             return Ok(());
         }
         let (t, y, least) = (self.front.t, self.front_state.clone(), self.engine.least_size());
+        let span = self.span_of_interest();
         let Some(field) = self.engine.field_mut().switching() else { return Ok(()) };
-        let mut place = Place { field, t, y: &y, direction, least };
+        let mut place = Place { field, t, y: &y, direction, least, span };
         let mut sides = vec![1.0; self.held.len()];
         let mut rounding = Vec::new();
         let mut values = Vec::new();
@@ -360,6 +371,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// Finds how the motion goes on at the front where these surfaces are reached; returns what happened.
     pub(crate) fn pass_surfaces(&mut self, due: &[usize]) -> Result<(), SolveError> {
         let (t, y, least) = (self.front.t, self.front_state.clone(), self.engine.least_size());
+        let span = self.span_of_interest();
         let before = self.held.sides.clone();
         let mut sides = before.clone();
         let direction = self.direction.unwrap_or(1.0);
@@ -386,7 +398,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             open.extend(slide.map(|surface| (surface, [0.0, 1.0, -1.0])));
         }
         let decided = match self.engine.field_mut().switching() {
-            Some(field) if crosses => Place { field, t, y: &y, direction, least }.decide(&sides, &open),
+            Some(field) if crosses => Place { field, t, y: &y, direction, least, span }.decide(&sides, &open),
             _ => Ok(Some(sides)),
         };
         self.take_sides(decided, &open)?;
@@ -451,6 +463,16 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.sides = Sides::new(directions(&self.events, &self.held));
         self.sides.pass(&self.front.values);
         self.sides_before = self.sides.clone();
+    }
+
+    /// The time to the end, or some of the last steps.
+    fn span_of_interest(&self) -> f64 {
+        let last = self.engine.last_step();
+        match (self.engine.stop_time(), last.degree) {
+            (Some(stop), _) if stop != self.front.t => (stop - self.front.t).abs(),
+            (_, Some(_)) => 100.0 * (last.end - last.start).abs(),
+            _ => 1.0,
+        }
     }
 
     /// Holds the field on sides that have been decided, and notes where the functions are.

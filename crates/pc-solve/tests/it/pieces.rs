@@ -36,15 +36,25 @@ impl Pieces {
         }
     }
 
-    fn quotient(&mut self, step: f64, out: &mut [f64], mut at: impl FnMut(&mut Pieces, f64, &mut [f64])) {
-        let mut behind = vec![0.0; out.len()];
-        at(self, step, out);
-        at(self, -step, &mut behind);
-        out.iter_mut().zip(behind).for_each(|(out, behind)| *out = (*out - behind) / (2.0 * step));
+    fn quotient(&mut self, out: &mut [f64], mut at: impl FnMut(&mut Pieces, f64, &mut [f64])) {
+        let mut values = vec![0.0; out.len()];
+        out.fill(0.0);
+        for (steps, weight) in WEIGHTS {
+            at(self, steps * STEP, &mut values);
+            out.iter_mut().zip(&values).for_each(|(out, value)| *out += weight / STEP * value);
+        }
     }
 }
 
-const STEP: f64 = 1e-5;
+/// The derivative of a function of one step.
+fn slope(function: impl Fn(f64) -> f64) -> f64 {
+    WEIGHTS.iter().map(|(steps, weight)| weight / STEP * function(steps * STEP)).sum()
+}
+
+/// Difference quotients of order 4.
+const WEIGHTS: [(f64, f64); 4] =
+    [(1.0, 8.0 / 12.0), (-1.0, -8.0 / 12.0), (2.0, -1.0 / 12.0), (-2.0, 1.0 / 12.0)];
+const STEP: f64 = 1e-3;
 
 impl VectorField for Pieces {
     fn dim(&self) -> usize {
@@ -72,7 +82,7 @@ impl VectorField for Pieces {
     }
 
     fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
-        self.quotient(STEP, product, |field, step, out| {
+        self.quotient(product, |field, step, out| {
             let moved: Vec<f64> = y.iter().zip(v).map(|(y, v)| y + step * v).collect();
             field.rhs(t, &moved, out).unwrap();
         });
@@ -90,7 +100,7 @@ impl VectorField for Pieces {
     fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
         for j in 0..self.parameters.len() {
             let value = self.parameters[j];
-            self.quotient(STEP, &mut jacobian[j * self.dim..(j + 1) * self.dim], |field, step, out| {
+            self.quotient(&mut jacobian[j * self.dim..(j + 1) * self.dim], |field, step, out| {
                 field.parameters[j] = value + step;
                 field.rhs(t, y, out).unwrap();
             });
@@ -135,24 +145,24 @@ impl Switching for Pieces {
 
     fn gradient(&mut self, surface: usize, t: f64, y: &[f64], by_state: &mut [f64]) -> f64 {
         let (g, p) = (self.functions[surface], &self.parameters);
-        for (i, slope) in by_state.iter_mut().enumerate() {
-            let [ahead, behind] = [STEP, -STEP].map(|step| {
-                let mut moved = y.to_vec();
-                moved[i] += step;
-                g(t, &moved, p)
-            });
-            *slope = (ahead - behind) / (2.0 * STEP);
+        let moved = |i: usize, step: f64| {
+            let mut moved = y.to_vec();
+            moved[i] += step;
+            moved
+        };
+        for (i, by) in by_state.iter_mut().enumerate() {
+            *by = slope(|step| g(t, &moved(i, step), p));
         }
-        (g(t + STEP, y, p) - g(t - STEP, y, p)) / (2.0 * STEP)
+        slope(|step| g(t + step, y, p))
     }
 
     fn by_parameter(&mut self, surface: usize, parameter: usize, t: f64, y: &[f64]) -> Option<f64> {
-        let [ahead, behind] = [STEP, -STEP].map(|step| {
+        let moved = |step: f64| {
             let mut moved = self.parameters.clone();
             moved[parameter] += step;
-            self.functions[surface](t, y, &moved)
-        });
-        Some((ahead - behind) / (2.0 * STEP))
+            moved
+        };
+        Some(slope(|step| self.functions[surface](t, y, &moved(step))))
     }
 
     fn time_dependence(&self) -> TimeDependence {
