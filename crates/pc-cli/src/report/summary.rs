@@ -81,7 +81,7 @@ fn chosen(run: &Run) -> Vec<String> {
     let times = |n: u64| if n == 1 { "once".to_owned() } else { format!("{n} times") };
     match (plan.method, work.stiff_from) {
         (Method::Auto, _) if !plan.sensitivities.is_empty() => {
-            vec!["Adams, since only the methods of CVODES have sensitivities".to_owned()]
+            vec!["Adams, which has sensitivities".to_owned()]
         }
         (Method::Auto, None) => vec!["DOP853: no stiffness was seen".to_owned()],
         (Method::Auto, Some(t)) => vec![format!(

@@ -315,10 +315,13 @@ impl Switches {
             self.along = Some((surfaces.clone(), TaylorSeries::new(&program, self.motion.options.backend)));
         }
         let above: Vec<f64> = sides.iter().map(|side| if *side < 0.0 { -1.0 } else { 1.0 }).collect();
-        self.set(&above);
+        // What is left of forces that cancel is measured by these.
+        let mut beside = vec![f64::NAN; y.len()];
+        self.rates(&above, t, y, &mut beside)?;
         let Some((_, series)) = &mut self.along else { return self.motion.expand(t, y, &[], order) };
         series.expand(t, y, &[], &self.motion.parameters, order);
-        let size = rates.iter().fold(0.0, |size: f64, rate| size.max(rate.abs()));
+        let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
+        let size = largest(&rates).max(largest(&beside));
         let differs = |(rate, found): (&f64, &f64)| found.is_nan() || (rate - found).abs() > ADDS_UP * size;
         if rates.iter().zip(series.coefficients(1)).any(differs) {
             let surfaces = surfaces.iter().map(|&surface| self.names[surface].clone()).collect();
