@@ -113,11 +113,10 @@ impl Graph {
             if exponent % 2 == 0 || self.is_positive(factor) {
                 continue;
             }
-            side = side
-                * match self.moves(factor, moving) {
-                    true => self.side_of_factor(factor, surfaces),
-                    false => factor.sign(),
-                };
+            side *= match self.moves(factor, moving) {
+                true => self.side_of_factor(factor, surfaces),
+                false => factor.sign(),
+            };
         }
         side
     }

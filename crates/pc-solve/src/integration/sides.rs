@@ -9,8 +9,11 @@
 use pc_expr::{Events, Failure, RootSeparation, Sliding, SlidingError, Switching, VectorField};
 
 use crate::error::{Reason, SolveError};
+#[cfg(feature = "cvode")]
 use crate::events::root_finding::Sides;
-use crate::integration::integration::{Integration, directions};
+use crate::integration::integration::Integration;
+#[cfg(feature = "cvode")]
+use crate::integration::integration::directions;
 use crate::integration::stepper::Stepper;
 
 /// A function below this many roundings of its terms is at zero.

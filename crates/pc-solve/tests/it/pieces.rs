@@ -8,7 +8,7 @@ use pc_solve::{Failure, TimeDependence, VectorField};
 /// f on given sides (t, y, p, sides, ẏ).
 type Rates = fn(f64, &[f64], &[f64], &[f64], &mut [f64]);
 /// g of (t, y, p).
-type Function = fn(f64, &[f64], &[f64]) -> f64;
+pub(crate) type Function = fn(f64, &[f64], &[f64]) -> f64;
 
 /// ẏ = f on the sides of surfaces, with derivatives by difference quotients.
 #[derive(Clone)]

@@ -6,7 +6,7 @@ use pc_solve::{
     solve_with_sensitivities_and_events,
 };
 
-use crate::pieces::Pieces;
+use crate::pieces::{Function, Pieces};
 
 const METHODS: [Method; 4] = [Method::Dop853, Method::Adams, Method::Bdf, Method::Auto];
 
@@ -171,7 +171,7 @@ fn a_motion_slides_along_two_surfaces() {
 #[test]
 fn many_bodies_come_to_rest() {
     const N: usize = 12;
-    let functions: [fn(f64, &[f64], &[f64]) -> f64; N] = [
+    let functions: [Function; N] = [
         |_, y, _| y[12],
         |_, y, _| y[13],
         |_, y, _| y[14],
