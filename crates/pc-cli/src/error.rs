@@ -83,7 +83,7 @@ pub enum CliError {
     #[error("--sensitivities: {0}")]
     Sensitivities(UnknownParameter),
     /// `--sensitivities` with a method that has none.
-    #[error("--sensitivities: {method} has none; use --method adams or --method bdf")]
+    #[error("--sensitivities: {method} has none; use --method adams, bdf or dop853")]
     NoSensitivities {
         /// The method.
         method: Method,

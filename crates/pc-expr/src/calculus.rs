@@ -7,13 +7,14 @@
 //! `polynomial` writes the result out. `potential` finds a function by its gradient; `root_powers` makes
 //! powers of roots recognisable; `typeset` rewrites expressions for readers and measures them by `columns`;
 //! `multiplied_out` opens brackets where sines and cosines then merge; `breaks` and `seams` are the
-//! surfaces on which expressions may jump; `commensurable` terms are of one dimension.
+//! surfaces on which expressions may jump, `held` keeps them on one side of these; `commensurable` terms are of one dimension.
 
 pub(crate) mod breaks;
 pub(crate) mod collect;
 mod columns;
 mod commensurable;
 pub(crate) mod derivative;
+pub(crate) mod held;
 pub(crate) mod independence;
 pub(crate) mod multiplied_out;
 pub(crate) mod numbers;

@@ -4,7 +4,8 @@
 //! tape is made by `sharing` (common factors of products), `angle_addition` (sines of sums from those of the
 //! summands) and `lower` (n-ary nodes as binary operations), in this order; `fuse` makes multiply-adds and
 //! counts operations; `bind` replaces parameters by numbers, `hoist` separates what they alone determine, `factor`
-//! what they multiply (by a `builder`), and `digest` identifies tapes.
+//! what they multiply (by a `builder`), and `digest` identifies tapes. `sliding` is the tape of a motion along
+//! surfaces on which another one jumps.
 
 pub(crate) mod angle_addition;
 pub(crate) mod bind;
@@ -16,3 +17,4 @@ pub(crate) mod hoist;
 pub(crate) mod lower;
 pub(crate) mod program;
 pub(crate) mod sharing;
+pub(crate) mod sliding;

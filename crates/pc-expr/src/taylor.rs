@@ -6,7 +6,7 @@
 //! same form for every operation: `sums`. `assembler` writes programs; `coefficients` runs them order by
 //! order. `separation` finds times between which functions along a polynomial motion have at most one root.
 
-mod assembler;
+pub(crate) mod assembler;
 pub(crate) mod coefficients;
 mod functions;
 mod recurrences;

@@ -7,7 +7,8 @@
 //! `legendre_transform` converts momenta into quasi-velocities and back; `in_momenta` is the motion of
 //! momenta under constraints, `forced_motion` that under forces computed outside. `running_error` bounds
 //! rounding, `point` holds the arguments of evaluations, `chart` detects where quasi-velocities and
-//! velocities no longer determine each other, `mass_factors` solves with M alone, `jumps` are where rates jump, and `failure` says why
+//! velocities no longer determine each other, `mass_factors` solves with M alone, `jumps` are where rates jump, `switches` hold
+//! rates of several pieces on one side of these, and `failure` says why
 //! rates are undefined.
 
 pub(crate) mod chart;
@@ -29,4 +30,5 @@ pub(crate) mod mass_factors;
 pub(crate) mod motion;
 pub(crate) mod on_constraints;
 pub(crate) mod options;
+pub(crate) mod switches;
 pub(crate) mod vector_field;

@@ -7,8 +7,8 @@ use numpy::prelude::*;
 use pc_expr::Events;
 use pc_model::{Flow, Model, Variables, deep};
 use pc_solve::{
-    Ending, Occurrence, Options, Sensitivities, Solution, Solve, SolveError, SolveFailure, Statistics,
-    Trajectory, solve_with_sensitivities_and_events,
+    Ending, Occurrence, Options, Sensitivities, SensitivitySolution, Solution, Solve, SolveError,
+    SolveFailure, Statistics, Trajectory, solve_with_sensitivities_and_events,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -81,7 +81,8 @@ fn integrated(
             let (reached, error) = SolveFailure::split(solved);
             matrices = reached.trajectory.iter().map(|(_, _, matrix)| matrix.to_vec()).collect();
             let trajectory = reached.trajectory.motion().clone();
-            (Solution { trajectory, occurrences: reached.occurrences, ending: reached.ending }, error)
+            let SensitivitySolution { occurrences, ending, slides, .. } = reached;
+            (Solution { trajectory, occurrences, ending, slides }, error)
         }
     };
     // What is not valid has not begun.
@@ -89,7 +90,7 @@ fn integrated(
         Some(error @ SolveError::Input(_)) => return Err(error.into()),
         error => error,
     };
-    let Solution { trajectory, occurrences, ending } = solution;
+    let Solution { trajectory, occurrences, ending, .. } = solution;
     let observables = flow.motion.observable_names().to_vec();
     let mut columns: Vec<String> = flow.names.iter().chain(&observables).cloned().collect();
     for name in by {

@@ -246,6 +246,20 @@ impl<F: VectorField> Stepper for Chosen<F> {
         Ok(())
     }
 
+    fn enter_piece(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        columns: &[f64],
+        direction: Option<f64>,
+    ) -> Result<(), SolveError> {
+        let s = t - self.origin;
+        each!(&mut self.method, method => method.enter_piece(s, y, columns, direction))
+            .map_err(|error| dated(error, self.origin))?;
+        (self.time, self.end) = (t, t);
+        Ok(())
+    }
+
     fn stop_time(&self) -> Option<f64> {
         self.stop_time
     }

@@ -4,8 +4,10 @@
 //! [`Statistics`](statistics::Statistics). Read `stepper` first, the interface of a method, and
 //! `method`, which starts one; then `integration`, which is built on them: `front` makes a step and
 //! searches it for events, `run` goes from event to event, `step` gives single steps and their
-//! polynomials, `occur` applies events, `saltation` their effect on derivatives; an `observer` is
-//! told of outputs, steps and events. `limits` bounds an integration, `pace` ends one that hardly gets on, `checks` validates its input;
+//! polynomials, `occur` applies events, `saltation` their effect on derivatives, `sides` how the
+//! motion of a field of several pieces goes on at a surface between two; an `observer` is told of
+//! outputs, steps and events. `limits` bounds an integration, `pace` ends one that hardly gets on,
+//! `checks` validates its input;
 //! `trajectory` and `dense_output` hold motions. `fn_field` turns closures into vector fields,
 //! `breaks` ends steps where a field is not smooth, `since` counts its time from the start.
 
@@ -22,6 +24,7 @@ pub(crate) mod occur;
 pub(crate) mod pace;
 pub(crate) mod run;
 pub(crate) mod saltation;
+pub(crate) mod sides;
 pub(crate) mod since;
 pub(crate) mod statistics;
 pub(crate) mod step;

@@ -194,6 +194,7 @@ pub use integration::integration::{Ending, Integration};
 pub use integration::limits::Limits;
 pub use integration::method::IntegrationMethod;
 pub use integration::observer::{Observed, Observer};
+pub use integration::sides::Slide;
 pub use integration::statistics::Statistics;
 pub use integration::stepper::{LastStep, Stepper};
 pub use integration::trajectory::Trajectory;

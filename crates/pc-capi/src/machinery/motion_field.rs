@@ -234,6 +234,10 @@ impl VectorField for MotionField {
         delegate!(self, field => field.enter(t, end))
     }
 
+    fn switching(&mut self) -> Option<&mut dyn pc_expr::Switching> {
+        delegate!(self, field => field.switching())
+    }
+
     fn jumps(&self) -> &[pc_expr::RateJump] {
         delegate!(self, field => field.jumps())
     }

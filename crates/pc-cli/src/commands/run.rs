@@ -181,7 +181,7 @@ fn integrate_into(
     let wall = start.elapsed();
     drop(progress);
 
-    let Solution { trajectory, occurrences, ending } = solved;
+    let Solution { trajectory, occurrences, ending, slides } = solved;
     let last = match &given {
         Some(given) => given.last.as_ref().map(|(t, y)| (*t, y.as_slice())),
         None => trajectory.last(),
@@ -243,6 +243,7 @@ fn integrate_into(
         events,
         passed_at_start,
         occurrences: occurrences.iter().map(|occurrence| (occurrence.event, occurrence.time)).collect(),
+        slides,
         ending,
         verification,
         wall,

@@ -94,7 +94,7 @@ impl Plan {
         let method =
             arguments.integration.method.map(of_arguments).or(written.map(of_file)).unwrap_or(Method::Auto);
         let sensitivities = sensitivities::parameters(model, &arguments.sensitivities)?;
-        if matches!(method, Method::Dop853 | Method::Taylor) && !sensitivities.is_empty() {
+        if method == Method::Taylor && !sensitivities.is_empty() {
             return Err(CliError::NoSensitivities { method });
         }
         Ok(Plan {

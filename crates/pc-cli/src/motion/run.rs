@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use pc_solve::{SolveError, Spent, Statistics};
+use pc_solve::{Slide, SolveError, Spent, Statistics};
 
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
@@ -44,6 +44,8 @@ pub struct Run {
     pub passed_at_start: Vec<usize>,
     /// The occurrences, in order: the numbers of events, and their times.
     pub occurrences: Vec<(usize, f64)>,
+    /// The parts of the motion that slide along a surface on which forces jump.
+    pub slides: Vec<Slide>,
     /// How it ended.
     pub ending: Ending,
     /// The result of the second derivation, if it was made.

@@ -73,9 +73,9 @@ impl Derivatives {
             output,
         );
         let (reached, error) = SolveFailure::split(solved);
-        let SensitivitySolution { trajectory, occurrences, ending } = reached;
+        let SensitivitySolution { trajectory, occurrences, ending, slides, .. } = reached;
         self.matrices = trajectory.iter().map(|(_, _, matrix)| matrix.to_vec()).collect();
-        (Solution { trajectory: trajectory.motion().clone(), occurrences, ending }, error)
+        (Solution { trajectory: trajectory.motion().clone(), occurrences, ending, slides }, error)
     }
 
     /// The rates (∂f/∂y) ∂y/∂p + ∂f/∂p at the last output, which the integration is made of; none where the field has no derivatives

@@ -1,7 +1,7 @@
 //! The summary of a run, for readers and for files.
 
 use pc_print::{columns, one_line};
-use pc_solve::Method;
+use pc_solve::{Method, Slide};
 use serde_json::{Map, Value, json};
 
 use crate::motion::run::{Ending, Run};
@@ -49,6 +49,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
     line(WORK, &[work_done(run)]);
     line("chosen", &chosen(run));
     line("events", &events(run));
+    line("slides", &slides(run));
     line("drift", &drifts(run));
     if !run.constraints.is_empty() {
         line("held", &held(run));
@@ -80,7 +81,7 @@ fn chosen(run: &Run) -> Vec<String> {
     let times = |n: u64| if n == 1 { "once".to_owned() } else { format!("{n} times") };
     match (plan.method, work.stiff_from) {
         (Method::Auto, _) if !plan.sensitivities.is_empty() => {
-            vec!["Adams, since only the methods of CVODES have sensitivities".to_owned()]
+            vec!["Adams, which has sensitivities".to_owned()]
         }
         (Method::Auto, None) => vec!["DOP853: no stiffness was seen".to_owned()],
         (Method::Auto, Some(t)) => vec![format!(
@@ -135,6 +136,32 @@ fn events(run: &Run) -> Vec<String> {
         format!("{name:width$}  {when}{start}")
     };
     run.events.iter().enumerate().map(line).collect()
+}
+
+/// Where the motion slides along surfaces on which forces jump.
+fn slides(run: &Run) -> Vec<String> {
+    let mut surfaces: Vec<&str> = Vec::new();
+    for slide in &run.slides {
+        if !surfaces.contains(&slide.surface.as_str()) {
+            surfaces.push(&slide.surface);
+        }
+    }
+    let part = |slide: &Slide| match slide.until {
+        Some(until) => format!("from {} to {}", short(slide.from, 10), short(until, 10)),
+        None => format!("from {} on", short(slide.from, 10)),
+    };
+    let line = |surface: &str| {
+        let parts: Vec<String> =
+            run.slides.iter().filter(|slide| slide.surface == surface).map(part).collect();
+        let when = match parts.as_slice() {
+            [first, .., last] if parts.len() > FEW => {
+                format!("{} times: first {first}, last {last}", parts.len())
+            }
+            all => all.join(", "),
+        };
+        format!("along {surface} = 0 {when}")
+    };
+    surfaces.into_iter().map(line).collect()
 }
 
 /// How far the motion went.
@@ -212,6 +239,11 @@ pub fn json(run: &Run) -> Value {
         "drift": drift,
         "constraints": held,
     });
+    if !run.slides.is_empty() {
+        let slide =
+            |slide: &Slide| json!({ "surface": slide.surface, "from": slide.from, "until": slide.until });
+        summary["slides"] = run.slides.iter().map(slide).collect();
+    }
     if matches!(plan.method, Method::Dop853 | Method::Auto) {
         summary["stiff_from"] = json!(work.stiff_from);
     }

@@ -1,4 +1,5 @@
-//! Sensitivities and projections where forces, tables and integrals jump: refused by name, or compared with closed forms.
+//! Motions, sensitivities and projections where forces, tables and integrals jump: compared with closed forms, or refused by
+//! name.
 
 use std::process::{Command, Output};
 
@@ -39,38 +40,103 @@ fn point(parameter: &str, start: &str, speed: &str, force: &str) -> String {
     )
 }
 
+/// The last two numbers of a row: the derivatives of x and x' by one parameter.
+fn derivatives(name: &str, model: &str, arguments: &[&str]) -> [f64; 2] {
+    let row = last(name, model, arguments);
+    let [x, speed] = row[row.len() - 2..] else { unreachable!("two derivatives") };
+    [x, speed]
+}
+
+fn assert_near(found: [f64; 2], right: [f64; 2], what: &str) {
+    for (found, right) in found.iter().zip(right) {
+        assert!((found - right).abs() < 1e-7, "{what}: {found}, not {right}");
+    }
+}
+
+/// From x = c on the force is 2: x = c + v s + s² with s = t − c/v, v = 1.
 #[test]
-fn jumps_on_surfaces_of_the_state_are_refused() {
+fn derivatives_jump_on_surfaces_of_the_state() {
     let model = point("c = 0.5", "0", "1", "step(x - c, 2, 0)");
-    let said = refusal("surface", &model, &["run", "--sensitivities", "c"], "the rate");
-    insta::assert_snapshot!(said, @"the rate of x' jumps where x - c = 0, a surface of the state that `c` moves: derivatives of the motion jump with it, which they would not show. Make the jump an event that switches a state, or smooth it, as tanh does");
+    for method in ["adams", "bdf"] {
+        let found = derivatives("surface", &model, &["run", "--sensitivities", "c", "--method", method]);
+        assert_near(found, [-3.0, -2.0], method);
+    }
+    // x = k + (1 − k) cos t, and from π on −k + (3 k − 1) cos(t − π).
     let model = point("k = 0.3", "1", "0", "-x - k*sign(x')");
-    let said = refusal("friction", &model, &["run", "--sensitivities", "k", "--method", "bdf"], "the rate");
-    insta::assert_snapshot!(said, @"the rate of x' jumps where x' = 0, a surface of the state: derivatives of the motion jump with it, which they would not show. Make the jump an event that switches a state, or smooth it, as tanh does");
+    let since = 4.0 - std::f64::consts::PI;
+    let right = [3.0 * since.cos() - 1.0, -3.0 * since.sin()];
+    for method in ["adams", "bdf"] {
+        let arguments = ["run", "--sensitivities", "k", "--method", method, "--t-end", "4"];
+        assert_near(derivatives("friction", &model, &arguments), right, method);
+    }
 }
 
 /// In momenta, the velocity in a dry friction is a function of the state.
 #[test]
-fn jumps_at_velocities_are_refused_in_momenta_too() {
+fn derivatives_jump_at_velocities_in_momenta_too() {
     let model = point("k = 0.3", "1", "0", "-x - k*sign(x')");
-    let arguments = ["run", "--form", "canonical", "--sensitivities", "k", "--method", "bdf"];
-    let said = refusal("momenta", &model, &arguments, "the rate");
-    assert!(said.starts_with("the rate of p_x jumps where x' = 0, a surface of the state: "), "{said}");
+    let since = 4.0 - std::f64::consts::PI;
+    let right = [3.0 * since.cos() - 1.0, -3.0 * since.sin()];
+    let arguments = ["run", "--form", "canonical", "--sensitivities", "k", "--method", "bdf", "--t-end", "4"];
+    assert_near(derivatives("momenta", &model, &arguments), right, "momenta");
 }
 
+/// x = k (t − c)²/2
 #[test]
-fn jumps_at_times_are_refused_for_what_moves_them() {
+fn derivatives_jump_at_times() {
     let model = point("c = 0.37\nk = 2.0", "0", "0", "step(t - c, k, 0)");
-    let said = refusal("time", &model, &["run", "--sensitivities", "c"], "the rate");
-    insta::assert_snapshot!(said, @"the rate of x' jumps where t - c = 0, at a time that `c` moves: derivatives of the motion jump with it, which they would not show. Make the jump an event that switches a state, or smooth it, as tanh does");
     for method in ["adams", "bdf"] {
-        let row = last("amplitude", &model, &["run", "--sensitivities", "k", "--method", method]);
-        // x = k (t − c)²/2
-        let [by_k, speed_by_k] = row[row.len() - 2..] else { unreachable!("two derivatives") };
-        assert!(
-            (by_k - 1.63 * 1.63 / 2.0).abs() < 1e-6 && (speed_by_k - 1.63).abs() < 1e-6,
-            "{method}: {row:?}"
-        );
+        let by_time = derivatives("time", &model, &["run", "--sensitivities", "c", "--method", method]);
+        assert_near(by_time, [-2.0 * 1.63, -2.0], method);
+        let by_force = derivatives("amplitude", &model, &["run", "--sensitivities", "k", "--method", method]);
+        assert_near(by_force, [1.63 * 1.63 / 2.0, 1.63], method);
+    }
+}
+
+/// A body on an incline of slope 1 brakes with the friction 4 from v = 1.5 to rest at v²/6, and a push of 2 cos 3t does
+/// not move it again.
+#[test]
+fn friction_holds_by_every_method() {
+    let model = point("m = 4", "0", "1.5", "1 - m*sign(x')");
+    for method in ["dop853", "adams", "bdf", "auto", "taylor"] {
+        let output = pc("holds", &model, &["run", "--method", method]);
+        let said = text(&output.stderr);
+        assert!(output.status.success() && said.contains("along x' = 0 from 0.5 on"), "{method}: {said}");
+        let row = last("holds", &model, &["run", "--method", method]);
+        assert!((row[1] - 0.375).abs() < 1e-8 && row[2].abs() < 1e-9, "{method}: {row:?}");
+    }
+    let pushed = point("m = 4", "0", "0", "1 + 2*cos(3*t) - m*sign(x')");
+    for method in ["dop853", "adams", "bdf", "auto", "taylor"] {
+        let row = last("pushed", &pushed, &["run", "--method", method]);
+        assert!(row[1].abs() < 1e-12 && row[2].abs() < 1e-12, "{method}: {row:?}");
+    }
+}
+
+/// Forces that change at times, at places, at corners and where an angle is cut: x and x' at t = 2 by every method.
+#[test]
+fn steps_end_where_forces_change() {
+    let half = 0.5f64;
+    let cases = [
+        // 1 for t < 1/2, −1 then, and so on: the speed is a triangle.
+        ("sign(sin(2*pi*t))", "0", "0", [half, 0.0]),
+        // x = t until 1/2, then cosh(t − 1/2) … of x″ = x − 1/2 from speed 1.
+        ("max(x - 1/2, 0)", "0", "1", [half + 1.5f64.sinh(), 1.5f64.cosh()]),
+        // A sawtooth t − 1/2 − [t].
+        ("atan(tan(pi*(t - 0.5)))/pi", "0", "0", [-1.0 / 6.0, 0.0]),
+        // Through a layer of width 0.001 in which the force is 1000: the speed is √3.
+        ("step(x - 1, step(1.001 - x, 1000, 0), 0)", "0", "1", {
+            let speed = 3f64.sqrt();
+            let through = (speed - 1.0) / 1000.0;
+            [1.001 + speed * (1.0 - through), speed]
+        }),
+    ];
+    for (k, (force, start, speed, right)) in cases.into_iter().enumerate() {
+        let model = point("m = 1", start, speed, force);
+        for method in ["dop853", "adams", "bdf", "auto", "taylor"] {
+            let row = last(&format!("changes-{k}"), &model, &["run", "--method", method, "--rtol", "1e-11"]);
+            let near = (row[1] - right[0]).abs() < 1e-6 && (row[2] - right[1]).abs() < 1e-6;
+            assert!(near, "{force} by {method}: {row:?}, not {right:?}");
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use std::fmt;
 use crate::ode::lane_field::LaneField;
 use crate::ode::pattern::Pattern;
 use crate::ode::rate_jump::RateJump;
+use crate::ode::switching::Switching;
 use crate::taylor::coefficients::TaylorSeries;
 use crate::time_profile::profile::TimeDependence;
 
@@ -185,8 +186,20 @@ pub trait VectorField {
         false
     }
 
+    /// The surfaces on which f changes from one piece to the next, if there are any and f can be held on one side of
+    /// each.
+    fn switching(&mut self) -> Option<&mut dyn Switching> {
+        None
+    }
+
+    /// The explicit dependence of f on t while it is [held](VectorField::switching), if it can be.
+    fn held_time_dependence(&mut self) -> Option<TimeDependence> {
+        self.switching().map(|switching| switching.time_dependence())
+    }
+
     /// The surfaces on which f jumps as the state or, at a time that parameters move, as t passes them, as far as they
-    /// are known. A jump at a [break](VectorField::breaks) is none of these.
+    /// are known. A jump at a [break](VectorField::breaks) is none of these, nor one where f is
+    /// [held](VectorField::switching).
     fn jumps(&self) -> &[RateJump] {
         &[]
     }
@@ -287,6 +300,12 @@ macro_rules! behind {
             }
             fn enter(&mut self, t: f64, end: f64) -> bool {
                 (**self).enter(t, end)
+            }
+            fn switching(&mut self) -> Option<&mut dyn Switching> {
+                (**self).switching()
+            }
+            fn held_time_dependence(&mut self) -> Option<TimeDependence> {
+                (**self).held_time_dependence()
             }
             fn jumps(&self) -> &[RateJump] {
                 (**self).jumps()

@@ -150,6 +150,14 @@ impl Program {
         self.first_result() + self.code.len()
     }
 
+    /// Whether an output depends on the state.
+    pub fn reads_state(&self) -> bool {
+        let first = self.first_input() + 1;
+        let is_state = |register: Register| (first..first + self.state).contains(&register.index());
+        let operands = self.code.iter().flat_map(Instruction::operands);
+        operands.chain(self.outputs.iter().copied()).any(is_state)
+    }
+
     /// The contents of a register as text, abbreviated where they are deep.
     pub fn describe(&self, register: Register) -> String {
         self.piece(register, 0).text

@@ -15,7 +15,7 @@ const RESULT: u32 = 1 << 30;
 
 /// A program being written; a repeated instruction is computed once.
 #[derive(Default)]
-pub(super) struct Assembler {
+pub(crate) struct Assembler {
     constants: Vec<f64>,
     numbers: FxHashMap<u64, Register>,
     code: Vec<Instruction>,
@@ -25,24 +25,24 @@ pub(super) struct Assembler {
 }
 
 impl Assembler {
-    pub(super) fn time() -> Register {
+    pub(crate) fn time() -> Register {
         Register(TIME)
     }
 
-    pub(super) fn state(i: usize) -> Register {
+    pub(crate) fn state(i: usize) -> Register {
         Register(STATE + i as u32)
     }
 
     /// Component `i` of the state after those of [`state`](Assembler::state).
-    pub(super) fn sum(i: usize) -> Register {
+    pub(crate) fn sum(i: usize) -> Register {
         Register(SUM + i as u32)
     }
 
-    pub(super) fn parameter(i: usize) -> Register {
+    pub(crate) fn parameter(i: usize) -> Register {
         Register(PARAMETER + i as u32)
     }
 
-    pub(super) fn number(&mut self, value: f64) -> Register {
+    pub(crate) fn number(&mut self, value: f64) -> Register {
         let constants = &mut self.constants;
         *self.numbers.entry(value.to_bits()).or_insert_with(|| {
             constants.push(value);
@@ -51,11 +51,11 @@ impl Assembler {
     }
 
     /// The number in a register, if it is a constant.
-    pub(super) fn value(&self, register: Register) -> Option<f64> {
+    pub(crate) fn value(&self, register: Register) -> Option<f64> {
         self.constants.get(register.index()).copied()
     }
 
-    pub(super) fn emit(&mut self, instruction: Instruction) -> Register {
+    pub(crate) fn emit(&mut self, instruction: Instruction) -> Register {
         let depth = 1 + instruction.operands().map(|r| self.depth(r)).max().unwrap_or(0);
         let (code, depths) = (&mut self.code, &mut self.depths);
         let index = *self.known.entry(instruction).or_insert_with(|| {
@@ -67,11 +67,11 @@ impl Assembler {
     }
 
     /// The depth of a register, in operations.
-    pub(super) fn depth(&self, register: Register) -> u32 {
+    pub(crate) fn depth(&self, register: Register) -> u32 {
         register.0.checked_sub(RESULT).map_or(0, |i| self.depths[i as usize])
     }
 
-    pub(super) fn add(&mut self, a: Register, b: Register) -> Register {
+    pub(crate) fn add(&mut self, a: Register, b: Register) -> Register {
         match (self.value(a), self.value(b)) {
             (Some(0.0), _) => b,
             (_, Some(0.0)) => a,
@@ -79,7 +79,7 @@ impl Assembler {
         }
     }
 
-    pub(super) fn subtract(&mut self, a: Register, b: Register) -> Register {
+    pub(crate) fn subtract(&mut self, a: Register, b: Register) -> Register {
         match (self.value(a), self.value(b)) {
             (_, Some(0.0)) => a,
             (Some(0.0), _) => self.negate(b),
@@ -87,7 +87,7 @@ impl Assembler {
         }
     }
 
-    pub(super) fn multiply(&mut self, a: Register, b: Register) -> Register {
+    pub(crate) fn multiply(&mut self, a: Register, b: Register) -> Register {
         match (self.value(a), self.value(b)) {
             (Some(1.0), _) => b,
             (_, Some(1.0)) => a,
@@ -95,27 +95,27 @@ impl Assembler {
         }
     }
 
-    pub(super) fn negate(&mut self, a: Register) -> Register {
+    pub(crate) fn negate(&mut self, a: Register) -> Register {
         self.emit(Instruction::Negate(a))
     }
 
-    pub(super) fn divide(&mut self, a: Register, b: Register) -> Register {
+    pub(crate) fn divide(&mut self, a: Register, b: Register) -> Register {
         self.emit(Instruction::Divide(a, b))
     }
 
-    pub(super) fn call(&mut self, function: Function, args: &[Register]) -> Register {
+    pub(crate) fn call(&mut self, function: Function, args: &[Register]) -> Register {
         let argument = |i: usize| args[if i < function.arity() { i } else { 0 }];
         self.emit(Instruction::Call(function, [0, 1, 2].map(argument)))
     }
 
     /// c + a b, with the operand of greatest depth added last.
-    pub(super) fn multiply_add(&mut self, a: Register, b: Register, c: Register) -> Register {
+    pub(crate) fn multiply_add(&mut self, a: Register, b: Register, c: Register) -> Register {
         let product = self.multiply(a, b);
         self.add(c, product)
     }
 
     /// The finished program, for the given numbers of components of the state, of sums, and of parameters.
-    pub(super) fn finish(
+    pub(crate) fn finish(
         self,
         (state, sums, parameters): (usize, usize, usize),
         outputs: impl IntoIterator<Item = Register>,

@@ -46,7 +46,21 @@ impl<'g> Equations<'g> {
         if let Some(tree) = &first_order.tree {
             tree.check_regular(&first_order.names)?;
         }
-        first_order.compile(&options, LONGEST_ELIMINATION)
+        let mut motion = first_order.compile(&options, LONGEST_ELIMINATION)?;
+        // The equations of a large tree are not written out.
+        if first_order.tree.is_some() && !tree.is_large() && equations.has_pieces() {
+            motion.switches = equations.first_order().switches(&options)?.map(Box::new);
+        }
+        Ok(motion)
+    }
+
+    /// Whether forces or energies may be functions of several pieces.
+    fn has_pieces(&self) -> bool {
+        let system = &self.system;
+        let rates = system.states.iter().map(|(_, rate)| rate);
+        let values: Vec<Expr<'g>> =
+            system.forces.iter().chain(rates).copied().chain([self.energy()]).collect();
+        !system.graph().seams(&values).is_empty()
     }
 }
 
@@ -57,6 +71,17 @@ impl FirstOrder<'_> {
     /// # Errors
     /// As for [`Equations::compile`].
     pub(crate) fn compile(&self, options: &CompileOptions, longest: usize) -> Result<Motion, MechError> {
+        let motion = self.compile_piece(options, longest)?;
+        let switches = if self.tree.is_none() { self.switches(options)? } else { None };
+        Ok(Motion { switches: switches.map(Box::new), ..motion })
+    }
+
+    /// The same without what several pieces need.
+    pub(crate) fn compile_piece(
+        &self,
+        options: &CompileOptions,
+        longest: usize,
+    ) -> Result<Motion, MechError> {
         let short = || cost::operations(&self.mass) <= longest;
         let unrolled = || short() || !cost::needs_no_pivoting(self.graph, &self.mass);
         let form = if self.tree.is_some() || self.implicit.is_none() && self.multipliers == 0 && unrolled() {
@@ -81,6 +106,7 @@ impl FirstOrder<'_> {
             quaternions: self.quaternions.clone(),
             signals: Signals::default(),
             charts: Vec::new(),
+            switches: None,
             jumps: if differentiable { self.jumps()? } else { Vec::new() },
         })
     }

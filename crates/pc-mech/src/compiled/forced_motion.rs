@@ -134,7 +134,7 @@ impl Motion {
             slopes: vec![0.0; forces * dim],
             columns: vec![0.0; inputs * dim],
             pattern: Pattern::full(dim, dim),
-            motion: self,
+            motion: Motion { switches: None, ..self }, // forces may jump, too
         })
     }
 }

@@ -15,11 +15,8 @@ impl<'g> FirstOrder<'g> {
         let rows = [self.balance(), self.rates.clone()].concat();
         let names: Vec<String> =
             self.names.iter().cloned().chain(self.state.iter().map(Expr::to_string)).collect();
-        let flowing = self.state.iter().zip(&self.rates).filter(|(_, rate)| !rate.is_zero());
-        let flowing: Vec<Expr<'g>> = flowing.map(|(&symbol, _)| symbol).collect();
-        // In momenta, velocities are unknowns: functions of the state that change along the motion.
-        let moving = [&flowing[..], &self.unknowns[..]].concat();
-        let passing = [&[self.time], &self.varying[..], &moving[..]].concat();
+        let moving = self.moving();
+        let passing = self.passing();
         let mut numbers = self.parameters.clone();
         numbers.retain(|&(symbol, value)| value != 0.0 && !self.varying.contains(&symbol));
         let rate_jump = |found: pc_algebra::Discontinuity<'g>| {
@@ -36,5 +33,17 @@ impl<'g> FirstOrder<'g> {
         };
         let found = discontinuities(self.graph, &rows, &passing, &numbers)?;
         Ok(found.into_iter().map(rate_jump).collect())
+    }
+
+    /// What changes along a motion by its rates.
+    fn moving(&self) -> Vec<Expr<'g>> {
+        let flowing = self.state.iter().zip(&self.rates).filter(|(_, rate)| !rate.is_zero());
+        // In momenta, velocities are unknowns: functions of the state that change along the motion.
+        flowing.map(|(&symbol, _)| symbol).chain(self.unknowns.iter().copied()).collect()
+    }
+
+    /// What changes along a motion.
+    pub(crate) fn passing(&self) -> Vec<Expr<'g>> {
+        [&[self.time], &self.varying[..], &self.moving()[..]].concat()
     }
 }

@@ -1,7 +1,7 @@
 //! Compiled equations of motion: a vector field with its derivatives, and the quantities observed along it.
 
 use pc_algebra::Matrix;
-use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, RateJump, VectorField};
+use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, Program, RateJump, VectorField};
 
 use crate::compiled::chart::Chart;
 use crate::compiled::elimination::numeric::{OF_A_LOOP, Staged};
@@ -15,6 +15,7 @@ use crate::compiled::point::Point;
 use crate::compiled::projection::constraint_manifold::Surface;
 use crate::compiled::projection::integrals::KeptIntegrals;
 use crate::compiled::projection::unit_quaternions::UnitQuaternions;
+use crate::compiled::switches::Switches;
 use crate::error::MechError;
 use crate::system::signals::Signals;
 use crate::system::system::System;
@@ -43,6 +44,8 @@ pub struct Motion {
     pub(super) charts: Vec<Chart>,
     /// Where f jumps, if it has derivatives.
     pub(super) jumps: Vec<RateJump>,
+    /// f on one side of each surface, if it has several pieces.
+    pub(super) switches: Option<Box<Switches>>,
 }
 
 /// How f is computed.
@@ -180,6 +183,9 @@ impl Motion {
     #[must_use]
     pub fn driven_by(mut self, signals: Signals) -> Motion {
         assert!(signals.places().all(|place| place < self.parameters().len()), "places of parameters");
+        if let Some(switches) = &mut self.switches {
+            switches.drive(&signals);
+        }
         match &mut self.form {
             Form::InMomenta(motion) => motion.inner_mut().signals = signals,
             Form::Unrolled(unrolled) => {
@@ -278,7 +284,8 @@ impl Motion {
     }
 
     /// The motion with momenta of these names.
-    pub(crate) fn of_momenta(motion: InMomenta, names: impl Iterator<Item = String>) -> Motion {
+    pub(crate) fn of_momenta(mut motion: InMomenta, names: impl Iterator<Item = String>) -> Motion {
+        motion.inner_mut().switches = None; // those of the momenta are not derived
         let inner = motion.inner();
         Motion {
             names: inner.names[..inner.coordinates]
@@ -294,6 +301,7 @@ impl Motion {
             signals: Signals::default(),
             charts: Vec::new(),
             jumps: inner.jumps.clone(),
+            switches: None,
             options: inner.options,
             observable_names: inner.observable_names.clone(),
             conserved: inner.conserved,
@@ -394,6 +402,14 @@ impl Motion {
     pub fn fixed_pivots(&mut self) -> Option<&[f64]> {
         match &mut self.form {
             Form::Unrolled(unrolled) => Some(unrolled.fixed_pivots(self.names.len(), &self.parameters)),
+            Form::Staged(_) | Form::InMomenta(_) => None,
+        }
+    }
+
+    /// The program whose first outputs are ẏ; none if M is factorised in numbers.
+    pub(super) fn program_of_rates(&self) -> Option<&Program> {
+        match &self.form {
+            Form::Unrolled(unrolled) => unrolled.programs().next(),
             Form::Staged(_) | Form::InMomenta(_) => None,
         }
     }

@@ -1,11 +1,12 @@
 //! A compiled motion as a vector field.
 
-use pc_expr::{Failure, LaneField, Pattern, RateJump, TaylorSeries, TimeDependence, VectorField};
+use pc_expr::{Failure, LaneField, Pattern, RateJump, Switching, TaylorSeries, TimeDependence, VectorField};
 
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::motion::{Form, Motion};
 use crate::compiled::point::Point;
+use crate::compiled::switches::Switches;
 use crate::error::{EvaluationError, FrameError, MechError};
 
 /// The square of a long step takes this often to be a rounding.
@@ -34,7 +35,7 @@ impl Motion {
 
     /// Reads the tables, if there are any.
     #[inline]
-    fn read_signals(&mut self, t: f64) -> Result<(), Failure> {
+    pub(super) fn read_signals(&mut self, t: f64) -> Result<(), Failure> {
         if self.signals.is_empty() {
             return Ok(());
         }
@@ -53,6 +54,20 @@ impl Motion {
         entries: &mut [f64],
         storage: Storage,
     ) -> Result<(), Failure> {
+        if let Some(switches) = self.holding() {
+            let written = match storage {
+                Storage::Dense => switches.jacobian(t, y, entries),
+                Storage::Sparse => {
+                    let mut dense = vec![0.0; y.len() * y.len()];
+                    let written = switches.jacobian(t, y, &mut dense);
+                    self.sparsity().inspect(|pattern| pattern.gather(&dense, entries));
+                    written
+                }
+            };
+            if is_written(&written) {
+                return written;
+            }
+        }
         self.read_signals(t)?;
         let at = Point { t, y, p: &self.parameters };
         let outcome = match &mut self.form {
@@ -71,6 +86,12 @@ impl VectorField for Motion {
 
     #[inline]
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        if let Some(switches) = self.holding() {
+            let written = switches.rhs(t, y, ydot);
+            if is_written(&written) {
+                return written;
+            }
+        }
         self.read_signals(t)?;
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.rhs(t, y, &self.parameters, ydot),
@@ -110,6 +131,12 @@ impl VectorField for Motion {
     }
 
     fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
+        if let Some(switches) = self.holding() {
+            let written = switches.jvp(t, y, v, product);
+            if is_written(&written) {
+                return written;
+            }
+        }
         self.read_signals(t)?;
         let at = Point { t, y, p: &self.parameters };
         let outcome = match &mut self.form {
@@ -129,6 +156,12 @@ impl VectorField for Motion {
     }
 
     fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        if let Some(switches) = self.holding() {
+            let written = switches.parameter_jacobian(t, y, jacobian);
+            if is_written(&written) {
+                return written;
+            }
+        }
         self.read_signals(t)?;
         let at = Point { t, y, p: &self.parameters };
         let outcome = match &mut self.form {
@@ -165,6 +198,9 @@ impl VectorField for Motion {
 
     fn series(&mut self) -> Result<&TaylorSeries, Failure> {
         self.check_series()?;
+        if let Some(switches) = &mut self.switches {
+            return switches.motion.series();
+        }
         match &mut self.form {
             Form::Unrolled(unrolled) => Ok(unrolled.series()),
             Form::Staged(_) | Form::InMomenta(_) => unreachable!("has been refused"),
@@ -173,6 +209,10 @@ impl VectorField for Motion {
 
     fn expand(&mut self, t: f64, y: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
         self.check_series()?;
+        if let Some(switches) = &mut self.switches {
+            switches.follow(&self.parameters);
+            return switches.expand(t, y, order);
+        }
         let at = Point { t, y, p: &self.parameters };
         let outcome = match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.expand(at, sides, order),
@@ -187,7 +227,8 @@ impl VectorField for Motion {
 
     fn lanes(&mut self) -> Option<LaneField> {
         let on_surface = self.surface.is_some() || self.kept.is_some();
-        if !self.signals.is_empty() || !self.charts.is_empty() || on_surface {
+        let alone = self.signals.is_empty() && self.charts.is_empty() && self.switches.is_none();
+        if !alone || on_surface {
             return None;
         }
         match &mut self.form {
@@ -220,14 +261,26 @@ impl VectorField for Motion {
     }
 
     fn enter(&mut self, t: f64, end: f64) -> bool {
+        if let Some(switches) = &mut self.switches {
+            switches.motion.enter(t, end);
+        }
         match &mut self.form {
             Form::InMomenta(motion) => motion.inner_mut().enter(t, end),
             Form::Unrolled(_) | Form::Staged(_) => self.signals.enter(t, end),
         }
     }
 
+    fn switching(&mut self) -> Option<&mut dyn Switching> {
+        let switches = self.switches.as_deref_mut()?;
+        switches.follow(&self.parameters);
+        Some(switches)
+    }
+
     fn jumps(&self) -> &[RateJump] {
-        &self.jumps
+        match &self.switches {
+            Some(switches) => &switches.motion.jumps,
+            None => &self.jumps,
+        }
     }
 
     fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
@@ -258,7 +311,18 @@ impl VectorField for Motion {
     }
 }
 
+/// Whether a held motion has answered: where it has no value beyond a surface, the motion on the other side may have one.
+fn is_written(outcome: &Result<(), Failure>) -> bool {
+    outcome.as_ref().err().is_none_or(|failure| !failure.is_recoverable())
+}
+
 impl Motion {
+    /// The motion on its sides, while it is held on them.
+    #[inline]
+    fn holding(&mut self) -> Option<&mut Switches> {
+        self.switches.as_deref_mut().filter(|switches| switches.holds())
+    }
+
     /// The reason why there are no series, if there are none.
     fn check_series(&self) -> Result<(), Failure> {
         let because = match &self.form {

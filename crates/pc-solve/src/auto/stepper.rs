@@ -76,6 +76,16 @@ impl<F: VectorField> Stepper for Auto<F> {
         each!(self.engine_mut(), method => method.restart(t, y, columns, direction))
     }
 
+    fn enter_piece(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        columns: &[f64],
+        direction: Option<f64>,
+    ) -> Result<(), SolveError> {
+        each!(self.engine_mut(), method => method.enter_piece(t, y, columns, direction))
+    }
+
     fn stop_time(&self) -> Option<f64> {
         each!(self.engine(), method => method.stop_time())
     }

@@ -121,7 +121,7 @@ fn motion(
     ending: Option<Ending>,
 ) -> Solution {
     trajectory.finish(ending == Some(Ending::Completed), statistics);
-    Solution { trajectory, occurrences, ending }
+    Solution { trajectory, occurrences, ending, slides: Vec::new() }
 }
 
 /// What all legs share.

@@ -26,6 +26,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             due: due
                 .iter()
                 .zip(&self.beyond)
+                .filter(|&(&event, _)| event < self.histories.len())
                 .map(|(&event, &side)| (event, self.noise[event], side))
                 .collect(),
         };
@@ -73,11 +74,14 @@ impl<S: Stepper> Integration<S> {
         }
         integration.histories = past.events.iter().map(|event| event.history.clone()).collect();
         let known = past.events.iter().map(|event| (event.side, event.noise));
-        integration.sides = Sides::from_known(directions(&integration.events), known);
+        // Those of surfaces are found anew.
+        let surfaces = std::iter::repeat_n((1.0, 0.0), integration.held.len());
+        integration.sides =
+            Sides::from_known(directions(&integration.events, &integration.held), known.chain(surfaces));
         if past.due.is_empty() {
             integration.sides.pass(&integration.front.values);
         } else {
-            integration.noise = vec![0.0; expected];
+            integration.noise = vec![0.0; expected + integration.held.len()];
             for &(event, noise, side) in &past.due {
                 integration.due.push(event);
                 integration.beyond.push(side);

@@ -31,7 +31,7 @@ pub(super) struct Foresight {
 }
 
 impl Foresight {
-    pub(super) fn new(field: &impl VectorField, t0: f64, options: &Options) -> Foresight {
+    pub(super) fn new(field: &mut impl VectorField, t0: f64, options: &Options) -> Foresight {
         let (dim, places) = (field.dim(), Places::new(field, t0, options.min_step));
         let most = if places.are_absent() { 0 } else { options.method.highest_order() as usize + 1 };
         Foresight {

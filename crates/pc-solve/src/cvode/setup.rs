@@ -34,12 +34,17 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// The same, returning the field on failure.
-    pub(crate) fn start(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, (SolveError, F)> {
+    pub(crate) fn start(
+        mut field: F,
+        t0: f64,
+        y0: &[f64],
+        options: &Options,
+    ) -> Result<Self, (SolveError, F)> {
         let (options, linear_solver) = match checked(&field, t0, y0, options) {
             Ok(checked) => checked,
             Err(error) => return Err((error, field)),
         };
-        let foresight = Foresight::new(&field, t0, &options);
+        let foresight = Foresight::new(&mut field, t0, &options);
         let mut callbacks = UserData::new(field, y0.len());
         let parts = match Parts::new(&mut callbacks, t0, y0, &options, linear_solver) {
             Ok(parts) => parts,

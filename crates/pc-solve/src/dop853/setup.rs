@@ -66,6 +66,8 @@ pub struct Dop853<F> {
     /// Whether the length of the first step was given.
     pub(super) given: bool,
     pub(super) time: f64,
+    /// The length planned before the field changed to another piece.
+    pub(super) last_length: Option<f64>,
     pub(super) statistics: Statistics,
 }
 
@@ -88,12 +90,12 @@ impl<F: VectorField> Dop853<F> {
     }
 
     /// The same with validated input.
-    pub(crate) fn of(field: F, t0: f64, y0: &[f64], options: &Options) -> Self {
+    pub(crate) fn of(mut field: F, t0: f64, y0: &[f64], options: &Options) -> Self {
         let row = padded(y0.len());
         let mut y = y0.to_vec();
         y.resize(row, 0.0);
         let node = Node { t: t0, y, rates: vec![0.0; row] };
-        let places = Places::new(&field, t0, options.min_step);
+        let places = Places::new(&mut field, t0, options.min_step);
         Dop853 {
             field,
             limits: options.limits(),
@@ -114,6 +116,7 @@ impl<F: VectorField> Dop853<F> {
             begins: true,
             given: options.initial_step.is_some(),
             time: t0,
+            last_length: None,
             statistics: Statistics { current_time: t0, ..Statistics::default() },
         }
     }

@@ -16,6 +16,10 @@ const LEFT: f64 = 0.01;
 /// First guess of the length of the first step if the state or its rates vanish.
 pub(super) const FIRST: f64 = 1e-6;
 
+/// On another piece of the field a step may be as long as the last one before, up to this many times the first length
+/// that its rates suggest.
+const LEAP: f64 = 30.0;
+
 /// Why a step is rejected.
 enum Refusal {
     /// The error, more than 1 or NaN.
@@ -42,7 +46,10 @@ impl<F: VectorField> Dop853<F> {
         }
         let planned = match self.control.next {
             Some(length) => length,
-            None => self.first_length(direction, limit.unwrap_or(towards)),
+            None => {
+                let first = self.first_length(direction, limit.unwrap_or(towards));
+                self.last_length.take().map_or(first, |last| last.max(first).min(LEAP * first))
+            }
         };
         let mut length = planned.min(self.control.longest).max(self.control.shortest);
         let mut end = self.look_ahead(t + direction * length, limit, towards)?.or(limit);

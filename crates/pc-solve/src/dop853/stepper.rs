@@ -92,10 +92,24 @@ impl<F: VectorField> Stepper for Dop853<F> {
         // After a jump the motion may change faster: a step as long as the last could pass over an
         // event that recurs at once, like the impacts of a ball whose bounces accumulate.
         self.control.next = self.control.initial;
+        self.last_length = None;
         self.stiffness.restart();
         self.statistics.limited_steps += self.places.limited;
         self.places.restart();
         self.statistics.current_time = t;
+        Ok(())
+    }
+
+    fn enter_piece(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        columns: &[f64],
+        direction: Option<f64>,
+    ) -> Result<(), SolveError> {
+        let last = self.control.next;
+        self.restart(t, y, columns, direction)?;
+        self.last_length = last;
         Ok(())
     }
 

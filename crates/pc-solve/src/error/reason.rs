@@ -106,6 +106,14 @@ pub enum Reason {
         t: f64,
     },
 
+    /// The motion reaches surfaces on which the field changes, and no way on is consistent with the rates there.
+    Undecided {
+        /// The functions that vanish on them.
+        surfaces: Vec<String>,
+        /// When they were reached.
+        t: f64,
+    },
+
     /// The function of an event could not be evaluated, or that of another event evaluated with it.
     Event {
         /// Its name.
@@ -198,6 +206,7 @@ impl Reason {
             | Reason::Unresolved { t }
             | Reason::Rates { t }
             | Reason::Sliding { t, .. }
+            | Reason::Undecided { t, .. }
             | Reason::Event { t, .. }
             | Reason::Reset { t, .. }
             | Reason::Grazing { t, .. }
@@ -232,6 +241,7 @@ impl Reason {
             | Reason::Unresolved { .. }
             | Reason::Rates { .. }
             | Reason::Sliding { .. }
+            | Reason::Undecided { .. }
             | Reason::Event { .. }
             | Reason::Reset { .. }
             | Reason::Accumulation { .. }
@@ -298,6 +308,12 @@ impl Reason {
                 f,
                 "the motion reaches a corner or a jump of the field, {branch}, at t = {t} and does not cross it: Taylor's \
                  method cannot follow it there; choose another method"
+            ),
+            Reason::Undecided { surfaces, t } => write!(
+                f,
+                "at t = {t} the motion reaches surfaces on which the rates change, where {} = 0: no combination of their \
+                 sides leads on from there",
+                surfaces.join(" = ")
             ),
             Reason::Event { event, t } => {
                 write!(f, "the event {event} cannot be evaluated at t = {t}, after reaching t = {time}")

@@ -130,6 +130,11 @@ impl Sides {
         self.pass(values);
     }
 
+    /// Sets the side of a function, and the magnitude that it must exceed beyond zero to have passed through it.
+    pub(crate) fn set(&mut self, i: usize, side: f64, noise: f64) {
+        (self.sides[i], self.noise[i]) = (side, noise);
+    }
+
     fn crossed(&self, i: usize, value: f64) -> bool {
         let (side, noise) = (self.sides[i], self.noise[i]);
         let through = if noise == 0.0 { value * side <= 0.0 } else { value * side < -noise };

@@ -72,9 +72,11 @@ pub(crate) trait Here {
 }
 
 impl Places {
-    pub(crate) fn new(field: &impl VectorField, t0: f64, min_step: Option<f64>) -> Places {
+    pub(crate) fn new(field: &mut impl VectorField, t0: f64, min_step: Option<f64>) -> Places {
+        // Where f is held, it does not jump.
+        let held = field.held_time_dependence();
         Places {
-            dependence: field.time_dependence(),
+            dependence: held.unwrap_or_else(|| field.time_dependence()),
             begin: t0,
             min_step: min_step.unwrap_or(0.0),
             unsurprising: 0,

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use pc_expr::{Events, Failure, RootSeparation, VectorField};
+use pc_expr::{Events, Failure, PolynomialMotion, RootSeparation, VectorField};
 
 use crate::error::{NonFinite, Reason, SolveError};
 use crate::events::root_finding::Passage;
 use crate::events::samples::Look;
 use crate::integration::integration::Integration;
+use crate::integration::sides::write_functions;
 use crate::integration::stepper::Stepper;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
@@ -18,6 +19,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             if self.arrives(towards)? {
                 return Ok(());
             }
+            self.begin_on_sides(1.0_f64.copysign(towards - self.front.t))?;
             self.check_deadline()?;
             self.engine.step(towards)?;
             let to = self.engine.end_time();
@@ -31,7 +33,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             self.direction.get_or_insert(1.0_f64.copysign(towards - self.front.t));
         }
         let to = self.engine.end_time();
-        if self.events.events().is_empty() {
+        if self.events.events().is_empty() && self.held.len() == 0 {
             // Without events only the end of the step is needed, which is in `ahead`.
             if time == self.front.t {
                 std::mem::swap(&mut self.output, &mut self.front_state);
@@ -48,15 +50,28 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             Ok(separated) => separated,
             Err(error) => return Err(self.stay(error)),
         };
-        let (engine, events) = (&mut self.engine, &mut self.events);
-        let mut blamed = 0;
+        let (mut blamed, own) = (0, self.events.events().len());
+        let mut place = std::mem::take(&mut self.held.place);
+        let (engine, events, held) = (&mut self.engine, &mut self.events, &self.held);
+        let needs_no_states = own == 0 && held.need_no_states();
         let evaluate = |t: f64, values: &mut [f64]| {
+            if needs_no_states {
+                return write_functions(engine.field_mut(), held, t, &place, values)
+                    .map_err(|failure| SearchFailure::Event(t, failure));
+            }
             let state = if t == to {
                 engine.end_state()
             } else {
                 engine.interpolate(t, 0).map_err(SearchFailure::Method)?
             };
-            values_at(events, t, state, values, &mut blamed)
+            let (values, of_surfaces) = values.split_at_mut(own);
+            if of_surfaces.is_empty() {
+                return values_at(events, t, state, values, &mut blamed)
+                    .map_err(|failure| SearchFailure::Event(t, failure));
+            }
+            place.copy_from_slice(state);
+            values_at(events, t, &place, values, &mut blamed)
+                .and_then(|()| write_functions(engine.field_mut(), held, t, &place, of_surfaces))
                 .map_err(|failure| SearchFailure::Event(t, failure))
         };
         let functions = self.front.values.len();
@@ -65,6 +80,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.sides_after.clone_from(&self.sides);
         let found = self.sides_after.first(from, &times, &mut look);
         self.times = times;
+        self.held.place = place;
         let passage = match found {
             Ok(passage) => passage,
             Err(SearchFailure::Method(error)) => return Err(self.stay(error)),
@@ -97,36 +113,53 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     fn look_at(&mut self, mut to: f64, times: &mut Vec<f64>) -> Result<bool, SolveError> {
         times.clear();
         let from = self.front.t;
-        let mut separated = false;
-        let program = self.events.program();
-        if let Some((program, parameters)) =
-            program.filter(|(program, _)| program.state_len() == self.engine.field().dim())
-        {
-            let separation = match &mut self.separation {
+        let direction = 1.0_f64.copysign(to - from);
+        let dim = self.engine.field().dim();
+        let surfaces = match self.engine.field_mut().switching() {
+            Some(switching) if self.held.len() > 0 => {
+                switching.program().map(|(program, parameters)| (Arc::clone(program), parameters.to_vec()))
+            }
+            _ => None,
+        };
+        let own = self.events.program().filter(|(program, _)| program.state_len() == dim);
+        let own_separated = own
+            .is_some_and(|(program, _)| program.outputs_len() == self.events.events().len())
+            || self.events.events().is_empty();
+        let needs_no_states = self.events.events().is_empty() && self.held.need_no_states();
+        let mut separated = own_separated && (surfaces.is_some() || self.held.len() == 0);
+        let of_surfaces = surfaces.as_ref().map(|(program, parameters)| (program, &parameters[..]));
+        let programs = [(own, &mut self.separation), (of_surfaces, &mut self.held.separation)];
+        for (program, separation) in programs {
+            let Some((program, parameters)) = program else { continue };
+            let separation = match separation {
                 Some(known) if Arc::ptr_eq(known.program(), program) => known,
                 other => other.insert(RootSeparation::new(Arc::clone(program))),
             };
-            let motion = self.engine.polynomial(&mut self.coefficients)?;
+            let before = times.len();
+            let motion = match needs_no_states {
+                true => PolynomialMotion { start: from, coefficients: &self.front_state },
+                false => self.engine.polynomial(&mut self.coefficients)?,
+            };
             let start = motion.start;
-            separated = separation.separate(motion, (from - start, to - start), parameters, times);
+            separated &= separation.separate(motion, (from - start, to - start), parameters, times);
             let ends_before = times.last() != Some(&(to - start));
-            times.iter_mut().for_each(|time| *time += start);
+            times[before..].iter_mut().for_each(|time| *time += start);
             // Drop times that rounding puts at or beyond the ends.
-            let direction = 1.0_f64.copysign(to - from);
             times.retain(|time| (time - from) * direction > 0.0 && (to - time) * direction > 0.0);
             if ends_before {
                 to = times.pop().unwrap_or(to);
             }
-            // Projected states do not lie on the polynomial.
-            separated &=
-                program.outputs_len() == self.events.events().len() && !self.engine.field().has_projection();
         }
+        // Projected states do not lie on the polynomial, nor does σ follow it.
+        separated &=
+            needs_no_states || !self.engine.field().has_projection() && !self.held.sides.contains(&0.0);
         if !separated {
             let (pieces, length) = (self.engine.limits().samples_per_step, to - from);
             times.extend((1..pieces).map(|k| from + length * (f64::from(k) / f64::from(pieces))));
-            times.sort_unstable_by(|a, b| ((a - b) * length).total_cmp(&0.0));
-            times.dedup();
         }
+        times.sort_unstable_by(|a, b| ((a - b) * direction).total_cmp(&0.0));
+        times.dedup();
+        times.retain(|time| (to - time) * direction > 0.0);
         times.push(to);
         Ok(separated)
     }
@@ -148,10 +181,14 @@ impl<S: Stepper, E: Events> Integration<S, E> {
 
     /// The event functions at a state.
     pub(crate) fn evaluate(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
-        let (mut values, mut blamed) = (vec![f64::NAN; self.events.events().len()], 0);
-        match values_at(&mut self.events, t, state, &mut values, &mut blamed) {
+        let own = self.events.events().len();
+        let (mut values, mut blamed) = (vec![f64::NAN; own + self.held.len()], 0);
+        if let Err(failure) = values_at(&mut self.events, t, state, &mut values[..own], &mut blamed) {
+            return Err(self.event_error(blamed, t, failure));
+        }
+        match write_functions(self.engine.field_mut(), &self.held, t, state, &mut values[own..]) {
             Ok(()) => Ok(values),
-            Err(failure) => Err(self.event_error(blamed, t, failure)),
+            Err(failure) => Err(self.failed(Reason::Rates { t }, Some(failure))),
         }
     }
 
@@ -162,7 +199,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     pub(crate) fn name(&self, event: usize) -> String {
-        self.events.events().get(event).map_or_else(String::new, |event| event.name().to_owned())
+        let own = self.events.events();
+        own.get(event).map_or_else(String::new, |event| event.name().to_owned())
     }
 
     /// The error of a failure beyond the front; the integration stays at the front.

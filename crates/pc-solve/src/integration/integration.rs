@@ -11,6 +11,7 @@ use crate::events::root_finding::Sides;
 use crate::events::samples::{Room, Sample};
 use crate::integration::checks::{check_inequalities, check_length, finite};
 use crate::integration::pace::Pace;
+use crate::integration::sides::HeldSides;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
 
@@ -86,6 +87,10 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) coefficients: Vec<f64>,
     /// Separates the roots of event functions given as a program.
     pub(crate) separation: Option<RootSeparation>,
+    /// The sides of the surfaces of the field, whose functions follow those of the events.
+    pub(crate) held: HeldSides,
+    /// Of each occurrence so far, if there are columns.
+    pub(crate) time_derivatives: Vec<Vec<f64>>,
     /// Whether no step has been made since a restart.
     pub(crate) restarted: bool,
     /// Whether the motion has been restarted, by a reset for example.
@@ -122,21 +127,24 @@ impl<S: Stepper, E: Events> fmt::Debug for Integration<S, E> {
 
 impl<S: Stepper> Integration<S> {
     /// An integration by a method that has made no step yet.
-    pub fn of(stepper: S) -> Self {
+    pub fn of(mut stepper: S) -> Self {
         let (t, state) = (stepper.time(), stepper.end_state().to_vec());
-        let sides = Sides::new(Vec::new());
+        let held = HeldSides::of(stepper.field_mut());
+        let sides = Sides::new(directions(&NoEvents, &held));
+        let values = vec![1.0; held.len()];
         Integration {
             engine: stepper,
             events: NoEvents,
             histories: Vec::new(),
             direction: None,
-            front: Sample { t, values: Vec::new() },
+            front: Sample { t, values },
             output: state.clone(),
             ahead: state.clone(),
             front_state: state,
             sides_before: sides.clone(),
             sides_after: sides.clone(),
-            room: Room::new(0),
+            room: Room::new(held.len()),
+            held,
             sides,
             due: Vec::new(),
             noise: Vec::new(),
@@ -144,6 +152,7 @@ impl<S: Stepper> Integration<S> {
             times: Vec::new(),
             coefficients: Vec::new(),
             separation: None,
+            time_derivatives: Vec::new(),
             restarted: false,
             jumped: false,
             pace: Pace::default(),
@@ -174,7 +183,8 @@ impl<S: Stepper> Integration<S> {
             (self.jumped, self.restarted, self.direction) = (true, true, None);
         }
         let n = events.events().len();
-        let sides = Sides::new(directions(&events));
+        let held = HeldSides::of(self.engine.field_mut());
+        let sides = Sides::new(directions(&events, &held));
         let mut integration = Integration {
             engine: self.engine,
             events,
@@ -186,7 +196,8 @@ impl<S: Stepper> Integration<S> {
             front_state: state.clone(),
             sides_before: sides.clone(),
             sides_after: sides.clone(),
-            room: Room::new(n),
+            room: Room::new(n + held.len()),
+            held,
             sides,
             due: Vec::new(),
             noise: Vec::new(),
@@ -196,6 +207,7 @@ impl<S: Stepper> Integration<S> {
             times: Vec::with_capacity(64),
             coefficients: Vec::with_capacity(16 * state.len()),
             separation: None,
+            time_derivatives: Vec::new(),
             restarted: self.restarted,
             jumped: self.jumped,
             pace: Pace::default(),
@@ -225,8 +237,10 @@ impl<S: Stepper> Integration<S> {
     }
 }
 
-pub(crate) fn directions(events: &impl Events) -> Vec<Direction> {
-    events.events().iter().map(Event::crosses).collect()
+/// The directions of the events, then those of the surfaces of the field.
+pub(crate) fn directions(events: &impl Events, held: &HeldSides) -> Vec<Direction> {
+    let surfaces = std::iter::repeat_n(Direction::Both, held.len());
+    events.events().iter().map(Event::crosses).chain(surfaces).collect()
 }
 
 impl<S: Stepper, E: Events> Integration<S, E> {
@@ -264,12 +278,21 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// Ends the integration and returns the vector field.
-    pub fn into_field(self) -> S::Field {
+    pub fn into_field(mut self) -> S::Field {
+        self.release();
         self.engine.into_field()
     }
 
+    /// Leaves the field on the sides of its own functions.
+    pub(crate) fn release(&mut self) {
+        if let Some(field) = self.engine.field_mut().switching() {
+            field.hold(None);
+        }
+    }
+
     /// Ends the integration and returns the vector field and the events.
-    pub fn into_parts(self) -> (S::Field, E) {
+    pub fn into_parts(mut self) -> (S::Field, E) {
+        self.release();
         (self.engine.into_field(), self.events)
     }
 
@@ -330,10 +353,11 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             return Err(InputError::NotFinite { what, value: y[i] }.into());
         }
         check_inequalities(self.field(), y, &self.engine.limits().inequalities)?;
+        self.held.are_known = false;
         let values = self.evaluate(t, y)?;
         self.engine.restart(t, y, columns, None)?;
         (self.direction, self.restarted, self.jumped) = (None, true, true);
-        self.sides = Sides::new(directions(&self.events));
+        self.sides = Sides::new(directions(&self.events, &self.held));
         self.sides.pass(&values);
         self.sides_before = self.sides.clone();
         self.front = Sample { t, values };

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
-use pc_expr::{Events, Failure, VectorField};
+use pc_expr::{Event, Events, Failure, VectorField};
 
 use crate::error::{NonFinite, Reason, SolveError};
 use crate::events::events::Occurrence;
@@ -35,10 +35,13 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         let mut occurrences: Vec<Occurrence> = Vec::with_capacity(self.due.len());
         let mut matrix = self.sensitivities_before(t)?;
         let mut shifts = None;
+        let moved = self.time_derivatives_of_due(t)?;
         let mut sides = self.sides.clone();
         sides.arrive(&self.due, &self.noise, &self.beyond);
         let mut values = None;
-        let mut queue = VecDeque::from(self.due.clone());
+        let own = self.events.events().len();
+        let reached: Vec<usize> = self.due.iter().filter_map(|&event| event.checked_sub(own)).collect();
+        let mut queue: VecDeque<usize> = self.due.iter().copied().filter(|&event| event < own).collect();
         while let Some(event) = queue.pop_front() {
             self.check_cascade(event, t, &occurrences)?;
             let state_before = state.clone();
@@ -54,11 +57,17 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 }
                 state = after;
             }
+            if self.has_columns() {
+                // Those that a reset sets off occur when that one does.
+                let own = moved.iter().find(|(known, _)| *known == event).map(|(_, shifts)| shifts.clone());
+                let own = own.or_else(|| shifts.clone()).unwrap_or_default();
+                self.time_derivatives.push(own);
+            }
             let state_after = state.clone();
             occurrences.push(Occurrence { event, time: t, state_before, state_after });
             if resets {
                 let reached = self.evaluate(t, &state)?;
-                for carried in sides.carried(&reached) {
+                for carried in sides.carried(&reached).into_iter().filter(|&carried| carried < own) {
                     let is_new = carried != event && !queue.contains(&carried);
                     if is_new && self.stays_beyond(carried, t, &state, &reached, &sides, &matrix)? {
                         queue.push_back(carried);
@@ -76,8 +85,15 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 self.sides = sides;
                 self.front.values = values;
                 self.front_state = state;
+                self.held.are_known = false;
+                self.begin_on_sides(self.direction.unwrap_or(1.0))?;
             }
-            None => self.sides.cross(&self.due, &self.front.values, &self.noise, &self.beyond),
+            None => {
+                self.sides.cross(&self.due, &self.front.values, &self.noise, &self.beyond);
+                if !reached.is_empty() {
+                    self.pass(&reached)?;
+                }
+            }
         }
         self.due.clear();
 
@@ -109,12 +125,14 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// S⁻ at the front if a reset changes it; empty otherwise. An error for simultaneous resets,
     /// where S⁺ is not defined.
     fn sensitivities_before(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
-        let resets = self.due.iter().filter(|&&event| self.events.events()[event].resets()).count();
+        let events = self.events.events();
+        let resets = self.due.iter().filter(|&&event| events.get(event).is_some_and(Event::resets)).count();
         if resets == 0 || self.engine.column_parameters().is_empty() {
             return Ok(Vec::new());
         }
         if resets > 1 {
-            let events = self.due.iter().map(|&event| self.name(event)).collect();
+            let own = self.due.iter().filter(|&&event| event < self.events.events().len());
+            let events = own.map(|&event| self.name(event)).collect();
             return Err(self.failed(Reason::Together { events, t }, None));
         }
         self.engine.columns()
@@ -184,11 +202,12 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
         let mut moved = state.to_vec();
         let mut perturbation = vec![0.0; values.len()];
-        let mut at = vec![0.0; values.len()];
+        let mut at = values.to_vec();
+        let own = self.events.events().len();
         for i in 0..state.len() {
             moved[i] = state[i] + self.engine.tolerance(i, state[i]);
             // A state at which a function is undefined does not contribute.
-            if self.events.evaluate(t, &moved, &mut at).is_ok() {
+            if self.events.evaluate(t, &moved, &mut at[..own]).is_ok() {
                 let changes = perturbation.iter_mut().zip(at.iter().zip(values));
                 changes.for_each(|(sum, (at, value))| *sum += (at - value).abs());
             }

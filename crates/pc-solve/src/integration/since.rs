@@ -136,6 +136,11 @@ impl<F: VectorField> VectorField for Since<F> {
         self.field.time_dependence().since(self.origin)
     }
 
+    // Its sides are held through the field itself, at times that are not counted from the start.
+    fn held_time_dependence(&mut self) -> Option<TimeDependence> {
+        self.field.held_time_dependence().map(|dependence| dependence.since(self.origin))
+    }
+
     fn series(&mut self) -> Result<&TaylorSeries, Failure> {
         self.field.series()
     }

@@ -95,6 +95,21 @@ pub trait Stepper {
         direction: Option<f64>,
     ) -> Result<(), SolveError>;
 
+    /// [Restarts](Stepper::restart) where the field changes to another piece and the state stays: the next step may be as
+    /// long as the last.
+    ///
+    /// # Errors
+    /// As there.
+    fn enter_piece(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        columns: &[f64],
+        direction: Option<f64>,
+    ) -> Result<(), SolveError> {
+        self.restart(t, y, columns, direction)
+    }
+
     /// A time beyond which the field is never evaluated.
     fn stop_time(&self) -> Option<f64>;
 

@@ -34,15 +34,16 @@ impl<F: VectorField> Path<F> {
         !self.transpose.has_entries(&self.field)
     }
 
-    /// Records the motion from y(t0) = y0 to `t1`.
+    /// Records the motion from y(t0) = y0 to `t1`, on these sides of the surfaces of the field.
     pub(crate) fn record(
         &mut self,
         t0: f64,
         y0: &[f64],
         t1: f64,
+        sides: &[f64],
         options: &Options,
     ) -> Result<(), SolveError> {
-        self.motion = MotionRecord::of(&mut self.field, t0, y0, t1, options)?;
+        self.motion = MotionRecord::of(&mut self.field, t0, y0, t1, sides, options)?;
         Ok(())
     }
 }

@@ -11,6 +11,8 @@ use crate::cvode::forward::sensitivities::check_passages;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::observer::Observed;
+use crate::integration::saltation::transposed_passage;
+use crate::integration::sides::Passage;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
 use crate::sensitivity::adjoint_field::{AdjointField, Path, not_finite};
@@ -18,11 +20,31 @@ use crate::sensitivity::adjoint_options::AdjointOptions;
 use crate::sensitivity::functional::{Functional, Gradient};
 use crate::settings::options::Options;
 
-/// The start of a piece of the motion; after a reset, with the event and the state before it.
+/// The start of a piece of the motion.
 struct Mark {
     t: f64,
     y: Vec<f64>,
-    jump: Option<(usize, Vec<f64>)>,
+    jump: Option<Jump>,
+    /// The sides of the surfaces of the field from there on.
+    sides: Vec<f64>,
+}
+
+/// What makes λ jump.
+enum Jump {
+    /// A reset: the event and the state before it.
+    Reset(usize, Vec<f64>),
+    /// Surfaces on which f jumps, and the sides before.
+    Surfaces(Vec<usize>, Vec<f64>),
+}
+
+impl Mark {
+    fn new(t: f64, y: &[f64], jump: Option<Jump>) -> Mark {
+        Mark { t, y: y.to_vec(), jump, sides: Vec::new() }
+    }
+
+    fn is_reset(&self) -> bool {
+        matches!(self.jump, Some(Jump::Reset(..)))
+    }
 }
 
 /// The gradients of functionals of the motion from y(t0) = y0 to t1.
@@ -60,22 +82,33 @@ pub(crate) fn gradients<F: VectorField, E: Events, G: Functional>(
             let mut path = path.borrow_mut();
             if there.has_jumps {
                 // Restore the data kept by the field since the last reset.
-                let since = there.marks[..=i].iter().rev().find(|mark| mark.jump.is_some());
+                let since = there.marks[..=i].iter().rev().find(|mark| mark.is_reset());
                 let since = since.unwrap_or(&there.marks[0]);
                 path.field.restart(since.t, &since.y);
             }
-            path.record(mark.t, &mark.y, to, &motion)?;
+            path.record(mark.t, &mark.y, to, &mark.sides, &motion)?;
             drop(path);
             for way in &mut ways {
                 way.advance_to(mark.t)?;
             }
         }
-        if let Some((event, before)) = &mark.jump {
-            for way in &mut ways {
-                way.jump(&path, &mut events, *event, (mark.t, before, &mark.y), &motion)?;
+        for way in &mut ways {
+            match &mark.jump {
+                Some(Jump::Reset(event, before)) => {
+                    let before_it = i.checked_sub(1).map_or(&[][..], |i| &there.marks[i].sides);
+                    let there = (mark.t, &before[..], &mark.y[..]);
+                    way.jump(&path, &mut events, *event, there, (before_it, &mark.sides), &motion)?;
+                }
+                Some(Jump::Surfaces(due, before)) => {
+                    way.pass(&path, due, (mark.t, &mark.y), (before, &mark.sides))?;
+                }
+                None => {}
             }
         }
         to = mark.t;
+    }
+    if let Some(field) = path.borrow_mut().field.switching() {
+        field.hold(None);
     }
     ways.into_iter().map(|way| way.arrive((t0, y0), there.statistics)).collect()
 }
@@ -101,7 +134,8 @@ fn there<F: VectorField, E: Events>(
     let names: Vec<String> = events.events().iter().map(|event| event.name().to_owned()).collect();
     let resetting: Vec<bool> = events.events().iter().map(Event::resets).collect();
     let mut motion = Integration::new(field, t0, y0, options)?.with_events(events)?;
-    let marks = RefCell::new(vec![Mark { t: t0, y: y0.to_vec(), jump: None }]);
+    motion.held.passages = Some(Vec::new());
+    let marks = RefCell::new(vec![Mark::new(t0, y0, None)]);
     let mut together = None;
     let steps = RefCell::new(0);
     let direction = 1.0_f64.copysign(t1 - t0);
@@ -109,7 +143,7 @@ fn there<F: VectorField, E: Events>(
         *steps.borrow_mut() += 1;
         if *steps.borrow() == interval && (t1 - t) * direction > 0.0 {
             *steps.borrow_mut() = 0;
-            marks.borrow_mut().push(Mark { t, y: y.to_vec(), jump: None });
+            marks.borrow_mut().push(Mark::new(t, y, None));
         }
         ControlFlow::Continue(())
     };
@@ -119,7 +153,11 @@ fn there<F: VectorField, E: Events>(
         }
         let mut marks = marks.borrow_mut();
         let last = marks.last().filter(|mark| mark.t == occurrence.time && occurrence.time != t0);
-        match last.map(|mark| mark.jump.as_ref().map(|(event, _)| *event)) {
+        let event = |mark: &Mark| match mark.jump {
+            Some(Jump::Reset(event, _)) => Some(event),
+            _ => None,
+        };
+        match last.map(event) {
             Some(Some(other)) => {
                 together = Some((other, occurrence.clone()));
                 return ControlFlow::Break(());
@@ -127,8 +165,8 @@ fn there<F: VectorField, E: Events>(
             Some(None) => drop(marks.pop()), // the mark at y⁻ is replaced by that at y⁺
             None => {}
         }
-        let jump = Some((occurrence.event, occurrence.state_before.clone()));
-        marks.push(Mark { t: occurrence.time, y: occurrence.state_after.clone(), jump });
+        let jump = Jump::Reset(occurrence.event, occurrence.state_before.clone());
+        marks.push(Mark::new(occurrence.time, &occurrence.state_after, Some(jump)));
         *steps.borrow_mut() = 0;
         ControlFlow::Continue(())
     };
@@ -151,9 +189,27 @@ fn there<F: VectorField, E: Events>(
         return fail(Reason::EndsEarly { event: names[event].clone(), t }, t, state);
     }
     let (end, statistics) = (motion.state().to_vec(), motion.statistics());
-    let marks = marks.into_inner();
-    let has_jumps = marks.iter().any(|mark| mark.jump.is_some());
+    let mut marks = marks.into_inner();
+    with_passages(&mut marks, motion.held.passages.take().unwrap_or_default(), direction);
+    let has_jumps = marks.iter().any(Mark::is_reset);
     Ok(There { marks, has_jumps, end, statistics })
+}
+
+/// Adds marks where surfaces are passed, and the sides from each mark on.
+fn with_passages(marks: &mut Vec<Mark>, passages: Vec<Passage>, direction: f64) {
+    for Passage { surfaces, time, state, before, after } in passages {
+        let place = marks.partition_point(|mark| (mark.t - time) * direction < 0.0);
+        if surfaces.is_empty() {
+            marks[place..].iter_mut().for_each(|mark| mark.sides.clone_from(&after));
+            continue;
+        }
+        let mark = Mark::new(time, &state, Some(Jump::Surfaces(surfaces, before)));
+        match marks.get_mut(place) {
+            Some(known) if known.t == time && known.jump.is_none() && place > 0 => *known = mark,
+            _ => marks.insert(place, mark),
+        }
+        marks[place..].iter_mut().for_each(|mark| mark.sides.clone_from(&after));
+    }
 }
 
 /// The equations of one functional, and λ.
@@ -227,6 +283,7 @@ impl<F: VectorField, G: Functional> Way<F, G> {
         events: &mut E,
         event: usize,
         (t, before, after): (f64, &[f64], &[f64]),
+        sides: (&[f64], &[f64]),
         options: &Options,
     ) -> Result<(), SolveError> {
         let Some((mut adjoint, lambda)) = self.pause(t, after)? else { return Ok(()) };
@@ -238,7 +295,30 @@ impl<F: VectorField, G: Functional> Way<F, G> {
             // No step is made.
             let options = Options { stop_time: None, ..options.clone() };
             let mut there = Integration::new(field, t, after, &options)?.with_events(events)?;
-            there.transposed_jump(event, t, before, after, (&lambda, step), parameters)?
+            there.transposed_jump(event, (t, before, after), sides, (&lambda, step), parameters)?
+        };
+        for (sum, by_parameter) in self.by_parameters.iter_mut().zip(jumped.1) {
+            *sum += by_parameter;
+        }
+        self.begin(adjoint, t, &jumped.0)
+    }
+
+    /// Changes λ⁺ to λ⁻ where f jumps on surfaces g = 0,
+    /// ```text
+    /// λ⁻ = λ⁺ − κ g_y,    −κ g_p for ∂G/∂p,    κ = λ⁺·(f⁻ − f⁺)/(g_t + g_y f⁻)
+    /// ```
+    fn pass(
+        &mut self,
+        path: &RefCell<Path<F>>,
+        due: &[usize],
+        (t, y): (f64, &[f64]),
+        (before, after): (&[f64], &[f64]),
+    ) -> Result<(), SolveError> {
+        let Some((adjoint, lambda)) = self.pause(t, y)? else { return Ok(()) };
+        let parameters = self.by_parameters.len();
+        let jumped = {
+            let field = &mut path.borrow_mut().field;
+            transposed_passage(field, due, (t, y), (before, after), (&lambda, parameters))?
         };
         for (sum, by_parameter) in self.by_parameters.iter_mut().zip(jumped.1) {
             *sum += by_parameter;

@@ -31,8 +31,8 @@ impl<F: VectorField> Integration<Cvode<F>> {
     }
 }
 
-/// Derivatives are integrated by CVODES only.
-impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
+/// Derivatives of methods that have them.
+impl<S: Stepper, E: Events> Integration<S, E> {
     /// S at [`time`](Integration::time), S⁺ at an event: entry `i + j * dim` is the derivative of
     /// component i for column j.
     ///
@@ -43,11 +43,6 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
     /// [`SolveError::Integration`] if a derivative has grown beyond the largest number.
     pub fn sensitivities(&mut self) -> Result<Vec<f64>, SolveError> {
         self.engine.columns()
-    }
-
-    /// The work for the sensitivities so far.
-    pub fn sensitivity_statistics(&self) -> SensitivityStatistics {
-        self.engine.sensitivity_statistics()
     }
 
     /// Restarts from y(t) = y as [`restart`](Integration::restart) does, with these columns of S.
@@ -87,6 +82,14 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
             *matrix.borrow_mut() = integration.engine.columns()?;
             Ok(())
         })
+    }
+}
+
+/// What CVODES alone has.
+impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
+    /// The work for the sensitivities so far.
+    pub fn sensitivity_statistics(&self) -> SensitivityStatistics {
+        self.engine.sensitivity_statistics()
     }
 
     /// The derivative of S of the given order at `t` in the last step, column-major, as

@@ -21,15 +21,17 @@ pub(crate) struct MotionRecord {
 }
 
 impl MotionRecord {
-    /// Integrates from y(t0) = y0 to `t1`, without evaluations beyond.
+    /// Integrates from y(t0) = y0 to `t1`, without evaluations beyond, on these sides of the surfaces of the field.
     pub(crate) fn of(
         field: &mut impl VectorField,
         t0: f64,
         y0: &[f64],
         t1: f64,
+        sides: &[f64],
         options: &Options,
     ) -> Result<MotionRecord, SolveError> {
         let mut motion = Integration::new(field, t0, y0, &options.clone().stop_time(t1))?;
+        motion.stay_on(sides);
         let direction = 1.0_f64.copysign(t1 - t0);
         let mut record = MotionRecord { dim: y0.len(), direction, ..MotionRecord::default() };
         while motion.time() != t1 {

@@ -9,7 +9,9 @@ use crate::error::SolveError;
 use crate::events::events::Occurrence;
 use crate::integration::dense_output::DenseOutput;
 use crate::integration::integration::{Ending, Integration};
+use crate::integration::sides::Slide;
 use crate::integration::trajectory::Trajectory;
+use crate::sensitivity::explicit::Differentiated;
 use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 
@@ -79,8 +81,8 @@ pub fn solve_with_sensitivities<F: VectorField>(
     let mut reached = SensitivityTrajectory::new(field.dim(), sensitivities.len());
     let mut options = options.clone();
     options.stop_time = options.stop_time.or(times.last().copied().filter(|t| t.is_finite()));
-    let mut integration = match Integration::with_sensitivities(field, t0, y0, &options, sensitivities) {
-        Ok(integration) => integration,
+    let mut integration = match Differentiated::new(field, t0, y0, &options, sensitivities) {
+        Ok(method) => Integration::of(method),
         Err(error) => return Err(Box::new(SolveFailure { reached, error })),
     };
     let result = integration.run_with_sensitivities(
@@ -93,6 +95,7 @@ pub fn solve_with_sensitivities<F: VectorField>(
         |_| ControlFlow::Continue(()),
     );
     reached.motion.finish(matches!(result, Ok(Ending::Completed)), integration.statistics());
+    integration.release();
     match result {
         Ok(_) => Ok(reached),
         Err(error) => Err(Box::new(SolveFailure { reached, error })),
@@ -107,8 +110,12 @@ pub struct SensitivitySolution {
     pub trajectory: SensitivityTrajectory,
     /// The occurrences, in order.
     pub occurrences: Vec<Occurrence>,
+    /// Of each occurrence the [derivatives of its time](Integration::time_derivatives), one for each column.
+    pub time_derivatives: Vec<Vec<f64>>,
     /// How it ended; none if it failed.
     pub ending: Option<Ending>,
+    /// The parts that slide along surfaces on which the field jumps.
+    pub slides: Vec<Slide>,
 }
 
 /// As [`solve_with_sensitivities`], with events: S jumps at resets, by [their
@@ -127,11 +134,17 @@ pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
     mut output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
 ) -> Result<SensitivitySolution, Box<SolveFailure<SensitivitySolution>>> {
     let trajectory = SensitivityTrajectory::new(field.dim(), sensitivities.len());
-    let mut reached = SensitivitySolution { trajectory, occurrences: Vec::new(), ending: None };
+    let mut reached = SensitivitySolution {
+        trajectory,
+        occurrences: Vec::new(),
+        time_derivatives: Vec::new(),
+        ending: None,
+        slides: Vec::new(),
+    };
     let mut options = options.clone();
     options.stop_time = options.stop_time.or(times.last().copied().filter(|t| t.is_finite()));
-    let start = Integration::with_sensitivities(field, t0, y0, &options, sensitivities);
-    let mut integration = match start.and_then(|integration| integration.with_events(events)) {
+    let start = Differentiated::new(field, t0, y0, &options, sensitivities);
+    let mut integration = match start.and_then(|method| Integration::of(method).with_events(events)) {
         Ok(integration) => integration,
         Err(error) => return Err(Box::new(SolveFailure { reached, error })),
     };
@@ -147,6 +160,9 @@ pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
     let result = integration.run_with_sensitivities(times, keep, occurred);
     let complete = matches!(result, Ok(Ending::Completed));
     reached.trajectory.motion.finish(complete, integration.statistics());
+    reached.slides = integration.slides().to_vec();
+    reached.time_derivatives = integration.time_derivatives().to_vec();
+    integration.release();
     match result {
         Ok(ending) => Ok(SensitivitySolution { ending: Some(ending), ..reached }),
         Err(error) => Err(Box::new(SolveFailure { reached, error })),
@@ -170,7 +186,7 @@ pub fn solve_dense_with_sensitivities<F: VectorField>(
     options.stop_time = options.stop_time.or(Some(end).filter(|t| t.is_finite()));
     let (mut motion, mut matrix) = (DenseOutput::default(), DenseOutput::default());
     let mut integration = Integration::with_sensitivities(field, t0, y0, &options, sensitivities)?;
-    integration.run_dense_with_sensitivities(
+    let result = integration.run_dense_with_sensitivities(
         end,
         |of_state, of_matrix| {
             motion.extend([of_state]);
@@ -178,6 +194,7 @@ pub fn solve_dense_with_sensitivities<F: VectorField>(
             ControlFlow::Continue(())
         },
         |_| ControlFlow::Continue(()),
-    )?;
-    Ok((motion, matrix))
+    );
+    integration.release();
+    result.map(|_| (motion, matrix))
 }

@@ -2,6 +2,7 @@
 
 use crate::events::events::Occurrence;
 use crate::integration::integration::Ending;
+use crate::integration::sides::Slide;
 use crate::integration::trajectory::Trajectory;
 
 /// The part of a motion that was integrated.
@@ -13,10 +14,17 @@ pub struct Solution {
     pub occurrences: Vec<Occurrence>,
     /// How it ended; none if it failed.
     pub ending: Option<Ending>,
+    /// The parts that slide along surfaces on which the field jumps; none are kept with checkpoints.
+    pub slides: Vec<Slide>,
 }
 
 impl Solution {
     pub(crate) fn new(dim: usize) -> Solution {
-        Solution { trajectory: Trajectory::new(dim), occurrences: Vec::new(), ending: None }
+        Solution {
+            trajectory: Trajectory::new(dim),
+            occurrences: Vec::new(),
+            ending: None,
+            slides: Vec::new(),
+        }
     }
 }

@@ -172,6 +172,8 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         };
         let result = integration.run_observed(times, Observed::new(output).occurrences(occurred).steps(step));
         solution.trajectory.finish(matches!(result, Ok(Ending::Completed)), integration.statistics());
+        solution.slides = integration.slides().to_vec();
+        integration.release();
         match result {
             Ok(ending) => Ok(Solution { ending: Some(ending), ..solution }),
             Err(error) => Err(Box::new(SolveFailure { reached: solution, error })),
@@ -188,7 +190,9 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
             motion.extend([segment]);
             ControlFlow::Continue(())
         };
-        self.start_towards(Some(end))?.run_dense(end, keep, |_| ControlFlow::Continue(()))?;
-        Ok(motion)
+        let mut integration = self.start_towards(Some(end))?;
+        let result = integration.run_dense(end, keep, |_| ControlFlow::Continue(()));
+        integration.release();
+        result.map(|_| motion)
     }
 }

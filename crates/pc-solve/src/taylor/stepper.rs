@@ -85,7 +85,7 @@ impl<F: VectorField> Taylor<F> {
         let order = tolerances.order(cost, options.max_order);
         let mut ahead = Polynomial::new(y0.len(), order);
         ahead.of_order_mut(0).copy_from_slice(y0);
-        let places = Places::new(&field, t0, options.min_step);
+        let places = Places::new(&mut field, t0, options.min_step);
         let zeros = || vec![0.0; y0.len()];
         Ok(Taylor {
             field,

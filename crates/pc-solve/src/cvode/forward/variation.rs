@@ -24,7 +24,7 @@ impl Variation {
     }
 
     /// Writes ṡ of all columns s at (t, y).
-    pub(super) fn rates<'a>(
+    pub(crate) fn rates<'a>(
         &mut self,
         field: &mut impl VectorField,
         t: f64,

@@ -1,0 +1,190 @@
+//! Expressions of several pieces, held on one of them.
+
+use rustc_hash::FxHashSet;
+
+use crate::graph::dag::Dag;
+use crate::graph::expr::Expr;
+use crate::graph::function::Function;
+use crate::graph::graph::Graph;
+use crate::graph::node::{Atom, Node, NodeId};
+use crate::graph::number::Number;
+use crate::graph::subgraph::Cone;
+
+/// Expressions in which the side of each surface is a symbol: smooth functions, which are continued beyond the surfaces.
+#[derive(Clone, Debug)]
+pub struct Held<'g> {
+    /// The expressions with sides for the pieces.
+    pub values: Vec<Expr<'g>>,
+    /// The surfaces, each with its side; a surface contains the sides of those before it only.
+    pub surfaces: Vec<Surface<'g>>,
+}
+
+/// A surface on which expressions change from one piece to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface<'g> {
+    /// Vanishes there.
+    pub function: Expr<'g>,
+    /// Its sign: 1 or −1.
+    pub side: Expr<'g>,
+}
+
+impl Graph {
+    /// The expressions with their pieces held: with the side s of each surface g that passes where the `moving` symbols
+    /// change,
+    /// ```text
+    /// sign(g) = s,   |g| = s g,   step(g, a, b) = step(s, a, b),   min(a, b) = step(s, b, a) with g = a − b,
+    /// atan(u/v) = atan2(s u, s v) with g = v
+    /// ```
+    /// The surfaces of a product are those of its factors. Expressions of one piece stay as they are.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, m] = graph.symbols(["x", "m"]);
+    /// let held = graph.held(&[-m * (2.0 * x).sign(), (x * m).abs()], &[x]);
+    /// assert_eq!(held.surfaces.len(), 1);
+    /// let (s, function) = (held.surfaces[0].side, held.surfaces[0].function);
+    /// assert_eq!((function, held.values[0]), (x, -m * s));
+    /// assert_eq!(graph.held(&[x.sin(), m.abs()], &[x]).surfaces, []);
+    /// ```
+    pub fn held<'g>(&'g self, values: &[Expr<'g>], moving: &[Expr<'g>]) -> Held<'g> {
+        let mut held = Held { values: values.to_vec(), surfaces: Vec::new() };
+        let moving: Vec<NodeId> = moving.iter().map(|symbol| symbol.symbol_in(self)).collect();
+        while let Some(piece) = self.first_piece(&held.values, &moving) {
+            let Piece { node, function, args } = piece;
+            let [a, b, c] = args;
+            let mut side = |function: Expr<'g>| self.side(function, &moving, &mut held.surfaces);
+            let smooth = match function {
+                Function::Sign => side(a),
+                Function::Abs => side(a) * a,
+                Function::Min => side(a - b).step(b, a),
+                Function::Max => side(a - b).step(a, b),
+                Function::Atan => {
+                    let (above, below) = self.parts(a);
+                    let side = side(below);
+                    (side * above).atan2(side * below)
+                }
+                _ => side(a).step(b, c),
+            };
+            let roots: Vec<Atom> = held.values.iter().map(|value| value.atom_in(self)).collect();
+            let smooth = smooth.atom_in(self);
+            held.values = self.build_all(|dag| dag.substitute(&roots, &[(node, smooth)]));
+        }
+        held
+    }
+
+    /// The first node of several pieces, below all others, whose surface moves.
+    fn first_piece<'g>(&'g self, values: &[Expr<'g>], moving: &[NodeId]) -> Option<Piece<'g>> {
+        let roots: Vec<Atom> = values.iter().map(|value| value.atom_in(self)).collect();
+        let (node, function, args) = self.with(|dag| {
+            let cone = Cone::below(dag, roots);
+            let mut pieces = cone.order.iter().filter_map(|&node| match dag.node(node) {
+                Node::Call { function, args } if function.is_piecewise() || function == Function::Atan => {
+                    Some((node, function, args))
+                }
+                _ => None,
+            });
+            let first = pieces.next()?;
+            let moves = cone.depending_on(dag, moving);
+            std::iter::once(first).chain(pieces).find(|(_, function, args)| match function {
+                Function::Min | Function::Max => moves.contains(&args[0]) || moves.contains(&args[1]),
+                Function::Atan => dag.has_pole(args[0], &moves),
+                _ => moves.contains(&args[0]),
+            })
+        })?;
+        let arity = function.arity();
+        let argument = |i: usize| {
+            let node = args[if i < arity { i } else { 0 }];
+            self.build(|dag| dag.constant_of(Atom::Node(node)))
+        };
+        Some(Piece { node, function, args: [argument(0), argument(1), argument(2)] })
+    }
+
+    /// The sign of a function by the sides of its factors that move; adds those that are new.
+    fn side<'g>(
+        &'g self,
+        function: Expr<'g>,
+        moving: &[NodeId],
+        surfaces: &mut Vec<Surface<'g>>,
+    ) -> Expr<'g> {
+        let number = function.numerical_factor();
+        let mut side: Expr<'g> = if number.is_negative() { -1 } else { 1 }.into();
+        for (factor, exponent) in self.factors(function) {
+            if exponent % 2 == 0 || self.is_positive(factor) {
+                continue;
+            }
+            side *= match self.moves(factor, moving) {
+                true => self.side_of_factor(factor, surfaces),
+                false => factor.sign(),
+            };
+        }
+        side
+    }
+
+    fn side_of_factor<'g>(&'g self, factor: Expr<'g>, surfaces: &mut Vec<Surface<'g>>) -> Expr<'g> {
+        // x − a and a − x are one surface.
+        let is_reversed = self.leading(factor).is_negative();
+        let function = if is_reversed { -factor } else { factor };
+        let known = surfaces.iter().find(|surface| surface.function == function).map(|surface| surface.side);
+        let side = known.unwrap_or_else(|| {
+            let side = self.symbol(&format!("side {}", surfaces.len()));
+            surfaces.push(Surface { function, side });
+            side
+        });
+        if is_reversed { -side } else { side }
+    }
+
+    /// The coefficient of the first term.
+    fn leading(&self, function: Expr<'_>) -> Number {
+        let Atom::Node(node) = function.atom_in(self) else { return Number::ONE };
+        self.with(|dag| match dag.node(node) {
+            Node::Sum { terms, .. } => dag.terms(terms).first().map_or(Number::ONE, |&(_, factor)| factor),
+            _ => Number::ONE,
+        })
+    }
+
+    fn is_positive(&self, function: Expr<'_>) -> bool {
+        let Atom::Node(node) = function.atom_in(self) else { return false };
+        self.with(|dag| dag.is_nonnegative(node))
+    }
+
+    fn moves(&self, function: Expr<'_>, moving: &[NodeId]) -> bool {
+        let root = function.atom_in(self);
+        self.with(|dag| {
+            let moves = Cone::below(dag, [root]).depending_on(dag, moving);
+            matches!(root, Atom::Node(node) if moves.contains(&node))
+        })
+    }
+
+    /// u and v of u/v.
+    fn parts<'g>(&'g self, quotient: Expr<'g>) -> (Expr<'g>, Expr<'g>) {
+        let number: Expr<'g> = quotient.numerical_factor().into();
+        self.factors(quotient).into_iter().fold((number, Expr::ONE), |(u, v), (factor, exponent)| {
+            if exponent < 0 { (u, v * factor.powi(-exponent)) } else { (u * factor.powi(exponent), v) }
+        })
+    }
+}
+
+/// A call of a function of several pieces.
+struct Piece<'g> {
+    node: NodeId,
+    function: Function,
+    args: [Expr<'g>; 3],
+}
+
+impl Dag {
+    /// Whether a quotient has a divisor that moves through zero.
+    fn has_pole(&self, node: NodeId, moves: &FxHashSet<NodeId>) -> bool {
+        let product = match self.node(node) {
+            Node::Sum { constant, terms } if constant.is_zero() => match self.terms(terms) {
+                [(product, _)] => self.node(*product),
+                _ => return false,
+            },
+            other => other,
+        };
+        let Node::Product { factors } = product else { return false };
+        self.factors(factors).iter().any(|&(factor, exponent)| {
+            exponent < 0 && exponent % 2 != 0 && moves.contains(&factor) && !self.is_nonnegative(factor)
+        })
+    }
+}

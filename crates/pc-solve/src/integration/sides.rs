@@ -1,0 +1,523 @@
+//! The sides of the surfaces on which a field of several pieces is held.
+//!
+//! During a step the field is smooth: it is [held](pc_expr::Switching) on one side of each surface. Where a surface is
+//! reached the step ends, and the motion goes on by the first of these ways that is consistent: across the surface, if f
+//! on the other side leads on; along it, if f leads back from both sides; or back, where it only touches. Where several
+//! surfaces are reached at once, or the motion slides along others already, all combinations are tried, those with fewer
+//! surfaces that slide first.
+
+use pc_expr::{Events, Failure, RootSeparation, Sliding, SlidingError, Switching, VectorField};
+
+use crate::error::{Reason, SolveError};
+#[cfg(feature = "cvode")]
+use crate::events::root_finding::Sides;
+use crate::integration::integration::Integration;
+#[cfg(feature = "cvode")]
+use crate::integration::integration::directions;
+use crate::integration::stepper::Stepper;
+
+/// A function below this many roundings of its terms is at zero.
+const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
+/// A rate of a function below this fraction of its terms is no rate.
+const FLAT: f64 = 1e-11;
+/// |σ| may exceed 1 by this where a motion begins to slide.
+const BEYOND: f64 = 1e-9;
+/// Up to this number of surfaces all combinations are tried; more are decided one after the other.
+const MOST_COMBINED: usize = 3;
+/// Fractions of the time scale of the motion at which a function that begins flat is looked at.
+const AHEAD: [f64; 3] = [1e-5, 1e-3, 1e-2];
+
+/// The sides of the surfaces of a field: 1, −1, or 0 where the motion slides.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct HeldSides {
+    pub(crate) sides: Vec<f64>,
+    /// Whether they are those of the motion at the front.
+    pub(crate) are_known: bool,
+    /// Whether the functions depend on time alone.
+    of_time: bool,
+    /// Room for a state.
+    pub(crate) place: Vec<f64>,
+    /// Separates the roots of the functions.
+    pub(crate) separation: Option<RootSeparation>,
+    /// The motions along surfaces so far.
+    pub(crate) slides: Vec<Slide>,
+    /// All changes of sides, where they are to be kept.
+    pub(crate) passages: Option<Vec<Passage>>,
+}
+
+impl HeldSides {
+    /// Those of a field at a start, not yet known.
+    pub(crate) fn of(field: &mut impl VectorField) -> HeldSides {
+        let dim = field.dim();
+        match field.switching() {
+            Some(switching) => {
+                switching.hold(None);
+                let sides = vec![1.0; switching.surfaces().len()];
+                let of_time = switching.program().is_some_and(|(program, _)| !program.reads_state());
+                HeldSides { sides, of_time, place: vec![0.0; dim], ..HeldSides::default() }
+            }
+            None => HeldSides::default(),
+        }
+    }
+
+    /// Whether the functions can be evaluated without states along a step.
+    pub(crate) fn need_no_states(&self) -> bool {
+        self.of_time && !self.sides.contains(&0.0)
+    }
+
+    /// The number of surfaces.
+    pub(crate) fn len(&self) -> usize {
+        self.sides.len()
+    }
+}
+
+/// A part of a motion that slides along a surface on which its field jumps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slide {
+    /// The function that vanishes on the surface.
+    pub surface: String,
+    /// When it begins.
+    pub from: f64,
+    /// When it ends; none while it lasts.
+    pub until: Option<f64>,
+}
+
+/// The sides of all surfaces from a time on.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Passage {
+    /// The surfaces reached; none at a start.
+    pub(crate) surfaces: Vec<usize>,
+    pub(crate) time: f64,
+    pub(crate) state: Vec<f64>,
+    /// The sides before, if surfaces were reached, and after.
+    pub(crate) before: Vec<f64>,
+    pub(crate) after: Vec<f64>,
+}
+
+/// Writes what an integration looks for zeros of: the functions of surfaces, and 1 − σ² for those along which the motion
+/// slides.
+pub(crate) fn write_functions(
+    field: &mut impl VectorField,
+    held: &HeldSides,
+    t: f64,
+    y: &[f64],
+    values: &mut [f64],
+) -> Result<(), Failure> {
+    let Some(switching) = field.switching().filter(|_| held.are_known) else {
+        values.fill(1.0);
+        return Ok(());
+    };
+    switching.functions(t, y, values);
+    for (value, side) in values.iter_mut().zip(&held.sides) {
+        if value.is_nan() {
+            *value = *side; // it has no value, and none is needed there
+        }
+    }
+    if held.sides.contains(&0.0) {
+        let Sliding { surfaces, weights, .. } = Sliding::of(switching, &held.sides, t, y)?;
+        for (surface, weight) in surfaces.into_iter().zip(weights) {
+            values[surface] = 1.0 - weight * weight;
+        }
+    }
+    Ok(())
+}
+
+/// Surfaces at zero, each with the sides to be tried in turn.
+type Open = Vec<(usize, [f64; 3])>;
+
+/// A field at a place, with the direction of time.
+struct Place<'a> {
+    field: &'a mut dyn Switching,
+    t: f64,
+    y: &'a [f64],
+    direction: f64,
+    /// The smallest significant size of a component.
+    least: f64,
+    /// The longest time that matters.
+    span: f64,
+}
+
+/// Whether sides are consistent with the motion that they lead to.
+enum Verdict {
+    Consistent,
+    /// This one of the open surfaces is left to another side.
+    Left(usize, f64),
+}
+
+impl Place<'_> {
+    /// The functions and their rounding.
+    fn functions(&mut self, sides: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        self.field.hold(Some(sides));
+        let mut values = vec![f64::NAN; sides.len()];
+        self.field.functions(self.t, self.y, &mut values);
+        let mut slopes = vec![0.0; self.y.len()];
+        let rounding = (0..sides.len()).map(|surface| {
+            let by_time = self.field.gradient(surface, self.t, self.y, &mut slopes);
+            let terms = slopes.iter().zip(self.y).map(|(slope, y)| (slope * y).abs());
+            ROUNDINGS * ((by_time * self.t).abs() + terms.sum::<f64>())
+        });
+        let rounding = rounding.collect();
+        (values, rounding)
+    }
+
+    /// Sets the sides of surfaces that are not open to the signs of their functions, which may jump where another
+    /// surface is passed.
+    fn follow(&mut self, sides: &mut [f64], open: &[(usize, [f64; 3])]) {
+        for _ in 0..sides.len() {
+            let (values, rounding) = self.functions(sides);
+            let mut changed = false;
+            for surface in 0..sides.len() {
+                let is_decided = sides[surface] == 0.0 || open.iter().any(|&(other, _)| other == surface);
+                let value = values[surface];
+                if !is_decided && value * sides[surface] < 0.0 && value.abs() > rounding[surface] {
+                    sides[surface] = 1.0_f64.copysign(value);
+                    changed = true;
+                }
+            }
+            if !changed {
+                return;
+            }
+        }
+    }
+
+    /// The rates on these sides; none where surfaces do not determine how the motion slides.
+    fn rates(&mut self, sides: &[f64]) -> Result<Option<Sliding>, Failure> {
+        self.field.hold(Some(sides));
+        if sides.contains(&0.0) {
+            return match Sliding::of(self.field, sides, self.t, self.y) {
+                Ok(sliding) => Ok(Some(sliding)),
+                Err(failure)
+                    if matches!(failure.cause().downcast_ref(), Some(SlidingError::Undetermined { .. })) =>
+                {
+                    Ok(None)
+                }
+                Err(failure) => Err(failure),
+            };
+        }
+        let mut rates = vec![f64::NAN; self.y.len()];
+        self.field.rates(sides, self.t, self.y, &mut rates)?;
+        Ok(Some(Sliding {
+            surfaces: Vec::new(),
+            weights: Vec::new(),
+            slopes: Vec::new(),
+            resting: Vec::new(),
+            rates,
+        }))
+    }
+
+    /// The rate below which a function rests.
+    fn least_rate(&self, rates: &[f64]) -> f64 {
+        let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
+        ROUNDINGS * largest(self.y).max(largest(rates))
+    }
+
+    /// dg/dt along rates and the sum of its terms.
+    fn rate_of(&mut self, surface: usize, rates: &[f64]) -> (f64, f64) {
+        let mut slopes = vec![0.0; self.y.len()];
+        let by_time = self.field.gradient(surface, self.t, self.y, &mut slopes);
+        let terms = slopes.iter().zip(rates).map(|(slope, rate)| slope * rate);
+        terms.fold((by_time, by_time.abs()), |(sum, size), term| (sum + term, size + term.abs()))
+    }
+
+    /// Whether the motion on these sides stays on them.
+    fn judge(&mut self, sides: &[f64], open: &[(usize, [f64; 3])]) -> Result<Verdict, Failure> {
+        let Some(sliding) = self.rates(sides)? else {
+            let first = open.iter().position(|&(surface, _)| sides[surface] == 0.0).unwrap_or(0);
+            return Ok(Verdict::Left(first, 1.0));
+        };
+        for (place, &(surface, _)) in open.iter().enumerate() {
+            let side = sides[surface];
+            if side == 0.0 {
+                let Some(i) = sliding.surfaces.iter().position(|&other| other == surface) else { continue };
+                let weight = sliding.weights[i];
+                let is_led_back = match sliding.resting[i] {
+                    None => sliding.slopes[i] * self.direction < 0.0,
+                    // In the second derivative the direction of time does not matter.
+                    Some(rate) => {
+                        let slope = sliding.slopes[i];
+                        slope < 0.0
+                            && rate.abs() <= self.least_rate(&sliding.rates).max(ROUNDINGS * slope.abs())
+                    }
+                };
+                let stays = is_led_back && weight.abs() <= 1.0 + BEYOND;
+                if !stays {
+                    return Ok(Verdict::Left(place, 1.0_f64.copysign(weight)));
+                }
+                continue;
+            }
+            let (rate, size) = self.rate_of(surface, &sliding.rates);
+            let along = rate * self.direction * side;
+            let leads_on = if along.abs() > FLAT * size {
+                along > 0.0
+            } else {
+                self.leads_ahead(surface, sides, &sliding.rates)?
+            };
+            if !leads_on {
+                return Ok(Verdict::Left(place, 0.0));
+            }
+        }
+        Ok(Verdict::Consistent)
+    }
+
+    /// Whether a function that begins flat grows to its side, along steps of Runge and Kutta.
+    fn leads_ahead(&mut self, surface: usize, sides: &[f64], rates: &[f64]) -> Result<bool, Failure> {
+        let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
+        let length = largest(rates);
+        let time = if length > 0.0 { largest(self.y).max(self.least) / length } else { 1.0 }.min(self.span);
+        let (values, rounding) = self.functions(sides);
+        let mut next = values.clone();
+        for part in AHEAD {
+            let h = part * time * self.direction;
+            let y = match self.runge_kutta(sides, h, rates) {
+                Ok(y) => y,
+                Err(failure) if failure.is_recoverable() => break,
+                Err(failure) => return Err(failure),
+            };
+            self.field.functions(self.t + h, &y, &mut next);
+            let moved = (next[surface] - values[surface]) * sides[surface];
+            if moved.abs() > 4.0 * rounding[surface].max(f64::MIN_POSITIVE) {
+                return Ok(moved > 0.0);
+            }
+        }
+        Ok(true) // it stays in the surface, on either side
+    }
+
+    /// The state after a step of the classical method.
+    fn runge_kutta(&mut self, sides: &[f64], h: f64, first: &[f64]) -> Result<Vec<f64>, Failure> {
+        let (t, y) = (self.t, self.y);
+        let mut sum = first.to_vec();
+        let mut slope = first.to_vec();
+        for (part, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
+            let moved: Vec<f64> = y.iter().zip(&slope).map(|(y, slope)| y + part * h * slope).collect();
+            if sides.contains(&0.0) {
+                slope = Sliding::of(self.field, sides, t + part * h, &moved)?.rates;
+            } else {
+                self.field.rates(sides, t + part * h, &moved, &mut slope)?;
+            }
+            sum.iter_mut().zip(&slope).for_each(|(sum, slope)| *sum += weight * slope);
+        }
+        Ok(y.iter().zip(&sum).map(|(y, sum)| y + h / 6.0 * sum).collect())
+    }
+
+    /// The first consistent sides; none if there are no such.
+    fn decide(&mut self, sides: &[f64], open: &Open) -> Result<Option<Vec<f64>>, Failure> {
+        if open.len() > MOST_COMBINED {
+            return self.decide_in_turn(sides, open);
+        }
+        let mut choices: Vec<Vec<usize>> = vec![Vec::new()];
+        for _ in open {
+            let longer = |choice: &Vec<usize>| [0, 1, 2].map(|next| [&choice[..], &[next]].concat());
+            choices = choices.iter().flat_map(longer).collect();
+        }
+        // Each surface as it comes first; then those with fewer exceptions from that.
+        choices.sort_by_key(|choice| choice.iter().sum::<usize>());
+        for choice in choices {
+            let mut tried = sides.to_vec();
+            for (&(surface, options), &choice) in open.iter().zip(&choice) {
+                tried[surface] = options[choice];
+            }
+            self.follow(&mut tried, open);
+            if let Verdict::Consistent = self.judge(&tried, open)? {
+                return Ok(Some(tried));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The same for many surfaces: the first one that is left goes to the side to which it is left [Murty 1974], which
+    /// ends where each surface acts on its own function more than others do.
+    fn decide_in_turn(&mut self, sides: &[f64], open: &Open) -> Result<Option<Vec<f64>>, Failure> {
+        let mut tried = sides.to_vec();
+        open.iter().for_each(|&(surface, _)| tried[surface] = 0.0);
+        for _ in 0..20 * open.len() {
+            self.follow(&mut tried, open);
+            match self.judge(&tried, open)? {
+                Verdict::Consistent => return Ok(Some(tried)),
+                Verdict::Left(place, side) => tried[open[place].0] = side,
+            }
+        }
+        Ok(None)
+    }
+}
+
+impl<S: Stepper, E: Events> Integration<S, E> {
+    /// Finds the sides of all surfaces at the front for a motion in this direction of time, if they are not known, and
+    /// holds the field on them.
+    pub(crate) fn find_sides(&mut self, direction: f64) -> Result<(), SolveError> {
+        if self.held.are_known || self.held.len() == 0 {
+            return Ok(());
+        }
+        let (t, y, least) = (self.front.t, self.front_state.clone(), self.engine.least_size());
+        let span = self.span_of_interest();
+        let Some(field) = self.engine.field_mut().switching() else { return Ok(()) };
+        let mut place = Place { field, t, y: &y, direction, least, span };
+        let mut sides = vec![1.0; self.held.len()];
+        let mut rounding = Vec::new();
+        let mut values = Vec::new();
+        // A surface contains the sides of those before it only.
+        for _ in 0..=sides.len() {
+            (values, rounding) = place.functions(&sides);
+            let signs = |value: &f64| if *value < 0.0 { -1.0 } else { 1.0 };
+            let found: Vec<f64> = values.iter().map(signs).collect();
+            if found == sides {
+                break;
+            }
+            sides = found;
+        }
+        let is_open = |&surface: &usize| values[surface].abs() <= rounding[surface];
+        let open: Open =
+            (0..sides.len()).filter(is_open).map(|surface| (surface, [1.0, -1.0, 0.0])).collect();
+        let decided = if open.is_empty() { Ok(Some(sides)) } else { place.decide(&sides, &open) };
+        self.take_sides(decided, &open)
+    }
+
+    /// Finds how the motion goes on at the front where these surfaces are reached; returns what happened.
+    pub(crate) fn pass_surfaces(&mut self, due: &[usize]) -> Result<(), SolveError> {
+        let (t, y, least) = (self.front.t, self.front_state.clone(), self.engine.least_size());
+        let span = self.span_of_interest();
+        let before = self.held.sides.clone();
+        let mut sides = before.clone();
+        let direction = self.direction.unwrap_or(1.0);
+        let mut open = Open::new();
+        let mut crosses = false;
+        if due.iter().any(|&surface| before[surface] == 0.0)
+            && let Some(field) = self.engine.field_mut().switching()
+            && let Ok(sliding) = Sliding::of(field, &before, t, &y)
+        {
+            for (surface, weight) in sliding.surfaces.into_iter().zip(sliding.weights) {
+                if due.contains(&surface) {
+                    sides[surface] = 1.0_f64.copysign(weight);
+                }
+            }
+        }
+        for &surface in due.iter().filter(|&&surface| before[surface] != 0.0) {
+            let side = before[surface];
+            open.push((surface, [-side, 0.0, side]));
+            crosses = true;
+        }
+        if crosses {
+            // f jumps, and may lead away from other surfaces.
+            let slide = (0..sides.len()).filter(|&surface| sides[surface] == 0.0);
+            open.extend(slide.map(|surface| (surface, [0.0, 1.0, -1.0])));
+        }
+        let decided = match self.engine.field_mut().switching() {
+            Some(field) if crosses => Place { field, t, y: &y, direction, least, span }.decide(&sides, &open),
+            _ => Ok(Some(sides)),
+        };
+        self.take_sides(decided, &open)?;
+        self.note_sides(Passage {
+            surfaces: due.to_vec(),
+            time: t,
+            state: y,
+            before,
+            after: self.held.sides.clone(),
+        });
+        Ok(())
+    }
+
+    /// Finds the sides at the front, and notes them.
+    pub(crate) fn begin_on_sides(&mut self, direction: f64) -> Result<(), SolveError> {
+        if self.held.are_known || self.held.len() == 0 {
+            return Ok(());
+        }
+        self.find_sides(direction)?;
+        self.note_sides(Passage {
+            surfaces: Vec::new(),
+            time: self.front.t,
+            state: self.front_state.clone(),
+            before: Vec::new(),
+            after: self.held.sides.clone(),
+        });
+        Ok(())
+    }
+
+    /// Notes where motions along surfaces begin and end.
+    fn note_sides(&mut self, passage: Passage) {
+        let Some(field) = self.engine.field_mut().switching() else { return };
+        for (name, &side) in field.surfaces().iter().zip(&passage.after) {
+            let open =
+                self.held.slides.iter_mut().find(|slide| slide.until.is_none() && slide.surface == *name);
+            match open {
+                Some(slide) if side != 0.0 => slide.until = Some(passage.time),
+                None if side == 0.0 => {
+                    let slide = Slide { surface: name.clone(), from: passage.time, until: None };
+                    self.held.slides.push(slide);
+                }
+                _ => {}
+            }
+        }
+        if let Some(passages) = &mut self.held.passages {
+            passages.push(passage);
+        }
+    }
+
+    /// The parts of the motion so far that slide along surfaces on which the field jumps.
+    pub fn slides(&self) -> &[Slide] {
+        &self.held.slides
+    }
+
+    /// Holds the field on these sides for good: no surface is looked for.
+    #[cfg(feature = "cvode")] // for the adjoint equations
+    pub(crate) fn stay_on(&mut self, sides: &[f64]) {
+        self.hold_on(sides);
+        self.held = HeldSides::default();
+        let own = self.events.events().len();
+        self.front.values.truncate(own);
+        self.sides = Sides::new(directions(&self.events, &self.held));
+        self.sides.pass(&self.front.values);
+        self.sides_before = self.sides.clone();
+    }
+
+    /// The time to the end, or some of the last steps.
+    fn span_of_interest(&self) -> f64 {
+        let last = self.engine.last_step();
+        match (self.engine.stop_time(), last.degree) {
+            (Some(stop), _) if stop != self.front.t => (stop - self.front.t).abs(),
+            (_, Some(_)) => 100.0 * (last.end - last.start).abs(),
+            _ => 1.0,
+        }
+    }
+
+    /// Holds the field on sides that have been decided, and notes where the functions are.
+    fn take_sides(
+        &mut self,
+        decided: Result<Option<Vec<f64>>, Failure>,
+        open: &Open,
+    ) -> Result<(), SolveError> {
+        let t = self.front.t;
+        let sides = match decided {
+            Ok(Some(sides)) => sides,
+            Ok(None) => {
+                let all = self.engine.field_mut().switching().map_or(&[][..], |field| field.surfaces());
+                let surfaces = open.iter().filter_map(|&(surface, _)| all.get(surface).cloned()).collect();
+                return Err(self.failed(Reason::Undecided { surfaces, t }, None));
+            }
+            Err(failure) => return Err(self.failed(Reason::Rates { t }, Some(failure))),
+        };
+        self.hold_on(&sides);
+        (self.held.sides, self.held.are_known) = (sides, true);
+        let state = self.front_state.clone();
+        self.front.values = self.evaluate(t, &state)?;
+        let first = self.events.events().len();
+        for (surface, &side) in self.held.sides.iter().enumerate() {
+            let value = self.front.values[first + surface];
+            let is_open = open.iter().any(|&(other, _)| other == surface);
+            // 1 − σ² is positive where the motion slides.
+            let side = if side == 0.0 { 1.0 } else { side };
+            let near = is_open || value * side <= 0.0 || self.due.contains(&(first + surface));
+            let noise = if near { 2.0 * value.abs().min(NEAR) } else { 0.0 };
+            self.sides.set(first + surface, side, noise.max(f64::MIN_POSITIVE * f64::from(near)));
+        }
+        Ok(())
+    }
+
+    /// Holds the field on these sides.
+    pub(crate) fn hold_on(&mut self, sides: &[f64]) {
+        if let Some(field) = self.engine.field_mut().switching() {
+            field.hold(Some(sides));
+        }
+    }
+}
+
+/// A function that is open and larger than this has jumped.
+const NEAR: f64 = 1e-6;

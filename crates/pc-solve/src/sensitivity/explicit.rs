@@ -1,0 +1,454 @@
+//! Derivatives of a motion integrated with it by DOP853.
+//!
+//! The state of the method is (y, s₁, s₂, …), with the equations of variation for the columns; outside it is y.
+
+use pc_expr::{Failure, PolynomialMotion, Switching, TimeDependence, VectorField};
+
+use crate::cvode::cvode::Cvode;
+use crate::cvode::forward::linearisation::Linearisation;
+use crate::cvode::forward::sensitivities::Sensitivities;
+use crate::cvode::forward::variation::Variation;
+use crate::dop853::setup::Dop853;
+use crate::error::{InputError, IntegrationError, Reason, SolveError};
+use crate::integration::checks::check_start;
+use crate::integration::limits::Limits;
+use crate::integration::statistics::Statistics;
+use crate::integration::stepper::{LastStep, Stepper};
+use crate::settings::inequality::Inequality;
+use crate::settings::method::Method;
+use crate::settings::options::Options;
+use crate::settings::tolerance::Tolerance;
+
+/// An absolute tolerance of what no error is to be controlled of.
+const ANY: f64 = 1e300;
+
+/// A field with the equations of variation of its columns, ṡ = (∂f/∂y) s + ∂f/∂p.
+#[derive(Debug)]
+pub(crate) struct WithVariation<F> {
+    field: F,
+    variation: Variation,
+    dim: usize,
+}
+
+impl<F: VectorField> VectorField for WithVariation<F> {
+    fn dim(&self) -> usize {
+        self.dim * (1 + self.variation.parameters().len())
+    }
+
+    fn rhs(&mut self, t: f64, all: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
+        let (y, columns) = all.split_at(self.dim);
+        let (ydot, rates) = rates.split_at_mut(self.dim);
+        self.field.rhs(t, y, ydot)?;
+        let columns = columns.chunks_exact(self.dim).zip(rates.chunks_exact_mut(self.dim));
+        self.variation.rates(&mut self.field, t, y, columns)
+    }
+
+    fn has_projection(&self) -> bool {
+        self.field.has_projection()
+    }
+
+    fn project(&mut self, t: f64, all: &mut [f64]) -> Result<(), Failure> {
+        self.field.project(t, &mut all[..self.dim])
+    }
+
+    fn time_dependence(&self) -> TimeDependence {
+        self.field.time_dependence()
+    }
+
+    fn restart(&mut self, t: f64, all: &[f64]) {
+        self.field.restart(t, &all[..self.dim]);
+    }
+
+    fn breaks(&self) -> &[f64] {
+        self.field.breaks()
+    }
+
+    fn enter(&mut self, t: f64, end: f64) -> bool {
+        self.field.enter(t, end)
+    }
+
+    /// The surfaces are those of y; their functions are asked for y alone, by the integration.
+    fn switching(&mut self) -> Option<&mut dyn Switching> {
+        self.field.switching()
+    }
+
+    fn component_name(&self, i: usize) -> String {
+        let name = self.field.component_name(i % self.dim);
+        match i / self.dim {
+            0 => name,
+            column => format!("column {} (from 0) of the sensitivity of {name}", column - 1),
+        }
+    }
+}
+
+/// DOP853 with derivatives of the motion.
+#[derive(Debug)]
+pub(crate) struct Explicit<F> {
+    method: Dop853<WithVariation<F>>,
+    dim: usize,
+    relative_tolerance: f64,
+    /// Where states of the last step are read, and the columns at the current time inside it.
+    state: Vec<f64>,
+    inside: Option<Vec<f64>>,
+    /// The columns at the start of the last step.
+    start: Vec<f64>,
+}
+
+impl<F: VectorField> Explicit<F> {
+    /// Starts at y(t0) = y0 with derivatives of the motion.
+    ///
+    /// # Errors
+    /// As for [`Dop853::new`]; [`SolveError::Input`] if a column needs a derivative that the field does not have.
+    pub(crate) fn new(
+        mut field: F,
+        t0: f64,
+        y0: &[f64],
+        options: &Options,
+        sensitivities: &Sensitivities,
+    ) -> Result<Self, SolveError> {
+        check_start(&field, t0, y0)?;
+        Options { method: Method::Dop853, ..options.clone() }.validate(y0.len())?;
+        sensitivities.validate(&field)?;
+        let (dim, count) = (y0.len(), sensitivities.len());
+        let mut linearisation = Linearisation::new(&field, options);
+        let scales = sensitivities.sizes(&mut field, &mut linearisation, t0, y0);
+        let own = |i: usize| match &options.absolute_tolerance {
+            Tolerance::Scalar(tolerance) => *tolerance,
+            Tolerance::Vector(tolerances) => tolerances[i],
+        };
+        let of_column = |column: usize, i: usize| match sensitivities.tolerances {
+            _ if !sensitivities.error_control => ANY,
+            Some((_, absolute)) => absolute,
+            None => own(i) / scales[column],
+        };
+        let mut tolerances: Vec<f64> = (0..dim).map(own).collect();
+        tolerances.extend(
+            (0..count).flat_map(|column| (0..dim).map(move |i| (column, i))).map(|(k, i)| of_column(k, i)),
+        );
+        let mut inequalities = options.inequalities.clone();
+        if !inequalities.is_empty() {
+            inequalities.resize(dim * (1 + count), Inequality::Free);
+        }
+        let all_options = Options {
+            method: Method::Dop853,
+            absolute_tolerance: Tolerance::Vector(tolerances),
+            inequalities,
+            ..options.clone()
+        };
+        let columns = sensitivities.start(dim);
+        let all = [y0, &columns].concat();
+        let variation = Variation::new(linearisation, sensitivities.parameters());
+        let method = Dop853::new(WithVariation { field, variation, dim }, t0, &all, &all_options)?;
+        let relative_tolerance = options.relative_tolerance;
+        Ok(Explicit { method, dim, relative_tolerance, state: all, inside: None, start: columns })
+    }
+
+    /// Reads the columns at the current time, if that is inside the last step.
+    fn read_columns(&mut self, t: f64) {
+        let LastStep { start, end, degree } = self.method.last_step();
+        self.inside = None;
+        if t == end || degree.is_none() {
+            return;
+        }
+        let columns = match t == start {
+            true => self.start.clone(),
+            false => match self.method.interpolate(t, 0) {
+                Ok(all) => all[self.dim..].to_vec(),
+                Err(_) => vec![f64::NAN; self.start.len()],
+            },
+        };
+        self.inside = Some(columns);
+    }
+
+    fn keep_start(&mut self) {
+        self.start.copy_from_slice(&self.method.end_state()[self.dim..]);
+    }
+}
+
+impl<F: VectorField> Stepper for Explicit<F> {
+    type Field = F;
+
+    fn field(&self) -> &F {
+        &self.method.field().field
+    }
+
+    fn field_mut(&mut self) -> &mut F {
+        &mut self.method.field_mut().field
+    }
+
+    fn into_field(self) -> F {
+        self.method.into_field().field
+    }
+
+    fn limits(&self) -> &Limits {
+        self.method.limits()
+    }
+
+    fn limits_mut(&mut self) -> &mut Limits {
+        self.method.limits_mut()
+    }
+
+    fn last_step(&self) -> LastStep {
+        self.method.last_step()
+    }
+
+    fn end_state(&self) -> &[f64] {
+        &self.method.end_state()[..self.dim]
+    }
+
+    fn time(&self) -> f64 {
+        self.method.time()
+    }
+
+    fn stand_at(&mut self, t: f64) {
+        if t != self.method.time() || self.inside.is_none() {
+            self.read_columns(t);
+        }
+        self.method.stand_at(t);
+    }
+
+    fn step(&mut self, towards: f64) -> Result<(), SolveError> {
+        let before = self.start.clone();
+        self.keep_start();
+        self.inside = None;
+        let outcome = self.method.step(towards);
+        if outcome.is_err() {
+            self.start = before;
+        }
+        outcome.map_err(|error| self.of_state(error))
+    }
+
+    fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
+        match self.method.interpolate(t, order) {
+            Ok(all) => self.state[..all.len()].copy_from_slice(all),
+            Err(error) => return Err(self.of_state(error)),
+        }
+        Ok(&self.state[..self.dim])
+    }
+
+    fn restart(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        columns: &[f64],
+        direction: Option<f64>,
+    ) -> Result<(), SolveError> {
+        self.inside = None;
+        self.method.restart(t, &[y, columns].concat(), &[], direction)?;
+        self.keep_start();
+        Ok(())
+    }
+
+    fn enter_piece(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        columns: &[f64],
+        direction: Option<f64>,
+    ) -> Result<(), SolveError> {
+        self.inside = None;
+        self.method.enter_piece(t, &[y, columns].concat(), &[], direction)?;
+        self.keep_start();
+        Ok(())
+    }
+
+    fn stop_time(&self) -> Option<f64> {
+        self.method.stop_time()
+    }
+
+    fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), SolveError> {
+        self.method.set_stop_time(t)
+    }
+
+    fn statistics(&self) -> Statistics {
+        self.method.statistics()
+    }
+
+    fn tolerance(&self, i: usize, y: f64) -> f64 {
+        self.method.tolerance(i, y)
+    }
+
+    fn least_size(&self) -> f64 {
+        let largest = (0..self.dim).map(|i| self.method.tolerance(i, 0.0)).fold(0.0, f64::max);
+        largest / self.relative_tolerance
+    }
+
+    fn columns(&self) -> Result<Vec<f64>, SolveError> {
+        let columns = match &self.inside {
+            Some(inside) => inside.clone(),
+            None => self.method.end_state()[self.dim..].to_vec(),
+        };
+        let Some(k) = columns.iter().position(|value| !value.is_finite()) else { return Ok(columns) };
+        let component = self.method.field().component_name(self.dim + k);
+        let reason = Reason::Overflow { component, value: columns[k], t: self.method.time() };
+        let (time, state) = (self.end_time(), self.end_state().to_vec());
+        let error = IntegrationError { reason, time, state, failure: None };
+        Err(SolveError::Integration(Box::new(error)))
+    }
+
+    fn column_parameters(&self) -> &[Option<usize>] {
+        self.method.field().variation.parameters()
+    }
+}
+
+impl<F: VectorField> Explicit<F> {
+    /// The error with the state of the motion alone.
+    fn of_state(&self, error: SolveError) -> SolveError {
+        match error {
+            SolveError::Integration(mut error) => {
+                error.state.truncate(self.dim);
+                SolveError::Integration(error)
+            }
+            other => other,
+        }
+    }
+}
+
+/// The method of a motion with its derivatives that options choose.
+#[derive(Debug)]
+pub(crate) enum Differentiated<F: VectorField> {
+    /// [`Method::Adams`], [`Method::Bdf`], and Adams for [`Method::Auto`].
+    Cvode(Box<Cvode<F>>),
+    /// [`Method::Dop853`].
+    Dop853(Box<Explicit<F>>),
+}
+
+impl<F: VectorField> Differentiated<F> {
+    /// Starts at y(t0) = y0 with derivatives of the motion.
+    ///
+    /// # Errors
+    /// As for [`Cvode::with_sensitivities`](crate::Cvode::with_sensitivities) and [`Dop853::new`];
+    /// [`InputError::NotCvode`] for Taylor's method.
+    pub(crate) fn new(
+        field: F,
+        t0: f64,
+        y0: &[f64],
+        options: &Options,
+        sensitivities: &Sensitivities,
+    ) -> Result<Self, SolveError> {
+        match options.method {
+            Method::Dop853 => {
+                Ok(Differentiated::Dop853(Box::new(Explicit::new(field, t0, y0, options, sensitivities)?)))
+            }
+            Method::Taylor => Err(InputError::NotCvode { method: options.method }.into()),
+            Method::Adams | Method::Bdf | Method::Auto => {
+                let cvode = Cvode::with_sensitivities(field, t0, y0, options, sensitivities)?;
+                Ok(Differentiated::Cvode(Box::new(cvode)))
+            }
+        }
+    }
+}
+
+/// Forwards a call to the method.
+macro_rules! of_either {
+    ($chosen:expr, $method:ident => $call:expr) => {
+        match $chosen {
+            Differentiated::Cvode($method) => $call,
+            Differentiated::Dop853($method) => $call,
+        }
+    };
+}
+
+impl<F: VectorField> Stepper for Differentiated<F> {
+    type Field = F;
+
+    fn field(&self) -> &F {
+        of_either!(self, method => method.field())
+    }
+
+    fn field_mut(&mut self) -> &mut F {
+        of_either!(self, method => method.field_mut())
+    }
+
+    fn into_field(self) -> F {
+        of_either!(self, method => method.into_field())
+    }
+
+    fn limits(&self) -> &Limits {
+        of_either!(self, method => method.limits())
+    }
+
+    fn limits_mut(&mut self) -> &mut Limits {
+        of_either!(self, method => method.limits_mut())
+    }
+
+    fn last_step(&self) -> LastStep {
+        of_either!(self, method => method.last_step())
+    }
+
+    fn end_state(&self) -> &[f64] {
+        of_either!(self, method => method.end_state())
+    }
+
+    fn time(&self) -> f64 {
+        of_either!(self, method => method.time())
+    }
+
+    fn stand_at(&mut self, t: f64) {
+        of_either!(self, method => method.stand_at(t));
+    }
+
+    fn step(&mut self, towards: f64) -> Result<(), SolveError> {
+        of_either!(self, method => method.step(towards))
+    }
+
+    fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
+        of_either!(self, method => method.interpolate(t, order))
+    }
+
+    fn centre(&self) -> f64 {
+        of_either!(self, method => method.centre())
+    }
+
+    fn restart(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        columns: &[f64],
+        direction: Option<f64>,
+    ) -> Result<(), SolveError> {
+        of_either!(self, method => method.restart(t, y, columns, direction))
+    }
+
+    fn enter_piece(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        columns: &[f64],
+        direction: Option<f64>,
+    ) -> Result<(), SolveError> {
+        of_either!(self, method => method.enter_piece(t, y, columns, direction))
+    }
+
+    fn stop_time(&self) -> Option<f64> {
+        of_either!(self, method => method.stop_time())
+    }
+
+    fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), SolveError> {
+        of_either!(self, method => method.set_stop_time(t))
+    }
+
+    fn statistics(&self) -> Statistics {
+        of_either!(self, method => method.statistics())
+    }
+
+    fn polynomial<'a>(&'a mut self, room: &'a mut Vec<f64>) -> Result<PolynomialMotion<'a>, SolveError> {
+        of_either!(self, method => method.polynomial(room))
+    }
+
+    fn tolerance(&self, i: usize, y: f64) -> f64 {
+        of_either!(self, method => method.tolerance(i, y))
+    }
+
+    fn least_size(&self) -> f64 {
+        of_either!(self, method => method.least_size())
+    }
+
+    fn columns(&self) -> Result<Vec<f64>, SolveError> {
+        of_either!(self, method => method.columns())
+    }
+
+    fn column_parameters(&self) -> &[Option<usize>] {
+        of_either!(self, method => method.column_parameters())
+    }
+}
