@@ -1,6 +1,6 @@
 //! The equations of variation (Poincaré; Chetaev's equations of perturbed motion in the first approximation).
 
-use pc_expr::{Failure, TimeDependence, VectorField};
+use pc_expr::{Failure, SteepFunctions, TimeDependence, VectorField};
 use pc_mech::{EvaluationError, MechError};
 
 /// A motion together with deviations from it in the first approximation:
@@ -67,6 +67,10 @@ impl<F: VectorField> VectorField for Variation<F> {
 
     fn time_dependence(&self) -> TimeDependence {
         self.field.time_dependence()
+    }
+
+    fn steep_functions(&self) -> Option<SteepFunctions> {
+        self.field.steep_functions().map(|steep| steep.in_states_of(self.dim()))
     }
 
     /// The names of the field, and `δ1 x`, `δ2 x`, … for the deviations of the component `x`.

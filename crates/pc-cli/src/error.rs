@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use pc_fmu::FmuError;
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart, UnknownValue};
 use pc_report::ReportError;
-use pc_solve::{Code, Method, SolveError, Spent};
+use pc_solve::{Code, SolveError, Spent};
 use pc_verify::VerifyError;
 
 use crate::compare::error::CompareError;
@@ -82,12 +82,6 @@ pub enum CliError {
     /// `--sensitivities` by something that is not a parameter.
     #[error("--sensitivities: {0}")]
     Sensitivities(UnknownParameter),
-    /// `--sensitivities` with a method that has none.
-    #[error("--sensitivities: {method} has none; use --method adams, bdf or dop853")]
-    NoSensitivities {
-        /// The method.
-        method: Method,
-    },
     /// `--atol` of something that is no component of the state.
     #[error("--atol: {0}")]
     Tolerance(#[source] UnknownStart),
@@ -304,7 +298,6 @@ impl CliError {
             | CliError::UnknownValue(_)
             | CliError::UnknownIntegral(_)
             | CliError::Sensitivities(_)
-            | CliError::NoSensitivities { .. }
             | CliError::UnknownStart(_)
             | CliError::Tolerance(_)
             | CliError::SetTwice { .. }

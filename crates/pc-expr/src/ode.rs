@@ -3,8 +3,9 @@
 //! `vector_field` is the interface between those who derive equations and those who integrate them; `events` are zeros
 //! of functions along a motion and resets there. `pattern` says where a Jacobian may be nonzero, `colouring` which of
 //! its columns one product can separate, `rate_jump` where the rates jump, `switching` how a field
-//! of several pieces is held on one of them, `sliding` how it leads along a surface between two. `program_field` is a program as a vector field, `lane_field` one to be
-//! evaluated at many states at once.
+//! of several pieces is held on one of them, `sliding` how it leads along a surface between two. `program_field` is a
+//! program as a vector field, `lane_field` one to be evaluated at many states at once, `varied` its series with
+//! derivatives.
 
 pub(crate) mod colouring;
 pub(crate) mod events;
@@ -14,4 +15,5 @@ pub(crate) mod program_field;
 pub(crate) mod rate_jump;
 pub(crate) mod sliding;
 pub(crate) mod switching;
+pub(crate) mod varied;
 pub(crate) mod vector_field;

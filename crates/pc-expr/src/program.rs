@@ -5,7 +5,7 @@
 //! summands) and `lower` (n-ary nodes as binary operations), in this order; `fuse` makes multiply-adds and
 //! counts operations; `bind` replaces parameters by numbers, `hoist` separates what they alone determine, `factor`
 //! what they multiply (by a `builder`), and `digest` identifies tapes. `sliding` is the tape of a motion along
-//! surfaces on which another one jumps.
+//! surfaces on which another one jumps, `variation` that of a motion with its derivatives.
 
 pub(crate) mod angle_addition;
 pub(crate) mod bind;
@@ -18,3 +18,4 @@ pub(crate) mod lower;
 pub(crate) mod program;
 pub(crate) mod sharing;
 pub(crate) mod sliding;
+mod variation;

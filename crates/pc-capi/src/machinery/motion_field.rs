@@ -208,6 +208,10 @@ impl VectorField for MotionField {
         delegate!(self, field => field.time_dependence())
     }
 
+    fn steep_functions(&self) -> Option<pc_expr::SteepFunctions> {
+        delegate!(self, field => field.steep_functions())
+    }
+
     fn series(&mut self) -> Result<&pc_expr::TaylorSeries, Failure> {
         delegate!(self, field => field.series())
     }
@@ -220,6 +224,21 @@ impl VectorField for MotionField {
         order: usize,
     ) -> Result<&pc_expr::TaylorSeries, Failure> {
         delegate!(self, field => field.expand(t, y, sides, order))
+    }
+
+    fn varied_series(&mut self, columns: &[Option<usize>]) -> Result<&pc_expr::TaylorSeries, Failure> {
+        delegate!(self, field => field.varied_series(columns))
+    }
+
+    fn expand_varied(
+        &mut self,
+        columns: &[Option<usize>],
+        t: f64,
+        all: &[f64],
+        sides: &[f64],
+        order: usize,
+    ) -> Result<&pc_expr::TaylorSeries, Failure> {
+        delegate!(self, field => field.expand_varied(columns, t, all, sides, order))
     }
 
     fn restart(&mut self, t: f64, y: &[f64]) {

@@ -80,7 +80,7 @@ impl Plan {
     /// The plan for a model, from the command line and the file.
     ///
     /// # Errors
-    /// [`CliError::NoEnd`], [`CliError::EndIsStart`], [`CliError::Sensitivities`], [`CliError::NoSensitivities`],
+    /// [`CliError::NoEnd`], [`CliError::EndIsStart`], [`CliError::Sensitivities`],
     /// [`CliError::Tolerance`].
     pub fn new(model: &Model, arguments: &RunArguments) -> Result<Plan, CliError> {
         let simulation = &model.document().simulation;
@@ -94,9 +94,6 @@ impl Plan {
         let method =
             arguments.integration.method.map(of_arguments).or(written.map(of_file)).unwrap_or(Method::Auto);
         let sensitivities = sensitivities::parameters(model, &arguments.sensitivities)?;
-        if method == Method::Taylor && !sensitivities.is_empty() {
-            return Err(CliError::NoSensitivities { method });
-        }
         Ok(Plan {
             t_start,
             t_end,

@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use crate::kernel::evaluator::{Backend, Evaluator};
 use crate::ode::lane_field::{LaneField, Watched};
+use crate::ode::varied::VariedSeries;
 use crate::ode::vector_field::{Failure, VectorField};
 use crate::program::program::Program;
 use crate::taylor::coefficients::TaylorSeries;
 use crate::time_profile::profile::TimeDependence;
+use crate::time_profile::steep::SteepFunctions;
 
 /// A program as a vector field: its outputs are f of (t, y) and parameters.
 ///
@@ -30,6 +32,7 @@ pub struct ProgramField {
     parameters: Vec<f64>,
     backend: Backend,
     series: Option<TaylorSeries>,
+    varied: VariedSeries,
 }
 
 impl ProgramField {
@@ -40,7 +43,8 @@ impl ProgramField {
     pub fn new(program: Program, parameters: Vec<f64>, backend: Backend) -> ProgramField {
         assert_eq!(program.outputs_len(), program.state_len(), "a rate for each component");
         assert_eq!(program.parameters_len(), parameters.len(), "values of the parameters");
-        ProgramField { rates: Evaluator::new(program, backend), parameters, backend, series: None }
+        let (series, varied) = (None, VariedSeries::default());
+        ProgramField { rates: Evaluator::new(program, backend), parameters, backend, series, varied }
     }
 
     /// The program.
@@ -75,12 +79,17 @@ impl VectorField for ProgramField {
         TimeDependence::of(&[self.rates.program()], self.dim(), &self.parameters)
     }
 
+    fn steep_functions(&self) -> Option<SteepFunctions> {
+        SteepFunctions::of(&[self.rates.program()], self.dim(), &self.parameters)
+    }
+
     fn component_name(&self, i: usize) -> String {
         self.program().input_names()[1 + i].clone()
     }
 
     fn lanes(&mut self) -> Option<LaneField> {
-        (self.backend == Backend::Fastest).then(|| LaneField {
+        let has_lanes = self.backend == Backend::Fastest && self.steep_functions().is_none();
+        has_lanes.then(|| LaneField {
             program: Arc::clone(self.rates.program()),
             parameters: self.parameters.clone(),
             watched: Watched::NOTHING,
@@ -97,6 +106,23 @@ impl VectorField for ProgramField {
         let (program, backend) = (self.rates.program(), self.backend);
         let series = self.series.get_or_insert_with(|| TaylorSeries::new(program, backend));
         series.expand(t, y, sides, &self.parameters, order);
+        Ok(series)
+    }
+
+    fn varied_series(&mut self, columns: &[Option<usize>]) -> Result<&TaylorSeries, Failure> {
+        Ok(self.varied.of(columns, self.rates.program(), self.backend))
+    }
+
+    fn expand_varied(
+        &mut self,
+        columns: &[Option<usize>],
+        t: f64,
+        all: &[f64],
+        sides: &[f64],
+        order: usize,
+    ) -> Result<&TaylorSeries, Failure> {
+        let series = self.varied.of(columns, self.rates.program(), self.backend);
+        series.expand(t, all, sides, &self.parameters, order);
         Ok(series)
     }
 }

@@ -9,6 +9,7 @@ use crate::ode::rate_jump::RateJump;
 use crate::ode::switching::Switching;
 use crate::taylor::coefficients::TaylorSeries;
 use crate::time_profile::profile::TimeDependence;
+use crate::time_profile::steep::SteepFunctions;
 
 /// A first-order system ẏ = f(t, y) of [`dim`](VectorField::dim) equations.
 ///
@@ -140,6 +141,12 @@ pub trait VectorField {
         TimeDependence::Unknown
     }
 
+    /// The functions of the state in f, while it is [held](VectorField::switching) if it can be, that a step may pass
+    /// over; none if there are none, or if f does not show them. They are queried when an integration begins.
+    fn steep_functions(&self) -> Option<SteepFunctions> {
+        None
+    }
+
     /// The Taylor series of the motion, ready to be expanded, with its branch functions and its cost.
     ///
     /// # Errors
@@ -164,8 +171,31 @@ pub trait VectorField {
         Err(Failure::fatal(NoSeries))
     }
 
+    /// The Taylor series of the [motion with its derivatives](crate::Program::with_variation), one for each of `columns`.
+    ///
+    /// # Errors
+    /// As for [`series`](VectorField::series).
+    fn varied_series(&mut self, _columns: &[Option<usize>]) -> Result<&TaylorSeries, Failure> {
+        Err(Failure::fatal(NoSeries))
+    }
+
+    /// [Expands](VectorField::expand) the motion with its derivatives through `all`, the state and its columns.
+    ///
+    /// # Errors
+    /// As for [`expand`](VectorField::expand).
+    fn expand_varied(
+        &mut self,
+        _columns: &[Option<usize>],
+        _t: f64,
+        _all: &[f64],
+        _sides: &[f64],
+        _order: usize,
+    ) -> Result<&TaylorSeries, Failure> {
+        Err(Failure::fatal(NoSeries))
+    }
+
     /// f as a program for many states at once, with the present parameters; `None` if f is more than a
-    /// program, is interpreted, or has a [projection](VectorField::has_projection) other than to unit quaternions.
+    /// program, is interpreted, has [steep functions](VectorField::steep_functions), or has a [projection](VectorField::has_projection) other than to unit quaternions.
     fn lanes(&mut self) -> Option<LaneField> {
         None
     }
@@ -277,6 +307,9 @@ macro_rules! behind {
             fn time_dependence(&self) -> TimeDependence {
                 (**self).time_dependence()
             }
+            fn steep_functions(&self) -> Option<SteepFunctions> {
+                (**self).steep_functions()
+            }
             fn series(&mut self) -> Result<&TaylorSeries, Failure> {
                 (**self).series()
             }
@@ -288,6 +321,19 @@ macro_rules! behind {
                 order: usize,
             ) -> Result<&TaylorSeries, Failure> {
                 (**self).expand(t, y, sides, order)
+            }
+            fn varied_series(&mut self, columns: &[Option<usize>]) -> Result<&TaylorSeries, Failure> {
+                (**self).varied_series(columns)
+            }
+            fn expand_varied(
+                &mut self,
+                columns: &[Option<usize>],
+                t: f64,
+                all: &[f64],
+                sides: &[f64],
+                order: usize,
+            ) -> Result<&TaylorSeries, Failure> {
+                (**self).expand_varied(columns, t, all, sides, order)
             }
             fn lanes(&mut self) -> Option<LaneField> {
                 (**self).lanes()

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use crate::program::program::{Instruction, Program};
 use crate::time_profile::interval::Interval;
 use crate::time_profile::jet::Jet;
+use crate::time_profile::motion::PolynomialMotion;
 
 /// The shortest interval that is resolved, as a part of the whole.
 const RESOLVED: f64 = 1e-14;
@@ -20,15 +21,6 @@ const MOST: usize = 4096;
 const VAGUE: usize = 64;
 /// Roots, by intervals that may have one, after which the search ends: who looks for the first does not need them all.
 const ENOUGH: usize = 32;
-
-/// A polynomial motion y(t₀ + s) = Σ_k c_k sᵏ.
-#[derive(Clone, Copy, Debug)]
-pub struct PolynomialMotion<'a> {
-    /// t₀.
-    pub start: f64,
-    /// c_0, then c_1, …, each as long as the state.
-    pub coefficients: &'a [f64],
-}
 
 /// Separates the roots of the outputs of a program along motions.
 ///
@@ -200,39 +192,10 @@ impl RootSeparation {
     /// Encloses time and state within a radius of a place.
     fn set_motion(&mut self, motion: PolynomialMotion<'_>, middle: f64, radius: f64) {
         let time = self.program.first_input();
-        let around = |value: f64, spread: f64| Interval { lo: value - spread, hi: value + spread };
-        self.registers[time] = Jet::line(around(motion.start + middle, radius), 1.0);
+        self.registers[time] = motion.time((middle, radius));
         let dim = self.used.len();
         for i in (0..dim).filter(|&i| self.used[i]) {
-            let local = &mut self.local;
-            local.clear();
-            local.extend(motion.coefficients.iter().skip(i).step_by(dim));
-            for first in 0..local.len() {
-                for k in (first..local.len() - 1).rev() {
-                    local[k] += middle * local[k + 1];
-                }
-            }
-            let c = |k: usize| local.get(k).copied().unwrap_or(0.0);
-            let mut spread = [0.0; 3];
-            let mut power = 1.0;
-            for k in 1..local.len() {
-                let order = k as f64;
-                // rᵏ⁻¹ |c_k| with the factors of each derivative.
-                let term = power * local[k].abs();
-                spread[0] += term * radius;
-                if k >= 2 {
-                    spread[1] += order * term;
-                }
-                if k >= 3 {
-                    spread[2] += order * (order - 1.0) * if radius > 0.0 { term / radius } else { 0.0 };
-                }
-                power *= radius;
-            }
-            self.registers[time + 1 + i] = Jet {
-                value: around(c(0), spread[0]),
-                rate: around(c(1), spread[1]),
-                bend: around(2.0 * c(2), spread[2]),
-            };
+            self.registers[time + 1 + i] = motion.component((i, dim), (middle, radius), &mut self.local);
         }
     }
 

@@ -52,7 +52,7 @@ impl Jet {
         self.chain(self.value.square(), self.value.scale(2.0), Interval::point(2.0))
     }
 
-    fn recip(self) -> Jet {
+    pub(crate) fn recip(self) -> Jet {
         let inverse = self.value.recip();
         let square = inverse.square();
         self.chain(inverse, -square, (square * inverse).scale(2.0))
@@ -199,17 +199,17 @@ impl Jet {
 
     /// The jet of an instruction from those of its operands.
     pub(crate) fn of(instruction: &Instruction, jet: impl Fn(Register) -> Jet) -> Jet {
+        let product = |a, b| if a == b { jet(a).square() } else { jet(a).multiply(jet(b)) };
         match *instruction {
             Instruction::Add(a, b) => jet(a).add(jet(b)),
             Instruction::Subtract(a, b) => jet(a).add(jet(b).negate()),
-            Instruction::Multiply(a, b) if a == b => jet(a).square(),
-            Instruction::Multiply(a, b) => jet(a).multiply(jet(b)),
+            Instruction::Multiply(a, b) => product(a, b),
             Instruction::Divide(a, b) => jet(a).multiply(jet(b).recip()),
             Instruction::Negate(a) => jet(a).negate(),
-            Instruction::MultiplyAdd(a, b, c) => jet(a).multiply(jet(b)).add(jet(c)),
-            Instruction::MultiplySubtract(a, b, c) => jet(a).multiply(jet(b)).add(jet(c).negate()),
-            Instruction::NegateMultiplyAdd(a, b, c) => jet(c).add(jet(a).multiply(jet(b)).negate()),
-            Instruction::NegateMultiplySubtract(a, b, c) => jet(a).multiply(jet(b)).add(jet(c)).negate(),
+            Instruction::MultiplyAdd(a, b, c) => product(a, b).add(jet(c)),
+            Instruction::MultiplySubtract(a, b, c) => product(a, b).add(jet(c).negate()),
+            Instruction::NegateMultiplyAdd(a, b, c) => jet(c).add(product(a, b).negate()),
+            Instruction::NegateMultiplySubtract(a, b, c) => product(a, b).add(jet(c)).negate(),
             Instruction::Call(function, args) => Jet::call(function, args.map(jet)),
         }
     }

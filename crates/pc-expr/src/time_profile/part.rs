@@ -2,16 +2,16 @@
 
 use super::interval::Interval;
 use super::jet::Jet;
-use crate::graph::function::Function;
+use super::motion::PolynomialMotion;
 use crate::program::program::{Instruction, Program, Register};
 
 /// How the value of a register changes with time.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
-struct Motion {
+pub(crate) struct Motion {
     /// Contains t.
-    time: bool,
+    pub(crate) time: bool,
     /// Contains components of the state.
-    state: bool,
+    pub(crate) state: bool,
     /// Contains t other than in a linear function a t + b with fixed a and b.
     bent: bool,
 }
@@ -21,7 +21,7 @@ impl Motion {
         !self.time && !self.state
     }
 
-    fn is_mixed(self) -> bool {
+    pub(crate) fn is_mixed(self) -> bool {
         self.time && self.state
     }
 
@@ -31,16 +31,41 @@ impl Motion {
     }
 }
 
-/// The watched registers, and the instructions that compute them.
+/// A watched function.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Watch {
+    /// The value of a register.
+    Value(usize),
+    /// Its reciprocal.
+    Reciprocal(usize),
+}
+
+impl Watch {
+    fn register(self) -> usize {
+        match self {
+            Watch::Value(place) | Watch::Reciprocal(place) => place,
+        }
+    }
+
+    /// Whether enclosures show where it bends: those of reciprocals are too wide near the least divisor.
+    pub(crate) fn shows_bends(self) -> bool {
+        matches!(self, Watch::Value(_))
+    }
+}
+
+/// The watched functions, and the instructions that compute them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Part {
-    pub(crate) watched: Vec<usize>,
+    pub(crate) watched: Vec<Watch>,
     code: Vec<(usize, Instruction)>,
     /// Jets of constants, time, state and parameters, followed by the results.
     registers: Vec<Jet>,
     /// The register of time; the components of the state follow.
     time: usize,
-    dim: usize,
+    /// The components of the state that are read.
+    states: Vec<usize>,
+    /// Room for the polynomial of a component about a place.
+    local: Vec<f64>,
 }
 
 /// How a program depends on time.
@@ -49,31 +74,24 @@ pub(crate) struct Analysis {
     pub(crate) explicit: bool,
     /// Functions of t alone.
     pub(crate) forcing: Part,
-    /// Functions of t and the state that may rise and fall faster than either.
-    pub(crate) mixed: Part,
 }
 
 impl Analysis {
     pub(crate) fn of(program: &Program, parameters: &[f64]) -> Analysis {
         let motions = motions(program);
         let used = |register: &Register| motions[register.index()].time;
-        let first = program.first_result();
-        let results = || (first..).zip(program.code());
-        let forcing = results()
+        let forcing = (program.first_result()..).zip(program.code());
+        let forcing = forcing
             .filter(|&(place, instruction)| motions[place].is_forcing() && !is_copy(instruction, &motions))
-            .map(|(place, _)| place);
-        let mixed = results()
-            .filter(|&(place, instruction)| motions[place].is_mixed() && is_steep(instruction, &motions))
-            .map(|(place, _)| place);
+            .map(|(place, _)| Watch::Value(place));
         Analysis {
             explicit: program.outputs().iter().any(used),
             forcing: Part::new(program, parameters, forcing.collect()),
-            mixed: Part::new(program, parameters, mixed.collect()),
         }
     }
 }
 
-fn motions(program: &Program) -> Vec<Motion> {
+pub(crate) fn motions(program: &Program) -> Vec<Motion> {
     let mut motions = vec![Motion::default(); program.registers_len()];
     let time = program.first_input();
     motions[time].time = true;
@@ -115,22 +133,11 @@ fn is_copy(instruction: &Instruction, motions: &[Motion]) -> bool {
     same_steepness && moving().count() == 1
 }
 
-/// Whether a function of t and the state may change much faster than its arguments.
-fn is_steep(instruction: &Instruction, motions: &[Motion]) -> bool {
-    let mixed = |register: Register| motions[register.index()].is_mixed();
-    match *instruction {
-        Instruction::Divide(_, b) => mixed(b),
-        Instruction::Call(Function::Sin | Function::Cos, _) => false,
-        Instruction::Call(..) => instruction.operands().any(mixed),
-        _ => false,
-    }
-}
-
 impl Part {
-    fn new(program: &Program, parameters: &[f64], watched: Vec<usize>) -> Part {
+    pub(crate) fn new(program: &Program, parameters: &[f64], watched: Vec<Watch>) -> Part {
         let first = program.first_result();
         let mut needed = vec![false; program.registers_len()];
-        watched.iter().for_each(|&place| needed[place] = true);
+        watched.iter().for_each(|watch| needed[watch.register()] = true);
         for (i, instruction) in program.code().iter().enumerate().rev() {
             if needed[first + i] {
                 instruction.operands().for_each(|operand| needed[operand.index()] = true);
@@ -152,7 +159,13 @@ impl Part {
             }
         }
         let time = program.first_input();
-        Part { watched, code, registers, time, dim: program.state_len() }
+        let states = (0..program.state_len()).filter(|i| needed[time + 1 + i]).collect();
+        Part { watched, code, registers, time, states, local: Vec::new() }
+    }
+
+    /// Whether only these first components of the state are read.
+    pub(crate) fn reads_only(&self, dim: usize) -> bool {
+        self.states.iter().all(|&i| i < dim)
     }
 
     pub(crate) fn is_empty(&self) -> bool {
@@ -164,26 +177,38 @@ impl Part {
         self.code.len()
     }
 
-    /// The watched functions between the times `a` and `b`, along the line through (t, y) at the rate ẏ.
-    pub(crate) fn over(&mut self, (a, b): (f64, f64), line: Line<'_>) -> impl Iterator<Item = Jet> + '_ {
-        let span = Interval::between(a, b);
-        self.registers[self.time] = Jet::line(span, 1.0);
-        let state = &mut self.registers[self.time + 1..][..self.dim];
-        for (register, (y, rate)) in state.iter_mut().zip(line.state.iter().zip(line.rates)) {
-            let value = (span - Interval::point(line.t)).scale(*rate) + Interval::point(*y);
-            *register = Jet::line(value, *rate);
+    /// Encloses the part between the times `a` and `b`, along a motion of states of `dim` components.
+    pub(crate) fn enclose(&mut self, (a, b): (f64, f64), (motion, dim): (PolynomialMotion<'_>, usize)) {
+        self.registers[self.time] = Jet::line(Interval::between(a, b), 1.0);
+        let near = (0.5 * ((a - motion.start) + (b - motion.start)), 0.5 * (b - a).abs());
+        for &i in &self.states {
+            self.registers[self.time + 1 + i] = motion.component((i, dim), near, &mut self.local);
         }
         for (place, instruction) in &self.code {
             self.registers[*place] = Jet::of(instruction, |register| self.registers[register.index()]);
         }
-        self.watched.iter().map(|&place| self.registers[place])
     }
-}
 
-/// A motion to first order: y + (· − t) ẏ. Empty for functions that do not contain the state.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Line<'a> {
-    pub(crate) t: f64,
-    pub(crate) state: &'a [f64],
-    pub(crate) rates: &'a [f64],
+    /// What the watched functions are where the part was enclosed last.
+    pub(crate) fn jets(&self) -> impl Iterator<Item = Jet> + '_ {
+        self.watched.iter().map(|&watch| match watch {
+            Watch::Value(place) => self.at(place),
+            Watch::Reciprocal(place) => self.at(place).recip(),
+        })
+    }
+
+    /// What a register is there.
+    pub(crate) fn at(&self, register: usize) -> Jet {
+        self.registers[register]
+    }
+
+    /// The watched functions between two times, along a motion.
+    pub(crate) fn over(
+        &mut self,
+        between: (f64, f64),
+        along: (PolynomialMotion<'_>, usize),
+    ) -> impl Iterator<Item = Jet> + '_ {
+        self.enclose(between, along);
+        self.jets()
+    }
 }

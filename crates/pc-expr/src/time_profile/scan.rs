@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 
 use super::interval::Interval;
 use super::jet::Jet;
-use super::part::{Line, Part};
+use super::motion::PolynomialMotion;
+use super::part::Part;
 
 /// The pieces of a window over which the range of a function is first estimated.
 const PIECES: u32 = 32;
@@ -13,6 +14,8 @@ const PIECES: u32 = 32;
 const FLAT: f64 = 1.0 / 64.0;
 /// The same for a function with one of the two properties: it has one turn or one inflection there.
 const TURN: f64 = 0.25;
+/// A rise or fall is a piece on which a monotonic function changes by at least this part of its range.
+const RISE: f64 = 2.0 / PIECES as f64;
 /// Turns and inflections within this part of the range of the last one do not count.
 const SWING: f64 = 1e-3;
 /// The rounding of a value, with a margin.
@@ -43,8 +46,17 @@ pub(crate) enum Kind {
     Turn,
     /// An inflection; at its rate there the function crosses its range in this time.
     Bend(f64),
+    /// A rise or fall, perhaps with an inflection; so steep the function crosses its range in this time.
+    Rise(f64),
     /// A possible extremum or inflection.
     Unsure,
+}
+
+impl Kind {
+    /// The kind where enclosures show inflections.
+    fn without_rises(self) -> Kind {
+        if let Kind::Rise(_) = self { Kind::Unsure } else { self }
+    }
 }
 
 /// What is known of one function so far.
@@ -121,7 +133,13 @@ impl Scan {
     }
 
     /// Begins a window.
-    pub(crate) fn begin(&mut self, part: &mut Part, start: f64, end: f64, line: Line<'_>) {
+    pub(crate) fn begin(
+        &mut self,
+        part: &mut Part,
+        start: f64,
+        end: f64,
+        along: (PolynomialMotion<'_>, usize),
+    ) {
         let track = Track {
             values: None,
             range: 0.0,
@@ -138,7 +156,7 @@ impl Scan {
         self.pieces.clear();
         self.pieces.extend((0..PIECES).rev().map(|i| (at(i), at(i + 1))));
         for &piece in self.pieces.iter().rev() {
-            for (track, jet) in self.tracks.iter_mut().zip(part.over(piece, line)) {
+            for (track, jet) in self.tracks.iter_mut().zip(part.over(piece, along)) {
                 if jet.value.width().is_finite() {
                     track.values = Some(track.values.map_or(jet.value, |values| values.hull(jet.value)));
                 }
@@ -174,7 +192,7 @@ impl Scan {
         &mut self,
         part: &mut Part,
         (t, to): (f64, f64),
-        line: Line<'_>,
+        along: (PolynomialMotion<'_>, usize),
         enough: bool,
     ) -> (f64, &VecDeque<Feature>) {
         let direction = if to < t { -1.0 } else { 1.0 };
@@ -199,7 +217,7 @@ impl Scan {
             let tracks = &mut self.tracks;
             let jets = &mut self.jets;
             jets.clear();
-            jets.extend(part.over((a, b), line));
+            jets.extend(part.over((a, b), along));
             let plain = tracks.iter().zip(&*jets).all(|(track, jet)| track.is_plain(jet));
             if !shortest && !plain {
                 self.pieces.extend([(middle, b), (a, middle)]);
@@ -208,7 +226,9 @@ impl Scan {
             sharp += u32::from(indivisible && !plain);
             self.noise |= sharp >= NOISE;
             for (function, (track, jet)) in tracks.iter_mut().zip(&*jets).enumerate() {
+                let shows_bends = part.watched[function].shows_bends();
                 track.pass((a, b), jet, shortest, |t, kind| {
+                    let kind = if shows_bends { kind.without_rises() } else { kind };
                     self.features.push_back(Feature { t, function, kind });
                 });
             }
@@ -226,6 +246,10 @@ impl Track {
 
     /// Whether a piece needs no closer examination.
     fn is_plain(&self, jet: &Jet) -> bool {
+        // Also one that is infinite throughout.
+        if jet.value.is_point() {
+            return true;
+        }
         let known = (jet.rate.sign().is_some(), jet.bend.sign().is_some());
         let part = match known {
             (true, true) => return true,
@@ -265,7 +289,9 @@ impl Track {
             found(t, Kind::Bend(self.range / rate));
         }
         if jet.bend.sign().is_none() {
-            found(a + 0.5 * (b - a), Kind::Unsure);
+            let (middle, part) = (a + 0.5 * (b - a), jet.value.width() / self.range);
+            let rises = jet.rate.sign().is_some() && part >= RISE;
+            found(middle, if rises { Kind::Rise((b - a).abs() / part) } else { Kind::Unsure });
         }
         self.last_rate = jet.rate;
         self.at_end = last;

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use crate::time_profile::profile::*;
-use crate::{Expr, Graph, Inputs, Interpreter, Kernel, Program};
+use crate::{Expr, Graph, Inputs, Interpreter, Kernel, PolynomialMotion, Program, SteepFunctions};
 
 /// A function of (t, y).
 type Pulse = Box<dyn for<'g> Fn(&'g Graph, Expr<'g>, Expr<'g>) -> Expr<'g>>;
@@ -20,9 +20,14 @@ fn profile(program: &Program) -> TimeProfile {
     }
 }
 
+/// Where a program hides something between two times, along the motion that rests at y = 0.
 fn found(program: &Program, from: f64, to: f64) -> Vec<f64> {
-    let found = profile(program).surprises((from, to), (&[0.0], &[0.0]), to, false).clone();
-    [found.few, found.many].concat()
+    let of_time = profile(program).surprises((from, to), to, false).clone();
+    let rest = PolynomialMotion { start: from, coefficients: &[0.0, 0.0] };
+    let steep = SteepFunctions::of(&[program], 1, &[]);
+    let of_state =
+        steep.map(|mut steep| steep.surprises((from, to), rest, false).clone()).unwrap_or_default();
+    [of_time.few, of_time.many, of_state.few, of_state.many].concat()
 }
 
 #[test]
@@ -95,13 +100,13 @@ fn features_resolved_by_steps_are_not_examined() {
     let mut profile = profile(&program);
     let (mut t, mut count) = (0.0, 0);
     while t < 100.0 {
-        let found = profile.surprises((t, t + 0.7), (&[0.0], &[0.0]), 100.0, false);
+        let found = profile.surprises((t, t + 0.7), 100.0, false);
         assert_eq!(found.many, []);
         count += found.few.len();
         t += 0.7;
     }
     assert!(count < 10, "{count}");
-    assert!(profile.surprises((t, t + 20.0), (&[0.0], &[0.0]), 200.0, false).few.len() >= 10);
+    assert!(profile.surprises((t, t + 20.0), 200.0, false).few.len() >= 10);
 }
 
 /// Among thousands of features, all are known up to a stated time.
@@ -109,11 +114,11 @@ fn features_resolved_by_steps_are_not_examined() {
 fn a_fast_oscillation_is_known_piece_by_piece() {
     let program = program(|_, t, y| (1e6 * t).sin() + y);
     let mut profile = profile(&program);
-    let found = profile.surprises((0.0, 10.0), (&[0.0], &[0.0]), 10.0, false);
+    let found = profile.surprises((0.0, 10.0), 10.0, false);
     let until = found.until.unwrap();
     assert!(until > 1e-4 && until < 1.0 && found.many.len() > 300, "{until} {}", found.many.len());
     assert!(found.many.iter().all(|&t| t <= until));
-    assert_eq!(profile.surprises((0.0, 10.0), (&[0.0], &[0.0]), 10.0, true).until, None);
+    assert_eq!(profile.surprises((0.0, 10.0), 10.0, true).until, None);
 }
 
 /// A function that turns faster than floating-point times resolve is reported as noise and no longer examined
@@ -122,12 +127,77 @@ fn a_fast_oscillation_is_known_piece_by_piece() {
 fn features_beyond_the_resolution_of_time_are_noise() {
     let noise = program(|_, t, y| (1e21 * t).sin() + y);
     let mut of_noise = profile(&noise);
-    let found = of_noise.surprises((0.0, 1.0), (&[0.0], &[0.0]), 10.0, false);
+    let found = of_noise.surprises((0.0, 1.0), 10.0, false);
     assert!(found.noise && found.until.is_some_and(|until| until < 1e-6), "{:?}", found.until);
-    let later = of_noise.surprises((1e-6, 1.0), (&[0.0], &[0.0]), 10.0, false);
+    let later = of_noise.surprises((1e-6, 1.0), 10.0, false);
     assert_eq!((later.noise, later.until), (true, None));
     assert!(later.few.len() + later.many.len() < 100);
     let square = program(|_, t, y| (300.0 * t).sin().sign() + y);
-    let found = profile(&square).surprises((0.0, 10.0), (&[0.0], &[0.0]), 10.0, false).clone();
+    let found = profile(&square).surprises((0.0, 10.0), 10.0, false).clone();
     assert!(!found.noise && found.many.len() > 100, "{}", found.many.len());
+}
+
+/// A peak of any form and width is noticed where a motion passes over it, forwards and backwards, on a line and on a
+/// parabola.
+#[test]
+fn peaks_in_the_state_are_found_however_narrow() {
+    for width in [1e-1, 1e-3, 1e-5, 1e-8] {
+        let peaks: [(&str, Pulse); 7] = [
+            ("Gauss", Box::new(move |_, _, y| (-((y - 5.0) / width).square()).exp())),
+            ("Lorentz", Box::new(move |_, _, y| 1.0 / (1.0 + ((y - 5.0) / width).square()))),
+            ("power", Box::new(move |_, _, y| (1.0 + ((y - 5.0) / width).square()).pow(-1.5))),
+            ("soliton", Box::new(move |_, _, y| 1.0 / ((y - 5.0) / width).cosh().square())),
+            (
+                "box",
+                Box::new(move |_, _, y| ((y - 5.0) / width + 1.0).tanh() - ((y - 5.0) / width - 1.0).tanh()),
+            ),
+            (
+                "force of a soliton",
+                Box::new(move |_, _, y| {
+                    let u = (y - 5.0) / width;
+                    3.0 * u.sinh() / u.cosh().square() / u.cosh()
+                }),
+            ),
+            (
+                "logistic box",
+                Box::new(move |_, _, y| {
+                    let rise = |shift: f64| 1.0 / (1.0 + ((y - 5.0) / -width + shift).exp());
+                    rise(1.0) - rise(-1.0)
+                }),
+            ),
+        ];
+        for (name, peak) in peaks {
+            let program = program(|graph, t, y| peak(graph, t, y));
+            let mut f = Interpreter::new(Arc::new(program.clone()));
+            for path in [&[0.0, 1.0][..], &[0.0, 0.4, 0.06], &[10.0, -0.7, -0.05]] {
+                let state = |t: f64| path.iter().rev().fold(0.0, |y, c| y * t + c);
+                let mut steep = SteepFunctions::of(&[&program], 1, &[]).unwrap();
+                let motion = PolynomialMotion { start: 0.0, coefficients: path };
+                let times = steep.surprises((0.0, 10.0), motion, false).few.clone();
+                let mut rate = [0.0];
+                let seen = times.iter().any(|&t| {
+                    f.eval(t, &[state(t)], &[], &mut rate);
+                    rate[0].abs() > 0.3
+                });
+                assert!(seen && times.len() < 20, "{name} of width {width} along {path:?}: {times:?}");
+            }
+        }
+    }
+}
+
+/// Functions without a scale of their own, and those whose change any step feels, are not followed.
+#[test]
+fn gentle_functions_of_the_state_are_not_followed() {
+    let gentle: [Pulse; 6] = [
+        Box::new(|_, _, y| y.sin() / (2.0 + y.cos())),
+        Box::new(|_, _, y| 1.0 / y.square()),
+        Box::new(|_, _, y| y.square() * (1.0 + y.square()).sqrt()),
+        Box::new(|_, _, y| (0.5 * y.sin()).exp()),
+        Box::new(|_, _, y| (0.1 * y.cos()).tanh()),
+        Box::new(|_, t, y| (-((t - 5.0) / 1e-3).square()).exp() - y),
+    ];
+    for (i, gentle) in gentle.into_iter().enumerate() {
+        let program = program(|graph, t, y| gentle(graph, t, y));
+        assert!(SteepFunctions::of(&[&program], 1, &[]).is_none(), "{i}");
+    }
 }

@@ -26,3 +26,4 @@ mod scale;
 mod signs;
 mod substitution;
 mod taylor;
+mod variation;

@@ -1,6 +1,6 @@
 //! Motions under forces that are computed outside.
 
-use pc_expr::{Expr, Failure, Pattern, TimeDependence, VectorField};
+use pc_expr::{Expr, Failure, Pattern, SteepFunctions, TimeDependence, VectorField};
 
 use crate::compiled::motion::Motion;
 use crate::compiled::options::CompileOptions;
@@ -364,6 +364,10 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
 
     fn time_dependence(&self) -> TimeDependence {
         self.motion.time_dependence().with_unknown()
+    }
+
+    fn steep_functions(&self) -> Option<SteepFunctions> {
+        self.motion.steep_functions()
     }
 
     fn restart(&mut self, t: f64, y: &[f64]) {

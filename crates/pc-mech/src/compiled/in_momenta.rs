@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use pc_expr::{
-    Backend, Evaluator, Expr, ExprError, Failure, Inputs, Pattern, Program, TimeDependence, VectorField,
+    Backend, Evaluator, Expr, ExprError, Failure, Inputs, Pattern, Program, SteepFunctions, TimeDependence,
+    VectorField,
 };
 
 use crate::compiled::elimination::columns::derivative;
@@ -143,10 +144,14 @@ impl InMomenta {
     /// variables.
     pub(crate) fn time_dependence(&self) -> TimeDependence {
         match self.inner.time_dependence() {
-            TimeDependence::Known(profile) if profile.follows_states() => TimeDependence::Unknown,
             TimeDependence::Known(profile) => TimeDependence::Known(profile).with_unknown(),
             other => other,
         }
+    }
+
+    /// The steep functions of the coordinates, which both motions have in common.
+    pub(crate) fn steep_functions(&self) -> Option<SteepFunctions> {
+        self.inner.steep_functions()?.of_components(self.inner.coordinates)
     }
 
     /// The pattern of the Jacobian.

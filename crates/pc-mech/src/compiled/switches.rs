@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pc_expr::{
     Backend, Evaluator, Expr, Failure, Graph, Normals, Program, Sliding, SlidingError, Switching,
-    TaylorSeries, TimeDependence, VectorField,
+    TaylorSeries, TimeDependence, VariedSeries, VectorField,
 };
 
 use crate::compiled::compile::LONGEST_ELIMINATION;
@@ -34,7 +34,15 @@ pub(crate) struct Switches {
     /// The sides on which f is held, if it is.
     sides: Option<Vec<f64>>,
     /// The series of the motion along these surfaces, made on first use.
-    along: Option<(Vec<usize>, TaylorSeries)>,
+    along: Option<Along>,
+}
+
+/// The motion along surfaces.
+#[derive(Clone, Debug)]
+struct Along {
+    surfaces: Vec<usize>,
+    program: Program,
+    series: VariedSeries,
 }
 
 /// The derivatives of the functions by time, state and parameters.
@@ -273,53 +281,73 @@ impl Switches {
     /// As [`Motion::expand`](VectorField::expand).
     pub(crate) fn expand(&mut self, t: f64, y: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
         if let Some(sides) = self.sliding() {
-            return self.expand_sliding(&sides, t, y, order);
+            return self.expand_sliding(&sides, &[], (t, y), order);
         }
-        if self.sides.is_none() {
-            let mut values = vec![f64::NAN; self.names.len()];
-            // A surface contains the sides of those before it.
-            for _ in 0..self.names.len() {
-                self.functions(t, y, &mut values);
-                let sides: Vec<f64> = values.iter().map(|g| if *g < 0.0 { -1.0 } else { 1.0 }).collect();
-                self.set(&sides);
-            }
-        }
+        self.take_sides(t, y);
         self.motion.expand(t, y, &[], order)
     }
 
-    /// The series of the motion along the surfaces whose sides are 0.
+    /// The series of the motion on the sides held, with its derivatives by `columns`.
+    ///
+    /// # Errors
+    /// As [`Motion::expand_varied`](VectorField::expand_varied).
+    pub(crate) fn expand_varied(
+        &mut self,
+        columns: &[Option<usize>],
+        t: f64,
+        all: &[f64],
+        order: usize,
+    ) -> Result<&TaylorSeries, Failure> {
+        if let Some(sides) = self.sliding() {
+            return self.expand_sliding(&sides, columns, (t, all), order);
+        }
+        self.take_sides(t, &all[..self.motion.names.len()]);
+        self.motion.expand_varied(columns, t, all, &[], order)
+    }
+
+    /// Takes the sides of the signs of the functions, unless f is held.
+    fn take_sides(&mut self, t: f64, y: &[f64]) {
+        if self.sides.is_some() {
+            return;
+        }
+        let mut values = vec![f64::NAN; self.names.len()];
+        // A surface contains the sides of those before it.
+        for _ in 0..self.names.len() {
+            self.functions(t, y, &mut values);
+            let sides: Vec<f64> = values.iter().map(|g| if *g < 0.0 { -1.0 } else { 1.0 }).collect();
+            self.set(&sides);
+        }
+    }
+
+    /// The series of the motion along the surfaces whose sides are 0, with its derivatives by `columns`.
     ///
     /// # Errors
     /// As [`Sliding::of`], and where f is not a sum of what these surfaces change.
     fn expand_sliding(
         &mut self,
         sides: &[f64],
-        t: f64,
-        y: &[f64],
+        columns: &[Option<usize>],
+        (t, all): (f64, &[f64]),
         order: usize,
     ) -> Result<&TaylorSeries, Failure> {
+        let y = &all[..self.motion.names.len()];
         let Sliding { surfaces, rates, .. } = Sliding::of(self, sides, t, y)?;
-        if self.along.as_ref().is_none_or(|(known, _)| *known != surfaces) {
-            let Some(program) = self.motion.program_of_rates() else {
-                return self.motion.expand(t, y, &[], order);
-            };
-            let first = self.motion.parameters.len() - sides.len();
-            let places: Vec<usize> = surfaces.iter().map(|surface| first + surface).collect();
-            let entries = self.slopes.places.iter().enumerate().filter_map(|(output, &(surface, column))| {
-                let surface = surfaces.iter().position(|&other| other == surface)?;
-                (column <= y.len()).then_some((output, surface, column))
+        if self.along.as_ref().is_none_or(|along| along.surfaces != surfaces) {
+            self.along = self.program_along(&surfaces, sides.len()).map(|program| Along {
+                surfaces: surfaces.clone(),
+                program,
+                series: VariedSeries::default(),
             });
-            let normals =
-                Normals { program: self.slopes.entries.program(), entries: &entries.collect::<Vec<_>>() };
-            let program = program.sliding(&places, normals);
-            self.along = Some((surfaces.clone(), TaylorSeries::new(&program, self.motion.options.backend)));
         }
         let above: Vec<f64> = sides.iter().map(|side| if *side < 0.0 { -1.0 } else { 1.0 }).collect();
         // What is left of forces that cancel is measured by these.
         let mut beside = vec![f64::NAN; y.len()];
         self.rates(&above, t, y, &mut beside)?;
-        let Some((_, series)) = &mut self.along else { return self.motion.expand(t, y, &[], order) };
-        series.expand(t, y, &[], &self.motion.parameters, order);
+        let Some(Along { program, series, .. }) = &mut self.along else {
+            return self.motion.expand_varied(columns, t, all, &[], order);
+        };
+        let series = series.of(columns, program, self.motion.options.backend);
+        series.expand(t, all, &[], &self.motion.parameters, order);
         let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
         let size = largest(&rates).max(largest(&beside));
         let differs = |(rate, found): (&f64, &f64)| found.is_nan() || (rate - found).abs() > ADDS_UP * size;
@@ -328,6 +356,20 @@ impl Switches {
             return Err(Failure::fatal(SlidingError::NoSeries { surfaces }));
         }
         Ok(series)
+    }
+
+    /// The program of the motion along surfaces, out of so many; none if that of f is not one.
+    fn program_along(&self, surfaces: &[usize], len: usize) -> Option<Program> {
+        let program = self.motion.program_of_rates()?;
+        let (dim, first) = (program.state_len(), self.motion.parameters.len() - len);
+        let places: Vec<usize> = surfaces.iter().map(|surface| first + surface).collect();
+        let entries = self.slopes.places.iter().enumerate().filter_map(|(output, &(surface, column))| {
+            let surface = surfaces.iter().position(|&other| other == surface)?;
+            (column <= dim).then_some((output, surface, column))
+        });
+        let entries: Vec<_> = entries.collect();
+        let normals = Normals { program: self.slopes.entries.program(), entries: &entries };
+        Some(program.sliding(&places, normals))
     }
 
     fn set(&mut self, sides: &[f64]) {

@@ -1,6 +1,9 @@
 //! A compiled motion as a vector field.
 
-use pc_expr::{Failure, LaneField, Pattern, RateJump, Switching, TaylorSeries, TimeDependence, VectorField};
+use pc_expr::{
+    Failure, LaneField, Pattern, RateJump, SteepFunctions, Switching, TaylorSeries, TimeDependence,
+    VectorField,
+};
 
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
@@ -196,6 +199,17 @@ impl VectorField for Motion {
         }
     }
 
+    fn steep_functions(&self) -> Option<SteepFunctions> {
+        if let Some(switches) = &self.switches {
+            return switches.motion.steep_functions();
+        }
+        match &self.form {
+            Form::Unrolled(unrolled) => unrolled.steep_functions(self.names.len(), &self.parameters),
+            Form::Staged(staged) => staged.steep_functions(&self.parameters),
+            Form::InMomenta(motion) => motion.steep_functions(),
+        }
+    }
+
     fn series(&mut self) -> Result<&TaylorSeries, Failure> {
         self.check_series()?;
         if let Some(switches) = &mut self.switches {
@@ -225,10 +239,46 @@ impl VectorField for Motion {
         })
     }
 
+    fn varied_series(&mut self, columns: &[Option<usize>]) -> Result<&TaylorSeries, Failure> {
+        self.check_series()?;
+        if let Some(switches) = &mut self.switches {
+            return switches.motion.varied_series(columns);
+        }
+        match &mut self.form {
+            Form::Unrolled(unrolled) => Ok(unrolled.varied_series(columns)),
+            Form::Staged(_) | Form::InMomenta(_) => unreachable!("has been refused"),
+        }
+    }
+
+    fn expand_varied(
+        &mut self,
+        columns: &[Option<usize>],
+        t: f64,
+        all: &[f64],
+        sides: &[f64],
+        order: usize,
+    ) -> Result<&TaylorSeries, Failure> {
+        self.check_series()?;
+        if let Some(switches) = &mut self.switches {
+            switches.follow(&self.parameters);
+            return switches.expand_varied(columns, t, all, order);
+        }
+        let at = Point { t, y: all, p: &self.parameters };
+        let outcome = match &mut self.form {
+            Form::Unrolled(unrolled) => unrolled.expand_varied(columns, at, sides, order),
+            Form::Staged(_) | Form::InMomenta(_) => unreachable!("has been refused"),
+        };
+        // The state is borrowed by the series.
+        outcome.map_err(|failure| {
+            let error = failure.at(&self.quasi_velocities, t, &self.names, &all[..self.names.len()]);
+            Failure::recoverable(error)
+        })
+    }
+
     fn lanes(&mut self) -> Option<LaneField> {
         let on_surface = self.surface.is_some() || self.kept.is_some();
         let alone = self.signals.is_empty() && self.charts.is_empty() && self.switches.is_none();
-        if !alone || on_surface {
+        if !alone || on_surface || self.steep_functions().is_some() {
             return None;
         }
         match &mut self.form {

@@ -1,8 +1,7 @@
-//! The explicit dependence on time, examined up to the end of the next step.
+//! The field, examined up to the end of the next step.
 //!
 //! A multistep method evaluates f only at the ends of its steps. Before a step is tried, f is
-//! therefore evaluated at the [places](crate::foresight) where its explicit dependence on time may
-//! have a hidden feature, at the predicted state: with p the polynomial through the last steps, the
+//! therefore evaluated at the [places](crate::foresight) where it may have a hidden feature, at the predicted state: with p the polynomial through the last steps, the
 //! defect
 //! ```text
 //! δ = p′(t) − f(t, p(t))
@@ -10,7 +9,7 @@
 //! would change the state by about h δ over a step of length h. If that is large compared with the
 //! tolerance, the step ends there at the latest, so that the method meets the feature.
 
-use pc_expr::VectorField;
+use pc_expr::{PolynomialMotion, VectorField};
 use sundials_sys as sys;
 
 use crate::cvode::cvode::Cvode;
@@ -87,32 +86,28 @@ impl<F: VectorField> Cvode<F> {
     /// Reads the polynomial of the last step; before the first, the tangent.
     fn read_polynomial(&mut self) -> Result<(), SolveError> {
         let t = self.step_time;
+        let Foresight { polynomial, state, rates, evaluations, .. } = &mut self.foresight;
+        polynomial.clear();
         if self.direction.is_none() {
-            let foresight = &mut self.foresight;
-            if let [y, rates, ..] = &mut foresight.polynomial[..] {
-                y.copy_from_slice(self.step_state.as_slice());
-                foresight.evaluations += 1;
-                if !self.callbacks.look(t, y, rates) {
-                    rates.fill(0.0); // CVODE reports the failure
-                }
-                foresight.terms = 2;
+            state.copy_from_slice(self.step_state.as_slice());
+            *evaluations += 1;
+            if !self.callbacks.look(t, state, rates) {
+                rates.fill(0.0); // CVODE reports the failure
             }
+            polynomial.extend_from_slice(state);
+            polynomial.extend_from_slice(rates);
             return Ok(());
         }
         let mut order = 0;
         // SAFETY: the memory is live and initialised; `order` is a place for the result.
         unsafe { sys::CVodeGetLastOrder(self.memory.raw(), &raw mut order) };
-        self.foresight.terms = 0;
         let mut factorial = 1.0;
-        for (k, terms) in (0..=order).zip(&mut self.foresight.polynomial) {
+        for k in 0..=order {
             factorial *= f64::from(k.max(1));
             // SAFETY: memory and vector are live and of one context; a step has been taken.
             let code = unsafe { sys::CVodeGetDky(self.memory.raw(), t, k, self.work.raw()) };
             self.context.check("CVodeGetDky", code)?;
-            for (place, term) in terms.iter_mut().zip(self.work.as_slice()) {
-                *place = term / factorial;
-            }
-            self.foresight.terms += 1;
+            self.foresight.polynomial.extend(self.work.as_slice().iter().map(|term| term / factorial));
         }
         // SAFETY: memory and vector are live and of one context; CVODES copies to the vector.
         let code = unsafe { sys::CVodeGetEstLocalErrors(self.memory.raw(), self.work.raw()) };
@@ -136,10 +131,9 @@ impl<F: VectorField> Cvode<F> {
 }
 
 impl<F: VectorField> Here for Cvode<F> {
-    fn tangent(&mut self) -> Result<(&[f64], &[f64]), SolveError> {
+    fn prediction(&mut self) -> Result<Option<PolynomialMotion<'_>>, SolveError> {
         self.read_polynomial()?;
-        self.foresight.predict(0.0);
-        Ok((&self.foresight.state, &self.foresight.slope))
+        Ok(Some(PolynomialMotion { start: self.step_time, coefficients: &self.foresight.polynomial }))
     }
 
     fn resolve(&mut self, near: f64, length: f64) -> Result<(), SolveError> {

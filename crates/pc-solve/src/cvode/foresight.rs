@@ -18,9 +18,8 @@ pub(super) struct Foresight {
     pub(super) absolute_tolerance: Tolerance,
     /// Evaluations since the last restart.
     pub(super) evaluations: u64,
-    /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, of which the first `terms` are valid, and work space.
-    pub(super) polynomial: Vec<Vec<f64>>,
-    pub(super) terms: usize,
+    /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, for k = 0, 1, …, each as long as the state; and work space.
+    pub(super) polynomial: Vec<f64>,
     pub(super) state: Vec<f64>,
     pub(super) slope: Vec<f64>,
     pub(super) rates: Vec<f64>,
@@ -34,13 +33,13 @@ impl Foresight {
     pub(super) fn new(field: &mut impl VectorField, t0: f64, options: &Options) -> Foresight {
         let (dim, places) = (field.dim(), Places::new(field, t0, options.min_step));
         let most = if places.are_absent() { 0 } else { options.method.highest_order() as usize + 1 };
+        let polynomial = Vec::with_capacity(most * dim);
         Foresight {
             places: Some(places),
             relative_tolerance: options.resolved_tolerance(),
             absolute_tolerance: options.absolute_tolerance.clone(),
             evaluations: 0,
-            polynomial: vec![vec![0.0; dim]; most],
-            terms: 0,
+            polynomial,
             state: vec![0.0; dim],
             slope: vec![0.0; dim],
             rates: vec![0.0; dim],
@@ -95,7 +94,7 @@ impl Foresight {
     pub(super) fn predict(&mut self, since: f64) {
         self.state.fill(0.0);
         self.slope.fill(0.0);
-        for terms in self.polynomial[..self.terms].iter().rev() {
+        for terms in self.polynomial.rchunks_exact(self.state.len()) {
             for ((state, slope), term) in self.state.iter_mut().zip(&mut self.slope).zip(terms) {
                 *slope = *slope * since + *state;
                 *state = *state * since + term;

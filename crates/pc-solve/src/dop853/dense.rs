@@ -78,6 +78,17 @@ impl Polynomial {
         Ok(())
     }
 
+    /// Writes the coefficients of the powers of the time since the start, each for `dim` components.
+    pub(super) fn coefficients(&self, dim: usize, coefficients: &mut Vec<f64>) {
+        coefficients.clear();
+        let mut scale = 1.0;
+        for power in 0..8 {
+            let of_component = |i: usize| (0..8).map(|j| BASIS[j][power] * self.terms[j][i]).sum::<f64>();
+            coefficients.extend((0..dim).map(|i| of_component(i) * scale));
+            scale /= self.length;
+        }
+    }
+
     /// Writes the derivative of this order at t.
     pub(super) fn evaluate(&self, t: f64, order: u32, value: &mut [f64]) {
         let s = (t - self.start) / self.length;

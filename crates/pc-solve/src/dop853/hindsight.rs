@@ -1,11 +1,11 @@
-//! Features of the explicit dependence on time that the stages of a step miss.
+//! Features of the field that the stages of a step miss.
 //!
 //! A step evaluates f at twelve times, and a pulse may lie between two of them. Before a step is
 //! accepted, its polynomial p is therefore inserted into the equations at the
 //! [places](crate::foresight) in it: where the defect p′ − f(t, p) exceeds what the error of the
 //! polynomial explains, the step is repeated so that it ends there.
 
-use pc_expr::{Failure, VectorField};
+use pc_expr::{Failure, PolynomialMotion, VectorField};
 
 use super::setup::Dop853;
 use super::stages::evaluate;
@@ -38,9 +38,7 @@ impl<F: VectorField> Dop853<F> {
         let Dop853 { field, control, end, places, argument, statistics, .. } = self;
         let dim = field.dim();
         let mut noise = false;
-        let mut here = Tangent {
-            state: &end.y[..dim],
-            rates: &end.rates[..dim],
+        let mut here = Start {
             resolve: |near: f64, length: f64| {
                 let is_noise = scatters(dim, length, |part, rates, tolerances| {
                     let since = (near - t) * part;
@@ -61,6 +59,22 @@ impl<F: VectorField> Dop853<F> {
         Ok(self.places.crowded)
     }
 
+    /// Whether functions of the state may hide something in the trial step, by the cubic through the states and rates
+    /// at its ends.
+    fn hides_along_cubic(&mut self) -> bool {
+        let Dop853 { field, end, trial, places, coefficients, .. } = self;
+        let (dim, h) = (field.dim(), trial.t - end.t);
+        coefficients.clear();
+        coefficients.extend_from_slice(&end.y[..dim]);
+        coefficients.extend_from_slice(&end.rates[..dim]);
+        let slopes = |i: usize| ((trial.y[i] - end.y[i]) / h, end.rates[i], trial.rates[i]);
+        coefficients
+            .extend((0..dim).map(slopes).map(|(mean, first, last)| (3.0 * mean - 2.0 * first - last) / h));
+        coefficients
+            .extend((0..dim).map(slopes).map(|(mean, first, last)| (first + last - 2.0 * mean) / (h * h)));
+        places.hide_along((end.t, trial.t), PolynomialMotion { start: end.t, coefficients })
+    }
+
     /// A place in the trial step at which the field does something that the polynomial does not
     /// show.
     ///
@@ -69,10 +83,11 @@ impl<F: VectorField> Dop853<F> {
     pub(super) fn surprise(&mut self) -> Result<Option<f64>, (f64, Failure)> {
         self.has_polynomial = false;
         let (t, t1) = (self.end.t, self.trial.t);
-        if self.places.found.is_empty() && self.places.crowded.is_none() {
+        let along = self.places.follow_states() && self.hides_along_cubic();
+        if !along && self.places.found.is_empty() && self.places.crowded.is_none() {
             return Ok(None);
         }
-        if !self.places.found.iter().any(|place| (t1 - place) * (t1 - t) > 0.0) {
+        if !along && !self.places.found.iter().any(|place| (t1 - place) * (t1 - t) > 0.0) {
             self.places.as_expected();
             return Ok(None);
         }
@@ -80,6 +95,10 @@ impl<F: VectorField> Dop853<F> {
         let count = &mut self.statistics.rhs_evaluations;
         polynomial.make((field, count), (end, trial), tried, early, argument)?;
         let dim = field.dim();
+        if along {
+            polynomial.coefficients(dim, &mut self.coefficients);
+            places.look_along((t, t1), PolynomialMotion { start: t, coefficients: &self.coefficients });
+        }
         let [slope, rates, ..] = early;
         for i in 0..places.found.len() {
             let place = places.found[i];
@@ -103,15 +122,13 @@ impl<F: VectorField> Dop853<F> {
 }
 
 /// The start of a step.
-struct Tangent<'a, R> {
-    state: &'a [f64],
-    rates: &'a [f64],
+struct Start<R> {
     resolve: R,
 }
 
-impl<R: FnMut(f64, f64)> Here for Tangent<'_, R> {
-    fn tangent(&mut self) -> Result<(&[f64], &[f64]), SolveError> {
-        Ok((self.state, self.rates))
+impl<R: FnMut(f64, f64)> Here for Start<R> {
+    fn prediction(&mut self) -> Result<Option<PolynomialMotion<'_>>, SolveError> {
+        Ok(None) // the polynomial of a step is known after it
     }
 
     fn resolve(&mut self, near: f64, length: f64) -> Result<(), SolveError> {

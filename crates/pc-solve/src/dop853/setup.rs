@@ -59,6 +59,8 @@ pub struct Dop853<F> {
     pub(super) polynomial: Polynomial,
     /// Whether the polynomial is that of the last step.
     pub(super) has_polynomial: bool,
+    /// Room for the coefficients of a motion along a step.
+    pub(super) coefficients: Vec<f64>,
     /// Whether the rates at the end of the last step are known.
     pub(super) has_rates: bool,
     /// Whether no step has been made since the start.
@@ -112,6 +114,7 @@ impl<F: VectorField> Dop853<F> {
             argument: vec![0.0; row],
             polynomial: Polynomial::new(row),
             has_polynomial: false,
+            coefficients: Vec::new(),
             has_rates: false,
             begins: true,
             given: options.initial_step.is_some(),

@@ -1,6 +1,6 @@
-//! The places in the next step at which the dependence on time may hide something.
+//! The places in the next step at which the field may do something that the method does not see.
 
-use pc_expr::{Surprises, TimeDependence, VectorField};
+use pc_expr::{PolynomialMotion, SteepFunctions, Surprises, TimeDependence, VectorField};
 
 use crate::error::SolveError;
 
@@ -37,6 +37,8 @@ impl Ahead {
 #[derive(Debug)]
 pub(crate) struct Places {
     dependence: TimeDependence,
+    /// The functions of the state that a step may pass over.
+    steep: Option<SteepFunctions>,
     /// The start of the integration.
     begin: f64,
     /// The minimum step, or 0.
@@ -48,6 +50,8 @@ pub(crate) struct Places {
     pub(crate) limited: u64,
     /// The places in the step ahead, in its direction.
     pub(crate) found: Vec<f64>,
+    /// Those of them along the motion of a step that has been tried.
+    along: Vec<f64>,
     /// A place beyond which there are too many for one step.
     pub(crate) crowded: Option<f64>,
     /// Places of fast oscillations, and their number.
@@ -58,11 +62,11 @@ pub(crate) struct Places {
 
 /// What a method knows of the start of the step ahead.
 pub(crate) trait Here {
-    /// (y, ẏ) there.
+    /// The motion that the method predicts from there; none if it cannot tell before the step.
     ///
     /// # Errors
-    /// [`SolveError`] if the method cannot tell.
-    fn tangent(&mut self) -> Result<(&[f64], &[f64]), SolveError>;
+    /// [`SolveError`] if the method fails.
+    fn prediction(&mut self) -> Result<Option<PolynomialMotion<'_>>, SolveError>;
 
     /// Whether f is noise between there and a nearby place.
     ///
@@ -77,12 +81,14 @@ impl Places {
         let held = field.held_time_dependence();
         Places {
             dependence: held.unwrap_or_else(|| field.time_dependence()),
+            steep: field.steep_functions(),
             begin: t0,
             min_step: min_step.unwrap_or(0.0),
             unsurprising: 0,
             evaluations: 0,
             limited: 0,
             found: Vec::new(),
+            along: Vec::new(),
             crowded: None,
             many: Vec::new(),
             crowd: 0,
@@ -92,7 +98,12 @@ impl Places {
 
     /// Whether there are never any places.
     pub(crate) fn are_absent(&self) -> bool {
-        matches!(self.dependence, TimeDependence::Absent)
+        matches!(self.dependence, TimeDependence::Absent) && self.steep.is_none()
+    }
+
+    /// Whether there may be some along the motion.
+    pub(crate) fn follow_states(&self) -> bool {
+        self.steep.is_some()
     }
 
     /// Resets the counts, for a restart.
@@ -108,8 +119,7 @@ impl Places {
         let Ahead { t, reach, end, .. } = ahead;
         self.found.clear();
         self.crowded = None;
-        // Methods cannot resolve times closer than this.
-        let least = (1e-13 * t.abs().max(reach.abs())).max(self.min_step);
+        let least = self.least(t, reach);
         if self.are_absent() || ahead.length() <= least {
             return Ok(false);
         }
@@ -121,9 +131,8 @@ impl Places {
                 &nothing
             }
             TimeDependence::Known(profile) => {
-                let tangent = if profile.follows_states() { here.tangent()? } else { (&[][..], &[][..]) };
                 sampled = profile.is_partial();
-                profile.surprises((t, reach), tangent, end, self.unsurprising > ENOUGH)
+                profile.surprises((t, reach), end, self.unsurprising > ENOUGH)
             }
         };
         let (mut until, noise) = (*until, *noise);
@@ -137,10 +146,16 @@ impl Places {
             self.many.clear();
             here.resolve(near, ahead.length())?;
         }
+        if self.steep.is_some()
+            && let Some(motion) = here.prediction()?
+        {
+            until = nearer(t, until, self.follow((t, reach), motion));
+        }
         for places in [&mut self.found, &mut self.many] {
             places.retain(|place| (place - t).abs() > least);
         }
         let many = &mut self.many;
+        many.sort_unstable_by(|a, b| ((a - b) * (reach - t)).total_cmp(&0.0));
         self.crowd = many.len();
         self.unknown = until.is_some();
         // Only some places of fast oscillations are examined, and a step may contain more of them
@@ -156,6 +171,42 @@ impl Places {
             return Ok(false);
         }
         Ok(true)
+    }
+
+    /// Whether functions of the state may hide something along the motion of a step that has been tried.
+    pub(crate) fn hide_along(&mut self, between: (f64, f64), motion: PolynomialMotion<'_>) -> bool {
+        self.steep.as_mut().is_some_and(|steep| steep.hide(between, motion))
+    }
+
+    /// Replaces the places along the motion of the step tried last by those of this one.
+    pub(crate) fn look_along(&mut self, (t, reach): (f64, f64), motion: PolynomialMotion<'_>) {
+        let Places { found, along, .. } = self;
+        found.retain(|place| !along.contains(place));
+        let before = found.len();
+        self.many.clear();
+        self.follow((t, reach), motion);
+        let least = self.least(t, reach);
+        let stride = self.many.len().div_ceil(MOST).max(1);
+        let Places { found, along, many, .. } = self;
+        found.extend(many.iter().step_by(stride));
+        along.clear();
+        along.extend(found.drain(before..).filter(|place| (place - t).abs() > least));
+        found.extend_from_slice(along);
+        self.found.sort_unstable_by(|a, b| ((a - b) * (reach - t)).total_cmp(&0.0));
+    }
+
+    /// Methods cannot resolve times closer than this.
+    fn least(&self, t: f64, reach: f64) -> f64 {
+        (1e-13 * t.abs().max(reach.abs())).max(self.min_step)
+    }
+
+    /// Notes the places along a motion; returns the time up to which they are known, if it is before `reach`.
+    fn follow(&mut self, (t, reach): (f64, f64), motion: PolynomialMotion<'_>) -> Option<f64> {
+        let enough = self.unsurprising > ENOUGH;
+        let Surprises { few, many, until, .. } = self.steep.as_mut()?.surprises((t, reach), motion, enough);
+        self.found.extend_from_slice(few);
+        self.many.extend_from_slice(many);
+        *until
     }
 
     /// Notes a surprise at a place, where the step ends.
@@ -185,5 +236,13 @@ impl Places {
         let count = if is_ahead { (to - 0.5 - first).ceil().clamp(0.0, 2.0 * SAMPLES) } else { 0.0 };
         let places = (0..count as u32).map(|k| place(first + f64::from(k) + 0.5));
         self.found.extend(places.filter(|s| (s - reach) * direction < 0.0));
+    }
+}
+
+/// Of two places ahead, the one that comes first from `t`.
+fn nearer(t: f64, a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if (b - t).abs() < (a - t).abs() { b } else { a }),
+        (a, b) => a.or(b),
     }
 }

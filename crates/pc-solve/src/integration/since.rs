@@ -4,7 +4,9 @@
 //! therefore integrate over s = t − t₀, whose steps and stages have all digits, and the field is
 //! evaluated at t₀ + s. For t₀ = 0 that is t to the last bit.
 
-use pc_expr::{Failure, LaneField, Pattern, RateJump, TaylorSeries, TimeDependence, VectorField};
+use pc_expr::{
+    Failure, LaneField, Pattern, RateJump, SteepFunctions, TaylorSeries, TimeDependence, VectorField,
+};
 
 use crate::error::NonFinite;
 
@@ -136,6 +138,10 @@ impl<F: VectorField> VectorField for Since<F> {
         self.field.time_dependence().since(self.origin)
     }
 
+    fn steep_functions(&self) -> Option<SteepFunctions> {
+        self.field.steep_functions().map(|steep| steep.since(self.origin))
+    }
+
     // Its sides are held through the field itself, at times that are not counted from the start.
     fn held_time_dependence(&mut self) -> Option<TimeDependence> {
         self.field.held_time_dependence().map(|dependence| dependence.since(self.origin))
@@ -148,6 +154,22 @@ impl<F: VectorField> VectorField for Since<F> {
     fn expand(&mut self, s: f64, y: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
         let t = self.time(s);
         self.field.expand(t, y, sides, order)
+    }
+
+    fn varied_series(&mut self, columns: &[Option<usize>]) -> Result<&TaylorSeries, Failure> {
+        self.field.varied_series(columns)
+    }
+
+    fn expand_varied(
+        &mut self,
+        columns: &[Option<usize>],
+        s: f64,
+        all: &[f64],
+        sides: &[f64],
+        order: usize,
+    ) -> Result<&TaylorSeries, Failure> {
+        let t = self.time(s);
+        self.field.expand_varied(columns, t, all, sides, order)
     }
 
     fn lanes(&mut self) -> Option<LaneField> {

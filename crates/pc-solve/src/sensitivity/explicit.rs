@@ -1,15 +1,17 @@
-//! Derivatives of a motion integrated with it by DOP853.
+//! Derivatives of a motion integrated with it by an explicit method.
 //!
 //! The state of the method is (y, s₁, s₂, …), with the equations of variation for the columns; outside it is y.
 
-use pc_expr::{Failure, PolynomialMotion, Switching, TimeDependence, VectorField};
+use pc_expr::{
+    Failure, PolynomialMotion, SteepFunctions, Switching, TaylorSeries, TimeDependence, VectorField,
+};
 
 use crate::cvode::cvode::Cvode;
 use crate::cvode::forward::linearisation::Linearisation;
 use crate::cvode::forward::sensitivities::Sensitivities;
 use crate::cvode::forward::variation::Variation;
 use crate::dop853::setup::Dop853;
-use crate::error::{InputError, IntegrationError, Reason, SolveError};
+use crate::error::{IntegrationError, Reason, SolveError};
 use crate::integration::checks::check_start;
 use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
@@ -18,6 +20,7 @@ use crate::settings::inequality::Inequality;
 use crate::settings::method::Method;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
+use crate::taylor::stepper::Taylor;
 
 /// An absolute tolerance of what no error is to be controlled of.
 const ANY: f64 = 1e300;
@@ -55,6 +58,18 @@ impl<F: VectorField> VectorField for WithVariation<F> {
         self.field.time_dependence()
     }
 
+    fn steep_functions(&self) -> Option<SteepFunctions> {
+        self.field.steep_functions().map(|steep| steep.in_states_of(self.dim()))
+    }
+
+    fn series(&mut self) -> Result<&TaylorSeries, Failure> {
+        self.field.varied_series(self.variation.parameters())
+    }
+
+    fn expand(&mut self, t: f64, all: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
+        self.field.expand_varied(self.variation.parameters(), t, all, sides, order)
+    }
+
     fn restart(&mut self, t: f64, all: &[f64]) {
         self.field.restart(t, &all[..self.dim]);
     }
@@ -81,10 +96,12 @@ impl<F: VectorField> VectorField for WithVariation<F> {
     }
 }
 
-/// DOP853 with derivatives of the motion.
+/// An explicit method with derivatives of the motion, as parts of the state.
 #[derive(Debug)]
-pub(crate) struct Explicit<F> {
-    method: Dop853<WithVariation<F>>,
+pub(crate) struct Explicit<S> {
+    method: S,
+    /// The parameter of each column, none for derivatives by the start.
+    parameters: Vec<Option<usize>>,
     dim: usize,
     relative_tolerance: f64,
     /// Where states of the last step are read, and the columns at the current time inside it.
@@ -94,20 +111,20 @@ pub(crate) struct Explicit<F> {
     start: Vec<f64>,
 }
 
-impl<F: VectorField> Explicit<F> {
-    /// Starts at y(t0) = y0 with derivatives of the motion.
+impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
+    /// Starts at y(t0) = y0 with derivatives of the motion, by the method that `begin` makes of the field, the start
+    /// and the options.
     ///
     /// # Errors
-    /// As for [`Dop853::new`]; [`SolveError::Input`] if a column needs a derivative that the field does not have.
+    /// As for `begin`; [`SolveError::Input`] if a column needs a derivative that the field does not have.
     pub(crate) fn new(
-        mut field: F,
-        t0: f64,
-        y0: &[f64],
+        begin: impl FnOnce(WithVariation<F>, f64, &[f64], &Options) -> Result<S, SolveError>,
+        (mut field, t0, y0): (F, f64, &[f64]),
         options: &Options,
         sensitivities: &Sensitivities,
     ) -> Result<Self, SolveError> {
         check_start(&field, t0, y0)?;
-        Options { method: Method::Dop853, ..options.clone() }.validate(y0.len())?;
+        options.validate(y0.len())?;
         sensitivities.validate(&field)?;
         let (dim, count) = (y0.len(), sensitivities.len());
         let mut linearisation = Linearisation::new(&field, options);
@@ -129,18 +146,15 @@ impl<F: VectorField> Explicit<F> {
         if !inequalities.is_empty() {
             inequalities.resize(dim * (1 + count), Inequality::Free);
         }
-        let all_options = Options {
-            method: Method::Dop853,
-            absolute_tolerance: Tolerance::Vector(tolerances),
-            inequalities,
-            ..options.clone()
-        };
+        let all_options =
+            Options { absolute_tolerance: Tolerance::Vector(tolerances), inequalities, ..options.clone() };
         let columns = sensitivities.start(dim);
         let all = [y0, &columns].concat();
-        let variation = Variation::new(linearisation, sensitivities.parameters());
-        let method = Dop853::new(WithVariation { field, variation, dim }, t0, &all, &all_options)?;
+        let parameters = sensitivities.parameters();
+        let variation = Variation::new(linearisation, parameters.clone());
+        let method = begin(WithVariation { field, variation, dim }, t0, &all, &all_options)?;
         let relative_tolerance = options.relative_tolerance;
-        Ok(Explicit { method, dim, relative_tolerance, state: all, inside: None, start: columns })
+        Ok(Explicit { method, parameters, dim, relative_tolerance, state: all, inside: None, start: columns })
     }
 
     /// Reads the columns at the current time, if that is inside the last step.
@@ -165,7 +179,7 @@ impl<F: VectorField> Explicit<F> {
     }
 }
 
-impl<F: VectorField> Stepper for Explicit<F> {
+impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Stepper for Explicit<S> {
     type Field = F;
 
     fn field(&self) -> &F {
@@ -287,11 +301,11 @@ impl<F: VectorField> Stepper for Explicit<F> {
     }
 
     fn column_parameters(&self) -> &[Option<usize>] {
-        self.method.field().variation.parameters()
+        &self.parameters
     }
 }
 
-impl<F: VectorField> Explicit<F> {
+impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
     /// The error with the state of the motion alone.
     fn of_state(&self, error: SolveError) -> SolveError {
         match error {
@@ -310,15 +324,16 @@ pub(crate) enum Differentiated<F: VectorField> {
     /// [`Method::Adams`], [`Method::Bdf`], and Adams for [`Method::Auto`].
     Cvode(Box<Cvode<F>>),
     /// [`Method::Dop853`].
-    Dop853(Box<Explicit<F>>),
+    Dop853(Box<Explicit<Dop853<WithVariation<F>>>>),
+    /// [`Method::Taylor`].
+    Taylor(Box<Explicit<Taylor<WithVariation<F>>>>),
 }
 
 impl<F: VectorField> Differentiated<F> {
     /// Starts at y(t0) = y0 with derivatives of the motion.
     ///
     /// # Errors
-    /// As for [`Cvode::with_sensitivities`](crate::Cvode::with_sensitivities) and [`Dop853::new`];
-    /// [`InputError::NotCvode`] for Taylor's method.
+    /// As for [`Cvode::with_sensitivities`](crate::Cvode::with_sensitivities), [`Dop853::new`] and [`Taylor::new`].
     pub(crate) fn new(
         field: F,
         t0: f64,
@@ -328,9 +343,13 @@ impl<F: VectorField> Differentiated<F> {
     ) -> Result<Self, SolveError> {
         match options.method {
             Method::Dop853 => {
-                Ok(Differentiated::Dop853(Box::new(Explicit::new(field, t0, y0, options, sensitivities)?)))
+                let method = Explicit::new(Dop853::new, (field, t0, y0), options, sensitivities)?;
+                Ok(Differentiated::Dop853(Box::new(method)))
             }
-            Method::Taylor => Err(InputError::NotCvode { method: options.method }.into()),
+            Method::Taylor => {
+                let method = Explicit::new(Taylor::new, (field, t0, y0), options, sensitivities)?;
+                Ok(Differentiated::Taylor(Box::new(method)))
+            }
             Method::Adams | Method::Bdf | Method::Auto => {
                 let cvode = Cvode::with_sensitivities(field, t0, y0, options, sensitivities)?;
                 Ok(Differentiated::Cvode(Box::new(cvode)))
@@ -345,6 +364,7 @@ macro_rules! of_either {
         match $chosen {
             Differentiated::Cvode($method) => $call,
             Differentiated::Dop853($method) => $call,
+            Differentiated::Taylor($method) => $call,
         }
     };
 }

@@ -1,10 +1,9 @@
-//! The explicit dependence on time further ahead, which a series does not show.
+//! The field further ahead, which a series does not show.
 //!
 //! The coefficients of the series of exp(−((t − 5)/0.2)²) at t = 0 are indistinguishable from 0. At
-//! the [places](crate::foresight) in the next step where the dependence on time may turn or jump,
-//! the rates of the field are therefore compared with those of the polynomial.
+//! the [places](crate::foresight) in the next step where the field may turn or jump, the rates of the field are therefore compared with those of the polynomial.
 
-use pc_expr::VectorField;
+use pc_expr::{PolynomialMotion, VectorField};
 
 use crate::error::{Reason, SolveError};
 use crate::foresight::places::{Ahead, Here};
@@ -20,8 +19,7 @@ impl<F: VectorField> Taylor<F> {
         let Taylor { places, series, field, tolerances, statistics, .. } = self;
         let mut noise = false;
         let mut here = Start {
-            state: series.of_order(0),
-            rates: series.of_order(1),
+            motion: PolynomialMotion { start: t, coefficients: &series.coefficients },
             resolve: |near: f64, length: f64| {
                 let dim = series.dim;
                 let mut state = vec![0.0; dim];
@@ -73,14 +71,13 @@ impl<F: VectorField> Taylor<F> {
 
 /// The start of a step.
 struct Start<'a, R> {
-    state: &'a [f64],
-    rates: &'a [f64],
+    motion: PolynomialMotion<'a>,
     resolve: R,
 }
 
 impl<R: FnMut(f64, f64)> Here for Start<'_, R> {
-    fn tangent(&mut self) -> Result<(&[f64], &[f64]), SolveError> {
-        Ok((self.state, self.rates))
+    fn prediction(&mut self) -> Result<Option<PolynomialMotion<'_>>, SolveError> {
+        Ok(Some(self.motion))
     }
 
     fn resolve(&mut self, near: f64, length: f64) -> Result<(), SolveError> {

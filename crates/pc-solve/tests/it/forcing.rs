@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::boxed::{erased, from_fn};
-use pc_expr::{Expr, Graph, Inputs, Interpreter, Kernel, Program, TimeDependence};
+use pc_expr::{Expr, Graph, Inputs, Interpreter, Kernel, Program, SteepFunctions, TimeDependence};
 use pc_solve::{Failure, Method, Options, Reason, SolveError, Trajectory, VectorField, solve};
 
 /// ẍ = −x + F(t, x), compiled.
@@ -35,6 +35,9 @@ impl VectorField for Spring {
     }
     fn time_dependence(&self) -> TimeDependence {
         if self.shows { TimeDependence::of(&[&self.program], 2, &[]) } else { TimeDependence::Unknown }
+    }
+    fn steep_functions(&self) -> Option<SteepFunctions> {
+        SteepFunctions::of(&[&self.program], 2, &[]).filter(|_| self.shows)
     }
 }
 

@@ -39,6 +39,7 @@ mod lyapunov;
 #[path = "common/chain.rs"]
 mod model;
 mod motions;
+mod narrow_places;
 mod offers;
 mod outputs;
 mod panics;

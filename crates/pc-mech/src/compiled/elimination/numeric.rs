@@ -1,7 +1,7 @@
 //! First-order systems whose M is factorised in numbers: programs up to the solution for w, and after it.
 
 use pc_algebra::Matrix;
-use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, TimeDependence};
+use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, SteepFunctions, TimeDependence};
 
 use crate::compiled::elimination::columns::{SparseColumn, Storage, derivative, nonzeros, sparse};
 use crate::compiled::elimination::schur::Schur;
@@ -121,6 +121,10 @@ impl Staged {
 
     pub(crate) fn time_dependence(&self, p: &[f64]) -> TimeDependence {
         TimeDependence::of(&[self.equations(), self.rates.program()], self.dim, p)
+    }
+
+    pub(crate) fn steep_functions(&self, p: &[f64]) -> Option<SteepFunctions> {
+        SteepFunctions::of(&[self.equations(), self.rates.program()], self.dim, p)
     }
 
     pub(crate) fn pattern(&self) -> Option<&Pattern> {

@@ -4,7 +4,8 @@ use std::cell::LazyCell;
 use std::sync::Arc;
 
 use pc_expr::{
-    Backend, Cost, Evaluator, Expr, ExprError, LaneField, Pattern, Program, TaylorSeries, TimeDependence,
+    Backend, Cost, Evaluator, Expr, ExprError, LaneField, Pattern, Program, SteepFunctions, TaylorSeries,
+    TimeDependence, VariedSeries,
 };
 
 use crate::compiled::elimination::columns::{Columns, Storage, derivative};
@@ -36,6 +37,7 @@ pub(crate) struct Unrolled {
     backend: Backend,
     /// The series of the outputs of `rates`, made on first use.
     series: Option<TaylorSeries>,
+    varied: VariedSeries,
 }
 
 /// ∂ẏ/∂y
@@ -92,6 +94,7 @@ impl Unrolled {
             observables: Evaluator::new(observed, Backend::Interpreter),
             backend: options.backend,
             series: None,
+            varied: VariedSeries::default(),
         })
     }
 
@@ -131,6 +134,10 @@ impl Unrolled {
 
     pub(crate) fn time_dependence(&self, dim: usize, p: &[f64]) -> TimeDependence {
         TimeDependence::of(&[self.rates.program()], dim, p)
+    }
+
+    pub(crate) fn steep_functions(&self, dim: usize, p: &[f64]) -> Option<SteepFunctions> {
+        SteepFunctions::of(&[self.rates.program()], dim, p)
     }
 
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], p: &[f64], values: &mut [f64]) {
@@ -185,6 +192,26 @@ impl Unrolled {
         let series = self.series.get_or_insert_with(|| TaylorSeries::new(program, backend));
         series.expand(t, y, sides, p, order);
         self.pivots.check(y, p, series.watched())?;
+        Ok(series)
+    }
+
+    /// The series of the motion with its derivatives.
+    pub(crate) fn varied_series(&mut self, columns: &[Option<usize>]) -> &TaylorSeries {
+        self.varied.of(columns, self.rates.program(), self.backend)
+    }
+
+    /// Expands the motion with its derivatives through the state and its columns at t.
+    pub(crate) fn expand_varied(
+        &mut self,
+        columns: &[Option<usize>],
+        Point { t, y: all, p }: Point<'_>,
+        sides: &[f64],
+        order: usize,
+    ) -> Result<&TaylorSeries, EvaluationFailure> {
+        let series = self.varied.of(columns, self.rates.program(), self.backend);
+        series.expand(t, all, sides, p, order);
+        let dim = all.len() / (1 + columns.len());
+        self.pivots.check(&all[..dim], p, series.watched())?;
         Ok(series)
     }
 
