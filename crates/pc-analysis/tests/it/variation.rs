@@ -113,6 +113,18 @@ fn linear_motions_vary_as_they_move() {
     assert!((end[2] - 2f64.sin() / 2.0).abs() < 1e-12 && (end[3] - 2f64.cos()).abs() < 1e-12);
     assert_eq!(variation.field().names(), ["x", "x'"]);
 
+    let relay = System::builder(&graph)
+        .coordinates(["y"])
+        .lagrangian(|_, y, v| v[0].square() / 2.0 - y[0].abs())
+        .build()
+        .unwrap();
+    let relay = relay.poincare().unwrap().compile_for(CompileOptions::default().jvp(true)).unwrap();
+    assert_eq!(
+        Variation::new(relay, 1).unwrap_err().to_string(),
+        "deviations from this motion jump where it passes through y = 0: integrate them as sensitivities by the start, which \
+         do so"
+    );
+
     let plain = Variation::new(equations.compile().unwrap(), 1).unwrap_err();
     assert_eq!(
         plain,
