@@ -57,7 +57,7 @@ fn assert_near(found: [f64; 2], right: [f64; 2], what: &str) {
 #[test]
 fn derivatives_jump_on_surfaces_of_the_state() {
     let model = point("c = 0.5", "0", "1", "step(x - c, 2, 0)");
-    for method in ["adams", "bdf"] {
+    for method in ["adams", "bdf", "dop853", "taylor"] {
         let found = derivatives("surface", &model, &["run", "--sensitivities", "c", "--method", method]);
         assert_near(found, [-3.0, -2.0], method);
     }
@@ -65,7 +65,7 @@ fn derivatives_jump_on_surfaces_of_the_state() {
     let model = point("k = 0.3", "1", "0", "-x - k*sign(x')");
     let since = 4.0 - std::f64::consts::PI;
     let right = [3.0 * since.cos() - 1.0, -3.0 * since.sin()];
-    for method in ["adams", "bdf"] {
+    for method in ["adams", "bdf", "dop853", "taylor"] {
         let arguments = ["run", "--sensitivities", "k", "--method", method, "--t-end", "4"];
         assert_near(derivatives("friction", &model, &arguments), right, method);
     }
@@ -85,7 +85,7 @@ fn derivatives_jump_at_velocities_in_momenta_too() {
 #[test]
 fn derivatives_jump_at_times() {
     let model = point("c = 0.37\nk = 2.0", "0", "0", "step(t - c, k, 0)");
-    for method in ["adams", "bdf"] {
+    for method in ["adams", "bdf", "dop853", "taylor"] {
         let by_time = derivatives("time", &model, &["run", "--sensitivities", "c", "--method", method]);
         assert_near(by_time, [-2.0 * 1.63, -2.0], method);
         let by_force = derivatives("amplitude", &model, &["run", "--sensitivities", "k", "--method", method]);
@@ -113,6 +113,29 @@ fn friction_holds_by_every_method() {
 }
 
 /// Forces that change at times, at places, at corners and where an angle is cut: x and x' at t = 2 by every method.
+/// While friction holds a body, its acceleration is 0 and the friction is the force against the push; before, it slips.
+#[test]
+fn outputs_are_those_of_the_friction_that_holds() {
+    let model = point("mu = 3", "0", "2", "-mu*sign(x') + 2*cos(t)")
+        + "samples = 41\n[outputs]\nacceleration = \"d(x')\"\nfriction = \"-mu*sign(x')\"\nsquare = \"friction^2\"\n";
+    for method in ["auto", "adams", "bdf", "taylor"] {
+        let output = pc("held", &model, &["run", "--t-end", "5", "--method", method]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let rows = text(&output.stdout);
+        let (mut slips, mut holds) = (0, 0);
+        for row in rows.lines().skip(1) {
+            let row: Vec<f64> = row.split(',').map(|cell| cell.parse().expect("a number")).collect();
+            let [t, _, speed, _, acceleration, friction, square] = row[..] else { panic!("{row:?}") };
+            let push = 2.0 * f64::cos(t);
+            let right = if speed > 1e-6 { -3.0 } else { -push };
+            assert!((friction - right).abs() < 1e-9 && (square - right * right).abs() < 1e-8, "{method} {t}");
+            assert!((acceleration - (push + right)).abs() < 1e-9, "{method} {t}: {acceleration}");
+            if speed > 1e-6 { slips += 1 } else { holds += 1 }
+        }
+        assert_eq!((slips, holds), (11, 30), "{method}");
+    }
+}
+
 #[test]
 fn steps_end_where_forces_change() {
     let half = 0.5f64;
@@ -156,7 +179,7 @@ fn sensitivities_pass_the_jumps_of_a_table() {
          [simulation]\nt_end = 2\n";
     let step = 1e-5;
     let (above, below) = (over_a_table(0.7 + step), over_a_table(0.7 - step));
-    for method in ["adams", "bdf"] {
+    for method in ["adams", "bdf", "dop853"] {
         let row = last("table", model, &["run", "--sensitivities", "k", "--method", method]);
         for (found, i) in row[row.len() - 2..].iter().zip(0..) {
             let right = (above[i] - below[i]) / (2.0 * step);
@@ -170,7 +193,7 @@ fn corners_have_sensitivities() {
     // x = sin(w s)/w with w = √k, the time s = 1 after x = 0.
     let model = point("k = 4.0", "-1", "1", "-k*max(x, 0)");
     let right = (2f64.cos() / 2.0 - 2f64.sin() / 4.0) / 4.0;
-    for method in ["adams", "bdf"] {
+    for method in ["adams", "bdf", "dop853", "taylor"] {
         let row = last("corner", &model, &["run", "--sensitivities", "k", "--method", method]);
         let found = row[row.len() - 2];
         assert!((found - right).abs() < 1e-6, "{method}: {found}, not {right}");

@@ -48,7 +48,17 @@ impl Graph {
     /// assert_eq!(graph.held(&[x.sin(), m.abs()], &[x]).surfaces, []);
     /// ```
     pub fn held<'g>(&'g self, values: &[Expr<'g>], moving: &[Expr<'g>]) -> Held<'g> {
-        let mut held = Held { values: values.to_vec(), surfaces: Vec::new() };
+        self.held_on(values, moving, &[])
+    }
+
+    /// The same for further expressions, with the surfaces of the first ones: those that are new follow them.
+    pub fn held_on<'g>(
+        &'g self,
+        values: &[Expr<'g>],
+        moving: &[Expr<'g>],
+        surfaces: &[Surface<'g>],
+    ) -> Held<'g> {
+        let mut held = Held { values: values.to_vec(), surfaces: surfaces.to_vec() };
         let moving: Vec<NodeId> = moving.iter().map(|symbol| symbol.symbol_in(self)).collect();
         while let Some(piece) = self.first_piece(&held.values, &moving) {
             let Piece { node, function, args } = piece;
@@ -71,6 +81,51 @@ impl Graph {
             held.values = self.build_all(|dag| dag.substitute(&roots, &[(node, smooth)]));
         }
         held
+    }
+
+    /// Held expressions between two pieces, for sides from −1 to 1: with step(s, a, b) = (1 + s)/2 a + (1 − s)/2 b for
+    /// each s made of `sides` they are the combinations of their values on both sides.
+    ///
+    /// ```
+    /// # use pc_expr::Graph;
+    /// let graph = Graph::new();
+    /// let [x, a, b, s] = graph.symbols(["x", "a", "b", "s"]);
+    /// let value = x * s.step(a, b) + a.step(x, b);
+    /// let between = graph.blended(&[value], &[s])[0];
+    /// assert_eq!(between, x * ((1.0 + s) / 2.0 * a + (1.0 - s) / 2.0 * b) + a.step(x, b));
+    /// ```
+    pub fn blended<'g>(&'g self, values: &[Expr<'g>], sides: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let mut values = values.to_vec();
+        while let Some((node, [side, a, b])) = self.first_choice(&values, sides) {
+            let between = (1.0 + side) / 2.0 * a + (1.0 - side) / 2.0 * b;
+            let roots: Vec<Atom> = values.iter().map(|value| value.atom_in(self)).collect();
+            let between = between.atom_in(self);
+            values = self.build_all(|dag| dag.substitute(&roots, &[(node, between)]));
+        }
+        values
+    }
+
+    /// The first choice by sides alone, with its arguments.
+    fn first_choice<'g>(
+        &'g self,
+        values: &[Expr<'g>],
+        sides: &[Expr<'g>],
+    ) -> Option<(NodeId, [Expr<'g>; 3])> {
+        let roots: Vec<Atom> = values.iter().map(|value| value.atom_in(self)).collect();
+        let choices: Vec<(NodeId, [NodeId; 3])> = self.with(|dag| {
+            let cone = Cone::below(dag, roots);
+            let choices = cone.order.iter().filter_map(|&node| match dag.node(node) {
+                Node::Call { function: Function::Step, args } => Some((node, args)),
+                _ => None,
+            });
+            choices.collect()
+        });
+        choices.into_iter().find_map(|(node, args)| {
+            let arguments = args.map(|node| self.build(|dag| dag.constant_of(Atom::Node(node))));
+            let symbols = self.symbols_of(&arguments[..1]);
+            let is_chosen = !symbols.is_empty() && symbols.iter().all(|symbol| sides.contains(symbol));
+            is_chosen.then_some((node, arguments))
+        })
     }
 
     /// The first node of several pieces, below all others, whose surface moves.

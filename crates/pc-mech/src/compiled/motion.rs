@@ -240,6 +240,12 @@ impl Motion {
         if self.signals.show(t, &mut self.parameters).is_err() {
             return values.fill(f64::NAN);
         }
+        if solved && let Some(switches) = &mut self.switches {
+            switches.follow(&self.parameters);
+            if switches.observe(t, y, values) {
+                return;
+            }
+        }
         match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.observe(t, y, &self.parameters, values),
             Form::Staged(staged) => staged.observe((t, y, &self.parameters), values, solved),

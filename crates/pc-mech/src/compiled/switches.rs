@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pc_expr::{
-    Backend, Evaluator, Expr, Failure, Graph, Normals, Program, Sliding, SlidingError, Switching,
+    Backend, Evaluator, Expr, Failure, Graph, Normals, Program, Sliding, SlidingError, Surface, Switching,
     TaylorSeries, TimeDependence, VariedSeries, VectorField,
 };
 
@@ -18,6 +18,8 @@ use crate::system::signals::Signals;
 const MOST: usize = 256;
 /// Relative difference of rates above which they are not a sum of what surfaces change.
 const ADDS_UP: f64 = 1e-9;
+/// A surface that is reached within this part of the time is reached.
+const AT_ONCE: f64 = 1e-9;
 
 /// The surfaces of a motion, and the motion on given sides of them.
 #[derive(Clone, Debug)]
@@ -31,6 +33,8 @@ pub(crate) struct Switches {
     slopes: Slopes,
     /// Whether g contains inputs that tables give.
     follows_tables: bool,
+    /// The motion between sides, for observables that change with them.
+    observing: Option<Box<Motion>>,
     /// The sides on which f is held, if it is.
     sides: Option<Vec<f64>>,
     /// The series of the motion along these surfaces, made on first use.
@@ -104,8 +108,10 @@ impl<'g> FirstOrder<'g> {
             let values: Vec<_> = system.unknowns.iter().copied().zip(unknowns).collect();
             functions = self.graph.substitute(&functions, &values);
         }
+        let observing = self.observing(&system, &held.surfaces, options)?;
         Ok(Some(Switches {
             names,
+            observing: observing.map(Box::new),
             motion: Box::new(motion),
             slopes: Slopes::new(&system, &functions, options.parameter_jacobian)?,
             follows_tables: contains(self.graph, &functions, &self.varying),
@@ -116,6 +122,66 @@ impl<'g> FirstOrder<'g> {
             sides: None,
             along: None,
         }))
+    }
+}
+
+impl<'g> FirstOrder<'g> {
+    /// The motion of a system on sides, for sides between −1 and 1, with the observables of this one; none if they change
+    /// with neither sides nor what is solved for.
+    ///
+    /// # Errors
+    /// As for [`Program::new`].
+    fn observing(
+        &self,
+        system: &FirstOrder<'g>,
+        surfaces: &[Surface<'g>],
+        options: &CompileOptions,
+    ) -> Result<Option<Motion>, MechError> {
+        let graph = self.graph;
+        let observed: Vec<Expr<'g>> = self.observables.iter().map(|&(_, value)| value).collect();
+        let held = graph.held_on(&observed, &self.passing(), surfaces);
+        let sides: Vec<Expr<'g>> = surfaces.iter().map(|surface| surface.side).collect();
+        let moved = [&sides[..], &self.unknowns].concat();
+        if !contains(graph, &held.values, &moved) {
+            return Ok(None);
+        }
+        // What only observables pass has the side of its sign.
+        let mut own: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
+        for surface in &held.surfaces[surfaces.len()..] {
+            let function = graph.substitute(&[surface.function], &own)[0];
+            own.push((surface.side, function.step(1.0, -1.0)));
+        }
+        let observed = graph.substitute(&held.values, &own);
+        let masses = system.mass.nonzero_entries();
+        let left = system.implicit.iter().flat_map(|implicit| &implicit.left).copied();
+        let all: Vec<Expr<'g>> = masses
+            .iter()
+            .chain(&system.right)
+            .chain(&system.rates)
+            .copied()
+            .chain(left)
+            .chain(observed)
+            .collect();
+        let mut all = graph.blended(&all, &sides).into_iter();
+        let mass = all.by_ref().take(masses.len()).collect::<Vec<_>>();
+        let right = all.by_ref().take(system.right.len()).collect();
+        let rates = all.by_ref().take(system.rates.len()).collect();
+        let mut implicit = system.implicit.clone();
+        if let Some(implicit) = &mut implicit {
+            implicit.left = all.by_ref().take(implicit.left.len()).collect();
+        }
+        let names = self.observables.iter().map(|(name, _)| name.clone());
+        let between = FirstOrder {
+            mass: system.mass.with_nonzero_entries(&mass),
+            right,
+            rates,
+            implicit,
+            observables: names.zip(all).collect(),
+            conserved: self.conserved,
+            ..system.clone()
+        };
+        let plain = CompileOptions::default().backend(options.backend).jacobian(false);
+        Ok(Some(between.compile_piece(&plain, LONGEST_ELIMINATION)?))
     }
 }
 
@@ -177,6 +243,10 @@ impl Switches {
     pub(crate) fn drive(&mut self, signals: &Signals) {
         let motion = Motion::clone(&self.motion);
         *self.motion = motion.driven_by(signals.clone());
+        if let Some(observing) = &mut self.observing {
+            let motion = Motion::clone(observing);
+            **observing = motion.driven_by(signals.clone());
+        }
     }
 
     /// Whether f is held on sides.
@@ -187,6 +257,62 @@ impl Switches {
     /// The sides, if the motion slides along a surface.
     fn sliding(&self) -> Option<Vec<f64>> {
         self.sides.as_ref().filter(|sides| sides.contains(&0.0)).cloned()
+    }
+
+    /// Writes the observables where the motion slides along a surface at (t, y); false where it does not, or where none of
+    /// them changes from one side to the other.
+    ///
+    /// They are those of Filippov's combination: of a body that friction holds, no acceleration, and the friction that
+    /// holds it. It slides if f leads back to the surface from both sides, and reaches it in a time that is rounding.
+    pub(crate) fn observe(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> bool {
+        if self.observing.is_none() {
+            return false;
+        }
+        self.read(t);
+        let held = self.sides.clone();
+        let weights = self.weights(t, y);
+        self.hold(held.as_deref());
+        let (Some(observing), Some(weights)) = (&mut self.observing, weights) else { return false };
+        let first = self.motion.parameters.len() - weights.len();
+        let own = observing.parameters_mut();
+        own[..first].copy_from_slice(&self.motion.parameters[..first]);
+        own[first..].copy_from_slice(&weights);
+        observing.watch(t, y, values, true);
+        true
+    }
+
+    /// The sides of all surfaces at (t, y), σ for those along which the motion slides; none if it slides along none.
+    fn weights(&mut self, t: f64, y: &[f64]) -> Option<Vec<f64>> {
+        let mut functions = vec![f64::NAN; self.names.len()];
+        let mut sides = vec![1.0; self.names.len()];
+        for _ in 0..self.names.len() {
+            self.set(&sides);
+            self.functions(t, y, &mut functions);
+            sides = functions.iter().map(|g| if *g < 0.0 { -1.0 } else { 1.0 }).collect();
+        }
+        let mut along = sides.clone();
+        let mut normal = vec![0.0; y.len()];
+        let mut rates = vec![0.0; y.len()];
+        for surface in 0..sides.len() {
+            let by_time = self.gradient(surface, t, y, &mut normal);
+            let [above, below] = [1.0, -1.0].map(|side| {
+                let mut beside = sides.clone();
+                beside[surface] = side;
+                let known = self.rates(&beside, t, y, &mut rates).is_ok();
+                let rate = by_time + normal.iter().zip(&rates).map(|(slope, rate)| slope * rate).sum::<f64>();
+                if known { rate } else { f64::NAN }
+            });
+            let reach = AT_ONCE * t.abs() * below.min(-above);
+            if above < 0.0 && below > 0.0 && functions[surface].abs() <= reach {
+                along[surface] = 0.0;
+            }
+        }
+        if !along.contains(&0.0) {
+            return None;
+        }
+        let Sliding { surfaces, weights, .. } = Sliding::of(self, &along, t, y).ok()?;
+        surfaces.iter().zip(weights).for_each(|(&surface, weight)| along[surface] = weight);
+        along.iter().all(|side| side.abs() <= 1.0 + ADDS_UP).then_some(along)
     }
 
     /// The motion on the sides held.
