@@ -2,12 +2,13 @@
 //!
 //! In go a model and a command line, out comes a [`Run`](run::Run). Read `plan` first, the request,
 //! with the `tolerances` of the components of the state, and `memory`, whether its rows fit. A `checkpoint`, with its `identity` and `checkpoint_error`,
-//! continues an interrupted run; `sensitivities` are derivatives by parameters; `given` integrates
-//! a motion whose rows are written at once. `progress` and `interrupt` are the bar and Ctrl-C.
+//! continues an interrupted run; `sensitivities` are derivatives by parameters, `estimate` the global
+//! errors; `given` integrates a motion whose rows are written at once. `progress` and `interrupt` are the bar and Ctrl-C.
 //! `fine` is the motion between its rows, for pictures; `table` and `run` are the results.
 
 pub mod checkpoint;
 pub mod checkpoint_error;
+pub mod estimate;
 pub(crate) mod fine;
 pub(crate) mod given;
 pub(crate) mod identity;

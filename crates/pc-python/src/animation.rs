@@ -15,6 +15,7 @@ pub(crate) struct Recorded {
     states: Vec<(String, Vec<f64>)>,
     conserved: Vec<(String, Vec<f64>)>,
     outputs: Vec<(String, Vec<f64>)>,
+    errors: Vec<(String, Vec<f64>)>,
     events: Vec<f64>,
     remark: Option<String>,
 }
@@ -31,6 +32,7 @@ impl From<Recorded> for Record {
                     columns(Kind::States, recorded.states),
                     columns(Kind::Conserved, recorded.conserved),
                     columns(Kind::Outputs, recorded.outputs),
+                    columns(Kind::Errors, recorded.errors),
                 ],
             },
             events: recorded.events,

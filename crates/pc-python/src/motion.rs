@@ -7,8 +7,8 @@ use numpy::prelude::*;
 use pc_expr::Events;
 use pc_model::{Flow, Model, Variables, deep};
 use pc_solve::{
-    Ending, Occurrence, Options, Sensitivities, SensitivitySolution, Solution, Solve, SolveError,
-    SolveFailure, Statistics, Trajectory, solve_with_sensitivities_and_events,
+    Ending, ErrorEstimate, Occurrence, Options, Sensitivities, SensitivitySolution, Solution, Solve,
+    SolveError, SolveFailure, Statistics, Trajectory, error_of, solve_with_sensitivities_and_events,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -45,15 +45,24 @@ fn places(model: &Model, names: &[String]) -> Result<Vec<usize>, Error> {
     names.iter().map(place).collect()
 }
 
-/// The motion, with its derivatives by parameters beside it.
+/// What is wanted besides the motion.
+struct Besides {
+    /// Its derivatives by these parameters.
+    sensitivities: Vec<String>,
+    /// The global errors of its columns.
+    errors: bool,
+}
+
+/// The motion, with what is wanted besides.
 fn integrated(
     mut model: Model,
     mut flow: Flow,
     variables: Variables,
     (t_start, times): (f64, &[f64]),
     options: &Options,
-    by: &[String],
+    besides: &Besides,
 ) -> Result<Outcome, Error> {
+    let by = &besides.sensitivities;
     let parameters = places(&model, by)?;
     let mut wanted = Sensitivities::new();
     if !parameters.is_empty() {
@@ -63,6 +72,7 @@ fn integrated(
             wanted = wanted.by_parameter_from(j, Flow::start_by_parameter(&model, variables, j)?);
         }
     }
+    let mut beside = besides.errors.then(|| flow.clone());
     let mut matrices: Vec<Vec<f64>> = Vec::new();
     let (motion, start, events) = (&mut flow.motion, &flow.start, &mut flow.events);
     let go_on = |_: f64, _: &[f64]| ControlFlow::Continue(());
@@ -90,21 +100,38 @@ fn integrated(
         Some(error @ SolveError::Input(_)) => return Err(error.into()),
         error => error,
     };
+    let estimate = beside.as_mut().map(|Flow { motion, start, events, .. }| {
+        ErrorEstimate::of(&solution, (motion, t_start, start), events, times, options)
+    });
     let Solution { trajectory, occurrences, ending, .. } = solution;
     let observables = flow.motion.observable_names().to_vec();
     let mut columns: Vec<String> = flow.names.iter().chain(&observables).cloned().collect();
+    let known = columns.len();
     for name in by {
         columns.extend(flow.names.iter().map(|x| format!("∂{x}/∂{name}")));
+    }
+    if estimate.is_some() {
+        let errors: Vec<String> = columns[..known].iter().map(|name| format!("error({name})")).collect();
+        columns.extend(errors);
     }
     let mut values = Vec::with_capacity(columns.len() * trajectory.len());
     let mut residuals: Vec<(String, f64)> =
         flow.constraint_names().into_iter().map(|name| (name, 0.0)).collect();
     for (i, (t, y)) in trajectory.iter().enumerate() {
-        values.extend(flow.row(t, y));
+        let row = flow.row(t, y);
+        values.extend_from_slice(&row);
         if let Some(matrix) = matrices.get(i) {
             for (column, &j) in matrix.chunks_exact(y.len()).zip(&parameters) {
                 values.extend(flow.derivative(t, y, column, j));
             }
+        }
+        if let Some(estimate) = &estimate {
+            let other = (i < estimate.len())
+                .then(|| flow.row(estimate.beside().times()[i], estimate.beside().state(i)));
+            let error = |(j, value): (usize, &f64)| {
+                other.as_ref().map_or(f64::NAN, |other| error_of(*value, other[j]))
+            };
+            values.extend(row.iter().enumerate().map(error));
         }
         for ((_, worst), residual) in residuals.iter_mut().zip(flow.constraint_residuals(t, y)) {
             // f64::max would lose a NaN
@@ -135,6 +162,9 @@ fn statistics<'py>(py: Python<'py>, done: &Statistics) -> PyResult<Bound<'py, Py
     entries.set_item("error_test_failures", done.error_test_failures)?;
     entries.set_item("nonlinear_iterations", done.nonlinear_iterations)?;
     entries.set_item("nonlinear_failures", done.nonlinear_failures)?;
+    entries.set_item("stiff_from", done.stiff_from)?;
+    entries.set_item("implicit_steps", done.implicit_steps)?;
+    entries.set_item("changes", done.changes)?;
     entries.set_item("last_order", done.last_order)?;
     entries.set_item("last_step", done.last_step)?;
     Ok(entries)
@@ -176,6 +206,7 @@ impl SystemCore {
         times: Vec<f64>,
         plan: Plan,
         sensitivities: Vec<String>,
+        estimate: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (mut model, mut flow) = self.now();
         let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
@@ -183,8 +214,8 @@ impl SystemCore {
         let (variables, t_start) = (self.variables, self.inventory.t_start);
         let end = times.last().copied().unwrap_or(t_start);
         let options = plan.options((&model, &mut flow), (t_start, end), &cancel)?;
-        let work =
-            move || deep(|| integrated(model, flow, variables, (t_start, &times), &options, &sensitivities));
+        let besides = Besides { sensitivities, errors: estimate };
+        let work = move || deep(|| integrated(model, flow, variables, (t_start, &times), &options, &besides));
         attended(py, &cancel, |_| Ok(()), work)?.into_dict(py, &events)
     }
 }

@@ -70,6 +70,23 @@ def test_sensitivities_of_an_oscillator() -> None:
     assert np.abs(motion.sensitivity("x", "k") - exact).max() < 1e-6
 
 
+def test_errors_of_an_oscillator_are_estimated() -> None:
+    text = """
+    [coordinates]
+    x = 1.0
+    [lagrangian]
+    kinetic = "x'^2/2"
+    potential = "x^2/2"
+    """
+    system = chetaev.Model.from_text(text).system()
+    motion = system.run(100.0, rtol=1e-6, estimate=True)
+    error = np.abs(motion["x"] - np.cos(motion.t))
+    # The companion is known to rounding.
+    assert np.abs(motion["error(x)"] - error).max() < 1e-3 * error.max()
+    assert "error(energy)" in motion.columns and "error(x)" not in system.run(1.0).columns
+    assert motion.statistics["stiff_from"] is None and motion.statistics["changes"] == 0
+
+
 def test_lyapunov_exponents_of_a_saddle() -> None:
     text = """
     [coordinates]

@@ -15,6 +15,8 @@ pub enum Kind {
     Outputs,
     /// Derivatives by parameters.
     Derivatives,
+    /// Estimated global errors of the other columns.
+    Errors,
 }
 
 /// Columns of a kind.

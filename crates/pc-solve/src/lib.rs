@@ -2,7 +2,7 @@
 //! method.
 //!
 //! In the order in which a program needs them: a motion in one call, its method, events, the motion
-//! as a function of time, a motion step by step, checkpoints, derivatives, many motions.
+//! as a function of time, its accuracy, a motion step by step, checkpoints, derivatives, many motions.
 //!
 //! # A motion in one call
 //!
@@ -61,6 +61,11 @@
 //!
 //! [`Solve::dense`] keeps the polynomials of all steps: [`DenseOutput`] evaluates y and ẏ at any
 //! time, as accurately as the steps.
+//!
+//! # How accurate it is
+//!
+//! Tolerances bound the error of each step. [`ErrorEstimate`] integrates a motion once more, as its
+//! [`Companion`], and gives the global errors of its outputs.
 //!
 //! # Step by step
 //!
@@ -147,6 +152,7 @@ mod dop853;
 #[cfg(feature = "cvode")]
 mod ensemble;
 mod error;
+mod estimate;
 mod events;
 mod foresight;
 mod integration;
@@ -187,6 +193,8 @@ pub use ensemble::random::member_stream;
 #[cfg(feature = "cvode")]
 pub use ensemble::stop::Stop;
 pub use error::{Code, InputError, IntegrationError, NonFinite, Reason, Shrinks, SolveError};
+pub use estimate::companion::Companion;
+pub use estimate::estimate::{ErrorEstimate, error_of};
 pub use events::events::{Accumulation, FnEvents, NoEvents, Occurrence};
 pub use integration::dense_output::{DenseOutput, Segment};
 pub use integration::fn_field::{FnField, from_fn};

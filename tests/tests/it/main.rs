@@ -9,6 +9,9 @@ mod classics;
 mod divergence;
 mod emission;
 mod energy_rate;
+#[path = "../common/estimated.rs"]
+mod estimated;
+mod estimates;
 mod event_sensitivities;
 mod frames;
 mod free_forms;

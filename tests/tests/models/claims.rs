@@ -11,7 +11,7 @@ use pc_model::BUILTIN;
 use crate::derived::Derived;
 use crate::findings::Findings;
 use crate::{
-    backends, bound_programs, derived_equations, forms_agree, free_forms, kept_costs, measures,
+    backends, bound_programs, derived_equations, estimates, forms_agree, free_forms, kept_costs, measures,
     printed_pages, reference_states, taylor_references, theory,
 };
 
@@ -50,6 +50,7 @@ const OF_BUILT_IN_MODELS: Claims = claims![
     reference_states::the_canonical_equations_reach_the_references,
     reference_states::lagranges_equations_reach_the_references,
     taylor_references::taylor_reaches_the_references_and_comes_back,
+    estimates::errors_are_estimated_within_a_factor_of_ten,
 ];
 
 const OF_MECHANISMS: Claims = claims![

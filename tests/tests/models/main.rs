@@ -12,6 +12,9 @@ mod derived;
 mod derived_equations;
 #[path = "../common/divergence.rs"]
 mod divergence;
+#[path = "../common/estimated.rs"]
+mod estimated;
+mod estimates;
 mod findings;
 mod forms_agree;
 mod free_forms;

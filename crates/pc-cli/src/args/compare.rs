@@ -78,6 +78,7 @@ impl CompareArguments {
         RunArguments {
             velocities: VelocityArguments::default(),
             sensitivities: Vec::new(),
+            estimate: false,
             model: self.model(&self.first),
             t_end,
             samples: self.samples,

@@ -6,7 +6,8 @@ use pc_report::picture::Wanted;
 /// What is drawn of a motion.
 #[derive(Clone, Debug, Default, Args)]
 pub struct DrawnArguments {
-    /// With --plot: draw these columns over time, separated by commas, instead of all; drift(NAME) is the relative drift of NAME
+    /// With --plot: draw these columns over time, separated by commas, instead of all; drift(NAME) is the relative drift of NAME,
+    /// with --estimate error(NAME) its error
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
     pub columns: Vec<String>,
     /// With --plot: draw column Y over column X, a path or a phase portrait; components of a vector, such as x and y, to the

@@ -246,6 +246,11 @@ pub struct RunArguments {
     /// separated by commas, with those of the start, and over events
     #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with_all = ["checkpoint", "every", "resume"])]
     pub sensitivities: Vec<String>,
+    /// More columns: the estimated global error error(NAME) of each column NAME but those of --sensitivities, the distance from a
+    /// companion, a second motion that is integrated more accurately: by taylor at rtol 1e-16 where that is possible. The
+    /// summary has those of the end
+    #[arg(long)]
+    pub estimate: bool,
     /// Do not compare the motion at its start and at its end with a second derivation
     #[arg(long)]
     pub no_verify: bool,

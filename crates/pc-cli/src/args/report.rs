@@ -83,6 +83,7 @@ impl ShownArguments {
         RunArguments {
             velocities: VelocityArguments::default(),
             sensitivities: Vec::new(),
+            estimate: false,
             model: self.model.clone(),
             t_end: self.t_end,
             samples: self.samples,

@@ -175,6 +175,7 @@ impl SweepArguments {
         RunArguments {
             velocities: VelocityArguments::default(),
             sensitivities: Vec::new(),
+            estimate: false,
             model: self.model.clone(),
             t_end: self.t_end,
             samples: self.rows,

@@ -17,6 +17,7 @@ use crate::args::input;
 use crate::args::options::{Outputs, RunArguments};
 use crate::error::CliError;
 use crate::motion::checkpoint::Checkpoints;
+use crate::motion::estimate::{self, Estimate};
 use crate::motion::fine;
 use crate::motion::given::{Given, note_residuals};
 use crate::motion::interrupt;
@@ -55,7 +56,12 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
     let form = Plan::form(&model, arguments);
-    let asked = Asked { verify: !arguments.no_verify, fine: picture.is_some(), notes: true };
+    let asked = Asked {
+        verify: !arguments.no_verify,
+        fine: picture.is_some(),
+        notes: true,
+        estimate: arguments.estimate,
+    };
     // A picture needs all rows.
     let mut stream = destination.stream().filter(|_| picture.is_none());
     let run = integrate_into(stream.as_mut(), &model, form, asked, &arguments.checkpoints, || {
@@ -89,7 +95,7 @@ pub fn integrate(
     form: RunForm,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
-    let asked = Asked { verify: true, fine: true, notes: true };
+    let asked = Asked { verify: true, fine: true, notes: true, estimate: false };
     integrate_into(None, model, form, asked, &CheckpointArguments::default(), plan)
 }
 
@@ -102,7 +108,7 @@ pub(crate) fn integrate_again(
     form: RunForm,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
-    let asked = Asked { verify: false, fine: false, notes: false };
+    let asked = Asked { verify: false, fine: false, notes: false, estimate: false };
     integrate_into(None, model, form, asked, &CheckpointArguments::default(), plan)
 }
 
@@ -115,6 +121,8 @@ struct Asked {
     fine: bool,
     /// Whether what there is to know of the equations is said.
     notes: bool,
+    /// Whether the table has the errors of its columns.
+    estimate: bool,
 }
 
 /// As [`integrate`], with checkpoints; writes the rows to `stream` as they are computed where they
@@ -136,10 +144,10 @@ fn integrate_into(
     let plan = plan()?;
     let tolerances = plan.tolerances(&mut flow);
     let options = plan.options(&tolerances);
-    let numbers = memory::numbers(&flow, &plan, checkpoints.path().is_some());
+    let numbers = memory::numbers(&flow, &plan, checkpoints.path().is_some(), asked.estimate);
     let (rows, limits) = (plan.samples as u64, model.budget().limits());
     let alone = checkpoints.path().is_none() && plan.sensitivities.is_empty();
-    let stream = stream.filter(|_| alone && memory::is_much(rows, numbers, limits));
+    let stream = stream.filter(|_| alone && !asked.estimate && memory::is_much(rows, numbers, limits));
     // Of rows that are written at once, only the times are held.
     memory::allow(rows, if stream.is_some() { 1 } else { numbers }, limits)?;
     let begins = checkpoints.resume.is_none();
@@ -157,6 +165,7 @@ fn integrate_into(
     // Derivatives are known at the rows alone, and a resumed motion is not integrated from its
     // start again.
     let mut again = (asked.fine && alone).then(|| flow.clone());
+    let mut beside = asked.estimate.then(|| flow.clone());
     let mut given = stream.map(|stream| Given::new(&flow, stream)).transpose()?;
     interrupt::catch();
     let mut progress = Progress::new(plan.t_start, plan.t_end);
@@ -180,8 +189,9 @@ fn integrate_into(
     };
     let wall = start.elapsed();
     drop(progress);
+    let estimate = beside.as_mut().map(|flow| estimate::companion(flow, (&plan, &options), &solved));
 
-    let Solution { trajectory, occurrences, ending, slides } = solved;
+    let Solution { trajectory, occurrences, ending, slides } = &solved;
     let last = match &given {
         Some(given) => given.last.as_ref().map(|(t, y)| (*t, y.as_slice())),
         None => trajectory.last(),
@@ -197,13 +207,13 @@ fn integrate_into(
         }
     }
     if let Some(verification) = &mut verification {
-        compare_resets(verification, model, &assembly, &flow, &occurrences)?;
+        compare_resets(verification, model, &assembly, &flow, occurrences)?;
     }
     let passed_at_start =
         first.filter(|_| begins).map(|first| beyond_at_once(&mut flow, &plan, first)).unwrap_or_default();
     let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
     let is_full = given.as_ref().is_some_and(Given::has_failed);
-    let ending = match (ending, error) {
+    let ending = match (*ending, error) {
         (_, Some(error)) => error.ended().map_or_else(|| Ending::Failed(Box::new(error)), Ending::Ended),
         (Some(solver::Ending::Completed), None) => Ending::Completed,
         (Some(solver::Ending::Event { event }), None) => Ending::Event { name: events[event].clone() },
@@ -211,16 +221,18 @@ fn integrate_into(
         (Some(solver::Ending::Stopped) | None, None) => Ending::Interrupted,
     };
     let mut largest = Vec::new();
-    let (table, constraints) = match given {
+    let (mut table, constraints) = match given {
         Some(given) => {
             largest = given.largest;
             (given.table, given.constraints)
         }
         None => (
-            Table::with_derivatives(&mut flow, &trajectory, derivatives.as_ref()),
-            residuals(&mut flow, &trajectory),
+            Table::with_derivatives(&mut flow, trajectory, derivatives.as_ref()),
+            residuals(&mut flow, trajectory),
         ),
     };
+    let estimate =
+        estimate.map(|estimate| Estimate::of(&estimate, &mut flow, (&solved, &tolerances), &mut table));
     trajectory.iter().for_each(|(_, y)| note_largest(&mut largest, y));
     let statistics = *trajectory.statistics();
     let fine = again
@@ -233,6 +245,7 @@ fn integrate_into(
         never_exceeded: tolerances.never_exceeded(&written_start(model), &largest),
         tolerances,
         table,
+        estimate,
         constraints,
         dropped: dropped(&assembly),
         jumps: jumps(&assembly),
@@ -243,7 +256,7 @@ fn integrate_into(
         events,
         passed_at_start,
         occurrences: occurrences.iter().map(|occurrence| (occurrence.event, occurrence.time)).collect(),
-        slides,
+        slides: slides.clone(),
         ending,
         verification,
         wall,

@@ -12,7 +12,7 @@ use crate::motion::plan::Plan;
 const CHECKPOINTED: u64 = 3;
 
 /// Numbers in memory for each row until the table is written.
-pub(crate) fn numbers(flow: &Flow, plan: &Plan, checkpointed: bool) -> u64 {
+pub(crate) fn numbers(flow: &Flow, plan: &Plan, checkpointed: bool, estimated: bool) -> u64 {
     let dim = flow.motion.dim() as u64;
     let columns = 1 + flow.columns().len() as u64;
     let copies = if checkpointed { CHECKPOINTED } else { 1 };
@@ -22,8 +22,10 @@ pub(crate) fn numbers(flow: &Flow, plan: &Plan, checkpointed: bool) -> u64 {
         0 => 0,
         parameters => parameters * (2 * dim + flow.names.len() as u64) + dim + 4,
     };
+    // Those of the companion, and a longer row beside the one before.
+    let errors = if estimated { 2 + dim + 2 * columns } else { 0 };
     // The requested time; the time and state of the trajectory; the row of the table.
-    1 + copies * (1 + dim) + columns + derivatives
+    1 + copies * (1 + dim) + columns + derivatives + errors
 }
 
 /// An error unless `rows` rows of `numbers` numbers each are within the memory limit.

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use pc_solve::{Slide, SolveError, Spent, Statistics};
 
+use crate::motion::estimate::Estimate;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
 use crate::motion::tolerances::Tolerances;
@@ -29,6 +30,8 @@ pub struct Run {
     /// The motion between its rows too, with the points that pictures need, where that was
     /// requested.
     pub fine: Option<Table>,
+    /// What is known of the global errors, where they were requested.
+    pub estimate: Option<Estimate>,
     /// The constraints that are held, with the largest residual of each at the output times.
     pub constraints: Vec<(String, f64)>,
     /// The constraints that were dropped, each with the reason.

@@ -1,4 +1,5 @@
-//! The table of a motion: t, coordinates, quasi-velocities, first-order states, integrals, energy, outputs, derivatives.
+//! The table of a motion: t, coordinates, quasi-velocities, first-order states, integrals, energy, outputs,
+//! derivatives, errors.
 
 use pc_model::Flow;
 use pc_solve::Trajectory;
@@ -14,6 +15,8 @@ pub struct Table {
     states: usize,
     conserved: usize,
     derivatives: usize,
+    /// As many as columns between t and the derivatives, or none.
+    errors: usize,
     /// One row after the other.
     values: Vec<f64>,
     /// A record of the rows that were written as they were computed: `values` then has only the
@@ -129,6 +132,7 @@ impl Table {
             states: flow.motion.states(),
             conserved: flow.motion.conserved_len(),
             derivatives,
+            errors: 0,
             values: Vec::new(),
             given: None,
         }
@@ -192,12 +196,45 @@ impl Table {
 
     /// The numbers of the columns that are outputs of the model, reactions among them.
     pub fn outputs(&self) -> std::ops::Range<usize> {
-        self.conserved().end..self.columns.len() - self.derivatives
+        self.conserved().end..self.columns.len() - self.derivatives - self.errors
     }
 
     /// The numbers of the columns that are derivatives by parameters.
     pub fn derivatives(&self) -> std::ops::Range<usize> {
-        self.outputs().end..self.columns.len()
+        let start = self.outputs().end;
+        start..start + self.derivatives
+    }
+
+    /// The numbers of the columns that are errors, in the order of the columns whose errors they are.
+    pub fn errors(&self) -> std::ops::Range<usize> {
+        self.derivatives().end..self.columns.len()
+    }
+
+    /// The number of the column with the errors of column `j`, where they are known.
+    pub fn error_of(&self, j: usize) -> Option<usize> {
+        let errors = self.errors();
+        (1..=errors.len()).contains(&j).then(|| errors.start + j - 1)
+    }
+
+    /// The largest magnitude of column `j`.
+    pub fn largest(&self, j: usize) -> f64 {
+        self.column(j).fold(0.0, |largest, value| value.abs().max(largest))
+    }
+
+    /// Appends columns of errors, whose values `errors` finds from the number of a row and the row.
+    pub(crate) fn append_errors(
+        &mut self,
+        names: Vec<String>,
+        mut errors: impl FnMut(usize, &[f64]) -> Vec<f64>,
+    ) {
+        let mut values = Vec::with_capacity(self.values.len() + self.len() * names.len());
+        for (i, row) in self.rows().enumerate() {
+            values.extend_from_slice(row);
+            values.extend(errors(i, row));
+        }
+        self.errors = names.len();
+        self.columns.extend(names);
+        self.values = values;
     }
 
     /// max |I(t) − I(t_start)| over the rows for column `j`.

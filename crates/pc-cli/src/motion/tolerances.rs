@@ -29,6 +29,11 @@ impl Tolerances {
         Tolerance::each(self.values.clone())
     }
 
+    /// The largest.
+    pub(crate) fn largest(&self) -> f64 {
+        self.values.iter().copied().fold(0.0, f64::max)
+    }
+
     /// This part of each.
     pub(crate) fn times(&self, part: f64) -> AbsoluteTolerance {
         let each = self.names.iter().cloned().zip(self.values.iter().map(|value| part * value));

@@ -51,6 +51,7 @@ fn samples(table: &Table) -> Samples {
             columns(Kind::Conserved, table.conserved()),
             columns(Kind::Outputs, table.outputs()),
             columns(Kind::Derivatives, table.derivatives()),
+            columns(Kind::Errors, table.errors()),
         ],
     }
 }

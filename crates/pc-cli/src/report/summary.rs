@@ -5,7 +5,8 @@ use pc_solve::{Method, Slide};
 use serde_json::{Map, Value, json};
 
 use crate::motion::run::{Ending, Run};
-use crate::report::text::{assignments, labelled, short, small};
+use crate::motion::table::Drift;
+use crate::report::text::{assignments, labelled, short, small, wrapped};
 
 const LABEL: usize = 9;
 const WIDTH: usize = 86;
@@ -51,6 +52,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
     line("events", &events(run));
     line("slides", &slides(run));
     line("drift", &drifts(run));
+    line("errors", &errors(run));
     if !run.constraints.is_empty() {
         line("held", &held(run));
     }
@@ -192,6 +194,61 @@ fn drifts(run: &Run) -> Vec<String> {
     drifts.collect()
 }
 
+/// Rows that are named one by one.
+const FEW_ROWS: usize = 3;
+
+/// The estimated global errors of the state at the last row where they are known, and what is to be said of them.
+fn errors(run: &Run) -> Vec<String> {
+    let Some(estimate) = &run.estimate else { return Vec::new() };
+    let by = format!("by a companion: {}, rtol {}", estimate.method, short(estimate.rtol, 2));
+    let mut lines = Vec::new();
+    if let Some((t, errors)) = last_errors(run) {
+        let shown = errors.iter().map(|(name, error)| format!("{name} {}", small(error.absolute)));
+        lines.extend(wrapped(shown, WIDTH));
+        let relative = errors.iter().filter_map(|(name, error)| Some((error.relative?, *name)));
+        let worst = relative.max_by(|a, b| a.0.total_cmp(&b.0));
+        let worst = worst.map_or_else(String::new, |(relative, name)| {
+            format!(", relative to the motion up to {} ({name})", small(relative))
+        });
+        lines.push(format!("at t = {}{worst}, {by}", short(t, 10)));
+    } else {
+        lines.push(format!("not known, {by}"));
+    }
+    if let Some(t) = estimate.grown {
+        lines.push(format!("the error has the size of the motion first at t = {}", short(t, 10)));
+    }
+    match estimate.beyond_events.as_slice() {
+        [] => {}
+        times if times.len() > FEW_ROWS => lines.push(format!(
+            "{} rows from t = {} on are before an event in one of both motions alone",
+            times.len(),
+            short(times[0], 10)
+        )),
+        times => {
+            let times: Vec<String> = times.iter().map(|t| short(*t, 10)).collect();
+            lines.push(format!(
+                "at t = {} the row is before an event in one of both motions alone",
+                times.join(", ")
+            ));
+        }
+    }
+    lines.extend(estimate.incomplete.iter().map(|why| format!("later rows have none: {why}")));
+    lines
+}
+
+/// The time of the last row with known errors, and those of the state.
+fn last_errors(run: &Run) -> Option<(f64, Vec<(&str, Drift)>)> {
+    let (table, estimate) = (&run.table, run.estimate.as_ref()?);
+    let row = table.rows().nth(estimate.rows.checked_sub(1)?)?;
+    let error = |j: usize| {
+        let (absolute, largest) = (row[table.error_of(j)?], table.largest(j));
+        let relative = (largest > 0.0).then(|| absolute / largest);
+        Some((table.columns()[j].as_str(), Drift { absolute, relative }))
+    };
+    let state = table.coordinates().start..table.states().end;
+    Some((row[0], state.filter_map(error).collect()))
+}
+
 /// The columns that have no finite value in some rows.
 fn not_finite(run: &Run) -> Vec<String> {
     let table = &run.table;
@@ -200,7 +257,8 @@ fn not_finite(run: &Run) -> Vec<String> {
         let (value, t, rows) = (found.value, short(found.t, 10), found.rows);
         Some(format!("{name} is {value} at t = {t}, not finite in {rows} of {} rows", table.len()))
     };
-    table.columns().iter().enumerate().filter_map(line).collect()
+    // Errors that are not known are said with the estimate.
+    table.columns()[..table.errors().start].iter().enumerate().filter_map(line).collect()
 }
 
 fn held(run: &Run) -> Vec<String> {
@@ -239,6 +297,20 @@ pub fn json(run: &Run) -> Value {
         "drift": drift,
         "constraints": held,
     });
+    if let Some(estimate) = &run.estimate {
+        let (t, errors) = last_errors(run).unzip();
+        let end = errors.into_iter().flatten().map(|(name, error)| {
+            (name.to_owned(), json!({ "absolute": error.absolute, "relative": error.relative }))
+        });
+        summary["errors"] = json!({
+            "companion": { "method": estimate.method.to_string().to_lowercase(), "rtol": estimate.rtol },
+            "t": t,
+            "end": end.collect::<Map<_, _>>(),
+            "grown_from": estimate.grown,
+            "beyond_events": estimate.beyond_events,
+            "incomplete": estimate.incomplete,
+        });
+    }
     if !run.slides.is_empty() {
         let slide =
             |slide: &Slide| json!({ "surface": slide.surface, "from": slide.from, "until": slide.until });

@@ -13,6 +13,7 @@ mod compare;
 mod constraints;
 mod each_model;
 mod equations;
+mod estimate;
 mod events;
 mod files;
 mod followed;

@@ -54,7 +54,8 @@ class Motion(Mapping[str, "Floats"]):
     residuals : dict
         The largest residual of each constraint that is kept by projection.
     statistics : dict
-        Steps, evaluations, …
+        Steps, evaluations, …; of ``"auto"`` also ``stiff_from``, the time at which stiffness was seen first, or None,
+        ``implicit_steps`` and ``changes``, how often the method changed.
 
     Examples
     --------
@@ -126,7 +127,8 @@ class Motion(Mapping[str, "Floats"]):
         ):
             found[kind] = tuple(names[:count])
             del names[:count]
-        found["outputs"] = tuple(names)
+        found["outputs"] = tuple(name for name in names if not name.startswith("error("))
+        found["errors"] = tuple(name for name in names if name.startswith("error("))
         return found
 
     @property

@@ -233,6 +233,7 @@ class System(_native.SystemCore):
         samples_per_step: int | None = None,
         accumulation: float | None = None,
         sensitivities: Sequence[str] = (),
+        estimate: bool = False,
         limit_time: float | None = None,
     ) -> Motion:
         """Integrates the motion from the start.
@@ -264,6 +265,9 @@ class System(_native.SystemCore):
             How events are looked for, as in ``[simulation]``.
         sensitivities : sequence of str
             Parameters by which the motion is differentiated: columns ``∂x/∂p``.
+        estimate : bool
+            Whether there are columns ``error(x)`` with the estimated global errors of the others: the distance from a second, more
+            accurate motion.
         limit_time : float, optional
             Seconds after which it ends with an error.
 
@@ -301,6 +305,7 @@ class System(_native.SystemCore):
                 samples_per_step=samples_per_step,
                 accumulation=accumulation,
                 sensitivities=sensitivities,
+                estimate=estimate,
                 limit_time=limit_time,
             )
         at = self._times(t_end, samples, times)
@@ -315,7 +320,7 @@ class System(_native.SystemCore):
                 "limit_time": limit_time,
             }
         )
-        outcome = self.integrate(at.tolist(), plan, list(sensitivities))
+        outcome = self.integrate(at.tolist(), plan, list(sensitivities), estimate)
         motion = Motion(self, plan, outcome)
         if outcome["error"] is not None:
             raise IntegrationError(outcome["error"], motion)

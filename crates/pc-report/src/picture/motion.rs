@@ -17,7 +17,8 @@ const MOST_UNEQUAL: f64 = 6.0;
 /// The requested parts of a motion.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
-    /// Columns over time; `drift(NAME)` is the relative drift of NAME. Where neither columns nor pairs are given, all.
+    /// Columns over time; `drift(NAME)` is the relative drift of NAME, `error(NAME)` its estimated error, where that is known.
+    /// Where neither columns nor pairs are given, all.
     pub columns: Vec<String>,
     /// Pairs of columns, the second over the first.
     pub pairs: Vec<(String, String)>,
@@ -34,6 +35,7 @@ pub(crate) fn title(kind: Kind) -> &'static str {
         Kind::Conserved => "Relative drift of integrals",
         Kind::Outputs => "Outputs and reactions",
         Kind::Derivatives => "Derivatives by parameters",
+        Kind::Errors => "Estimated errors",
     }
 }
 
@@ -50,6 +52,9 @@ pub(crate) fn panels(record: &Record, wanted: &Wanted) -> Result<Vec<Panel>, Unk
     if wanted.columns.is_empty() && wanted.pairs.is_empty() {
         for columns in &samples.columns {
             panels.extend(of_kind(record, columns, &wanted.wrapped));
+        }
+        if record.fine.is_some() {
+            panels.extend(errors(record, known_errors(record)));
         }
     }
     panels.extend(chosen(record, samples, wanted)?);
@@ -71,7 +76,9 @@ fn chosen(record: &Record, samples: &Samples, wanted: &Wanted) -> Result<Vec<Pan
             drifts.push((kept.to_owned(), values.to_vec()));
             continue;
         }
-        let (kind, values) = samples.column(name)?;
+        // Errors are known at the rows alone.
+        let is_error = known_errors(record).iter().any(|(known, _)| known == name);
+        let (kind, values) = if is_error { record.rows.column(name)? } else { samples.column(name)? };
         let column = (name.clone(), values.to_vec());
         match kinds.iter_mut().find(|columns| columns.kind == kind) {
             Some(columns) => columns.list.push(column),
@@ -80,6 +87,10 @@ fn chosen(record: &Record, samples: &Samples, wanted: &Wanted) -> Result<Vec<Pan
     }
     let mut panels = Vec::new();
     for columns in &kinds {
+        if columns.kind == Kind::Errors {
+            panels.extend(errors(record, &columns.list));
+            continue;
+        }
         let title = if columns.kind == Kind::Conserved { "Integrals" } else { title(columns.kind) };
         panels.extend(by_scale(record, title, &columns.list, &wanted.wrapped));
     }
@@ -94,6 +105,7 @@ pub(crate) fn of_kind(record: &Record, columns: &Columns, wrapped: &[String]) ->
             let count = columns.list.len() - usize::from(!record.keeps_energy);
             drift(record, &columns.list[..count]).into_iter().collect()
         }
+        Kind::Errors => errors(record, &columns.list).into_iter().collect(),
         kind => by_scale(record, title(kind), &columns.list, wrapped),
     }
 }
@@ -144,6 +156,23 @@ fn drift(record: &Record, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     };
     let curves: Vec<Curve> = list.iter().map(curve).collect();
     (!curves.is_empty()).then(|| over_time(record, title(Kind::Conserved), Scale::Decades, curves))
+}
+
+/// The errors at the rows.
+fn known_errors(record: &Record) -> &[(String, Vec<f64>)] {
+    let errors = record.rows.columns.iter().find(|columns| columns.kind == Kind::Errors);
+    errors.map_or(&[], |columns| &columns.list)
+}
+
+/// log₁₀ of errors at the rows; one that is 0 is not drawn.
+fn errors(record: &Record, list: &[(String, Vec<f64>)]) -> Option<Panel> {
+    let times = &record.rows.times;
+    let curve = |(name, values): &(String, Vec<f64>)| {
+        let logarithms = values.iter().map(|error| if *error == 0.0 { f64::NAN } else { error.log10() });
+        Curve { name: one_line(name).into_owned(), points: times.iter().copied().zip(logarithms).collect() }
+    };
+    let curves: Vec<Curve> = list.iter().map(curve).collect();
+    (!curves.is_empty()).then(|| over_time(record, title(Kind::Errors), Scale::Decades, curves))
 }
 
 /// One column over another.

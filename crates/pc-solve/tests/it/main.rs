@@ -15,6 +15,7 @@ mod dense;
 mod dop853;
 mod dop853_coefficients;
 mod ensemble;
+mod estimate;
 mod event_cascades;
 mod event_checkpoints;
 mod event_edges;

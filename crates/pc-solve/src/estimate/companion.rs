@@ -1,0 +1,101 @@
+//! The companion of a motion: how it is integrated a second time, more accurately.
+
+use pc_expr::VectorField;
+
+use crate::integration::statistics::Statistics;
+use crate::settings::method::Method;
+use crate::settings::options::Options;
+use crate::settings::tolerance::Tolerance;
+
+/// The tolerance of a companion by a method of the same kind, relative to that of the motion.
+const FINER: f64 = 1e-3;
+/// The tolerance of a companion by Taylor's method, whose error then is rounding.
+const BY_SERIES: f64 = 1e-16;
+/// The least tolerance of a companion by other methods: below, steps add more rounding than they save.
+const LEAST: f64 = 1e-15;
+/// A motion at a tolerance up to this is as good as rounding allows, and so is one at [`COARSE`].
+const ROUNDING: f64 = 4e-15;
+const COARSE: f64 = 1e-14;
+/// Steps of a companion for each of the motion, at most.
+const MORE_STEPS: u64 = 20;
+
+/// How a motion is integrated a second time, so that the distance of both is the error of the first.
+///
+/// With y of the motion, ỹ of the companion and the true y*, |y − ỹ| = |y − y*| (1 + O(|ỹ − y*|/|y − y*|)):
+/// the companion has to be more accurate by more than a few times.
+/// - A motion that is not stiff, and whose field has a [series](VectorField::series), has one by
+///   [`Method::Taylor`] at rtol 10⁻¹⁶, or at a thousandth of the tolerance where that is less: its states carry
+///   their rounding along. Of a motion by Taylor's method at such a tolerance the errors of both are rounding,
+///   along different steps, and the distance has their size.
+/// - Any other has one at a thousandth of its tolerance, at least 10⁻¹⁵, by [`Method::Auto`], or by
+///   [`Method::Bdf`] where it is by that. Of a motion at rtol below 4·10⁻¹⁵ the companion is no better: at
+///   10⁻¹⁴ both have errors of rounding.
+///
+/// Absolute tolerances change in the same ratio.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Companion {
+    options: Options,
+}
+
+impl Companion {
+    /// The companion of a motion of `field` by these options, which took `work`.
+    pub fn of<F: VectorField>(field: &mut F, options: &Options, work: &Statistics) -> Companion {
+        let is_stiff = options.method == Method::Bdf || work.stiff_from.is_some() || work.implicit_steps > 0;
+        let rtol = options.relative_tolerance;
+        if !is_stiff && field.series().is_ok() {
+            return Companion::by(Method::Taylor, BY_SERIES.min(FINER * rtol), options);
+        }
+        let finer = if rtol > ROUNDING { (FINER * rtol).max(LEAST) } else { COARSE };
+        Companion::by(implicit(options.method), finer, options)
+    }
+
+    fn by(method: Method, rtol: f64, motion: &Options) -> Companion {
+        let ratio = rtol / motion.relative_tolerance;
+        let absolute = match &motion.absolute_tolerance {
+            Tolerance::Scalar(tolerance) => Tolerance::Scalar(ratio * tolerance),
+            Tolerance::Vector(all) => Tolerance::Vector(all.iter().map(|one| ratio * one).collect()),
+        };
+        let keeps_solver = method == motion.method;
+        let options = Options {
+            method,
+            nonlinear_solver: motion.nonlinear_solver.filter(|_| keeps_solver),
+            #[cfg(feature = "cvode")]
+            linear_solver: motion.linear_solver.clone().filter(|_| method != Method::Taylor),
+            relative_tolerance: rtol,
+            absolute_tolerance: absolute,
+            max_steps: motion.max_steps.saturating_mul(MORE_STEPS),
+            // Those of the motion suit its tolerance and its method.
+            initial_step: None,
+            min_step: None,
+            max_order: motion.max_order.filter(|_| keeps_solver && method == Method::Bdf),
+            ..motion.clone()
+        };
+        Companion { options }
+    }
+
+    /// Its options.
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// Its method.
+    pub fn method(&self) -> Method {
+        self.options.method
+    }
+
+    /// Its relative tolerance.
+    pub fn relative_tolerance(&self) -> f64 {
+        self.options.relative_tolerance
+    }
+}
+
+/// The method of a companion at a finer tolerance of a motion that may be stiff.
+#[cfg(feature = "cvode")]
+fn implicit(method: Method) -> Method {
+    if method == Method::Bdf { Method::Bdf } else { Method::Auto }
+}
+
+#[cfg(not(feature = "cvode"))]
+fn implicit(_: Method) -> Method {
+    Method::Dop853
+}
