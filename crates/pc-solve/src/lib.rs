@@ -220,8 +220,8 @@ pub use sensitivity::adjoint_options::AdjointOptions;
 pub use sensitivity::functional::{Functional, Gradient};
 #[cfg(feature = "cvode")]
 pub use sensitivity::trajectory::{
-    SensitivitySolution, SensitivityTrajectory, solve_dense_with_sensitivities, solve_with_sensitivities,
-    solve_with_sensitivities_and_events,
+    SensitivitySolution, SensitivityTrajectory, solve_checkpointed_with_sensitivities,
+    solve_dense_with_sensitivities, solve_with_sensitivities, solve_with_sensitivities_and_events,
 };
 pub use settings::inequality::Inequality;
 pub use settings::method::{Method, NonlinearSolver};

@@ -244,7 +244,7 @@ pub struct RunArguments {
     pub outputs: Option<Outputs>,
     /// More columns: the derivatives ∂x/∂p of coordinates, quasi-velocities and first-order states by these parameters,
     /// separated by commas, with those of the start, and over events
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with_all = ["checkpoint", "every", "resume"])]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub sensitivities: Vec<String>,
     /// More columns: the estimated global error error(NAME) of each column NAME but those of --sensitivities, the distance from a
     /// companion, a second motion that is integrated more accurately: by taylor at rtol 1e-16 where that is possible. The

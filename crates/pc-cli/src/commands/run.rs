@@ -177,7 +177,9 @@ fn integrate_into(
     };
     let start = Instant::now();
     let (solved, error) = match (&mut checkpoints, &mut derivatives, &mut given) {
-        (Some(checkpoints), ..) => checkpoints.solve(&flow, (&plan, &options), observer)?,
+        (Some(checkpoints), derivatives, _) => {
+            checkpoints.solve(&flow, (&plan, &options), derivatives.as_mut(), observer)?
+        }
         (None, None, Some(given)) => given.follow(&mut flow, (&plan, &options), observer),
         (None, Some(derivatives), _) => {
             derivatives.follow(&mut flow, plan.t_start, &plan.times(), &options, observer)

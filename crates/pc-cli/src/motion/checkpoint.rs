@@ -19,6 +19,7 @@ use crate::motion::checkpoint_error::CheckpointFileError;
 use crate::motion::identity;
 use crate::motion::identity::Identity;
 use crate::motion::plan::Plan;
+use crate::motion::sensitivities::Derivatives;
 use crate::output::place::Place;
 use crate::report::text;
 
@@ -93,7 +94,7 @@ impl Checkpoints {
         Ok(())
     }
 
-    /// Integrates the motion of `flow` from its start or from the checkpoint.
+    /// Integrates the motion of `flow` from its start or from the checkpoint, with its derivatives, if any are wanted.
     ///
     /// # Errors
     /// [`CliError::Write`] if the file cannot be written at the beginning; later failures are only
@@ -102,6 +103,7 @@ impl Checkpoints {
         &mut self,
         flow: &Flow,
         (plan, options): (&Plan, &Options),
+        derivatives: Option<&mut Derivatives>,
         step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
     ) -> Result<(Solution, Option<SolveError>), CliError> {
         let from = self.from.take().unwrap_or_else(|| Checkpoint::start(plan.t_start, &flow.start));
@@ -126,10 +128,17 @@ impl Checkpoints {
         };
         // The equations as compiled, without memory of earlier evaluations; the checkpoint knows
         // the values of kept integrals after a reset.
-        let parts = || (flow.motion.clone(), flow.events.clone());
         let times = plan.times();
-        let solved = solve_checkpointed(options, parts, from, &times, self.every, save, step);
-        let (motion, error) = SolveFailure::split(solved);
+        let (motion, error) = match derivatives {
+            Some(derivatives) => {
+                derivatives.follow_checkpointed(flow, (&times, options), (from, self.every), save, step)
+            }
+            None => {
+                let parts = || (flow.motion.clone(), flow.events.clone());
+                let solved = solve_checkpointed(options, parts, from, &times, self.every, save, step);
+                SolveFailure::split(solved)
+            }
+        };
         let is_ended = error.as_ref().is_some_and(|error: &SolveError| error.ended().is_some());
         if motion.ending == Some(Ending::Stopped) || is_ended {
             let path = self.place.path().display();

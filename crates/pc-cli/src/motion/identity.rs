@@ -14,6 +14,9 @@ pub(crate) type Identity = Vec<(String, String)>;
 /// Of the motion of a model.
 pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
     let most = plan.max_steps.map(|most| ("--max-steps", most.to_string()));
+    let parameters: Vec<&str> = model.parameters().map(|(name, _)| name).collect();
+    let by: Vec<&str> = plan.sensitivities.iter().map(|&j| parameters[j]).collect();
+    let by = (!by.is_empty()).then(|| ("--sensitivities", by.join(",")));
     let plan = [
         ("--project", model.kept().join(", ")),
         ("--t-end", plan.t_end.to_string()),
@@ -25,7 +28,7 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
         ("--method", plan.method.to_string().to_lowercase()),
         ("--form", format!("{form:?}").to_lowercase()),
     ];
-    of_work(model, plan.into_iter().chain(most))
+    of_work(model, plan.into_iter().chain(most).chain(by))
 }
 
 /// Absolute tolerances as they are given.

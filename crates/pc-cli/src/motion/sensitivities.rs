@@ -1,11 +1,12 @@
 //! `pc run --sensitivities`: derivatives of the columns of a motion by parameters.
 
+use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 
 use pc_model::{Flow, Model, UnknownParameter};
 use pc_solve::{
-    Options, Sensitivities, SensitivitySolution, Solution, SolveError, SolveFailure,
-    solve_with_sensitivities_and_events,
+    Checkpoint, Options, Sensitivities, SensitivitySolution, Solution, SolveError, SolveFailure,
+    solve_checkpointed_with_sensitivities, solve_with_sensitivities_and_events,
 };
 
 use pc_expr::VectorField;
@@ -72,6 +73,28 @@ impl Derivatives {
             events,
             output,
         );
+        self.take(solved)
+    }
+
+    /// The same from a checkpoint, with further checkpoints.
+    pub(crate) fn follow_checkpointed(
+        &mut self,
+        flow: &Flow,
+        (times, options): (&[f64], &Options),
+        (from, every): (Checkpoint, NonZeroU64),
+        save: impl FnMut(&Checkpoint, bool),
+        step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> (Solution, Option<SolveError>) {
+        let parts = || (flow.motion.clone(), flow.events.clone());
+        let method = (options, &self.wanted);
+        self.take(solve_checkpointed_with_sensitivities(method, parts, from, times, every, save, step))
+    }
+
+    /// Takes the derivatives of what was reached.
+    fn take(
+        &mut self,
+        solved: Result<SensitivitySolution, Box<SolveFailure<SensitivitySolution>>>,
+    ) -> (Solution, Option<SolveError>) {
         let (reached, error) = SolveFailure::split(solved);
         let SensitivitySolution { trajectory, occurrences, ending, slides, .. } = reached;
         self.matrices = trajectory.iter().map(|(_, _, matrix)| matrix.to_vec()).collect();

@@ -311,7 +311,7 @@ fn foreign_checkpoints_of_runs_with_events_are_refused() {
     run.refused(
         "b.check",
         &[],
-        "it is a checkpoint of version 2 of the format, not 5; start afresh without --resume",
+        "it is a checkpoint of version 2 of the format, not 6; start afresh without --resume",
     );
     let other = Run::new("bouncing-ball", &["--every", "20"]);
     fs::copy(run.at("a.check"), other.at("a.check")).expect("copied");

@@ -103,7 +103,29 @@ fn a_name_that_is_not_a_parameter_is_refused() {
         message,
         "pc: --sensitivities: `k` is not a parameter of this model; its parameters are m, g, e, h\n"
     );
-    assert_eq!(refused(&["--sensitivities", "g", "--checkpoint", "c"]).0, Some(2));
+}
+
+/// With checkpoints the columns are those without, within the tolerance, and a checkpoint has those of the rows before it.
+#[test]
+fn derivatives_are_kept_in_checkpoints() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let place = |name: &str| directory.path().join(name).display().to_string();
+    for method in ["adams", "dop853", "taylor"] {
+        let kept = place(method);
+        let all = ["run", "bouncing-ball", "--sensitivities", "g,e", "--samples", "9", "--method", method];
+        let run = |more: &[&str]| pc(&[&all[..], more].concat());
+        let (names, plain) = table(&run(&[]));
+        let whole = run(&["--checkpoint", &kept, "--every", "5"]);
+        let (same, rows) = table(&whole);
+        assert_eq!(names, same);
+        for (row, plain) in rows.iter().flatten().zip(plain.iter().flatten()) {
+            assert!((row - plain).abs() <= 1e-6 * plain.abs().max(1.0), "{method}: {row}, not {plain}");
+        }
+        assert_eq!(run(&["--resume", &kept]).stdout, whole.stdout, "{method}");
+        let other = pc(&[&all[..2], &["--samples", "9", "--method", method, "--resume", &kept]].concat());
+        let said = String::from_utf8(other.stderr).expect("UTF-8");
+        assert!(other.status.code() == Some(2) && said.contains("--sensitivities g,e"), "{method}: {said}");
+    }
 }
 
 /// The derivative by a parameter that others are expressions in would have to include these, which

@@ -45,6 +45,8 @@ pub struct Checkpoint {
     pub(crate) jumped: bool,
     /// S, column-major; empty without sensitivities.
     pub(crate) sensitivities: Vec<f64>,
+    /// Those at the outputs, one matrix after the other.
+    pub(crate) output_sensitivities: Vec<f64>,
     /// The status of the events, once a motion has begun.
     pub(crate) past: Option<Past>,
 }
@@ -82,6 +84,7 @@ impl Checkpoint {
             steps_since_output: 0,
             jumped: false,
             sensitivities: Vec::new(),
+            output_sensitivities: Vec::new(),
             past: None,
         }
     }

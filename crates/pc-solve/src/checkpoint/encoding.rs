@@ -1,13 +1,13 @@
 //! Checkpoints as bytes.
 //!
 //! ```text
-//! pc checkpoint 5\n
+//! pc checkpoint 6\n
 //! length of the label, label
 //! t, dim, y; number of outputs, times, states
 //! number of occurrences, of each: event, t, y⁻, y⁺
 //! the work
 //! 1 if the motion was restarted, as after a jump, else 0
-//! number of entries of S, these
+//! number of entries of S, these; number of those at the outputs, these
 //! 0, or 1 and the status of events: number of events, of each: side, noise, count, longest
 //!     interval, number of latest times, these; number of events due, of each: event, noise, side
 //! CRC-32 of all the above
@@ -20,7 +20,7 @@ use crate::integration::statistics::Statistics;
 use crate::integration::trajectory::Trajectory;
 
 const MAGIC: &[u8] = b"pc checkpoint ";
-const VERSION: u64 = 5;
+const VERSION: u64 = 6;
 
 /// Why bytes are not a checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -89,6 +89,8 @@ impl Checkpoint {
         put_integer(&mut bytes, u64::from(self.jumped));
         put_integer(&mut bytes, self.sensitivities.len() as u64);
         put_numbers(&mut bytes, &self.sensitivities);
+        put_integer(&mut bytes, self.output_sensitivities.len() as u64);
+        put_numbers(&mut bytes, &self.output_sensitivities);
         put_integer(&mut bytes, u64::from(self.past.is_some()));
         if let Some(past) = &self.past {
             past.put(&mut bytes);
@@ -208,6 +210,8 @@ fn decode(bytes: &mut &[u8]) -> Option<(Checkpoint, String)> {
     checkpoint.jumped = flag(bytes)?;
     let entries = index(bytes)?;
     checkpoint.sensitivities = numbers(bytes, entries)?;
+    let at_outputs = index(bytes)?;
+    checkpoint.output_sensitivities = numbers(bytes, at_outputs)?;
     checkpoint.past = if flag(bytes)? { Some(Past::take(bytes)?) } else { None };
     let events = checkpoint.past.as_ref().map_or(0, |past| past.events.len());
     let known = checkpoint.occurrences.iter().all(|occurrence| occurrence.event < events);

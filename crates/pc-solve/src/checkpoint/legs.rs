@@ -9,12 +9,11 @@ use pc_expr::{Events, VectorField};
 use crate::checkpoint::checkpoint::Checkpoint;
 use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::events::events::Occurrence;
+use crate::integration::checks::finite;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::method::IntegrationMethod;
 use crate::integration::observer::Observed;
-use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
-use crate::integration::trajectory::Trajectory;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 
@@ -59,20 +58,35 @@ use crate::solve::solution::Solution;
 /// [`InputError::Sensitivities`] if the checkpoint has sensitivities.
 pub fn solve_checkpointed<F: VectorField, E: Events>(
     method: &impl IntegrationMethod<F>,
-    mut parts: impl FnMut() -> (F, E),
+    parts: impl FnMut() -> (F, E),
     from: Checkpoint,
     times: &[f64],
     every: NonZeroU64,
+    save: impl FnMut(&Checkpoint, bool),
+    step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+) -> Result<Solution, Box<SolveFailure<Solution>>> {
+    match follow(method, parts, from, (times, every), save, step) {
+        Ok((solution, _)) => Ok(solution),
+        Err(failure) => Err(Box::new(failure.map(|(solution, _)| solution))),
+    }
+}
+
+/// A motion, and its sensitivities at the outputs, one matrix after the other.
+pub(crate) type Reached = (Solution, Vec<f64>);
+
+/// The same, by a method with sensitivities or without.
+pub(crate) fn follow<F: VectorField, E: Events>(
+    method: &impl IntegrationMethod<F>,
+    mut parts: impl FnMut() -> (F, E),
+    from: Checkpoint,
+    (times, every): (&[f64], NonZeroU64),
     mut save: impl FnMut(&Checkpoint, bool),
     mut step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-) -> Result<Solution, Box<SolveFailure<Solution>>> {
+) -> Result<Reached, Box<SolveFailure<Reached>>> {
     let mut begin = |stand: &Checkpoint| {
         let (field, events) = parts();
-        if !stand.sensitivities.is_empty() {
-            let found = stand.sensitivities.len() / stand.state.len().max(1);
-            return Err(InputError::Sensitivities { expected: 0, found }.into());
-        }
         let mut stepper = method.begin(field, stand.time, &stand.state, times.last().copied())?;
+        take_up(&mut stepper, stand)?;
         // Steps to the next output are counted here, across legs.
         let limit = std::mem::replace(&mut stepper.limits_mut().max_steps, u64::MAX);
         let integration = Integration::resumed(stepper, stand).with_events_of(events, stand)?;
@@ -82,30 +96,36 @@ pub fn solve_checkpointed<F: VectorField, E: Events>(
     loop {
         save(&stand, false);
         if !stand.outputs.is_empty() && stand.outputs.len() >= times.len() {
-            return Ok(motion(stand.outputs, stand.occurrences, stand.statistics, Some(Ending::Completed)));
+            return Ok(motion(stand, Some(Ending::Completed)));
         }
         let (mut integration, plan) = match begin(&stand) {
             Ok(begun) => begun,
             Err(error) => {
-                let reached = motion(stand.outputs, stand.occurrences, stand.statistics, None);
-                return Err(Box::new(SolveFailure { reached, error }));
+                return Err(Box::new(SolveFailure { reached: motion(stand, None), error }));
             }
         };
         let (work, outputs, occurrences) = (stand.statistics, stand.outputs.len(), stand.occurrences.len());
         let result = plan.leg(&mut integration, &mut stand, &mut step);
         stand.statistics = work.followed_by(&integration.statistics());
         let Some(ending) = result.transpose() else {
-            let Checkpoint { time, state, jumped, past, .. } = integration.checkpoint();
-            stand = Checkpoint { time, state, jumped, past, ..stand };
+            let Checkpoint { time, state, jumped, past, sensitivities, .. } = integration.checkpoint();
+            stand = Checkpoint { time, state, jumped, past, sensitivities, ..stand };
             continue;
         };
         let arrived = ending.as_ref().ok().copied();
-        let reached = motion(stand.outputs, stand.occurrences, stand.statistics, arrived);
         if matches!(arrived, Some(Ending::Stopped) | None) {
-            let outputs = reached.trajectory.first(outputs);
-            let occurrences = reached.occurrences[..occurrences].to_vec();
-            save(&Checkpoint { outputs, occurrences, statistics: work, ..stand }, true);
+            let entries = outputs * stand.sensitivities.len();
+            let at_outputs = &stand.output_sensitivities;
+            let kept = Checkpoint {
+                outputs: stand.outputs.first(outputs),
+                occurrences: stand.occurrences[..occurrences].to_vec(),
+                statistics: work,
+                output_sensitivities: at_outputs[..entries.min(at_outputs.len())].to_vec(),
+                ..stand.clone()
+            };
+            save(&kept, true);
         }
+        let reached = motion(stand, arrived);
         return match ending {
             Ok(_) => Ok(reached),
             Err(error) => Err(Box::new(SolveFailure { reached, error })),
@@ -113,15 +133,34 @@ pub fn solve_checkpointed<F: VectorField, E: Events>(
     }
 }
 
-/// The motion with this ending.
-fn motion(
-    mut trajectory: Trajectory,
-    occurrences: Vec<Occurrence>,
-    statistics: Statistics,
-    ending: Option<Ending>,
-) -> Solution {
+/// Gives a method begun at a checkpoint its sensitivities there; at a start it has those of the method.
+///
+/// # Errors
+/// [`InputError::Sensitivities`] if the method has another number of columns.
+fn take_up<S: Stepper>(stepper: &mut S, stand: &Checkpoint) -> Result<(), SolveError> {
+    let (expected, dim) = (stepper.column_parameters().len(), stand.state.len());
+    if stand.past.is_none() && stand.sensitivities.is_empty() {
+        return Ok(());
+    }
+    if stand.sensitivities.len() != expected * dim {
+        return Err(
+            InputError::Sensitivities { expected, found: stand.sensitivities.len() / dim.max(1) }.into()
+        );
+    }
+    if expected == 0 {
+        return Ok(());
+    }
+    for &value in &stand.sensitivities {
+        finite("a sensitivity of the checkpoint", value)?;
+    }
+    stepper.restart(stand.time, &stand.state, &stand.sensitivities, None)
+}
+
+/// The motion up to a checkpoint, with this ending.
+fn motion(stand: Checkpoint, ending: Option<Ending>) -> Reached {
+    let Checkpoint { outputs: mut trajectory, occurrences, statistics, output_sensitivities, .. } = stand;
     trajectory.finish(ending == Some(Ending::Completed), statistics);
-    Solution { trajectory, occurrences, ending, slides: Vec::new() }
+    (Solution { trajectory, occurrences, ending, slides: Vec::new() }, output_sensitivities)
 }
 
 /// What all legs share.
@@ -160,6 +199,7 @@ impl Plan<'_> {
             since.set(0);
             ControlFlow::Continue(())
         };
+        let matrices = &mut stand.output_sensitivities;
         let occurrences = &mut stand.occurrences;
         let mut occurred = |occurrence: &Occurrence| {
             occurrences.push(occurrence.clone());
@@ -178,8 +218,11 @@ impl Plan<'_> {
             }
             if end.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let ending = integration
-            .run_observed(remaining, Observed::new(output).occurrences(&mut occurred).steps(observed))?;
+        let mut observer = Observed::new(output).occurrences(&mut occurred).steps(observed);
+        let ending = integration.run_through(remaining, &mut observer, &mut |integration| {
+            matrices.extend(integration.engine.columns()?);
+            Ok(())
+        })?;
         match end {
             Some(End::Full) => {}
             Some(End::Exhausted) => {
@@ -192,6 +235,7 @@ impl Plan<'_> {
         let here = integration.time();
         while let Some(t) = next().filter(|&t| integration.is_before_front(t)) {
             integration.stand_at(t)?;
+            matrices.extend(integration.engine.columns()?);
             let _ = output(t, integration.state());
         }
         if next().is_none() {
@@ -199,6 +243,7 @@ impl Plan<'_> {
         }
         let ending = integration.settle(&mut occurred)?;
         if ending.is_some() || next() == Some(here) {
+            matrices.extend(integration.engine.columns()?);
             let _ = output(here, integration.state());
         }
         stand.steps_since_output = since.get();

@@ -14,6 +14,7 @@ use crate::dop853::setup::Dop853;
 use crate::error::{IntegrationError, Reason, SolveError};
 use crate::integration::checks::check_start;
 use crate::integration::limits::Limits;
+use crate::integration::method::IntegrationMethod;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::inequality::Inequality;
@@ -355,6 +356,29 @@ impl<F: VectorField> Differentiated<F> {
                 Ok(Differentiated::Cvode(Box::new(cvode)))
             }
         }
+    }
+}
+
+/// The method that options choose, with sensitivities.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Differentiating<'a> {
+    pub(crate) options: &'a Options,
+    pub(crate) sensitivities: &'a Sensitivities,
+}
+
+impl<F: VectorField> IntegrationMethod<F> for Differentiating<'_> {
+    type Stepper = Differentiated<F>;
+
+    fn begin(
+        &self,
+        field: F,
+        t0: f64,
+        y0: &[f64],
+        stop: Option<f64>,
+    ) -> Result<Differentiated<F>, SolveError> {
+        let mut options = self.options.clone();
+        options.stop_time = options.stop_time.or(stop.filter(|t| t.is_finite()));
+        Differentiated::new(field, t0, y0, &options, self.sensitivities)
     }
 }
 

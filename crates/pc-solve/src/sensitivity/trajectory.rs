@@ -1,9 +1,12 @@
 //! States and their derivatives at the output times.
 
+use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 
 use pc_expr::{Events, VectorField};
 
+use crate::checkpoint::checkpoint::Checkpoint;
+use crate::checkpoint::legs::{Reached, follow};
 use crate::cvode::forward::sensitivities::Sensitivities;
 use crate::error::SolveError;
 use crate::events::events::Occurrence;
@@ -11,7 +14,7 @@ use crate::integration::dense_output::DenseOutput;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::sides::Slide;
 use crate::integration::trajectory::Trajectory;
-use crate::sensitivity::explicit::Differentiated;
+use crate::sensitivity::explicit::{Differentiated, Differentiating};
 use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 
@@ -110,7 +113,8 @@ pub struct SensitivitySolution {
     pub trajectory: SensitivityTrajectory,
     /// The occurrences, in order.
     pub occurrences: Vec<Occurrence>,
-    /// Of each occurrence the [derivatives of its time](Integration::time_derivatives), one for each column.
+    /// Of each occurrence the [derivatives of its time](Integration::time_derivatives), one for each column; none are kept
+    /// with checkpoints.
     pub time_derivatives: Vec<Vec<f64>>,
     /// How it ended; none if it failed.
     pub ending: Option<Ending>,
@@ -166,6 +170,38 @@ pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
     match result {
         Ok(ending) => Ok(SensitivitySolution { ending: Some(ending), ..reached }),
         Err(error) => Err(Box::new(SolveFailure { reached, error })),
+    }
+}
+
+/// As [`solve_checkpointed`](crate::solve_checkpointed), with sensitivities, by any method: those of a checkpoint, and of
+/// the outputs before it, are in it. Derivatives of the times of events are not kept.
+///
+/// # Errors
+/// As there; [`InputError::Sensitivities`](crate::InputError::Sensitivities) if the checkpoint has another number of columns.
+pub fn solve_checkpointed_with_sensitivities<F: VectorField, E: Events>(
+    (options, sensitivities): (&Options, &Sensitivities),
+    parts: impl FnMut() -> (F, E),
+    from: Checkpoint,
+    times: &[f64],
+    every: NonZeroU64,
+    save: impl FnMut(&Checkpoint, bool),
+    step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+) -> Result<SensitivitySolution, Box<SolveFailure<SensitivitySolution>>> {
+    let method = Differentiating { options, sensitivities };
+    let with_matrices = |(motion, matrices): Reached| SensitivitySolution {
+        trajectory: SensitivityTrajectory {
+            motion: motion.trajectory,
+            columns: sensitivities.len(),
+            matrices,
+        },
+        occurrences: motion.occurrences,
+        time_derivatives: Vec::new(),
+        ending: motion.ending,
+        slides: motion.slides,
+    };
+    match follow(&method, parts, from, (times, every), save, step) {
+        Ok(reached) => Ok(with_matrices(reached)),
+        Err(failure) => Err(Box::new(failure.map(with_matrices))),
     }
 }
 

@@ -5,8 +5,8 @@ use std::ops::ControlFlow::{self, Break, Continue};
 use crate::boxed::from_fn;
 use pc_solve::{
     Checkpoint, CheckpointError, Code, Cvode, Ending, Event, Failure, FnEvents, InputError, Integration,
-    Method, NoEvents, Observed, Occurrence, Options, Reason, Solution, Solve, SolveError, SolveFailure,
-    VectorField, solve_checkpointed,
+    Method, NoEvents, Observed, Occurrence, Options, Reason, Sensitivities, Solution, Solve, SolveError,
+    SolveFailure, VectorField, solve_checkpointed, solve_checkpointed_with_sensitivities,
 };
 
 type Rates = fn(f64, &[f64], &mut [f64]);
@@ -435,5 +435,62 @@ fn nothing_happens_beyond_the_last_output() {
             solve(parts, Checkpoint::start(0.0, &[1.0]), &[1.0], &options, steps, |_, _| ()).unwrap();
         assert_eq!(motion.trajectory.times(), [1.0], "{steps}");
         assert_eq!((motion.ending, motion.occurrences.len()), (Some(Ending::Completed), 0), "{steps}");
+    }
+}
+
+/// The columns by the start of a bouncing ball: those of an uninterrupted motion, at the outputs and on the way, to the last
+/// bit, and those of a motion without checkpoints within its tolerance.
+#[test]
+fn sensitivities_go_on_from_checkpoints() {
+    let wanted = Sensitivities::new().by_starts([0, 1]);
+    let times: Vec<f64> = (1..=8).map(|k| 0.5 * f64::from(k)).collect();
+    for method in [Method::Adams, Method::Bdf, Method::Dop853] {
+        let options = Options::new(method);
+        let parts = || (field(BALL.0, 2), (BALL.1)());
+        let run = |from: Checkpoint, save: &mut dyn FnMut(&Checkpoint, bool)| {
+            solve_checkpointed_with_sensitivities(
+                (&options, &wanted),
+                parts,
+                from,
+                &times,
+                every(4),
+                save,
+                GO_ON,
+            )
+            .unwrap()
+        };
+        let mut kept = Vec::new();
+        let whole = run(Checkpoint::start(0.0, &[1.0, 0.3]), &mut |checkpoint, _| {
+            kept.push(checkpoint.to_bytes(""));
+        });
+        for bytes in kept.iter().step_by(kept.len() / 8 + 1) {
+            let from = Checkpoint::from_bytes(bytes).unwrap().0;
+            assert_eq!(run(from, &mut |_, _| ()), whole, "{method}");
+        }
+        // On the way up from a bounce at t₁ with w = 0.9 √(v² + 2 h): y = w s − s²/2 with s = t − t₁.
+        let [h, v] = [1.0, 0.3];
+        let speed = f64::sqrt(v * v + 2.0 * h);
+        let s = times[4] - (v + speed);
+        let by_h = 0.9 / speed * s - (0.9 * speed - s) / speed;
+        let by_v = 0.9 * v / speed * s - (0.9 * speed - s) * (1.0 + v / speed);
+        let trajectory = &whole.trajectory;
+        let found = [trajectory.column(4, 0)[0], trajectory.column(4, 1)[0]];
+        assert!((found[0] - by_h).abs() < 1e-6 && (found[1] - by_v).abs() < 1e-6, "{found:?} {by_h} {by_v}");
+        let begun = Checkpoint::from_bytes(&kept[kept.len() / 2]).unwrap().0;
+        let fewer = Sensitivities::new().by_start(0);
+        let refused = solve_checkpointed_with_sensitivities(
+            (&options, &fewer),
+            parts,
+            begun,
+            &times,
+            every(4),
+            |_, _| (),
+            GO_ON,
+        );
+        let error = refused.unwrap_err().error;
+        assert!(
+            matches!(error, SolveError::Input(InputError::Sensitivities { expected: 1, found: 2 })),
+            "{error}"
+        );
     }
 }
