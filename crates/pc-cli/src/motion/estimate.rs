@@ -88,7 +88,9 @@ impl Estimate {
 fn why(estimate: &ErrorEstimate, flow: &Flow) -> String {
     let t = short(estimate.beside().statistics().current_time, 10);
     match (estimate.failure(), estimate.ending()) {
-        (Some(error), _) if error.ended().is_some() => format!("its limit ended the companion at {t}"),
+        (Some(error), _) if error.ended().is_some() => {
+            format!("the limit of time ended the companion at {t}")
+        }
         (Some(error), _) => format!("the companion failed at {t}: {error}"),
         (None, Some(Ending::Event { event })) => {
             let (name, t) = (flow.events.events()[event].name(), estimate.beside().times().last());

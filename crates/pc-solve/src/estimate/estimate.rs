@@ -108,13 +108,11 @@ impl ErrorEstimate {
     /// include what events change.
     pub fn beyond_events(&self, motion: &Solution) -> Vec<usize> {
         let direction = motion.trajectory.statistics().first_step.signum();
-        let before = |solution: &Solution, t: f64| {
-            let times = solution.occurrences.iter().map(|occurrence| occurrence.time);
-            times.filter(|time| direction * (t - time) >= 0.0).count()
+        let before = |solution: &Solution, i: usize| {
+            let t = solution.trajectory.times()[i];
+            solution.occurrences.partition_point(|occurrence| direction * (t - occurrence.time) >= 0.0)
         };
-        let times = &motion.trajectory.times()[..self.len];
-        let differs = |&i: &usize| before(motion, times[i]) != before(&self.beside, times[i]);
-        (0..self.len).filter(differs).collect()
+        (0..self.len).filter(|&i| before(motion, i) != before(&self.beside, i)).collect()
     }
 
     /// How the companion ended; none if it failed.

@@ -92,6 +92,7 @@ fn the_state_at_a_terminal_event_is_compared() {
     assert_eq!((motion.trajectory.len(), estimate.len()), (2, 2));
     assert_eq!(estimate.ending(), Some(Ending::Event { event: 0 }));
     assert_ne!(motion.trajectory.times()[1], estimate.beside().times()[1]);
+    assert!(estimate.beyond_events(&motion).is_empty());
     // v = −1 at π/2
     let (error, estimated) = ((motion.trajectory.state(1)[1] + 1.0).abs(), estimate.errors(&motion, 1)[1]);
     assert!((estimated - error).abs() < 1e-3 * error, "{error:e} {estimated:e}");
