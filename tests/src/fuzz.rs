@@ -13,6 +13,7 @@
 //! are `[definitions]` there: Lagrange's equations, so that an error in what the twin has not is seen. A finding is shrunk to a
 //! short text that still has it. Bodies on joints have a generator of their own, with bodies that are written out as twins.
 
+pub mod breaks;
 pub mod campaign;
 pub mod comparison;
 mod determined;

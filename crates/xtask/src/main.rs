@@ -44,7 +44,7 @@ usage: cargo xtask <command>
                    --quick leaves out the longest tests and what follows the tests, --since tries only what can behave otherwise than at a revision of git
   stage TITLE      one of the stages that `test` names, by itself
   bench [NAME…]    run the benchmarks, all of them or those named
-  fuzz models|trees [--count N] [--seed S] [--model K]
+  fuzz models|trees|breaks [--count N] [--seed S] [--model K]
                    run random models and compare them with independent computations; --model shows one of them
   attack [--minutes N | --count N] [--seed S]
                    run the program on hostile models, files and checkpoints, and kill it; 10 minutes unless told

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::Duration;
 
+use super::breaks;
 use super::examination::{self, Examined, Thoroughness};
 use super::program::{Program, Session};
 use super::trees;
@@ -17,6 +18,8 @@ pub enum Subject {
     Models,
     /// Bodies on joints.
     Trees,
+    /// Models of several pieces.
+    Breaks,
 }
 
 impl Subject {
@@ -25,6 +28,7 @@ impl Subject {
         match self {
             Subject::Models => examination::examine(seed, index, thoroughness),
             Subject::Trees => trees::examine(seed, index, thoroughness),
+            Subject::Breaks => breaks::examine(seed, index, thoroughness.limit),
         }
     }
 }

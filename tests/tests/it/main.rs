@@ -32,4 +32,5 @@ mod references;
 mod rolling_stability;
 mod schema;
 mod sensitivities;
+mod tables_at_surfaces;
 mod taylor_references;

@@ -11,6 +11,8 @@ use pc_tests::fuzz::report::Report;
 const MODELS: u64 = 500;
 /// Each joint a dozen times.
 const TREES: u64 = 40;
+/// Each kind of piece some times.
+const BREAKS: u64 = 40;
 /// Commands of the program on a few of them.
 const PROGRAM_EVERY: u64 = 20;
 /// Every so many are run in other units.
@@ -25,7 +27,7 @@ fn random_models_agree_with_independent_computations() {
     if program.is_none() {
         println!("left out: commands of the program, which is not built");
     }
-    for (subject, count) in [(Subject::Models, MODELS), (Subject::Trees, TREES)] {
+    for (subject, count) in [(Subject::Models, MODELS), (Subject::Trees, TREES), (Subject::Breaks, BREAKS)] {
         let campaign = Campaign {
             subject,
             seed: 1,

@@ -45,6 +45,8 @@ pub struct RootSeparation {
     program: Arc<Program>,
     /// The components that the outputs contain.
     used: Vec<bool>,
+    /// The outputs whose roots do not matter.
+    left_out: Vec<bool>,
     registers: Vec<Jet>,
     local: Vec<f64>,
     open: Vec<(f64, f64)>,
@@ -71,7 +73,17 @@ impl RootSeparation {
         let open = Vec::with_capacity(64);
         let signs = vec![0; program.outputs_len()];
         let (local, signs_before) = (Vec::with_capacity(64), signs.clone());
-        RootSeparation { program, used, registers, local, open, at_middle, signs, signs_before }
+        let left_out = vec![false; program.outputs_len()];
+        RootSeparation { program, used, left_out, registers, local, open, at_middle, signs, signs_before }
+    }
+
+    /// Leaves out these outputs, and no others, from now on: their roots are not separated.
+    ///
+    /// # Panics
+    /// If there is no output of such a number.
+    pub fn leave_out(&mut self, outputs: impl IntoIterator<Item = usize>) {
+        self.left_out.fill(false);
+        outputs.into_iter().for_each(|output| self.left_out[output] = true);
     }
 
     /// The program.
@@ -171,6 +183,9 @@ impl RootSeparation {
         let (mut clear, mut single) = (true, true);
         self.signs.fill(0);
         for (k, (output, &at)) in self.program.outputs().iter().zip(&self.at_middle).enumerate() {
+            if self.left_out[k] {
+                continue;
+            }
             let jet = self.registers[output.index()];
             let excludes = |interval: Interval| interval.lo > 0.0 || interval.hi < 0.0;
             let values =

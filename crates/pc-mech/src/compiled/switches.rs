@@ -198,14 +198,20 @@ impl Slopes {
     ) -> Result<Slopes, MechError> {
         let mut symbols = vec![system.time];
         symbols.extend(&system.state);
-        if by_parameters {
-            symbols.extend(system.parameter_symbols());
-        }
+        symbols.extend(system.parameter_symbols());
+        // Tables make parameters functions of time.
+        let is_needed = |&column: &usize| {
+            by_parameters || column <= system.state.len() || system.varying.contains(&symbols[column])
+        };
+        let columns: Vec<usize> = (0..symbols.len()).filter(is_needed).collect();
+        let symbols: Vec<Expr<'g>> = columns.iter().map(|&column| symbols[column]).collect();
         let rows = system.graph.jacobian(functions, &symbols);
-        let entries = rows
-            .iter()
-            .enumerate()
-            .flat_map(|(surface, row)| row.iter().map(move |&(column, entry)| ((surface, column), entry)));
+        let entries = rows.iter().enumerate().flat_map(|(surface, row)| {
+            row.iter().map({
+                let columns = &columns;
+                move |&(column, entry)| ((surface, columns[column]), entry)
+            })
+        });
         let (places, entries): (Vec<_>, Vec<Expr<'g>>) = entries.unzip();
         let program = Program::new(system.graph, &system.inputs(&[]), &entries)?;
         let values = vec![0.0; places.len()];
@@ -548,13 +554,10 @@ impl Switching for Switches {
         let mut by_time = 0.0;
         for (column, slope) in self.slopes.of(surface, (t, y, &self.motion.parameters)) {
             match column.checked_sub(1) {
-                None => by_time = slope,
+                None => by_time += slope,
                 Some(i) if i < by_state.len() => by_state[i] = slope,
-                Some(_) => {}
+                Some(i) => by_time += slope * self.motion.signals.rate(i - by_state.len(), t),
             }
-        }
-        if self.follows_tables {
-            by_time = self.along_time(surface, t, y);
         }
         by_time
     }
@@ -575,18 +578,5 @@ impl Switching for Switches {
 
     fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
         (!self.follows_tables).then(|| (self.functions.program(), &self.motion.parameters[..]))
-    }
-}
-
-impl Switches {
-    /// dg/dt at fixed y, with what tables give, as a difference quotient.
-    fn along_time(&mut self, surface: usize, t: f64, y: &[f64]) -> f64 {
-        let step = f64::EPSILON.cbrt() * t.abs().max(1.0);
-        let mut values = vec![f64::NAN; self.names.len()];
-        let [ahead, behind] = [t + step, t - step].map(|t| {
-            self.functions(t, y, &mut values);
-            values[surface]
-        });
-        (ahead - behind) / (2.0 * step)
     }
 }

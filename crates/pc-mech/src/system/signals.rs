@@ -150,6 +150,23 @@ impl Table {
         let curve = (start + end - 2.0 * rise) / h;
         Some(u + x * (start + x * ((rise - start) / h - curve + x * curve / h)))
     }
+
+    /// u̇ at t on the piece that goes on from `from`; zero outside the times.
+    fn rate(&self, t: f64, from: f64) -> f64 {
+        let after = self.times.partition_point(|&time| time <= from);
+        let Some(i) = after.checked_sub(1).filter(|_| after < self.times.len()) else { return 0.0 };
+        let (h, x) = (self.times[after] - self.times[i], t - self.times[i]);
+        let rise = (self.values[after] - self.values[i]) / h;
+        match self.interpolation {
+            Interpolation::Hold => 0.0,
+            Interpolation::Linear => rise,
+            Interpolation::Cubic => {
+                let (start, end) = (self.slopes[i], self.slopes[after]);
+                let curve = (start + end - 2.0 * rise) / h;
+                start + x * (2.0 * ((rise - start) / h - curve) + 3.0 * x * curve / h)
+            }
+        }
+    }
 }
 
 /// The slopes of the spline (not-a-knot): of a parabola through three points, of a line through two.
@@ -244,14 +261,29 @@ impl Signals {
             true => self.breaks.partition_point(|&time| time <= t),
             false => self.breaks.partition_point(|&time| time < t),
         };
-        let from = next.checked_sub(1).map_or(f64::NEG_INFINITY, |i| self.breaks[i]);
-        let between = (from, self.breaks.get(next).copied().unwrap_or(f64::INFINITY));
+        let between @ (from, _) = self.before(next);
         let before = self.between.replace(between);
         let jumps = |(before, _): (f64, f64)| {
             let steps = self.list.iter().filter(|signal| signal.table.interpolation == Interpolation::Hold);
             steps.map(|signal| &signal.table).any(|table| table.at(before) != table.at(from))
         };
         before.is_some_and(jumps)
+    }
+
+    /// u̇ of the input at this place among the parameters, at a break that of the side that was
+    /// [entered](Signals::enter); zero where no table gives it.
+    pub(crate) fn rate(&self, place: usize, t: f64) -> f64 {
+        let entered = self.between.filter(|&(from, to)| (from..=to).contains(&t));
+        let (from, _) =
+            entered.unwrap_or_else(|| self.before(self.breaks.partition_point(|&time| time <= t)));
+        let table = self.list.iter().find(|signal| signal.place == place).map(|signal| &signal.table);
+        table.map_or(0.0, |table| table.rate(t, from))
+    }
+
+    /// The interval that ends with the break of this number.
+    fn before(&self, next: usize) -> (f64, f64) {
+        let from = next.checked_sub(1).map_or(f64::NEG_INFINITY, |i| self.breaks[i]);
+        (from, self.breaks.get(next).copied().unwrap_or(f64::INFINITY))
     }
 
     /// Writes the values at t among the parameters; at a jump those of the side that was [entered](Signals::enter), if

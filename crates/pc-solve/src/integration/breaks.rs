@@ -8,6 +8,11 @@ fn are_close(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDINGS * a.abs().max(b.abs())
 }
 
+/// The break at t, up to rounding.
+pub(crate) fn break_at(breaks: &[f64], t: f64) -> Option<f64> {
+    breaks.iter().copied().find(|&time| are_close(time, t))
+}
+
 /// The first break strictly between t and the end, in the direction of the end; `breaks` ascend.
 fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
     let next = if end >= t {

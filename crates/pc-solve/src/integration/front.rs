@@ -20,6 +20,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 return Ok(());
             }
             self.begin_on_sides(1.0_f64.copysign(towards - self.front.t))?;
+            self.leave_what_jumps(towards)?;
             self.check_deadline()?;
             self.engine.step(towards)?;
             let to = self.engine.end_time();
@@ -128,13 +129,18 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         let needs_no_states = self.events.events().is_empty() && self.held.need_no_states();
         let mut separated = own_separated && (surfaces.is_some() || self.held.len() == 0);
         let of_surfaces = surfaces.as_ref().map(|(program, parameters)| (program, &parameters[..]));
-        let programs = [(own, &mut self.separation), (of_surfaces, &mut self.held.separation)];
-        for (program, separation) in programs {
+        // Along these g is nothing but rounding.
+        let sides = self.held.sides.iter().enumerate();
+        let kept: Vec<usize> = sides.filter(|(_, side)| **side == 0.0).map(|(surface, _)| surface).collect();
+        let programs =
+            [(own, &mut self.separation, &[][..]), (of_surfaces, &mut self.held.separation, &kept[..])];
+        for (program, separation, left_out) in programs {
             let Some((program, parameters)) = program else { continue };
             let separation = match separation {
                 Some(known) if Arc::ptr_eq(known.program(), program) => known,
                 other => other.insert(RootSeparation::new(Arc::clone(program))),
             };
+            separation.leave_out(left_out.iter().copied());
             let before = times.len();
             let motion = match needs_no_states {
                 true => PolynomialMotion { start: from, coefficients: &self.front_state },

@@ -92,14 +92,18 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.stand_at(t);
         let mut matrix = self.engine.columns()?;
         let before = if matrix.is_empty() { Vec::new() } else { self.rates_at(t, &state)? };
-        let slopes = self.slopes_of(due, t, &state, &matrix)?;
+        // A surface lets go where f beside it is f along it: nothing jumps. The time of a break does not move.
+        let crossed = due.iter().copied();
+        let crossed = crossed.filter(|&surface| self.held.sides[surface] != 0.0 && !self.jumps(surface));
+        let crossed: Vec<usize> = crossed.collect();
+        let slopes = self.slopes_of(&crossed, t, &state, &matrix)?;
         self.pass_surfaces(due)?;
-        if !matrix.is_empty() {
+        if !matrix.is_empty() && !crossed.is_empty() {
             let after = self.rates_at(t, &state)?;
             if jumps(&before, &after) {
                 let step: Vec<f64> =
                     before.iter().zip(&after).map(|(before, after)| before - after).collect();
-                let shifts = self.common_shifts(due, t, &before, &slopes)?;
+                let shifts = self.common_shifts(&crossed, t, &before, &slopes)?;
                 for (column, shift) in matrix.chunks_exact_mut(state.len()).zip(shifts) {
                     column.iter_mut().zip(&step).for_each(|(s, step)| *s += step * shift);
                 }

@@ -11,6 +11,7 @@ use pc_expr::{Events, Failure, RootSeparation, Sliding, SlidingError, Switching,
 use crate::error::{Reason, SolveError};
 #[cfg(feature = "cvode")]
 use crate::events::root_finding::Sides;
+use crate::integration::breaks::break_at;
 use crate::integration::integration::Integration;
 #[cfg(feature = "cvode")]
 use crate::integration::integration::directions;
@@ -392,8 +393,12 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
         for &surface in due.iter().filter(|&&surface| before[surface] != 0.0) {
             let side = before[surface];
-            open.push((surface, [-side, 0.0, side]));
             crosses = true;
+            if self.jumps(surface) {
+                sides[surface] = -side;
+            } else {
+                open.push((surface, [-side, 0.0, side]));
+            }
         }
         if crosses {
             // f jumps, and may lead away from other surfaces.
@@ -412,6 +417,49 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             before,
             after: self.held.sides.clone(),
         });
+        Ok(())
+    }
+
+    /// Whether the function of a surface that is reached jumps through zero, as it does at a break of a table.
+    pub(crate) fn jumps(&self, surface: usize) -> bool {
+        let noise = self.noise.get(self.events.events().len() + surface);
+        noise.is_some_and(|noise| *noise == 0.0)
+    }
+
+    /// Decides anew at a break of a table while the motion slides. The function of a surface may jump away from zero there:
+    /// the motion goes on beside this surface. Along others the rates jump, as those of the table do.
+    pub(crate) fn leave_what_jumps(&mut self, towards: f64) -> Result<(), SolveError> {
+        if !self.held.sides.contains(&0.0) {
+            return Ok(());
+        }
+        let (y, least, span) = (self.front_state.clone(), self.engine.least_size(), self.span_of_interest());
+        let direction = 1.0_f64.copysign(towards - self.front.t);
+        let before = self.held.sides.clone();
+        let field = self.engine.field_mut();
+        let Some(t) = break_at(field.breaks(), self.front.t) else { return Ok(()) };
+        let Some(switching) = field.switching() else { return Ok(()) };
+        let mut place = Place { field: switching, t, y: &y, direction, least, span };
+        let (ahead, rounding) = place.functions(&before);
+        field.enter(t, towards);
+        let Some(switching) = field.switching() else { return Ok(()) };
+        let mut place = Place { field: switching, t, y: &y, direction, least, span };
+        let (behind, _) = place.functions(&before);
+        let (mut sides, mut open) = (before.clone(), Open::new());
+        for surface in (0..sides.len()).filter(|&surface| before[surface] == 0.0) {
+            if (behind[surface] - ahead[surface]).abs() > rounding[surface] {
+                sides[surface] = 1.0_f64.copysign(behind[surface]);
+            } else {
+                open.push((surface, [0.0, 1.0, -1.0]));
+            }
+        }
+        let decided = place.decide(&sides, &open);
+        self.take_sides(decided, &open)?;
+        let (time, after) = (self.front.t, self.held.sides.clone());
+        self.note_sides(Passage { surfaces: Vec::new(), time, state: y.clone(), before, after });
+        self.engine.stand_at(time);
+        let matrix = self.engine.columns()?;
+        self.engine.enter_piece(time, &y, &matrix, self.direction)?;
+        self.restarted = true;
         Ok(())
     }
 
@@ -504,7 +552,10 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             let is_open = open.iter().any(|&(other, _)| other == surface);
             // 1 − σ² is positive where the motion slides.
             let side = if side == 0.0 { 1.0 } else { side };
-            let near = is_open || value * side <= 0.0 || self.due.contains(&(first + surface));
+            // What has jumped away from zero is on its side at once.
+            let has_jumped = value * side > NEAR;
+            let near =
+                !has_jumped && (is_open || value * side <= 0.0 || self.due.contains(&(first + surface)));
             let noise = if near { 2.0 * value.abs().min(NEAR) } else { 0.0 };
             self.sides.set(first + surface, side, noise.max(f64::MIN_POSITIVE * f64::from(near)));
         }

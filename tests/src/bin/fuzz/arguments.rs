@@ -6,7 +6,7 @@ use std::time::Duration;
 use pc_tests::fuzz::campaign::{Campaign, Subject};
 use pc_tests::fuzz::program::Program;
 
-pub(crate) const USAGE: &str = "usage: fuzz models|trees [--count N] [--seed S] [--first K] [--model K] [--threads T] [--emitted-every N] \
+pub(crate) const USAGE: &str = "usage: fuzz models|trees|breaks [--count N] [--seed S] [--first K] [--model K] [--threads T] [--emitted-every N] \
      [--program-every N] [--units-every N] [--save DIR]
 Every 50th model is emitted and compiled; every 5th is tried by commands of the program `pc`, and run in other units. \
      Other numbers may be given; 0 is for none";
@@ -26,7 +26,8 @@ impl Arguments {
         let subject = match words.next().as_deref() {
             Some("models") => Subject::Models,
             Some("trees") => Subject::Trees,
-            _ => return Err("what is varied are `models` or `trees`".to_owned()),
+            Some("breaks") => Subject::Breaks,
+            _ => return Err("what is varied are `models`, `trees` or `breaks`".to_owned()),
         };
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let limit = Duration::from_secs(60);

@@ -1,4 +1,4 @@
-//! The differential tester: `cargo xtask fuzz models|trees [--count N] [--seed S] [--model K] [--threads T]
+//! The differential tester: `cargo xtask fuzz models|trees|breaks [--count N] [--seed S] [--model K] [--threads T]
 //! [--program-every N] [--save DIR]`.
 //!
 //! It runs random models over the whole text format and compares what the product makes of them with independent
@@ -13,6 +13,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use arguments::Arguments;
+use pc_tests::fuzz::breaks;
 use pc_tests::fuzz::campaign::{Campaign, Subject};
 use pc_tests::fuzz::examination::{Examined, note_panics};
 use pc_tests::fuzz::generator;
@@ -85,11 +86,14 @@ fn keep(arguments: &Arguments, index: u64, examined: &Examined) {
 
 /// Of a tree nothing is shrunk: it has few bodies.
 fn show_shrunk(campaign: &Campaign, index: u64, kind: &str) {
-    if campaign.subject == Subject::Trees {
-        return;
-    }
-    let specimen = generator::specimen(campaign.seed, index);
-    let (_, examined) = shrink(&specimen, kind, &campaign.thoroughness(index));
+    let examined = match campaign.subject {
+        Subject::Trees => return,
+        Subject::Breaks => breaks::shrink(campaign.seed, index, kind, campaign.limit),
+        Subject::Models => {
+            let specimen = generator::specimen(campaign.seed, index);
+            shrink(&specimen, kind, &campaign.thoroughness(index)).1
+        }
+    };
     println!("\n# model {index} of seed {}, shrunk: {kind}", campaign.seed);
     show(&examined);
 }
