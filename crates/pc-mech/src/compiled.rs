@@ -8,7 +8,7 @@
 //! momenta under constraints, `forced_motion` that under forces computed outside. `running_error` bounds
 //! rounding, `point` holds the arguments of evaluations, `chart` detects where quasi-velocities and
 //! velocities no longer determine each other, `mass_factors` solves with M alone, `jumps` are where rates jump, `switches` hold
-//! rates of several pieces on one side of these, and `failure` says why
+//! rates of several pieces on one side of these, with the `surface_slopes` between them, and `failure` says why
 //! rates are undefined.
 
 pub(crate) mod chart;
@@ -30,5 +30,6 @@ pub(crate) mod mass_factors;
 pub(crate) mod motion;
 pub(crate) mod on_constraints;
 pub(crate) mod options;
+pub(crate) mod surface_slopes;
 pub(crate) mod switches;
 pub(crate) mod vector_field;

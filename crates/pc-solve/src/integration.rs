@@ -4,8 +4,8 @@
 //! [`Statistics`](statistics::Statistics). Read `stepper` first, the interface of a method, and
 //! `method`, which starts one; then `integration`, which is built on them: `front` makes a step and
 //! searches it for events, `run` goes from event to event, `step` gives single steps and their
-//! polynomials, `occur` applies events, `saltation` their effect on derivatives, `sides` how the
-//! motion of a field of several pieces goes on at a surface between two; an `observer` is told of
+//! polynomials, `occur` applies events, `saltation` their effect on derivatives, `held_sides` which
+//! pieces of a field it is on, `sides` how it goes on at a surface between two; an `observer` is told of
 //! outputs, steps and events. `limits` bounds an integration, `pace` ends one that hardly gets on,
 //! `checks` validates its input;
 //! `trajectory` and `dense_output` hold motions. `fn_field` turns closures into vector fields,
@@ -16,6 +16,7 @@ pub(crate) mod checks;
 pub(crate) mod dense_output;
 pub(crate) mod fn_field;
 pub(crate) mod front;
+pub(crate) mod held_sides;
 pub(crate) mod integration;
 pub(crate) mod limits;
 pub(crate) mod method;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::ode::vector_field::Failure;
+use crate::ode::failure::Failure;
 use crate::program::program::Program;
 
 /// The direction in which a function passes through zero along the integration: against time where this goes backwards.

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use crate::kernel::evaluator::{Backend, Evaluator};
+use crate::ode::failure::Failure;
 use crate::ode::lane_field::{LaneField, Watched};
 use crate::ode::varied::VariedSeries;
-use crate::ode::vector_field::{Failure, VectorField};
+use crate::ode::vector_field::VectorField;
 use crate::program::program::Program;
 use crate::taylor::coefficients::TaylorSeries;
 use crate::time_profile::profile::TimeDependence;

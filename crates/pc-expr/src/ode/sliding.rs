@@ -1,7 +1,7 @@
 //! Motions along surfaces to which a vector field leads back from both sides.
 
+use crate::ode::failure::Failure;
 use crate::ode::switching::Switching;
-use crate::ode::vector_field::Failure;
 
 /// Up to this number of surfaces f is evaluated on each combination of their sides.
 const MOST_COMBINED: usize = 3;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::ode::vector_field::Failure;
+use crate::ode::failure::Failure;
 use crate::program::program::Program;
 use crate::time_profile::profile::TimeDependence;
 

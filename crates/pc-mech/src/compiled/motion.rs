@@ -1,7 +1,9 @@
 //! Compiled equations of motion: a vector field with its derivatives, and the quantities observed along it.
 
 use pc_algebra::Matrix;
-use pc_expr::{Cost, Digest, Evaluator, Expr, Failure, Pattern, Program, RateJump, VectorField};
+use pc_expr::{
+    Cost, Digest, Evaluator, Expr, Failure, Pattern, Program, RateJump, VariedSeries, VectorField,
+};
 
 use crate::compiled::chart::Chart;
 use crate::compiled::elimination::numeric::{OF_A_LOOP, Staged};
@@ -15,7 +17,7 @@ use crate::compiled::point::Point;
 use crate::compiled::projection::constraint_manifold::Surface;
 use crate::compiled::projection::integrals::KeptIntegrals;
 use crate::compiled::projection::unit_quaternions::UnitQuaternions;
-use crate::compiled::switches::Switches;
+use crate::compiled::surface_slopes::SurfaceSlopes;
 use crate::error::MechError;
 use crate::system::signals::Signals;
 use crate::system::system::System;
@@ -100,6 +102,34 @@ pub(super) struct Slopes {
     pub(super) by_symbol: Vec<f64>,
     pub(super) of_unknowns: Vec<f64>,
     pub(super) columns: Vec<f64>,
+}
+
+/// The surfaces of a motion, and the motion on given sides of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Switches {
+    /// The texts of the functions.
+    pub(super) names: Vec<String>,
+    /// f with the sides as parameters after those of the system.
+    pub(super) motion: Box<Motion>,
+    /// g from (t, y, p, sides).
+    pub(super) functions: Evaluator,
+    pub(super) slopes: SurfaceSlopes,
+    /// Whether g contains inputs that tables give.
+    pub(super) follows_tables: bool,
+    /// The motion between sides, for observables that change with them.
+    pub(super) observing: Option<Box<Motion>>,
+    /// The sides on which f is held, if it is.
+    pub(super) sides: Option<Vec<f64>>,
+    /// The series of the motion along these surfaces, made on first use.
+    pub(super) along: Option<Along>,
+}
+
+/// The motion along surfaces.
+#[derive(Clone, Debug)]
+pub(super) struct Along {
+    pub(super) surfaces: Vec<usize>,
+    pub(super) program: Program,
+    pub(super) series: VariedSeries,
 }
 
 impl Motion {

@@ -9,8 +9,9 @@ use pc_expr::{
 
 use crate::compiled::compile::LONGEST_ELIMINATION;
 use crate::compiled::first_order::FirstOrder;
-use crate::compiled::motion::{Form, Motion};
+use crate::compiled::motion::{Along, Form, Motion, Switches};
 use crate::compiled::options::CompileOptions;
+use crate::compiled::surface_slopes::SurfaceSlopes;
 use crate::error::MechError;
 use crate::system::signals::Signals;
 
@@ -20,44 +21,6 @@ const MOST: usize = 256;
 const ADDS_UP: f64 = 1e-9;
 /// A surface that is reached within this part of the time is reached.
 const AT_ONCE: f64 = 1e-9;
-
-/// The surfaces of a motion, and the motion on given sides of them.
-#[derive(Clone, Debug)]
-pub(crate) struct Switches {
-    /// The texts of the functions.
-    names: Vec<String>,
-    /// f with the sides as parameters after those of the system.
-    pub(super) motion: Box<Motion>,
-    /// g from (t, y, p, sides).
-    functions: Evaluator,
-    slopes: Slopes,
-    /// Whether g contains inputs that tables give.
-    follows_tables: bool,
-    /// The motion between sides, for observables that change with them.
-    observing: Option<Box<Motion>>,
-    /// The sides on which f is held, if it is.
-    sides: Option<Vec<f64>>,
-    /// The series of the motion along these surfaces, made on first use.
-    along: Option<Along>,
-}
-
-/// The motion along surfaces.
-#[derive(Clone, Debug)]
-struct Along {
-    surfaces: Vec<usize>,
-    program: Program,
-    series: VariedSeries,
-}
-
-/// The derivatives of the functions by time, state and parameters.
-#[derive(Clone, Debug)]
-struct Slopes {
-    entries: Evaluator,
-    /// Surface and column of each entry: time, state, parameters.
-    places: Vec<(usize, usize)>,
-    values: Vec<f64>,
-    by_parameters: bool,
-}
 
 impl<'g> FirstOrder<'g> {
     /// The motion held on its pieces; none if it has a single one, or if a surface contains unknowns that are solved for
@@ -113,7 +76,7 @@ impl<'g> FirstOrder<'g> {
             names,
             observing: observing.map(Box::new),
             motion: Box::new(motion),
-            slopes: Slopes::new(&system, &functions, options.parameter_jacobian)?,
+            slopes: SurfaceSlopes::new(&system, &functions, options.parameter_jacobian)?,
             follows_tables: contains(self.graph, &functions, &self.varying),
             functions: Evaluator::new(
                 Program::new(self.graph, &system.inputs(&[]), &functions)?,
@@ -188,46 +151,6 @@ impl<'g> FirstOrder<'g> {
 /// Whether one of the expressions contains one of the symbols.
 fn contains<'g>(graph: &'g Graph, expressions: &[Expr<'g>], symbols: &[Expr<'g>]) -> bool {
     graph.symbols_of(expressions).iter().any(|symbol| symbols.contains(symbol))
-}
-
-impl Slopes {
-    fn new<'g>(
-        system: &FirstOrder<'g>,
-        functions: &[Expr<'g>],
-        by_parameters: bool,
-    ) -> Result<Slopes, MechError> {
-        let mut symbols = vec![system.time];
-        symbols.extend(&system.state);
-        symbols.extend(system.parameter_symbols());
-        // Tables make parameters functions of time.
-        let is_needed = |&column: &usize| {
-            by_parameters || column <= system.state.len() || system.varying.contains(&symbols[column])
-        };
-        let columns: Vec<usize> = (0..symbols.len()).filter(is_needed).collect();
-        let symbols: Vec<Expr<'g>> = columns.iter().map(|&column| symbols[column]).collect();
-        let rows = system.graph.jacobian(functions, &symbols);
-        let entries = rows.iter().enumerate().flat_map(|(surface, row)| {
-            row.iter().map({
-                let columns = &columns;
-                move |&(column, entry)| ((surface, columns[column]), entry)
-            })
-        });
-        let (places, entries): (Vec<_>, Vec<Expr<'g>>) = entries.unzip();
-        let program = Program::new(system.graph, &system.inputs(&[]), &entries)?;
-        let values = vec![0.0; places.len()];
-        Ok(Slopes { entries: Evaluator::new(program, Backend::Interpreter), places, values, by_parameters })
-    }
-
-    /// The slopes of one surface with their columns.
-    fn of(
-        &mut self,
-        surface: usize,
-        (t, y, p): (f64, &[f64], &[f64]),
-    ) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.entries.eval(t, y, p, &mut self.values);
-        let all = self.places.iter().zip(&self.values);
-        all.filter(move |(place, _)| place.0 == surface).map(|(place, &value)| (place.1, value))
-    }
 }
 
 impl Switches {

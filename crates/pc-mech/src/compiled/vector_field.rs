@@ -7,9 +7,8 @@ use pc_expr::{
 
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
-use crate::compiled::motion::{Form, Motion};
+use crate::compiled::motion::{Form, Motion, Switches};
 use crate::compiled::point::Point;
-use crate::compiled::switches::Switches;
 use crate::error::{EvaluationError, FrameError, MechError};
 
 /// The square of a long step takes this often to be a rounding.

@@ -7,8 +7,8 @@ use pc_expr::{Events, Failure, PolynomialMotion, RootSeparation, VectorField};
 use crate::error::{NonFinite, Reason, SolveError};
 use crate::events::root_finding::Passage;
 use crate::events::samples::Look;
+use crate::integration::held_sides::write_functions;
 use crate::integration::integration::Integration;
-use crate::integration::sides::write_functions;
 use crate::integration::stepper::Stepper;
 
 impl<S: Stepper, E: Events> Integration<S, E> {

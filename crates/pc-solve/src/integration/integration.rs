@@ -10,8 +10,8 @@ use crate::events::events::{Accumulation, History, NoEvents};
 use crate::events::root_finding::Sides;
 use crate::events::samples::{Room, Sample};
 use crate::integration::checks::{check_inequalities, check_length, finite};
+use crate::integration::held_sides::HeldSides;
 use crate::integration::pace::Pace;
-use crate::integration::sides::HeldSides;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
 
@@ -95,9 +95,8 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) restarted: bool,
     /// Whether the motion has been restarted, by a reset for example.
     pub(crate) jumped: bool,
-    /// How it gets on, and whether its mark is a time that was reached.
+    /// How it gets on.
     pub(crate) pace: Pace,
-    pub(crate) is_paced: bool,
 }
 
 /// How a [`run`](Integration::run) ended.
@@ -156,7 +155,6 @@ impl<S: Stepper> Integration<S> {
             restarted: false,
             jumped: false,
             pace: Pace::default(),
-            is_paced: false,
         }
     }
 
@@ -211,7 +209,6 @@ impl<S: Stepper> Integration<S> {
             restarted: self.restarted,
             jumped: self.jumped,
             pace: Pace::default(),
-            is_paced: false,
         };
         integration.front.values = integration.evaluate(t, &state)?;
         integration.sides.pass(&integration.front.values);

@@ -6,12 +6,13 @@
 //! surfaces are reached at once, or the motion slides along others already, all combinations are tried, those with fewer
 //! surfaces that slide first.
 
-use pc_expr::{Events, Failure, RootSeparation, Sliding, SlidingError, Switching, VectorField};
+use pc_expr::{Events, Failure, Sliding, SlidingError, Switching, VectorField};
 
 use crate::error::{Reason, SolveError};
 #[cfg(feature = "cvode")]
 use crate::events::root_finding::Sides;
 use crate::integration::breaks::break_at;
+use crate::integration::held_sides::{Passage, Slide};
 use crate::integration::integration::Integration;
 #[cfg(feature = "cvode")]
 use crate::integration::integration::directions;
@@ -27,101 +28,6 @@ const BEYOND: f64 = 1e-9;
 const MOST_COMBINED: usize = 3;
 /// Fractions of the time scale of the motion at which a function that begins flat is looked at.
 const AHEAD: [f64; 3] = [1e-5, 1e-3, 1e-2];
-
-/// The sides of the surfaces of a field: 1, −1, or 0 where the motion slides.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct HeldSides {
-    pub(crate) sides: Vec<f64>,
-    /// Whether they are those of the motion at the front.
-    pub(crate) are_known: bool,
-    /// Whether the functions depend on time alone.
-    of_time: bool,
-    /// Room for a state.
-    pub(crate) place: Vec<f64>,
-    /// Separates the roots of the functions.
-    pub(crate) separation: Option<RootSeparation>,
-    /// The motions along surfaces so far.
-    pub(crate) slides: Vec<Slide>,
-    /// All changes of sides, where they are to be kept.
-    pub(crate) passages: Option<Vec<Passage>>,
-}
-
-impl HeldSides {
-    /// Those of a field at a start, not yet known.
-    pub(crate) fn of(field: &mut impl VectorField) -> HeldSides {
-        let dim = field.dim();
-        match field.switching() {
-            Some(switching) => {
-                switching.hold(None);
-                let sides = vec![1.0; switching.surfaces().len()];
-                let of_time = switching.program().is_some_and(|(program, _)| !program.reads_state());
-                HeldSides { sides, of_time, place: vec![0.0; dim], ..HeldSides::default() }
-            }
-            None => HeldSides::default(),
-        }
-    }
-
-    /// Whether the functions can be evaluated without states along a step.
-    pub(crate) fn need_no_states(&self) -> bool {
-        self.of_time && !self.sides.contains(&0.0)
-    }
-
-    /// The number of surfaces.
-    pub(crate) fn len(&self) -> usize {
-        self.sides.len()
-    }
-}
-
-/// A part of a motion that slides along a surface on which its field jumps.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Slide {
-    /// The function that vanishes on the surface.
-    pub surface: String,
-    /// When it begins.
-    pub from: f64,
-    /// When it ends; none while it lasts.
-    pub until: Option<f64>,
-}
-
-/// The sides of all surfaces from a time on.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Passage {
-    /// The surfaces reached; none at a start.
-    pub(crate) surfaces: Vec<usize>,
-    pub(crate) time: f64,
-    pub(crate) state: Vec<f64>,
-    /// The sides before, if surfaces were reached, and after.
-    pub(crate) before: Vec<f64>,
-    pub(crate) after: Vec<f64>,
-}
-
-/// Writes what an integration looks for zeros of: the functions of surfaces, and 1 − σ² for those along which the motion
-/// slides.
-pub(crate) fn write_functions(
-    field: &mut impl VectorField,
-    held: &HeldSides,
-    t: f64,
-    y: &[f64],
-    values: &mut [f64],
-) -> Result<(), Failure> {
-    let Some(switching) = field.switching().filter(|_| held.are_known) else {
-        values.fill(1.0);
-        return Ok(());
-    };
-    switching.functions(t, y, values);
-    for (value, side) in values.iter_mut().zip(&held.sides) {
-        if value.is_nan() {
-            *value = *side; // it has no value, and none is needed there
-        }
-    }
-    if held.sides.contains(&0.0) {
-        let Sliding { surfaces, weights, .. } = Sliding::of(switching, &held.sides, t, y)?;
-        for (surface, weight) in surfaces.into_iter().zip(weights) {
-            values[surface] = 1.0 - weight * weight;
-        }
-    }
-    Ok(())
-}
 
 /// Surfaces at zero, each with the sides to be tried in turn.
 type Open = Vec<(usize, [f64; 3])>;

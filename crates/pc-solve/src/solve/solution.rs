@@ -1,8 +1,8 @@
 //! The result of an integration.
 
 use crate::events::events::Occurrence;
+use crate::integration::held_sides::Slide;
 use crate::integration::integration::Ending;
-use crate::integration::sides::Slide;
 use crate::integration::trajectory::Trajectory;
 
 /// The part of a motion that was integrated.
