@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pc_expr::{
-    Backend, Evaluator, Expr, Failure, Graph, Normals, Program, Sliding, SlidingError, Surface, Switching,
+    Evaluator, Expr, Failure, Graph, Normals, Program, Sliding, SlidingError, Surface, Switching,
     TaylorSeries, TimeDependence, VariedSeries, VectorField,
 };
 

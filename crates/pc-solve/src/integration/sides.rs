@@ -12,6 +12,8 @@ use crate::error::{Reason, SolveError};
 #[cfg(feature = "cvode")]
 use crate::events::root_finding::Sides;
 use crate::integration::breaks::break_at;
+#[cfg(feature = "cvode")]
+use crate::integration::held_sides::HeldSides;
 use crate::integration::held_sides::{Passage, Slide};
 use crate::integration::integration::Integration;
 #[cfg(feature = "cvode")]
