@@ -264,7 +264,7 @@ impl<'g> First<'g> {
                 let mut rates = vec![f64::NAN; state.len()];
                 let evaluated = motion.rhs(at.t, &state, &mut rates);
                 evaluated.map_err(|failure| refused(failure.to_string()))?;
-                let observed = motion.observe(at.t, &state);
+                let observed = motion.observe_beside(at.t, &state);
                 let rate = energy_rate.at(at.t, &state);
                 [rates, observed, vec![rate]].concat()
             }

@@ -243,7 +243,8 @@ impl Motion {
     }
 
     /// The observables at (t, y), as many as [`observable_names`](Motion::observable_names); not finite where a table
-    /// that it is [driven by](Motion::driven_by) has no value.
+    /// that it is [driven by](Motion::driven_by) has no value. Where the motion slides along a surface on which its rates
+    /// jump, they are those of [Filippov's combination](pc_expr::Sliding).
     ///
     /// # Panics
     /// If `y` does not have the length of the state.
@@ -262,19 +263,35 @@ impl Motion {
         self.watch(t, y, values, true);
     }
 
+    /// The observables of the equations as they stand, also where the motion slides along a surface: on the side of the
+    /// signs that y has there, be it by rounding.
+    ///
+    /// # Panics
+    /// As [`observe`](Motion::observe).
+    pub fn observe_beside(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        let mut values = vec![f64::NAN; self.observable_names.len()];
+        self.watch_beside(t, y, &mut values, true);
+        values
+    }
+
     /// Writes the observables; without accelerations unless these are to be `solved` for: those that contain
     /// one are then not finite.
     pub(crate) fn watch(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         assert_eq!(values.len(), self.observable_names.len(), "number of observables");
-        if self.signals.show(t, &mut self.parameters).is_err() {
-            return values.fill(f64::NAN);
-        }
-        if solved && let Some(switches) = &mut self.switches {
+        let known = self.signals.show(t, &mut self.parameters).is_ok();
+        if known && solved && let Some(switches) = &mut self.switches {
             switches.follow(&self.parameters);
             if switches.observe(t, y, values) {
                 return;
             }
+        }
+        self.watch_beside(t, y, values, solved);
+    }
+
+    fn watch_beside(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
+        if self.signals.show(t, &mut self.parameters).is_err() {
+            return values.fill(f64::NAN);
         }
         match &mut self.form {
             Form::Unrolled(unrolled) => unrolled.observe(t, y, &self.parameters, values),
