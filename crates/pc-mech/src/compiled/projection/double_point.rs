@@ -11,7 +11,7 @@ use crate::compiled::projection::nearest::dot;
 use crate::numeric::singular_values::SingularValues;
 
 /// The residual that rounding may cause, in units of the bounds of all of them.
-const ROUNDINGS: f64 = 16.0;
+const ROUNDINGS: f64 = 2.0;
 
 /// A singular value of the constraints, with rows of length 1 before, that has fallen to this part is that of a rank
 /// that is lost.
