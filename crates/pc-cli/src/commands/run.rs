@@ -20,6 +20,7 @@ use crate::motion::checkpoint::Checkpoints;
 use crate::motion::fine;
 use crate::motion::given::{Given, note_residuals};
 use crate::motion::interrupt;
+use crate::motion::lost_integral::{EnergyScale, lost_declared, lost_energy};
 use crate::motion::memory;
 use crate::motion::plan::Plan;
 use crate::motion::progress::Progress;
@@ -211,15 +212,29 @@ fn integrate_into(
         (Some(solver::Ending::Stopped) | None, None) => Ending::Interrupted,
     };
     let mut largest = Vec::new();
+    let mut energy = EnergyScale::new();
+    let mut states: Vec<(f64, Vec<f64>)> = Vec::new();
     let (table, constraints) = match given {
         Some(given) => {
-            largest = given.largest;
+            (largest, energy) = (given.largest, given.energy);
+            states.extend(given.last);
             (given.table, given.constraints)
         }
         None => (
             Table::with_derivatives(&mut flow, &trajectory, derivatives.as_ref()),
             residuals(&mut flow, &trajectory),
         ),
+    };
+    trajectory.iter().for_each(|(t, y)| energy.note(&mut flow, t, y));
+    let resets = assembly.events.iter().any(|event| !event.resets.is_empty());
+    let keeps_energy = assembly.keeps_energy() && !resets;
+    let known: Vec<(f64, &[f64])> =
+        trajectory.iter().chain(states.iter().map(|(t, y)| (*t, y.as_slice()))).collect();
+    let lost = match &ending {
+        Ending::Completed | Ending::Event { .. } if !resets => lost_energy(&table, &energy)
+            .filter(|_| keeps_energy)
+            .or_else(|| lost_declared(&table, &assembly, &mut flow, &known)),
+        _ => None,
     };
     trajectory.iter().for_each(|(_, y)| note_largest(&mut largest, y));
     let statistics = *trajectory.statistics();
@@ -236,7 +251,8 @@ fn integrate_into(
         constraints,
         dropped: dropped(&assembly),
         jumps: jumps(&assembly),
-        keeps_energy: assembly.keeps_energy() && assembly.events.iter().all(|event| event.resets.is_empty()),
+        keeps_energy,
+        lost,
         fine,
         statistics,
         plan,
@@ -341,9 +357,12 @@ pub fn drawn(run: &Run, wanted: &Wanted) -> Result<Drawing, CliError> {
 }
 
 impl Run {
-    /// An error unless the run was completed.
+    /// An error unless the run was completed and kept what it is proved to keep.
     pub(crate) fn outcome(self) -> Result<(), CliError> {
         let names = self.state;
+        if let Some(lost) = self.lost {
+            return Err(CliError::Lost(lost));
+        }
         match self.ending {
             // The error of the file says why it is unwritten.
             Ending::Completed | Ending::Event { .. } | Ending::Unwritten => Ok(()),

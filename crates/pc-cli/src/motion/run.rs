@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use pc_solve::{Slide, SolveError, Spent, Statistics};
 
+use crate::motion::lost_integral::LostIntegral;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
 use crate::motion::tolerances::Tolerances;
@@ -48,6 +49,8 @@ pub struct Run {
     pub slides: Vec<Slide>,
     /// How it ended.
     pub ending: Ending,
+    /// An integral that is proved to be kept, and is not: the motion is wrong.
+    pub lost: Option<LostIntegral>,
     /// The result of the second derivation, if it was made.
     pub verification: Option<Verification>,
     /// The work done.
