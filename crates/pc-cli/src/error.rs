@@ -225,6 +225,8 @@ pub enum CliError {
         names: Vec<String>,
         /// Whether forces jump where the state changes, as dry friction does.
         jumps: bool,
+        /// The velocity that has lost its inertia, and what is left of it.
+        lost_inertia: Option<(String, f64)>,
     },
     /// An integral that is proved to be kept has changed.
     #[error(
@@ -347,6 +349,12 @@ impl CliError {
         if let CliError::Lost(_) = self {
             report += "\n  help: take a smaller --rtol and compare; --project keeps an integral, though not the motion; \
                        if it is lost at one time, the motion is singular there";
+        }
+        if let CliError::Integration { lost_inertia: Some((velocity, part)), .. } = self {
+            report += &format!(
+                "\n  help: the mass matrix becomes singular there: of the inertia of {velocity} at the start {} is left",
+                small(*part)
+            );
         }
         if let CliError::Integration { cause, jumps: true, .. } = self
             && cause.code() == Some(Code::TooMuchWork)

@@ -20,6 +20,7 @@ use crate::motion::checkpoint::Checkpoints;
 use crate::motion::fine;
 use crate::motion::given::{Given, note_residuals};
 use crate::motion::interrupt;
+use crate::motion::lost_inertia::lost_inertia;
 use crate::motion::lost_integral::{EnergyScale, lost_declared, lost_energy};
 use crate::motion::memory;
 use crate::motion::plan::Plan;
@@ -237,6 +238,12 @@ fn integrate_into(
         _ => None,
     };
     trajectory.iter().for_each(|(_, y)| note_largest(&mut largest, y));
+    let lost_inertia = match &ending {
+        Ending::Failed(error) => {
+            error.reached().and_then(|reached| lost_inertia(&assembly, &mut flow, plan.t_start, reached))
+        }
+        _ => None,
+    };
     let statistics = *trajectory.statistics();
     let fine = again
         .as_mut()
@@ -253,6 +260,7 @@ fn integrate_into(
         jumps: jumps(&assembly),
         keeps_energy,
         lost,
+        lost_inertia,
         fine,
         statistics,
         plan,
@@ -368,7 +376,12 @@ impl Run {
             Ending::Completed | Ending::Event { .. } | Ending::Unwritten => Ok(()),
             Ending::Interrupted => Err(CliError::Interrupted { t: self.statistics.current_time }),
             Ending::Ended(limit) => Err(CliError::Ended { t: self.statistics.current_time, limit }),
-            Ending::Failed(cause) => Err(CliError::Integration { cause, names, jumps: self.jumps }),
+            Ending::Failed(cause) => Err(CliError::Integration {
+                cause,
+                names,
+                jumps: self.jumps,
+                lost_inertia: self.lost_inertia,
+            }),
         }
     }
 }

@@ -51,6 +51,8 @@ pub struct Run {
     pub ending: Ending,
     /// An integral that is proved to be kept, and is not: the motion is wrong.
     pub lost: Option<LostIntegral>,
+    /// Of a motion that failed, the velocity that has lost its inertia, and what is left of it.
+    pub lost_inertia: Option<(String, f64)>,
     /// The result of the second derivation, if it was made.
     pub verification: Option<Verification>,
     /// The work done.
