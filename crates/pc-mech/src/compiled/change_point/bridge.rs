@@ -31,8 +31,22 @@ const CONFIRMED: f64 = 1e-3;
 const COARSE: f64 = 1e-6;
 const SHORTEST: f64 = 1.0 / 256.0;
 
+/// The parts of a smooth motion, in each of which constraints turn by less than a right angle.
+const PARTS: usize = 16;
+
 /// The number of halvings by which the place is found.
 const HALVINGS: usize = 30;
+
+/// What becomes of the rank of the constraints along a smooth motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Rank {
+    /// Nothing.
+    Full,
+    /// It is lost at a state that satisfies the constraints: motions cross there.
+    Lost,
+    /// It is lost at a state that does not: this is no motion, since it leaves the surface for another sheet of it.
+    Passed,
+}
 
 /// Writes the rates of a motion at (t, y).
 pub(crate) type Rates<'a> = dyn FnMut(&mut Motion, f64, &[f64], &mut [f64]) -> Result<(), Failure> + 'a;
@@ -89,7 +103,16 @@ impl Motion {
         if shrinks > 0.0 && now.least <= NEAR && ahead.abs() <= STEPS_AHEAD * step.abs() {
             if 2.0 * ahead.abs() <= now.tried {
                 now.tried = ahead.abs();
-                self.watch.bridge = self.bridge(to, to.0 + 2.0 * ahead, now.least, rates).map(Box::new);
+                let end = to.0 + 2.0 * ahead;
+                match self.ahead(to, end, now.least, rates) {
+                    Some((_, Rank::Lost)) if !self.takes_bridge(to.0, end) => {
+                        return Err(self.rank_lost(&now));
+                    }
+                    Some((motion, Rank::Full | Rank::Lost)) if self.takes_bridge(to.0, end) => {
+                        self.watch.bridge = Some(Box::new(motion));
+                    }
+                    _ => {}
+                }
             }
             if self.watch.bridge.is_none() && now.least <= LOST * now.largest {
                 return Err(self.rank_lost(&now));
@@ -110,41 +133,49 @@ impl Motion {
         }))
     }
 
-    /// The smooth motion to `end`, if it satisfies the constraints on the way.
-    fn bridge(
+    /// The smooth motion to `end`, and what becomes of the rank on it.
+    fn ahead(
         &mut self,
         from: (f64, &[f64]),
         end: f64,
         least: f64,
         rates: &mut Rates<'_>,
-    ) -> Option<Collocation> {
-        let has_derivatives = self.options.jvp || self.options.parameter_jacobian;
-        let breaks = self.signals.breaks().iter().any(|&t| (t - from.0) * (t - end) <= 0.0);
-        if has_derivatives || breaks || self.watch.refuses || self.switches.is_some() {
-            return None;
-        }
+    ) -> Option<(Collocation, Rank)> {
         let motion = self.smooth(from, end, (MAGNIFIED / least).min(LARGEST_ERROR), rates)?;
-        self.crosses(&motion).then_some(motion)
+        let rank = self.rank_along(&motion)?;
+        Some((motion, rank))
     }
 
-    /// Whether a step went over the place along the smooth motion.
+    /// Whether a polynomial may stand for the motion: it has no derivatives by state and parameters, and knows nothing
+    /// of forces that jump or kink.
+    fn takes_bridge(&self, from: f64, end: f64) -> bool {
+        let has_derivatives = self.options.jvp || self.options.parameter_jacobian;
+        let breaks = self.signals.breaks().iter().any(|&t| (t - from) * (t - end) <= 0.0);
+        !has_derivatives && !breaks && !self.watch.refuses && self.switches.is_none()
+    }
+
+    /// Whether a step between whose ends rank may have been lost follows the smooth motion.
     fn passes(&mut self, from: (f64, &[f64]), to: (f64, &[f64]), rates: &mut Rates<'_>) -> bool {
         let (mut t, mut y) = (from.0, from.1.to_vec());
-        let mut length = to.0 - from.0;
-        while t != to.0 {
+        let (mut length, mut is_lost) = (to.0 - from.0, false);
+        while length.abs() >= SHORTEST * (to.0 - from.0).abs() {
             let is_last = (to.0 - t).abs() <= length.abs();
             let end = if is_last { to.0 } else { t + length };
-            match self.smooth((t, &y), end, COARSE, rates) {
-                Some(motion) if !self.crosses(&motion) => return false,
-                Some(motion) if is_last => return motion.distance(&motion.state(end), to.1) <= CONFIRMED,
-                Some(motion) => (t, y) = (end, motion.state(end)),
-                None => length *= 0.5,
+            let Some(motion) = self.smooth((t, &y), end, COARSE, rates) else {
+                length *= 0.5;
+                continue;
+            };
+            match self.rank_along(&motion) {
+                Some(Rank::Full) => {}
+                Some(Rank::Lost) => is_lost = true,
+                Some(Rank::Passed) | None => return false,
             }
-            if length.abs() < SHORTEST * (to.0 - from.0).abs() {
-                return false;
+            (t, y) = (end, motion.state(end));
+            if is_last {
+                return !is_lost || motion.distance(&y, to.1) <= CONFIRMED;
             }
         }
-        true
+        false
     }
 
     /// The smooth motion from a state to a time.
@@ -163,34 +194,50 @@ impl Motion {
         Collocation::new(&mut flow, from, end, &groups, tolerance)
     }
 
-    /// Whether the constraints hold where they lose rank along a smooth motion, if they do.
-    fn crosses(&mut self, motion: &Collocation) -> bool {
-        let (mut low, mut high) = (motion.start, motion.end);
-        let start = motion.state(low);
-        let reversed_at = |field: &mut Motion, t: f64| {
+    /// What becomes of the rank along a smooth motion: the orientation of the space that the constraints span changes
+    /// where it is lost.
+    fn rank_along(&mut self, motion: &Collocation) -> Option<Rank> {
+        let at = |field: &mut Motion, t: f64| {
             let state = motion.state(t);
-            let there = field.independence_at((t, &state)).ok().flatten();
-            let before = field.independence_at((motion.start, &start)).ok().flatten();
-            match before.zip(there) {
-                Some((before, there)) => field
-                    .is_reversed((&before, (motion.start, &start)), (&there, (t, &state)))
-                    .unwrap_or(true),
-                None => true,
-            }
+            let rank = field.independence_at((t, &state)).ok().flatten()?;
+            Some((t, state, rank))
         };
-        let place = if reversed_at(self, high) {
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if reversed_at(self, middle) { high = middle } else { low = middle }
+        let mut found = Rank::Full;
+        let start = at(self, motion.start)?;
+        let mut before = start.clone();
+        for part in 1..=PARTS {
+            let next = at(self, motion.start + (motion.end - motion.start) * part as f64 / PARTS as f64)?;
+            if self.turns(&before, &next)? {
+                let (mut low, mut high) = (before.0, next.0);
+                for _ in 0..HALVINGS {
+                    let middle = at(self, 0.5 * (low + high))?;
+                    if self.turns(&before, &middle)? { high = middle.0 } else { low = middle.0 }
+                }
+                if !self.crosses(motion, high, (start.0, &start.1))? {
+                    return Some(Rank::Passed);
+                }
+                found = Rank::Lost;
             }
-            high
-        } else {
-            0.5 * (low + high)
-        };
-        let state = motion.state(place);
-        let Motion { surface: Some(surface), parameters: p, .. } = self else { return false };
-        let (at, before) = (Point { t: place, y: &state, p }, Point { t: motion.start, y: &start, p });
-        surface.crosses(at, before).unwrap_or(false)
+            before = next;
+        }
+        // Where rank is lost twice at once, the orientation is the same before and after.
+        let middle = 0.5 * (motion.start + motion.end);
+        Some(if self.crosses(motion, middle, (start.0, &start.1))? { found } else { Rank::Passed })
+    }
+
+    fn turns(
+        &mut self,
+        a: &(f64, Vec<f64>, Independence),
+        b: &(f64, Vec<f64>, Independence),
+    ) -> Option<bool> {
+        self.is_reversed((&a.2, (a.0, &a.1)), (&b.2, (b.0, &b.1))).ok()
+    }
+
+    /// Whether the constraints hold at a time of a smooth motion where they may have lost rank.
+    fn crosses(&mut self, motion: &Collocation, t: f64, start: (f64, &[f64])) -> Option<bool> {
+        let state = motion.state(t);
+        let Motion { surface: Some(surface), parameters: p, .. } = self else { return None };
+        surface.crosses(Point { t, y: &state, p }, Point { t: start.0, y: start.1, p }).ok()
     }
 
     fn independence_after(
