@@ -144,28 +144,22 @@ fn a_sharp_corner_is_no_change_point() {
     }
 }
 
-/// Where derivatives are wanted, they do not exist: the crossing is an error at once.
+/// Derivatives do not go across on a bridge: the change point is an error at once, wherever steps have come to.
 #[test]
 fn a_change_point_cannot_be_differentiated() {
-    let model = particle("y*(y - x)", (-1.0, 0.0), (1.0, 0.0), "potential = \"k*x^2/2\"")
-        .replace("[coordinates]", "[parameters]\nk = 0.25\n[coordinates]");
-    let options = ["--t-end", "3", "--samples", "4", "--sensitivities", "k", "--method", "dop853"];
-    let (code, _, said) = run(&model, &options);
-    assert_eq!(code, Some(5));
-    insta::assert_snapshot!(rounded(&failure(&said)));
+    let model = format!("[parameters]\ng = 9.81\n{}", FOUR_BAR.replace("-9.81", "\"-g\""));
+    let options = ["--t-end", "3", "--samples", "4", "--sensitivities", "g", "--method", "dop853"];
+    let (code, table, said) = run(&model, &options);
+    assert_eq!((code, table.lines().count()), (Some(5), 2), "{said}");
+    insta::assert_snapshot!(without_numbers(&failure(&said)));
 }
 
-/// The numbers of a text to three digits: where a step ends is no promise.
-fn rounded(text: &str) -> String {
+/// A text without its decimal numbers.
+fn without_numbers(text: &str) -> String {
     let words = text.split_inclusive([' ', ',', '\n']);
     let word = |word: &str| {
         let number = word.trim_end_matches([' ', ',', '\n']);
-        match number.parse::<f64>() {
-            Ok(value) if number.len() > 4 => {
-                word.replace(number, &if value.abs() < 1e-6 { "0".to_owned() } else { format!("{value:.1}") })
-            }
-            _ => word.to_owned(),
-        }
+        if number.parse::<f64>().is_ok() { word.replace(number, "[..]") } else { word.to_owned() }
     };
     words.map(word).collect()
 }
