@@ -21,12 +21,13 @@ use crate::motion::fine;
 use crate::motion::given::{Given, note_residuals};
 use crate::motion::interrupt;
 use crate::motion::lost_inertia::lost_inertia;
-use crate::motion::lost_integral::{EnergyScale, lost_declared, lost_energy};
+use crate::motion::lost_integral::lost_integral;
 use crate::motion::memory;
 use crate::motion::plan::Plan;
 use crate::motion::progress::Progress;
 use crate::motion::run::{Ending, Run};
 use crate::motion::sensitivities::Derivatives;
+use crate::motion::step_states::StepStates;
 use crate::motion::table::Table;
 use crate::motion::tolerances::note_largest;
 use crate::output::destination::Destination;
@@ -162,10 +163,10 @@ fn integrate_into(
     let mut given = stream.map(|stream| Given::new(&flow, stream)).transpose()?;
     interrupt::catch();
     let mut progress = Progress::new(plan.t_start, plan.t_end);
-    let mut first = None; // the end of the first step
+    let mut steps = StepStates::new();
     let observer = |t: f64, y: &[f64]| {
         progress.at(t);
-        first.get_or_insert_with(|| (t, y.to_vec()));
+        steps.note(t, y);
         if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let start = Instant::now();
@@ -201,8 +202,12 @@ fn integrate_into(
     if let Some(verification) = &mut verification {
         compare_resets(verification, model, &assembly, &flow, &occurrences)?;
     }
-    let passed_at_start =
-        first.filter(|_| begins).map(|first| beyond_at_once(&mut flow, &plan, first)).unwrap_or_default();
+    let passed_at_start = steps
+        .iter()
+        .next()
+        .filter(|_| begins)
+        .map(|first| beyond_at_once(&mut flow, &plan, first))
+        .unwrap_or_default();
     let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
     let is_full = given.as_ref().is_some_and(Given::has_failed);
     let ending = match (ending, error) {
@@ -213,12 +218,9 @@ fn integrate_into(
         (Some(solver::Ending::Stopped) | None, None) => Ending::Interrupted,
     };
     let mut largest = Vec::new();
-    let mut energy = EnergyScale::new();
-    let mut states: Vec<(f64, Vec<f64>)> = Vec::new();
     let (table, constraints) = match given {
         Some(given) => {
-            (largest, energy) = (given.largest, given.energy);
-            states.extend(given.last);
+            largest = given.largest;
             (given.table, given.constraints)
         }
         None => (
@@ -226,15 +228,13 @@ fn integrate_into(
             residuals(&mut flow, &trajectory),
         ),
     };
-    trajectory.iter().for_each(|(t, y)| energy.note(&mut flow, t, y));
     let resets = assembly.events.iter().any(|event| !event.resets.is_empty());
     let keeps_energy = assembly.keeps_energy() && !resets;
-    let known: Vec<(f64, &[f64])> =
-        trajectory.iter().chain(states.iter().map(|(t, y)| (*t, y.as_slice()))).collect();
     let lost = match &ending {
-        Ending::Completed | Ending::Event { .. } if !resets => lost_energy(&table, &energy)
-            .filter(|_| keeps_energy)
-            .or_else(|| lost_declared(&table, &assembly, &mut flow, &known)),
+        Ending::Completed | Ending::Event { .. } if !resets => {
+            let states: Vec<(f64, &[f64])> = steps.iter().collect();
+            lost_integral(&table, (&assembly, keeps_energy), &mut flow, &states)
+        }
         _ => None,
     };
     trajectory.iter().for_each(|(_, y)| note_largest(&mut largest, y));
@@ -277,12 +277,12 @@ fn integrate_into(
 /// The events whose functions are zero at the start and go on in the direction of the event: this is
 /// no passage. The sides are those at the end of the first step, or of the part of it before an
 /// event.
-fn beyond_at_once(flow: &mut Flow, plan: &Plan, (t, y): (f64, Vec<f64>)) -> Vec<usize> {
+fn beyond_at_once(flow: &mut Flow, plan: &Plan, (t, y): (f64, &[f64])) -> Vec<usize> {
     let count = flow.events.events().len();
     let (mut before, mut after) = (vec![f64::NAN; count], vec![f64::NAN; count]);
     let start = flow.start.clone();
     let evaluated = flow.events.evaluate(plan.t_start, &start, &mut before).is_ok()
-        && flow.events.evaluate(t, &y, &mut after).is_ok();
+        && flow.events.evaluate(t, y, &mut after).is_ok();
     let goes = |&i: &usize| before[i] == 0.0 && flow.events.events()[i].crosses().leaves(-after[i]);
     if evaluated { (0..count).filter(goes).collect() } else { Vec::new() }
 }

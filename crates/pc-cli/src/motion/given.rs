@@ -7,7 +7,6 @@ use pc_solve::{Options, Solution, Solve, SolveError, SolveFailure};
 
 use crate::error::CliError;
 use crate::motion::interrupt;
-use crate::motion::lost_integral::EnergyScale;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
 use crate::motion::tolerances::note_largest;
@@ -24,8 +23,6 @@ pub(crate) struct Given<'s, 'p> {
     pub(crate) constraints: Vec<(String, f64)>,
     /// The largest magnitude of each component of the state.
     pub(crate) largest: Vec<f64>,
-    /// The scale of the energy.
-    pub(crate) energy: EnergyScale,
     /// The last output.
     pub(crate) last: Option<(f64, Vec<f64>)>,
 }
@@ -37,15 +34,7 @@ impl<'s, 'p> Given<'s, 'p> {
         let table = Table::given(flow);
         stream.begin(table.columns())?;
         let constraints = flow.constraint_names().into_iter().map(|name| (name, 0.0)).collect();
-        Ok(Given {
-            flow: flow.clone(),
-            stream,
-            table,
-            constraints,
-            largest: Vec::new(),
-            energy: EnergyScale::new(),
-            last: None,
-        })
+        Ok(Given { flow: flow.clone(), stream, table, constraints, largest: Vec::new(), last: None })
     }
 
     /// Integrates the motion as far as possible, without its states; the error says why not
@@ -74,7 +63,6 @@ impl<'s, 'p> Given<'s, 'p> {
         self.table.give(&mut self.flow, t, y);
         note_residuals(&mut self.constraints, &mut self.flow, t, y);
         note_largest(&mut self.largest, y);
-        self.energy.note(&mut self.flow, t, y);
         self.last = Some((t, y.to_vec()));
         match self.table.rows().next_back() {
             Some(row) => self.stream.row(row),

@@ -1,6 +1,7 @@
 //! Integrals that are proved to be kept, and that a computed motion has lost all the same.
 
-use pc_mech::Neighbourhood;
+use pc_expr::Weighed;
+use pc_mech::{Expr, Neighbourhood};
 use pc_model::{Assembly, Flow, Variables};
 use pc_print::integrals_of;
 
@@ -9,7 +10,8 @@ use crate::motion::table::Table;
 /// The part of its scale by which an integral may drift.
 const MOST: f64 = 1e-3;
 
-/// A drift of so many units in the last place of the integral is rounding, as under a large constant in the energy.
+/// A drift of so many units in the last place of the terms of an integral is rounding, as under a large constant in the
+/// energy, or beside an equilibrium.
 const ROUNDINGS: f64 = 1e3;
 
 /// An integral that is proved to be kept, and has changed.
@@ -21,36 +23,60 @@ pub struct LostIntegral {
     pub start: f64,
     /// The largest change from it.
     pub drift: f64,
-    /// The scale of its terms, which change by more than this along the motion.
+    /// The scale of its terms: of the energy, the largest kinetic energy or the range of the rest, whichever is larger.
     pub scale: f64,
 }
 
-/// The largest kinetic energy along a motion and the range of the rest, from energies with and without velocities:
-/// constants of the energy are no part of it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct EnergyScale {
-    kinetic: f64,
-    least: f64,
-    most: f64,
+/// The first integral that has drifted too far and is proved to be kept, at these states of the motion.
+pub(crate) fn lost_integral(
+    table: &Table,
+    (assembly, keeps_energy): (&Assembly<'_>, bool),
+    flow: &mut Flow,
+    states: &[(f64, &[f64])],
+) -> Option<LostIntegral> {
+    let first = table.conserved().start;
+    let energy = table.conserved().end.checked_sub(1)?;
+    let too_far = |flow: &mut Flow, j: usize| {
+        let drift = table.drift(j);
+        // The value at the start is a scale of others than the energy, whose zero is arbitrary.
+        if j != energy && drift.absolute <= MOST * drift.start.abs() {
+            return None;
+        }
+        let scale = match j == energy {
+            true => scale_of_energy(flow, energy - first, states),
+            false => states.iter().map(|(t, y)| contributions(flow, j - first, *t, y)).fold(0.0, f64::max),
+        };
+        let name = table.columns()[j].clone();
+        let lost = LostIntegral { name, start: drift.start, drift: drift.absolute, scale };
+        (drift.absolute > MOST * scale).then_some(lost)
+    };
+    let wanted = |j: &usize| *j != energy || keeps_energy;
+    let found: Vec<LostIntegral> = (first..=energy).filter(wanted).filter_map(|j| too_far(flow, j)).collect();
+    if found.is_empty() {
+        return None;
+    }
+    let mut proved = proved(assembly);
+    proved.push(table.columns()[energy].clone());
+    found
+        .into_iter()
+        .find(|lost| proved.contains(&lost.name) && lost.drift > rounding(assembly, flow, &lost.name, states))
 }
 
-impl EnergyScale {
-    pub(crate) fn new() -> EnergyScale {
-        EnergyScale { kinetic: 0.0, least: f64::INFINITY, most: f64::NEG_INFINITY }
-    }
-
-    /// Takes the state y at t into account.
-    pub(crate) fn note(&mut self, flow: &mut Flow, t: f64, y: &[f64]) {
+/// The larger of the largest kinetic energy and the range of the rest, from energies with and without velocities:
+/// constants are no part of it. Infinite where nothing is known, as constraints that are not affine may leave no motion
+/// at rest.
+fn scale_of_energy(flow: &mut Flow, place: usize, states: &[(f64, &[f64])]) -> f64 {
+    let (mut kinetic, mut least, mut most) = (0.0f64, f64::INFINITY, f64::NEG_INFINITY);
+    for (t, y) in states {
         let mut at_rest = y.to_vec();
         at_rest[moving(flow)].fill(0.0);
-        let (Some(energy), Some(rest)) = (energy(flow, t, y), energy(flow, t, &at_rest)) else { return };
-        self.kinetic = self.kinetic.max((energy - rest).abs());
-        (self.least, self.most) = (self.least.min(rest), self.most.max(rest));
+        let (energy, rest) = (flow.motion.observe(*t, y)[place], flow.motion.observe(*t, &at_rest)[place]);
+        if energy.is_finite() && rest.is_finite() {
+            kinetic = kinetic.max((energy - rest).abs());
+            (least, most) = (least.min(rest), most.max(rest));
+        }
     }
-
-    fn size(&self) -> f64 {
-        self.kinetic.max(self.most - self.least)
-    }
+    if least > most { f64::INFINITY } else { kinetic.max(most - least) }
 }
 
 /// The places of the velocities or momenta in the state.
@@ -59,48 +85,7 @@ fn moving(flow: &Flow) -> std::ops::Range<usize> {
     motion.coordinates()..motion.names().len() - motion.states()
 }
 
-fn energy(flow: &mut Flow, t: f64, y: &[f64]) -> Option<f64> {
-    let place = flow.motion.conserved_len().checked_sub(1)?;
-    flow.motion.observe(t, y).get(place).copied()
-}
-
-/// The energy, if it has drifted too far.
-pub(crate) fn lost_energy(table: &Table, scale: &EnergyScale) -> Option<LostIntegral> {
-    lost(table, table.conserved().end.checked_sub(1)?, scale.size())
-}
-
-/// The first of the integrals of the text that has drifted too far and is proved to be kept. Their scale is that of
-/// what each coordinate since the start, and each velocity, contributes to them at these states.
-pub(crate) fn lost_declared(
-    table: &Table,
-    assembly: &Assembly<'_>,
-    flow: &mut Flow,
-    states: &[(f64, &[f64])],
-) -> Option<LostIntegral> {
-    let declared = table.conserved().start..table.conserved().end.checked_sub(1)?;
-    let too_far = |flow: &mut Flow, j: usize| {
-        let lost = lost(table, j, table.drift(j).start.abs())?;
-        let place = j - table.conserved().start;
-        let scale = states.iter().map(|(t, y)| contributions(flow, place, *t, y)).fold(lost.scale, f64::max);
-        (lost.drift > MOST * scale).then_some(LostIntegral { scale, ..lost })
-    };
-    let found: Vec<LostIntegral> = declared.filter_map(|j| too_far(flow, j)).collect();
-    if found.is_empty() {
-        return None;
-    }
-    let proved = proved(assembly);
-    found.into_iter().find(|lost| proved.contains(&lost.name))
-}
-
-fn lost(table: &Table, j: usize, scale: f64) -> Option<LostIntegral> {
-    let drift = table.drift(j);
-    let rounding = ROUNDINGS * f64::EPSILON * (drift.start.abs() + drift.absolute);
-    let is_lost = drift.absolute > MOST * scale && drift.absolute > rounding;
-    let name = table.columns()[j].clone();
-    is_lost.then_some(LostIntegral { name, start: drift.start, drift: drift.absolute, scale })
-}
-
-/// Σ |I(y) − I(y without one of its components)|
+/// Σ |I(y) − I(y without one of its components)|: without a velocity, or with a coordinate as at the start.
 fn contributions(flow: &mut Flow, place: usize, t: f64, y: &[f64]) -> f64 {
     let start = flow.start.clone();
     let moving = moving(flow);
@@ -116,9 +101,36 @@ fn contributions(flow: &mut Flow, place: usize, t: f64, y: &[f64]) -> f64 {
     sum
 }
 
-/// The names of the integrals that are proved to be kept everywhere.
+/// What rounding may do to an integral: some units in the last place of its largest term, those of the energy being
+/// the terms of the Lagrangian. Infinite where these cannot be evaluated.
+fn rounding(assembly: &Assembly<'_>, flow: &mut Flow, name: &str, states: &[(f64, &[f64])]) -> f64 {
+    let system = &assembly.system;
+    let declared = system.integrals().iter().find(|(known, _)| known == name);
+    let function = declared.map_or_else(|| system.lagrangian(), |(_, value)| *value);
+    let parameters = flow.motion.parameters().to_vec();
+    let mut size = |t: f64, y: &[f64]| {
+        let names: Vec<String> = flow.columns();
+        let row = flow.row(t, y);
+        let value = |symbol: &Expr<'_>| {
+            names.iter().position(|known| *known == symbol.to_string()).map(|place| row[place])
+        };
+        let mut at = vec![(system.frame().time(), Weighed::rounded(t))];
+        at.extend(
+            system.parameters().iter().zip(&parameters).map(|((p, _), value)| (*p, Weighed::rounded(*value))),
+        );
+        let known = system.state().into_iter().filter_map(|symbol| Some((symbol, value(&symbol)?)));
+        at.extend(known.map(|(symbol, value)| (symbol, Weighed::rounded(value))));
+        system.graph().evaluate(&[function], &at).map_or(f64::INFINITY, |values| values[0].size())
+    };
+    ROUNDINGS * f64::EPSILON * states.iter().map(|(t, y)| size(*t, y)).fold(0.0, f64::max)
+}
+
+/// The names of the integrals of the text that are proved to be kept everywhere.
 fn proved(assembly: &Assembly<'_>) -> Vec<String> {
     let system = &assembly.system;
+    if system.integrals().is_empty() {
+        return Vec::new();
+    }
     let mut centre = system.parameters().to_vec();
     centre.push((system.frame().time(), assembly.t_start));
     centre.extend(system.state().into_iter().zip(assembly.start.iter().copied()));

@@ -186,6 +186,25 @@ fn rounding_of_a_large_constant_is_no_loss() {
     assert_eq!(code, Some(0), "{said}");
 }
 
+/// Near an equilibrium the energy, 1 − cos φ and less, is rounding; rows at each period of an oscillation are all at rest.
+#[test]
+fn small_motions_and_rows_in_step_with_a_motion_are_no_loss() {
+    let pendulum = |start: &str| {
+        format!(
+            "[coordinates]\nphi = {start}\n[quasi_velocities]\nu = 0.0\n[kinematics]\nphi = \"u\"\n\
+             [lagrangian]\nkinetic = \"u^2/2\"\npotential = \"1 - cos(phi)\"\n"
+        )
+    };
+    for start in ["0.0", "1e-12", "1e-8", "1e-4", "3.141592653589793"] {
+        let (code, _, said) = run(&pendulum(start), &["--t-end", "50"]);
+        assert_eq!(code, Some(0), "{start}: {said}");
+    }
+    let spring = "[coordinates]\nx = 1.0\n[quasi_velocities]\nu = 0.0\n[kinematics]\nx = \"u\"\n\
+                  [lagrangian]\nkinetic = \"u^2/2\"\npotential = \"2*pi^2*x^2\"\n";
+    let (code, _, said) = run(spring, &["--t-end", "50", "--samples", "51"]);
+    assert_eq!(code, Some(0), "{said}");
+}
+
 /// An integral whose value is 0 has a scale all the same, and only what is proved counts.
 #[test]
 fn integrals_of_the_text_are_judged_by_their_terms() {

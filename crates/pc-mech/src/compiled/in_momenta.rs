@@ -149,16 +149,6 @@ impl InMomenta {
         }
     }
 
-    /// Watches the rank of the constraints on the motion of (x, η), as far as momenta determine it. There are no bridges,
-    /// since η is read from momenta everywhere.
-    pub(crate) fn watch_rank(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
-        let mut of_velocities = |(t, y): (f64, &[f64])| self.read(t, y).ok().map(|()| self.state.clone());
-        let (Some(start), Some(end)) = (of_velocities(from), of_velocities(to)) else { return Ok(()) };
-        self.inner.refuse_bridges();
-        let mut rates = |motion: &mut Motion, t: f64, y: &[f64], rates: &mut [f64]| motion.rhs(t, y, rates);
-        self.inner.watch_rank((from.0, &start), (to.0, &end), &mut rates)
-    }
-
     /// The pattern of the Jacobian.
     pub(crate) fn pattern(&self) -> Option<&Pattern> {
         self.jacobian.as_ref().map(|_| &self.full)

@@ -453,11 +453,6 @@ impl Motion {
         Ok((state, rates))
     }
 
-    /// Announces that more than the rates of the motion are needed.
-    pub(crate) fn refuse_bridges(&mut self) {
-        self.watch.refuse_bridges();
-    }
-
     #[cold]
     pub(crate) fn failure(&self, failure: EvaluationFailure, t: f64, y: &[f64]) -> Failure {
         let fatal = matches!(failure, EvaluationFailure::NotCompiled { .. });

@@ -327,9 +327,6 @@ impl Motion {
         to: (f64, &[f64]),
         rates: &mut Rates<'_>,
     ) -> Result<(), Failure> {
-        if let Form::InMomenta(motion) = &mut self.form {
-            motion.watch_rank(from, to)?;
-        }
         self.watch_rank(from, to, rates)?;
         if self.charts.is_empty() {
             return Ok(());

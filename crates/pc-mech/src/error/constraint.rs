@@ -43,8 +43,8 @@ pub enum ConstraintError {
     },
     /// A constraint that depends on the others at a place that the motion reaches, though not before.
     #[error(
-        "near t = {t} the constraint `{constraint}` depends on the others and leaves `{quasi_velocity}` free: motions cross \
-         there, and this one cannot be followed across{}",
+        "near t = {t} the constraint `{constraint}` depends on the others and leaves `{quasi_velocity}` free: motions may \
+         cross there, and this one cannot be followed across{}",
         listed(state)
     )]
     RankLost {

@@ -201,11 +201,11 @@ mod tests {
             rates[0] = (t - 0.5).abs();
             true
         };
-        assert!(Collocation::new(&mut kink, (0.0, &[1.0]), 1.0, &[0..1], 1e-9).is_none());
+        assert!(Collocation::new(&mut kink, (0.0, &[1.0]), 1.0, &[0..1, 1..1], 1e-9).is_none());
         let mut ends = |t: f64, _: &mut [f64], rates: &mut [f64]| {
             rates[0] = 1.0;
             t < 0.5
         };
-        assert!(Collocation::new(&mut ends, (0.0, &[1.0]), 1.0, &[0..1], 1e-9).is_none());
+        assert!(Collocation::new(&mut ends, (0.0, &[1.0]), 1.0, &[0..1, 1..1], 1e-9).is_none());
     }
 }
