@@ -15,9 +15,10 @@ use crate::exit_code;
 use crate::import::UrdfError;
 use crate::linear::error::LinearError;
 use crate::motion::checkpoint_error::CheckpointFileError;
+use crate::motion::lost_integral::LostIntegral;
 use crate::output::kept::Kept;
 use crate::plot::error::PlotError;
-use crate::report::text::short;
+use crate::report::text::{short, small};
 use crate::sweep::error::SweepError;
 
 /// An error of the program.
@@ -218,7 +219,16 @@ pub enum CliError {
         names: Vec<String>,
         /// Whether forces jump where the state changes, as dry friction does.
         jumps: bool,
+        /// The velocity that has lost its inertia, and what is left of it.
+        lost_inertia: Option<(String, f64)>,
     },
+    /// An integral that is proved to be kept has changed.
+    #[error(
+        "the motion is wrong: {} is proved to be kept at {}, and drifts by {}, more than a thousandth of its scale {}; \
+         the rows are written as they were computed",
+        .0.name, short(.0.start, 6), small(.0.drift), small(.0.scale)
+    )]
+    Lost(LostIntegral),
     /// The time limit ended the integration.
     #[error("ended at t = {}: {limit}", short(*t, 17))]
     Ended {
@@ -288,7 +298,7 @@ impl CliError {
             CliError::Fmu(FmuError::Step { .. }) => CliError::USAGE,
             CliError::Fmu(_) => CliError::UNWRITTEN,
             CliError::Verify(_) | CliError::Rows { .. } | CliError::Ended { .. } => 4,
-            CliError::Integration { .. } => 5,
+            CliError::Integration { .. } | CliError::Lost(_) => 5,
             CliError::Interrupted { .. } => 130,
             CliError::NoSuchModel { .. }
             | CliError::NoSuchCommand { .. }
@@ -328,6 +338,16 @@ impl CliError {
             }
             last = message;
             source = error.source();
+        }
+        if let CliError::Lost(_) = self {
+            report += "\n  help: take a smaller --rtol and compare; --project keeps an integral, though not the motion; \
+                       if it is lost at one time, the motion is singular there";
+        }
+        if let CliError::Integration { lost_inertia: Some((velocity, part)), .. } = self {
+            report += &format!(
+                "\n  help: the mass matrix becomes singular there: of the inertia of {velocity} at the start {} is left",
+                small(*part)
+            );
         }
         if let CliError::Integration { cause, jumps: true, .. } = self
             && cause.code() == Some(Code::TooMuchWork)

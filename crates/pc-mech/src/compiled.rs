@@ -7,10 +7,12 @@
 //! `legendre_transform` converts momenta into quasi-velocities and back; `in_momenta` is the motion of
 //! momenta under constraints, `forced_motion` that under forces computed outside. `running_error` bounds
 //! rounding, `point` holds the arguments of evaluations, `chart` detects where quasi-velocities and
-//! velocities no longer determine each other, `mass_factors` solves with M alone, `jumps` are where rates jump, `switches` hold
-//! rates of several pieces on one side of these, with the `surface_slopes` between them, and `failure` says why
+//! velocities no longer determine each other, `change_point` where constraints lose rank, `mass_factors` solves with M alone,
+//! `jumps` are where rates jump, `switches` hold rates of several pieces on one side of these, with the `surface_slopes`
+//! between them, and `failure` says why
 //! rates are undefined.
 
+pub(crate) mod change_point;
 pub(crate) mod chart;
 pub(crate) mod compile;
 pub(crate) mod elimination;

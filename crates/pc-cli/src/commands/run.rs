@@ -21,11 +21,14 @@ use crate::motion::estimate::{self, Estimate};
 use crate::motion::fine;
 use crate::motion::given::{Given, note_residuals};
 use crate::motion::interrupt;
+use crate::motion::lost_inertia::lost_inertia;
+use crate::motion::lost_integral::lost_integral;
 use crate::motion::memory;
 use crate::motion::plan::Plan;
 use crate::motion::progress::Progress;
 use crate::motion::run::{Ending, Run};
 use crate::motion::sensitivities::Derivatives;
+use crate::motion::step_states::StepStates;
 use crate::motion::table::Table;
 use crate::motion::tolerances::note_largest;
 use crate::output::destination::Destination;
@@ -169,10 +172,10 @@ fn integrate_into(
     let mut given = stream.map(|stream| Given::new(&flow, stream)).transpose()?;
     interrupt::catch();
     let mut progress = Progress::new(plan.t_start, plan.t_end);
-    let mut first = None; // the end of the first step
+    let mut steps = StepStates::new();
     let observer = |t: f64, y: &[f64]| {
         progress.at(t);
-        first.get_or_insert_with(|| (t, y.to_vec()));
+        steps.note(t, y);
         if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let start = Instant::now();
@@ -211,8 +214,12 @@ fn integrate_into(
     if let Some(verification) = &mut verification {
         compare_resets(verification, model, &assembly, &flow, occurrences)?;
     }
-    let passed_at_start =
-        first.filter(|_| begins).map(|first| beyond_at_once(&mut flow, &plan, first)).unwrap_or_default();
+    let passed_at_start = steps
+        .iter()
+        .next()
+        .filter(|_| begins)
+        .map(|first| beyond_at_once(&mut flow, &plan, first))
+        .unwrap_or_default();
     let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
     let is_full = given.as_ref().is_some_and(Given::has_failed);
     let ending = match (*ending, error) {
@@ -235,7 +242,22 @@ fn integrate_into(
     };
     let estimate =
         estimate.map(|estimate| Estimate::of(&estimate, &mut flow, (&solved, &tolerances), &mut table));
+    let resets = assembly.events.iter().any(|event| !event.resets.is_empty());
+    let keeps_energy = assembly.keeps_energy() && !resets;
+    let lost = match &ending {
+        Ending::Completed | Ending::Event { .. } if !resets => {
+            let states: Vec<(f64, &[f64])> = steps.iter().collect();
+            lost_integral(&table, (&assembly, keeps_energy), &mut flow, &states)
+        }
+        _ => None,
+    };
     trajectory.iter().for_each(|(_, y)| note_largest(&mut largest, y));
+    let lost_inertia = match &ending {
+        Ending::Failed(error) => {
+            error.reached().and_then(|reached| lost_inertia(&assembly, &mut flow, plan.t_start, reached))
+        }
+        _ => None,
+    };
     let statistics = *trajectory.statistics();
     let fine = again
         .as_mut()
@@ -251,7 +273,9 @@ fn integrate_into(
         constraints,
         dropped: dropped(&assembly),
         jumps: jumps(&assembly),
-        keeps_energy: assembly.keeps_energy() && assembly.events.iter().all(|event| event.resets.is_empty()),
+        keeps_energy,
+        lost,
+        lost_inertia,
         fine,
         statistics,
         plan,
@@ -268,12 +292,12 @@ fn integrate_into(
 /// The events whose functions are zero at the start and go on in the direction of the event: this is
 /// no passage. The sides are those at the end of the first step, or of the part of it before an
 /// event.
-fn beyond_at_once(flow: &mut Flow, plan: &Plan, (t, y): (f64, Vec<f64>)) -> Vec<usize> {
+fn beyond_at_once(flow: &mut Flow, plan: &Plan, (t, y): (f64, &[f64])) -> Vec<usize> {
     let count = flow.events.events().len();
     let (mut before, mut after) = (vec![f64::NAN; count], vec![f64::NAN; count]);
     let start = flow.start.clone();
     let evaluated = flow.events.evaluate(plan.t_start, &start, &mut before).is_ok()
-        && flow.events.evaluate(t, &y, &mut after).is_ok();
+        && flow.events.evaluate(t, y, &mut after).is_ok();
     let goes = |&i: &usize| before[i] == 0.0 && flow.events.events()[i].crosses().leaves(-after[i]);
     if evaluated { (0..count).filter(goes).collect() } else { Vec::new() }
 }
@@ -356,15 +380,23 @@ pub fn drawn(run: &Run, wanted: &Wanted) -> Result<Drawing, CliError> {
 }
 
 impl Run {
-    /// An error unless the run was completed.
+    /// An error unless the run was completed and kept what it is proved to keep.
     pub(crate) fn outcome(self) -> Result<(), CliError> {
         let names = self.state;
+        if let Some(lost) = self.lost {
+            return Err(CliError::Lost(lost));
+        }
         match self.ending {
             // The error of the file says why it is unwritten.
             Ending::Completed | Ending::Event { .. } | Ending::Unwritten => Ok(()),
             Ending::Interrupted => Err(CliError::Interrupted { t: self.statistics.current_time }),
             Ending::Ended(limit) => Err(CliError::Ended { t: self.statistics.current_time, limit }),
-            Ending::Failed(cause) => Err(CliError::Integration { cause, names, jumps: self.jumps }),
+            Ending::Failed(cause) => Err(CliError::Integration {
+                cause,
+                names,
+                jumps: self.jumps,
+                lost_inertia: self.lost_inertia,
+            }),
         }
     }
 }

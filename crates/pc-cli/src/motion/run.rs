@@ -5,6 +5,7 @@ use std::time::Duration;
 use pc_solve::{Slide, SolveError, Spent, Statistics};
 
 use crate::motion::estimate::Estimate;
+use crate::motion::lost_integral::LostIntegral;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
 use crate::motion::tolerances::Tolerances;
@@ -51,6 +52,10 @@ pub struct Run {
     pub slides: Vec<Slide>,
     /// How it ended.
     pub ending: Ending,
+    /// An integral that is proved to be kept, and is not: the motion is wrong.
+    pub lost: Option<LostIntegral>,
+    /// Of a motion that failed, the velocity that has lost its inertia, and what is left of it.
+    pub lost_inertia: Option<(String, f64)>,
     /// The result of the second derivation, if it was made.
     pub verification: Option<Verification>,
     /// The work done.

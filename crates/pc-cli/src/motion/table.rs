@@ -247,7 +247,7 @@ impl Table {
             }
         };
         // A ratio means nothing where the start value is no larger than the drift.
-        Drift { absolute, relative: (absolute < start.abs()).then(|| absolute / start.abs()) }
+        Drift { start, absolute, relative: (absolute < start.abs()).then(|| absolute / start.abs()) }
     }
 }
 
@@ -260,6 +260,8 @@ fn raised(worst: f64, change: f64) -> f64 {
 /// How far a quantity went from its start value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
+    /// I(t_start)
+    pub start: f64,
     /// max |I(t) − I(t_start)|
     pub absolute: f64,
     /// The same, divided by |I(t_start)| where that is larger.

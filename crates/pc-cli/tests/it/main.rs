@@ -6,6 +6,7 @@ mod bench;
 mod book;
 mod brackets;
 mod browser;
+mod change_points;
 mod check;
 mod checkpoint;
 mod command_line_page;

@@ -249,7 +249,7 @@ fn smallest(mut f: impl FnMut(f64) -> f64) -> f64 {
 }
 
 /// det A, n × n and row after row, by elimination with row pivots.
-fn determinant(a: &mut [f64], n: usize) -> f64 {
+pub(crate) fn determinant(a: &mut [f64], n: usize) -> f64 {
     let at = |i: usize, j: usize| i * n + j;
     let mut product = 1.0;
     for k in 0..n {

@@ -2,6 +2,7 @@
 
 use pc_expr::Expr;
 
+use crate::compiled::change_point::watch::Watch;
 use crate::compiled::elimination::cost;
 use crate::compiled::elimination::numeric::Staged;
 use crate::compiled::elimination::symbolic::Unrolled;
@@ -106,6 +107,7 @@ impl FirstOrder<'_> {
             quaternions: self.quaternions.clone(),
             signals: Signals::default(),
             charts: Vec::new(),
+            watch: Watch::default(),
             switches: None,
             jumps: if differentiable { self.jumps()? } else { Vec::new() },
         })

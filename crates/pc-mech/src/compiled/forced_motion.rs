@@ -387,7 +387,13 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
     }
 
     fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
-        self.motion.leads(from, to)
+        let ForcedMotion { motion, force, parameters, values, .. } = self;
+        let mut rates = |motion: &mut Motion, t: f64, y: &[f64], rates: &mut [f64]| {
+            force.force(t, y, values)?;
+            motion.inputs_mut(*parameters).copy_from_slice(values);
+            motion.rhs(t, y, rates)
+        };
+        motion.leads_by(from, to, &mut rates)
     }
 
     fn component_name(&self, i: usize) -> String {

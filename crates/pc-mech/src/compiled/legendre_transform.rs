@@ -18,6 +18,8 @@ use crate::system::system::System;
 pub struct LegendreTransform {
     /// Names of x, η, y, z.
     names: [Vec<String>; 4],
+    /// Names of the unknowns: η, then the constraints.
+    unknowns: Vec<String>,
     parameters: Vec<f64>,
     momenta: Evaluator,
     quasi_velocities: QuasiVelocities,
@@ -178,7 +180,8 @@ impl LegendreTransform {
         nearby: Option<&FirstOrder<'g>>,
     ) -> Result<LegendreTransform, MechError> {
         let solved = QuasiVelocities::solved(equations, nearby)?;
-        LegendreTransform::new(system, momenta, &system.momenta(), solved)
+        let transform = LegendreTransform::new(system, momenta, &system.momenta(), solved)?;
+        Ok(LegendreTransform { unknowns: equations.names.clone(), ..transform })
     }
 
     fn new<'g>(
@@ -196,6 +199,7 @@ impl LegendreTransform {
         };
         let momenta = Program::new(system.graph(), &inputs, momenta)?;
         Ok(LegendreTransform {
+            unknowns: eta.iter().map(Expr::to_string).collect(),
             names: [x, eta, symbols, &states].map(|symbols| symbols.iter().map(Expr::to_string).collect()),
             parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
             momenta: Evaluator::new(momenta, Backend::Interpreter),
@@ -289,8 +293,8 @@ impl LegendreTransform {
 
     /// The error at the state (x, y).
     fn error(&self, failure: EvaluationFailure, t: f64, state: &[f64]) -> MechError {
-        let [x, eta, y, z] = &self.names;
-        failure.at(eta, t, &[&x[..], y, z].concat(), state)
+        let [x, _, y, z] = &self.names;
+        failure.at(&self.unknowns, t, &[&x[..], y, z].concat(), state)
     }
 }
 

@@ -5,6 +5,7 @@ use pc_expr::{
     Cost, Digest, Evaluator, Expr, Failure, Pattern, Program, RateJump, VariedSeries, VectorField,
 };
 
+use crate::compiled::change_point::watch::Watch;
 use crate::compiled::chart::Chart;
 use crate::compiled::elimination::numeric::{OF_A_LOOP, Staged};
 use crate::compiled::elimination::schur::Schur;
@@ -44,6 +45,8 @@ pub struct Motion {
     pub(super) signals: Signals,
     /// The conditions under which the state determines velocities.
     pub(super) charts: Vec<Chart>,
+    /// How far the constraints are from losing rank, and the motion across such a place.
+    pub(super) watch: Watch,
     /// Where f jumps, if it has derivatives.
     pub(super) jumps: Vec<RateJump>,
     /// f on one side of each surface, if it has several pieces.
@@ -158,6 +161,7 @@ impl Motion {
 
     /// The values of the parameters, to be changed.
     pub fn parameters_mut(&mut self) -> &mut [f64] {
+        self.watch.forget();
         match &mut self.form {
             Form::InMomenta(motion) => return motion.inner_mut().parameters_mut(),
             Form::Unrolled(unrolled) => unrolled.forget(),
@@ -280,7 +284,10 @@ impl Motion {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         assert_eq!(values.len(), self.observable_names.len(), "number of observables");
         let known = self.signals.show(t, &mut self.parameters).is_ok();
-        if known && solved && let Some(switches) = &mut self.switches {
+        if known
+            && solved
+            && let Some(switches) = &mut self.switches
+        {
             switches.follow(&self.parameters);
             if switches.observe(t, y, values) {
                 return;
@@ -353,6 +360,7 @@ impl Motion {
             parameters: Vec::new(),
             signals: Signals::default(),
             charts: Vec::new(),
+            watch: Watch::default(),
             jumps: inner.jumps.clone(),
             switches: None,
             options: inner.options,

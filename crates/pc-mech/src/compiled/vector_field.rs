@@ -5,6 +5,7 @@ use pc_expr::{
     VectorField,
 };
 
+use crate::compiled::change_point::bridge::Rates;
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::motion::{Form, Motion, Switches};
@@ -17,7 +18,7 @@ const MOST_RETURNS: usize = 4;
 impl Motion {
     /// Projects to unit quaternions, then to the constraints by the shortest way in the kinetic metric, then along them
     /// to the integrals.
-    fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), EvaluationFailure> {
+    pub(super) fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.quaternions.normalise(y);
         if let Some(surface) = &mut self.surface {
             surface.project(t, y, &self.parameters)?;
@@ -56,6 +57,10 @@ impl Motion {
         entries: &mut [f64],
         storage: Storage,
     ) -> Result<(), Failure> {
+        if self.watch.bridge(t, y).is_some() {
+            entries.fill(0.0); // its rates are functions of time
+            return Ok(());
+        }
         if let Some(switches) = self.holding() {
             let written = match storage {
                 Storage::Dense => switches.jacobian(t, y, entries),
@@ -88,6 +93,10 @@ impl VectorField for Motion {
 
     #[inline]
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        if let Some(bridge) = self.watch.bridge(t, y) {
+            bridge.rates(t, ydot);
+            return Ok(());
+        }
         if let Some(switches) = self.holding() {
             let written = switches.rhs(t, y, ydot);
             if is_written(&written) {
@@ -184,6 +193,9 @@ impl VectorField for Motion {
     }
 
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        if self.watch.bridge(t, y).is_some() {
+            return Ok(()); // on it states satisfy the constraints, which do not say how to get there
+        }
         if let Form::InMomenta(motion) = &mut self.form {
             return motion.project(t, y);
         }
@@ -222,6 +234,7 @@ impl VectorField for Motion {
 
     fn expand(&mut self, t: f64, y: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
         self.check_series()?;
+        self.watch.refuse_bridges();
         if let Some(switches) = &mut self.switches {
             switches.follow(&self.parameters);
             return switches.expand(t, y, order);
@@ -290,6 +303,9 @@ impl VectorField for Motion {
     }
 
     fn restart(&mut self, t: f64, y: &[f64]) {
+        if self.watch.bridge(t, y).is_none() {
+            self.watch.forget();
+        }
         if let Form::InMomenta(motion) = &mut self.form {
             return motion.restart(t, y);
         }
@@ -333,26 +349,7 @@ impl VectorField for Motion {
     }
 
     fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
-        if self.charts.is_empty() {
-            return Ok(());
-        }
-        let mut charts = std::mem::take(&mut self.charts);
-        let undetermined = charts.iter_mut().any(|chart| {
-            let Some(passage) = chart.passage(from, to, self.parameters()) else {
-                return false;
-            };
-            let mut rates = vec![f64::NAN; to.1.len()];
-            let outcome = self.rhs(to.0, to.1, &mut rates);
-            let velocities = &rates[..self.coordinates];
-            !(outcome.is_ok() && chart.rests(passage, to, velocities, self.parameters()))
-        });
-        self.charts = charts;
-        match undetermined {
-            true => {
-                Err(Failure::fatal(MechError::Frame(FrameError::Undetermined { from: from.0, to: to.0 })))
-            }
-            false => Ok(()),
-        }
+        self.leads_by(from, to, &mut |motion, t, y, rates| motion.rhs(t, y, rates))
     }
 
     fn component_name(&self, i: usize) -> String {
@@ -370,6 +367,36 @@ impl Motion {
     #[inline]
     fn holding(&mut self) -> Option<&mut Switches> {
         self.switches.as_deref_mut().filter(|switches| switches.holds())
+    }
+
+    /// [`leads`](VectorField::leads) with these rates.
+    pub(super) fn leads_by(
+        &mut self,
+        from: (f64, &[f64]),
+        to: (f64, &[f64]),
+        rates: &mut Rates<'_>,
+    ) -> Result<(), Failure> {
+        self.watch_rank(from, to, rates)?;
+        if self.charts.is_empty() {
+            return Ok(());
+        }
+        let mut charts = std::mem::take(&mut self.charts);
+        let undetermined = charts.iter_mut().any(|chart| {
+            let Some(passage) = chart.passage(from, to, self.parameters()) else {
+                return false;
+            };
+            let mut there = vec![f64::NAN; to.1.len()];
+            let outcome = rates(self, to.0, to.1, &mut there);
+            let velocities = &there[..self.coordinates];
+            !(outcome.is_ok() && chart.rests(passage, to, velocities, self.parameters()))
+        });
+        self.charts = charts;
+        match undetermined {
+            true => {
+                Err(Failure::fatal(MechError::Frame(FrameError::Undetermined { from: from.0, to: to.0 })))
+            }
+            false => Ok(()),
+        }
     }
 
     /// The reason why there are no series, if there are none.

@@ -41,6 +41,22 @@ pub enum ConstraintError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
+    /// A constraint that depends on the others at a place that the motion reaches, though not before.
+    #[error(
+        "near t = {t} the constraint `{constraint}` depends on the others and leaves `{quasi_velocity}` free: motions may \
+         cross there, and this one cannot be followed across{}",
+        listed(state)
+    )]
+    RankLost {
+        /// Its name.
+        constraint: String,
+        /// The quasi-velocity that it determined last.
+        quasi_velocity: String,
+        /// Time.
+        t: f64,
+        /// Names and values of the state.
+        state: Vec<(String, f64)>,
+    },
     /// A constraint that was dropped because it follows from the others, but does not do so
     /// everywhere.
     #[error(

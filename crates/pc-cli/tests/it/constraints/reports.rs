@@ -37,7 +37,7 @@ fn a_singular_place_on_the_way_ends_the_run() {
                 edge = \"y^2 - x^3\"\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n[simulation]\nt_end = 2.0\nsamples = 21\n";
     // The length of y² = x³ from (1, 1) to the cusp is (13√13 − 8)/27, the speed is √13.
     let arrival = (13.0 * 13f64.sqrt() - 8.0) / 27.0 / 13f64.sqrt();
-    for (method, reason) in [("auto", "the steps have become too short"), ("adams", "`edge`")] {
+    for method in ["auto", "adams"] {
         let output = pc(cusp, &["run", "-", "--method", method]);
         let text = stderr(&output);
         assert_eq!(output.status.code(), Some(5), "{text}");
@@ -47,7 +47,7 @@ fn a_singular_place_on_the_way_ends_the_run() {
         // Near the cusp x ~ t_1 − t and y ~ x^(3/2): a step of the square root of the tolerance is
         // lost there.
         assert!((t - arrival).abs() < 1e-4, "{t} {arrival}");
-        assert!(text.contains(reason), "{text}");
+        assert!(text.contains("`edge`"), "{text}");
         let (_, rows) = table(&String::from_utf8(output.stdout).expect("UTF-8"));
         let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
         assert_eq!(times, [0.0, 0.1, 0.2, 0.3], "what was reached is kept");

@@ -46,6 +46,8 @@ pub(crate) struct Saddle {
     moved: Vec<f64>,
     reduced_mass: Vec<f64>,
     reduced_sizes: Vec<f64>,
+    /// The pivots of C, relative to the coefficients of their rows.
+    pivots: Vec<f64>,
 }
 
 impl Saddle {
@@ -76,6 +78,7 @@ impl Saddle {
             moved: vec![0.0; k * free],
             reduced_mass: vec![0.0; free * (free + 1) / 2],
             reduced_sizes: vec![0.0; free],
+            pivots: vec![0.0; rank],
         }
     }
 
@@ -123,6 +126,24 @@ impl Saddle {
         self.rows[..self.rank].iter().any(|&row| row >= self.rank)
     }
 
+    /// How far C is from losing rank.
+    pub(crate) fn independence(&self) -> Independence {
+        let negative = (0..self.rank).filter(|&step| self.factor(step, step) < 0.0).count() % 2 == 1;
+        let (rows, columns) = (&self.rows[..self.rank], &self.columns[..self.rank]);
+        let pivot = |step: usize| Pivot {
+            constraint: rows[step],
+            unknown: columns[step],
+            size: self.pivots[step] * self.row_sizes[rows[step]],
+        };
+        Independence {
+            pivots: (0..self.rank).map(pivot).collect(),
+            row_sizes: self.row_sizes.clone(),
+            is_negative: negative ^ is_odd(rows) ^ is_odd(columns),
+            rows: sorted(rows),
+            columns: sorted(columns),
+        }
+    }
+
     /// C = L U up to the order of rows and columns, with complete pivoting. Coefficients are compared after division by
     /// the largest of their row and by the square root of the mass of their unknown, so that units do not matter; an
     /// unknown without mass counts as the lightest of the others.
@@ -152,6 +173,7 @@ impl Saddle {
                 let this = size(row, column);
                 if this > best.2 { (row, column, this) } else { best }
             });
+            self.pivots[step] = largest;
             if largest <= VANISHING_PIVOT {
                 return Err(EvaluationFailure::Constraint { index: k + self.rows[step] });
             }
@@ -279,6 +301,51 @@ impl Saddle {
         }
         self.room = room;
     }
+}
+
+/// How far the rows of C are from depending on each other.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Independence {
+    /// The pivots of C in their order.
+    pub(crate) pivots: Vec<Pivot>,
+    /// The largest coefficient of each row, in units in which the mass of each unknown is 1.
+    pub(crate) row_sizes: Vec<f64>,
+    /// The minor that was eliminated, and its sign.
+    pub(crate) rows: Vec<usize>,
+    columns: Vec<usize>,
+    is_negative: bool,
+}
+
+/// A pivot of C.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pivot {
+    /// The index of its constraint.
+    pub(crate) constraint: usize,
+    /// The unknown that it determines.
+    pub(crate) unknown: usize,
+    /// Its size, in units in which the mass of that unknown is 1.
+    pub(crate) size: f64,
+}
+
+impl Independence {
+    /// Whether the sign of the minor has changed: then either it vanishes between, or rank is lost there. `None` if
+    /// they are different minors.
+    pub(crate) fn is_reversed(&self, later: &Independence) -> Option<bool> {
+        let same = self.rows == later.rows && self.columns == later.columns;
+        same.then_some(self.is_negative != later.is_negative)
+    }
+}
+
+fn sorted(places: &[usize]) -> Vec<usize> {
+    let mut places = places.to_vec();
+    places.sort_unstable();
+    places
+}
+
+/// Whether so many transpositions sort the list.
+fn is_odd(places: &[usize]) -> bool {
+    let later = |i: usize| places[i + 1..].iter().filter(move |&&place| place < places[i]).count();
+    (0..places.len()).map(later).sum::<usize>() % 2 == 1
 }
 
 #[cfg(test)]

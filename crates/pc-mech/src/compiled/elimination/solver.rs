@@ -3,7 +3,7 @@
 use pc_expr::Pattern;
 
 use crate::compiled::elimination::dense_ldl::DenseLdl;
-use crate::compiled::elimination::saddle_point::Saddle;
+use crate::compiled::elimination::saddle_point::{Independence, Saddle};
 use crate::compiled::failure::EvaluationFailure;
 
 /// A symmetric matrix to be factorised and solved with.
@@ -64,6 +64,14 @@ impl Solver {
         match self {
             Solver::Ldl(_) => false,
             Solver::Saddle(saddle) => saddle.takes_spare(),
+        }
+    }
+
+    /// How far the constraints are from losing rank, if there are any.
+    pub(crate) fn independence(&self) -> Option<Independence> {
+        match self {
+            Solver::Ldl(_) => None,
+            Solver::Saddle(saddle) => Some(saddle.independence()),
         }
     }
 

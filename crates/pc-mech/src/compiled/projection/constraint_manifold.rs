@@ -2,6 +2,7 @@
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
+use crate::compiled::elimination::saddle_point::Independence;
 use crate::compiled::elimination::solver::Solver;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::point::Point;
@@ -82,6 +83,8 @@ pub(crate) struct Surface {
     /// Masses by which steps of the quasi-velocities are measured, all positive.
     pub(super) weights: Vec<f64>,
     solver: Solver,
+    /// The time for which it is factorised.
+    factorised: f64,
     /// A right-hand side, then a solution.
     pub(super) change: Vec<f64>,
     /// x, then δπ.
@@ -90,7 +93,7 @@ pub(crate) struct Surface {
     /// The velocities to which the nearest solution is sought.
     pub(super) given: Vec<f64>,
     /// Whether g is affine in η, so that one step leads to the nearest solution.
-    pub(super) affine: bool,
+    pub(crate) affine: bool,
 }
 
 /// Storage for a step of Newton's method: its start, its change, and the errors of f there.
@@ -137,6 +140,7 @@ impl Surface {
             entries: vec![0.0; conditions.lower.len()],
             lower: conditions.lower,
             solver: Solver::of_rank(k + m, m, conditions.rank),
+            factorised: f64::NAN,
             rank: conditions.rank,
             change: vec![0.0; k + m],
             displaced: vec![0.0; inputs.state.len()],
@@ -188,7 +192,35 @@ impl Surface {
         self.bordered.eval(t, y, p, &mut self.entries);
         check_finite(&self.entries, &self.bordered, Point { t, y, p })?;
         self.weigh();
-        self.solver.factorise(&self.lower, &self.entries)
+        self.factorised = f64::NAN;
+        self.solver.factorise(&self.lower, &self.entries)?;
+        self.factorised = t;
+        Ok(())
+    }
+
+    /// How far the constraints are from losing rank at the end (t, y) of a step: where it was projected last, that is
+    /// known.
+    pub(crate) fn independence(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        p: &[f64],
+    ) -> Result<Option<Independence>, EvaluationFailure> {
+        if self.factorised != t {
+            self.factorise(t, y, p)?;
+        }
+        Ok(self.solver.independence())
+    }
+
+    /// The same at any state.
+    pub(crate) fn independence_at(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        p: &[f64],
+    ) -> Result<Option<Independence>, EvaluationFailure> {
+        self.factorise(t, y, p)?;
+        Ok(self.solver.independence())
     }
 
     /// Takes the weights from the diagonal of the mass matrix; what has no mass weighs as little as the lightest.

@@ -1,0 +1,266 @@
+//! The motion across a place where constraints lose rank.
+
+use std::ops::Range;
+
+use pc_expr::Failure;
+
+use crate::compiled::change_point::collocation::Collocation;
+use crate::compiled::change_point::watch::Seen;
+use crate::compiled::elimination::saddle_point::Independence;
+use crate::compiled::failure::EvaluationFailure;
+use crate::compiled::motion::Motion;
+use crate::compiled::point::Point;
+use crate::error::{ConstraintError, MechError};
+
+/// The least pivot below which a place where it vanishes is looked for ahead: steps get short there.
+const NEAR: f64 = 0.1;
+
+/// So many steps ahead.
+const STEPS_AHEAD: f64 = 5.0;
+
+/// The least pivot that is rounding: positions are known to 1e-16, directions to this part of it.
+const LOST: f64 = 1e-7;
+
+/// The error of a bridge, as a part of the state: the tolerance of a projection, which rates near the place magnify by
+/// the inverse of the least pivot; and the largest that is allowed.
+const MAGNIFIED: f64 = 1e-11;
+const LARGEST_ERROR: f64 = 1e-8;
+
+/// The error up to which a step across the place is confirmed, and the part of its length that is tried last.
+const CONFIRMED: f64 = 1e-3;
+const COARSE: f64 = 1e-6;
+const SHORTEST: f64 = 1.0 / 256.0;
+
+/// The parts of a smooth motion, in each of which constraints turn by less than a right angle.
+const PARTS: usize = 16;
+
+/// The number of halvings by which the place is found.
+const HALVINGS: usize = 30;
+
+/// What becomes of the rank of the constraints along a smooth motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Rank {
+    /// Nothing.
+    Full,
+    /// It is lost at a state that satisfies the constraints: motions cross there.
+    Lost,
+    /// It is lost at a state that does not: this is no motion, since it leaves the surface for another sheet of it.
+    Passed,
+}
+
+/// Writes the rates of a motion at (t, y).
+pub(crate) type Rates<'a> = dyn FnMut(&mut Motion, f64, &[f64], &mut [f64]) -> Result<(), Failure> + 'a;
+
+impl Motion {
+    /// Watches the rank of the constraints from one end of a step to the other; builds a bridge where it is lost ahead.
+    ///
+    /// # Errors
+    /// [`RankLost`](crate::ConstraintError::RankLost) where the motion is undetermined.
+    pub(in crate::compiled) fn watch_rank(
+        &mut self,
+        from: (f64, &[f64]),
+        to: (f64, &[f64]),
+        rates: &mut Rates<'_>,
+    ) -> Result<(), Failure> {
+        if !self.surface.as_ref().is_some_and(|surface| surface.affine) {
+            return Ok(());
+        }
+        if self.watch.bridge(from.0, from.1).is_some_and(|bridge| bridge.end != from.0) {
+            return Ok(());
+        }
+        self.watch.bridge = None;
+        let known = self.watch.last.take().filter(|seen| seen.t == from.0 && seen.state == from.1);
+        self.compare(from, to, known, rates)
+    }
+
+    fn compare(
+        &mut self,
+        from: (f64, &[f64]),
+        to: (f64, &[f64]),
+        known: Option<Seen>,
+        rates: &mut Rates<'_>,
+    ) -> Result<(), Failure> {
+        let after = self.independence_after(to);
+        let Some(later) = after.map_err(|failure| self.failure(failure, to.0, to.1))? else { return Ok(()) };
+        let before = match known {
+            Some(seen) => Some(seen),
+            None => {
+                let start =
+                    self.independence_at(from).map_err(|failure| self.failure(failure, from.0, from.1))?;
+                start.map(|rank| Seen::new(from, rank))
+            }
+        };
+        let Some(before) = before else { return Ok(()) };
+        let reversed = self.is_reversed((&before.rank, from), (&later, to));
+        let is_reversed = reversed.map_err(|failure| self.failure(failure, to.0, to.1))?;
+        let (was, step) = (before.least, to.0 - from.0);
+        let mut now = before.then(to, later);
+        if is_reversed && !self.passes(from, to, rates) {
+            return Err(self.rank_lost(&now));
+        }
+        let shrinks = was - now.least;
+        let ahead = step * now.least / shrinks;
+        if shrinks > 0.0 && now.least <= NEAR && ahead.abs() <= STEPS_AHEAD * step.abs() {
+            if 2.0 * ahead.abs() <= now.tried {
+                now.tried = ahead.abs();
+                let end = to.0 + 2.0 * ahead;
+                match self.ahead(to, end, now.least, rates) {
+                    Some((_, Rank::Lost)) if !self.takes_bridge(to.0, end) => {
+                        return Err(self.rank_lost(&now));
+                    }
+                    Some((motion, Rank::Full | Rank::Lost)) if self.takes_bridge(to.0, end) => {
+                        self.watch.bridge = Some(Box::new(motion));
+                    }
+                    _ => {}
+                }
+            }
+            if self.watch.bridge.is_none() && now.least <= LOST * now.largest {
+                return Err(self.rank_lost(&now));
+            }
+        }
+        self.watch.last = Some(now);
+        Ok(())
+    }
+
+    #[cold]
+    fn rank_lost(&self, at: &Seen) -> Failure {
+        let (constraint, unknown) = at.least_determined();
+        Failure::fatal(MechError::Constraint(ConstraintError::RankLost {
+            constraint: self.constraints[constraint].clone(),
+            quasi_velocity: self.quasi_velocities[unknown].clone(),
+            t: at.t,
+            state: self.names.iter().cloned().zip(at.state.iter().copied()).collect(),
+        }))
+    }
+
+    /// The smooth motion to `end`, and what becomes of the rank on it.
+    fn ahead(
+        &mut self,
+        from: (f64, &[f64]),
+        end: f64,
+        least: f64,
+        rates: &mut Rates<'_>,
+    ) -> Option<(Collocation, Rank)> {
+        let motion = self.smooth(from, end, (MAGNIFIED / least).min(LARGEST_ERROR), rates)?;
+        let rank = self.rank_along(&motion)?;
+        Some((motion, rank))
+    }
+
+    /// Whether a polynomial may stand for the motion: it has no derivatives by state and parameters, and knows nothing
+    /// of forces that jump or kink.
+    fn takes_bridge(&self, from: f64, end: f64) -> bool {
+        let has_derivatives = self.options.jvp || self.options.parameter_jacobian;
+        let breaks = self.signals.breaks().iter().any(|&t| (t - from) * (t - end) <= 0.0);
+        !has_derivatives && !breaks && !self.watch.refuses && self.switches.is_none()
+    }
+
+    /// Whether a step between whose ends rank may have been lost follows the smooth motion.
+    fn passes(&mut self, from: (f64, &[f64]), to: (f64, &[f64]), rates: &mut Rates<'_>) -> bool {
+        let (mut t, mut y) = (from.0, from.1.to_vec());
+        let (mut length, mut is_lost) = (to.0 - from.0, false);
+        while length.abs() >= SHORTEST * (to.0 - from.0).abs() {
+            let is_last = (to.0 - t).abs() <= length.abs();
+            let end = if is_last { to.0 } else { t + length };
+            let Some(motion) = self.smooth((t, &y), end, COARSE, rates) else {
+                length *= 0.5;
+                continue;
+            };
+            match self.rank_along(&motion) {
+                Some(Rank::Full) => {}
+                Some(Rank::Lost) => is_lost = true,
+                Some(Rank::Passed) | None => return false,
+            }
+            (t, y) = (end, motion.state(end));
+            if is_last {
+                return !is_lost || motion.distance(&y, to.1) <= CONFIRMED;
+            }
+        }
+        false
+    }
+
+    /// The smooth motion from a state to a time.
+    fn smooth(
+        &mut self,
+        from: (f64, &[f64]),
+        end: f64,
+        tolerance: f64,
+        rates: &mut Rates<'_>,
+    ) -> Option<Collocation> {
+        let (n, all) = (self.coordinates, self.names.len());
+        let groups: [Range<usize>; 3] = [0..n, n..all - self.states, all - self.states..all];
+        let mut flow = |t: f64, y: &mut [f64], written: &mut [f64]| {
+            self.project_in_turn(t, y).is_ok() && rates(self, t, y, written).is_ok()
+        };
+        Collocation::new(&mut flow, from, end, &groups, tolerance)
+    }
+
+    /// What becomes of the rank along a smooth motion: the orientation of the space that the constraints span changes
+    /// where it is lost.
+    fn rank_along(&mut self, motion: &Collocation) -> Option<Rank> {
+        let at = |field: &mut Motion, t: f64| {
+            let state = motion.state(t);
+            let rank = field.independence_at((t, &state)).ok().flatten()?;
+            Some((t, state, rank))
+        };
+        let mut found = Rank::Full;
+        let start = at(self, motion.start)?;
+        let mut before = start.clone();
+        for part in 1..=PARTS {
+            let next = at(self, motion.start + (motion.end - motion.start) * part as f64 / PARTS as f64)?;
+            if self.turns(&before, &next)? {
+                let (mut low, mut high) = (before.0, next.0);
+                for _ in 0..HALVINGS {
+                    let middle = at(self, 0.5 * (low + high))?;
+                    if self.turns(&before, &middle)? { high = middle.0 } else { low = middle.0 }
+                }
+                if !self.crosses(motion, high, (start.0, &start.1))? {
+                    return Some(Rank::Passed);
+                }
+                found = Rank::Lost;
+            }
+            before = next;
+        }
+        // Where rank is lost twice at once, the orientation is the same before and after.
+        let middle = 0.5 * (motion.start + motion.end);
+        Some(if self.crosses(motion, middle, (start.0, &start.1))? { found } else { Rank::Passed })
+    }
+
+    fn turns(
+        &mut self,
+        a: &(f64, Vec<f64>, Independence),
+        b: &(f64, Vec<f64>, Independence),
+    ) -> Option<bool> {
+        self.is_reversed((&a.2, (a.0, &a.1)), (&b.2, (b.0, &b.1))).ok()
+    }
+
+    /// Whether the constraints hold at a time of a smooth motion where they may have lost rank.
+    fn crosses(&mut self, motion: &Collocation, t: f64, start: (f64, &[f64])) -> Option<bool> {
+        let state = motion.state(t);
+        let Motion { surface: Some(surface), parameters: p, .. } = self else { return None };
+        surface.crosses(Point { t, y: &state, p }, Point { t: start.0, y: start.1, p }).ok()
+    }
+
+    fn independence_after(
+        &mut self,
+        (t, y): (f64, &[f64]),
+    ) -> Result<Option<Independence>, EvaluationFailure> {
+        let Motion { surface, parameters, .. } = self;
+        surface.as_mut().map_or(Ok(None), |surface| surface.independence(t, y, parameters))
+    }
+
+    fn independence_at(&mut self, (t, y): (f64, &[f64])) -> Result<Option<Independence>, EvaluationFailure> {
+        let Motion { surface, parameters, .. } = self;
+        surface.as_mut().map_or(Ok(None), |surface| surface.independence_at(t, y, parameters))
+    }
+
+    fn is_reversed(
+        &mut self,
+        (before, from): (&Independence, (f64, &[f64])),
+        (later, to): (&Independence, (f64, &[f64])),
+    ) -> Result<bool, EvaluationFailure> {
+        let Motion { surface, parameters: p, .. } = self;
+        let Some(surface) = surface else { return Ok(false) };
+        let (from, to) = (Point { t: from.0, y: from.1, p }, Point { t: to.0, y: to.1, p });
+        surface.is_reversed((before, from), (later, to))
+    }
+}

@@ -1,0 +1,89 @@
+//! Whether constraints hold where they lose rank.
+
+use pc_algebra::Matrix;
+
+use crate::compiled::chart::determinant;
+use crate::compiled::elimination::saddle_point::Independence;
+use crate::compiled::failure::EvaluationFailure;
+use crate::compiled::point::Point;
+use crate::compiled::projection::constraint_manifold::Surface;
+use crate::compiled::projection::nearest::dot;
+use crate::numeric::singular_values::SingularValues;
+
+/// The residual that rounding may cause, in units of the bounds of all of them.
+const ROUNDINGS: f64 = 2.0;
+
+/// A singular value of the constraints, with rows of length 1 before, that has fallen to this part is that of a rank
+/// that is lost.
+const FALLEN: f64 = 0.2;
+
+impl Surface {
+    /// Whether the constraints on positions hold at a state near which they lose rank, in the combinations u, uᵀ C ≈ 0,
+    /// that restrict nothing there: then surfaces cross at that place. Otherwise one of two sheets passes by it, and the
+    /// residual uᵀ f is the gap between them. `before` is a state at which the rank is still full.
+    pub(crate) fn crosses(&mut self, at: Point<'_>, before: Point<'_>) -> Result<bool, EvaluationFailure> {
+        let rows = self.rows(before)?;
+        let lengths: Vec<f64> = (0..rows.rows()).map(|a| length(&rows.row(a))).collect();
+        let of_length_1 = |rows: &Matrix<f64>| {
+            Matrix::from_fn(rows.rows(), rows.columns(), |a, s| rows[(a, s)] / lengths[a])
+        };
+        let full = singular(&of_length_1(&rows))?;
+        let found = singular(&of_length_1(&self.rows(at)?))?;
+        self.positions.try_eval(at)?;
+        for (a, (value, was)) in found.values.iter().zip(&full.values).enumerate() {
+            if *value > FALLEN * was {
+                continue;
+            }
+            let (mut residual, mut bound) = (0.0, 0.0);
+            let conditions = self.positions.values().iter().zip(self.positions.errors());
+            for (&place, (f, error)) in self.places.iter().zip(conditions) {
+                let u = found.left[(place, a)] / lengths[place];
+                residual += u * f;
+                bound += u.abs() * error;
+            }
+            if residual.abs() > ROUNDINGS * bound {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Whether the space that the independent constraints span has the other orientation at the later state: it turns
+    /// from one to the other within less than a right angle unless rank is lost between, det C C'ᵀ > 0.
+    pub(crate) fn is_reversed(
+        &mut self,
+        (before, from): (&Independence, Point<'_>),
+        (later, to): (&Independence, Point<'_>),
+    ) -> Result<bool, EvaluationFailure> {
+        if let Some(is_reversed) = before.is_reversed(later) {
+            return Ok(is_reversed);
+        }
+        let (first, second) = (self.rows(from)?, self.rows(to)?);
+        let m = later.rows.len();
+        let along = |a: usize, b: usize| dot(&first.row(a), &second.row(b));
+        let mut products: Vec<f64> = later
+            .rows
+            .iter()
+            .flat_map(|&a| later.rows.iter().map(move |&b| (a, b)))
+            .map(|(a, b)| along(a, b))
+            .collect();
+        Ok(determinant(&mut products, m) <= 0.0)
+    }
+
+    /// C by rows, with each unknown in units in which its mass is 1.
+    fn rows(&mut self, at: Point<'_>) -> Result<Matrix<f64>, EvaluationFailure> {
+        let rows = self.coefficients(at)?.constraints;
+        self.weigh();
+        Ok(Matrix::from_fn(rows.len(), self.k, |a, s| rows[a][s] / self.weights[s].sqrt()))
+    }
+}
+
+/// The length of a row; 1 for one that vanishes.
+fn length(row: &[f64]) -> f64 {
+    let length = row.iter().copied().fold(0.0, f64::hypot);
+    if length > 0.0 { length } else { 1.0 }
+}
+
+fn singular(rows: &Matrix<f64>) -> Result<SingularValues, EvaluationFailure> {
+    SingularValues::of(rows).map_err(|_| EvaluationFailure::NoProjection { unknowns: 0 })
+}
