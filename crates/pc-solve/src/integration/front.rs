@@ -11,6 +11,9 @@ use crate::integration::held_sides::write_functions;
 use crate::integration::integration::Integration;
 use crate::integration::stepper::Stepper;
 
+/// Along surfaces steps are looked at in so many times as many parts.
+const ALONG_SURFACES: u32 = 16;
+
 impl<S: Stepper, E: Events> Integration<S, E> {
     /// Moves the front to the next event or to the end of the next step.
     pub(crate) fn go_on(&mut self, towards: f64) -> Result<(), SolveError> {
@@ -160,7 +163,10 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         separated &=
             needs_no_states || !self.engine.field().has_projection() && !self.held.sides.contains(&0.0);
         if !separated {
-            let (pieces, length) = (self.engine.limits().samples_per_step, to - from);
+            // What keeps a motion on a surface changes with time while the state may rest: steps are then long.
+            let density = if kept.is_empty() { 1 } else { ALONG_SURFACES };
+            let pieces = self.engine.limits().samples_per_step.saturating_mul(density);
+            let length = to - from;
             times.extend((1..pieces).map(|k| from + length * (f64::from(k) / f64::from(pieces))));
         }
         times.sort_unstable_by(|a, b| ((a - b) * direction).total_cmp(&0.0));

@@ -11,9 +11,11 @@ use crate::fuzz::execution::Refusal;
 
 /// Errors add up over the steps from one passage to the next, some ten of one-step methods, each of about the tolerance; a passage
 /// is located on a polynomial of a lower order than the step.
-const OF_ONE_STEP: f64 = 100.0;
+const OF_ONE_STEP: f64 = 1000.0;
 /// Over hundreds of multistep methods, which begin at order 1 after each passage.
 const OF_MULTISTEP: f64 = 2000.0;
+/// Over thousands where the order is at most 5, with errors of one sign.
+const OF_LOW_ORDER: f64 = 20_000.0;
 /// Derivatives are not among what the steps are chosen by, or less so, and have the differences of second derivatives.
 const OF_DERIVATIVES: f64 = 10.0;
 
@@ -38,7 +40,9 @@ pub(super) struct Compared {
 fn factor(method: Method) -> f64 {
     match method {
         Method::Dop853 | Method::Taylor => OF_ONE_STEP,
-        Method::Adams | Method::Bdf | Method::Auto => OF_MULTISTEP,
+        Method::Adams => OF_MULTISTEP,
+        // Auto may change to BDF.
+        Method::Bdf | Method::Auto => OF_LOW_ORDER,
     }
 }
 
