@@ -5,7 +5,6 @@ use pc_solve::{Method, Slide};
 use serde_json::{Map, Value, json};
 
 use crate::motion::run::{Ending, Run};
-use crate::motion::table::Drift;
 use crate::report::text::{assignments, labelled, short, small, wrapped};
 
 const LABEL: usize = 9;
@@ -236,14 +235,21 @@ fn errors(run: &Run) -> Vec<String> {
     lines
 }
 
+/// The error of a column.
+struct LastError {
+    absolute: f64,
+    /// The same, divided by the largest value of the column.
+    relative: Option<f64>,
+}
+
 /// The time of the last row with known errors, and those of the state.
-fn last_errors(run: &Run) -> Option<(f64, Vec<(&str, Drift)>)> {
+fn last_errors(run: &Run) -> Option<(f64, Vec<(&str, LastError)>)> {
     let (table, estimate) = (&run.table, run.estimate.as_ref()?);
     let row = table.rows().nth(estimate.rows.checked_sub(1)?)?;
     let error = |j: usize| {
         let (absolute, largest) = (row[table.error_of(j)?], table.largest(j));
         let relative = (largest > 0.0).then(|| absolute / largest);
-        Some((table.columns()[j].as_str(), Drift { absolute, relative }))
+        Some((table.columns()[j].as_str(), LastError { absolute, relative }))
     };
     let state = table.coordinates().start..table.states().end;
     Some((row[0], state.filter_map(error).collect()))
