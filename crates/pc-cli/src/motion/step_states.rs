@@ -23,7 +23,7 @@ impl StepStates {
             return self.first.push((t, y.to_vec()));
         }
         self.steps += 1;
-        if self.steps % self.stride != 0 {
+        if !self.steps.is_multiple_of(self.stride) {
             return;
         }
         if self.later.len() == MOST {

@@ -108,8 +108,8 @@ pub(crate) fn follow<F: VectorField, E: Events>(
         let result = plan.leg(&mut integration, &mut stand, &mut step);
         stand.statistics = work.followed_by(&integration.statistics());
         let Some(ending) = result.transpose() else {
-            let Checkpoint { time, state, jumped, past, sensitivities, .. } = integration.checkpoint();
-            stand = Checkpoint { time, state, jumped, past, sensitivities, ..stand };
+            let Checkpoint { time, state, jumped, sensitivities, past, .. } = integration.checkpoint();
+            stand = Checkpoint { time, state, jumped, sensitivities, past, ..stand };
             continue;
         };
         let arrived = ending.as_ref().ok().copied();

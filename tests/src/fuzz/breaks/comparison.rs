@@ -63,7 +63,7 @@ pub(super) fn compare(specimen: &Specimen, text: &str, reference: &Reference) ->
         }
         match product.rows(method, variables) {
             Ok(rows) => compared.findings.extend(of_motion(specimen, way, method, &rows, reference)),
-            Err(message) => compared.refused(way, "pc refuses a motion that is determined", message),
+            Err(message) => compared.refused(way, "pc refuses a motion that is determined", &message),
         }
     }
     for (way, method) in [("adams", Method::Adams), ("dop853", Method::Dop853)] {
@@ -75,7 +75,7 @@ pub(super) fn compare(specimen: &Specimen, text: &str, reference: &Reference) ->
                 }
             }
             Err(message) => {
-                compared.refused(way, "pc refuses derivatives of a motion that is determined", message);
+                compared.refused(way, "pc refuses derivatives of a motion that is determined", &message);
             }
         }
     }
@@ -83,7 +83,7 @@ pub(super) fn compare(specimen: &Specimen, text: &str, reference: &Reference) ->
 }
 
 impl Compared {
-    fn refused(&mut self, way: &str, kind: &'static str, message: String) {
+    fn refused(&mut self, way: &str, kind: &'static str, message: &str) {
         self.findings.push(Finding { kind, detail: format!("by {way}: {message}") });
     }
 }

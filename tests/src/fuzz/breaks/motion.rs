@@ -325,9 +325,9 @@ impl Run<'_> {
                 let middle = 0.5 * (a + b);
                 let at_middle = value(middle)?;
                 if at_middle > 0.0 {
-                    (a, at_a) = (middle, at_middle)
+                    (a, at_a) = (middle, at_middle);
                 } else {
-                    (b, at_b) = (middle, at_middle)
+                    (b, at_b) = (middle, at_middle);
                 }
             }
         }
