@@ -15,7 +15,7 @@ use crate::exit_code;
 use crate::import::UrdfError;
 use crate::linear::error::LinearError;
 use crate::motion::checkpoint_error::CheckpointFileError;
-use crate::motion::lost_integral::LostIntegral;
+use crate::motion::lost::LostIntegral;
 use crate::output::kept::Kept;
 use crate::plot::error::PlotError;
 use crate::report::text::{short, small};

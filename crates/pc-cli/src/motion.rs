@@ -4,7 +4,7 @@
 //! with the `tolerances` of the components of the state, and `memory`, whether its rows fit. A `checkpoint`, with its `identity` and `checkpoint_error`,
 //! continues an interrupted run; `sensitivities` are derivatives by parameters, `estimate` the global
 //! errors; `given` integrates a motion whose rows are written at once. `progress` and `interrupt` are the bar and Ctrl-C.
-//! `lost_integral` finds, at some `step_states`, what was proved to be kept and is not, `lost_inertia`
+//! `lost_integral` finds, at some `step_states`, what was proved to be kept and is `lost`, `lost_inertia`
 //! why a mass matrix became singular.
 //! `fine` is the motion between its rows, for pictures; `table` and `run` are the results.
 
@@ -15,6 +15,7 @@ pub(crate) mod fine;
 pub(crate) mod given;
 pub(crate) mod identity;
 pub(crate) mod interrupt;
+pub mod lost;
 pub(crate) mod lost_inertia;
 pub mod lost_integral;
 pub(crate) mod memory;

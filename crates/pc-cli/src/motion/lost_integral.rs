@@ -5,6 +5,7 @@ use pc_mech::{Expr, Neighbourhood};
 use pc_model::{Assembly, Flow, Variables};
 use pc_print::integrals_of;
 
+use crate::motion::lost::LostIntegral;
 use crate::motion::table::Table;
 
 /// The part of its scale by which an integral may drift.
@@ -13,19 +14,6 @@ const MOST: f64 = 1e-3;
 /// A drift of so many units in the last place of the terms of an integral is rounding, as under a large constant in the
 /// energy, or beside an equilibrium.
 const ROUNDINGS: f64 = 1e3;
-
-/// An integral that is proved to be kept, and has changed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LostIntegral {
-    /// Its name.
-    pub name: String,
-    /// Its value at the start.
-    pub start: f64,
-    /// The largest change from it.
-    pub drift: f64,
-    /// The scale of its terms: of the energy, the largest kinetic energy or the range of the rest, whichever is larger.
-    pub scale: f64,
-}
 
 /// The first integral that has drifted too far and is proved to be kept, at these states of the motion.
 pub(crate) fn lost_integral(

@@ -5,7 +5,7 @@ use std::time::Duration;
 use pc_solve::{Slide, SolveError, Spent, Statistics};
 
 use crate::motion::estimate::Estimate;
-use crate::motion::lost_integral::LostIntegral;
+use crate::motion::lost::LostIntegral;
 use crate::motion::plan::Plan;
 use crate::motion::table::Table;
 use crate::motion::tolerances::Tolerances;
