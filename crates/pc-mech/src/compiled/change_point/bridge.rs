@@ -77,24 +77,27 @@ impl Motion {
         &mut self,
         from: (f64, &[f64]),
         to: (f64, &[f64]),
-        known: Option<Seen>,
+        known: Option<Box<Seen>>,
         rates: &mut Rates<'_>,
     ) -> Result<(), Failure> {
-        let after = self.independence_after(to);
-        let Some(later) = after.map_err(|failure| self.failure(failure, to.0, to.1))? else { return Ok(()) };
-        let before = match known {
-            Some(seen) => Some(seen),
+        let mut later = std::mem::take(&mut self.watch.next);
+        let after = self.independence_after(to, &mut later);
+        if !after.map_err(|failure| self.failure(failure, to.0, to.1))? {
+            return Ok(());
+        }
+        let mut now = match known {
+            Some(seen) => seen,
             None => {
-                let start =
-                    self.independence_at(from).map_err(|failure| self.failure(failure, from.0, from.1))?;
-                start.map(|rank| Seen::new(from, rank))
+                let start = self.independence_at(from);
+                let start = start.map_err(|failure| self.failure(failure, from.0, from.1))?;
+                let Some(rank) = start else { return Ok(()) };
+                Box::new(Seen::new(from, rank))
             }
         };
-        let Some(before) = before else { return Ok(()) };
-        let reversed = self.is_reversed((&before.rank, from), (&later, to));
+        let reversed = self.is_reversed((&now.rank, from), (&later, to));
         let is_reversed = reversed.map_err(|failure| self.failure(failure, to.0, to.1))?;
-        let (was, step) = (before.least, to.0 - from.0);
-        let mut now = before.then(to, later);
+        let (was, step) = (now.least, to.0 - from.0);
+        self.watch.next = now.advance(to, later);
         if is_reversed && !self.passes(from, to, rates) {
             return Err(self.rank_lost(&now));
         }
@@ -242,10 +245,11 @@ impl Motion {
 
     fn independence_after(
         &mut self,
-        (t, y): (f64, &[f64]),
-    ) -> Result<Option<Independence>, EvaluationFailure> {
+        to: (f64, &[f64]),
+        found: &mut Independence,
+    ) -> Result<bool, EvaluationFailure> {
         let Motion { surface, parameters, .. } = self;
-        surface.as_mut().map_or(Ok(None), |surface| surface.independence(t, y, parameters))
+        surface.as_mut().map_or(Ok(false), |surface| surface.independence_to(to, parameters, found))
     }
 
     fn independence_at(&mut self, (t, y): (f64, &[f64])) -> Result<Option<Independence>, EvaluationFailure> {

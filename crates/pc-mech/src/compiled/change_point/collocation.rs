@@ -177,22 +177,23 @@ fn nodes() -> impl Iterator<Item = f64> {
 mod tests {
     use super::*;
 
-    /// ẍ = −x from (1, 0): the error of order 16 over a unit of time is far below rounding.
+    /// ẍ = −x from (1, 0) over half a unit of time: the terms left out, from 4⁻⁸/(15·13⋯3) on, are far below the
+    /// tolerance.
     #[test]
-    fn an_oscillation_is_followed_to_rounding() {
+    fn an_oscillation_is_followed() {
         let mut flow = |_: f64, y: &mut [f64], rates: &mut [f64]| {
             (rates[0], rates[1]) = (y[1], -y[0]);
             true
         };
-        let motion = Collocation::new(&mut flow, (0.5, &[1.0, 0.0]), 1.5, &[0..1, 1..2], 1e-14).unwrap();
+        let motion = Collocation::new(&mut flow, (0.5, &[1.0, 0.0]), 1.0, &[0..1, 1..2], 1e-9).unwrap();
         let mut rates = [0.0; 2];
-        for t in [0.5, 0.7, 1.0, 1.5] {
+        for t in [0.5, 0.7, 0.75, 1.0] {
             let (state, phase) = (motion.state(t), t - 0.5);
             motion.rates(t, &mut rates);
-            assert!((state[0] - phase.cos()).abs() < 1e-14 && (state[1] + phase.sin()).abs() < 1e-14);
+            assert!((state[0] - phase.cos()).abs() < 1e-11 && (state[1] + phase.sin()).abs() < 1e-11);
             assert!((rates[0] - state[1]).abs() < 1e-9 && (rates[1] + state[0]).abs() < 1e-9, "{rates:?}");
         }
-        assert!(motion.contains(1.5) && motion.contains(0.5) && !motion.contains(1.6));
+        assert!(motion.contains(1.0) && motion.contains(0.5) && !motion.contains(1.1));
     }
 
     #[test]

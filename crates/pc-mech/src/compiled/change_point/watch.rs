@@ -9,7 +9,9 @@ const ON_BRIDGE: f64 = 1e-2;
 /// The rank at the end of the last step, and the motion across the place where it is lost.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Watch {
-    pub(super) last: Option<Seen>,
+    pub(super) last: Option<Box<Seen>>,
+    /// Storage for the rank at the end of the next step.
+    pub(super) next: Independence,
     pub(super) bridge: Option<Box<Collocation>>,
     /// Whether the method needs derivatives of the rates along the motion, which a bridge does not have.
     pub(super) refuses: bool,
@@ -38,8 +40,8 @@ impl Seen {
         Seen { t, state: y.to_vec(), rank, sizes, least, largest: least, tried: f64::INFINITY }
     }
 
-    /// The state after a step.
-    pub(super) fn then(mut self, (t, y): (f64, &[f64]), rank: Independence) -> Seen {
+    /// Goes on to the state after a step; returns the rank before it.
+    pub(super) fn advance(&mut self, (t, y): (f64, &[f64]), rank: Independence) -> Independence {
         self.sizes.iter_mut().zip(&rank.row_sizes).for_each(|(size, now)| *size = size.max(*now));
         let before = std::mem::replace(&mut self.least, least(&rank, &self.sizes).0);
         if self.least > before {
@@ -47,7 +49,8 @@ impl Seen {
         }
         self.largest = self.largest.max(self.least);
         self.state.copy_from_slice(y);
-        Seen { t, rank, ..self }
+        self.t = t;
+        std::mem::replace(&mut self.rank, rank)
     }
 
     /// The constraint and the unknown of the least pivot.

@@ -46,8 +46,6 @@ pub(crate) struct Saddle {
     moved: Vec<f64>,
     reduced_mass: Vec<f64>,
     reduced_sizes: Vec<f64>,
-    /// The pivots of C, relative to the coefficients of their rows.
-    pivots: Vec<f64>,
 }
 
 impl Saddle {
@@ -78,7 +76,6 @@ impl Saddle {
             moved: vec![0.0; k * free],
             reduced_mass: vec![0.0; free * (free + 1) / 2],
             reduced_sizes: vec![0.0; free],
-            pivots: vec![0.0; rank],
         }
     }
 
@@ -126,22 +123,21 @@ impl Saddle {
         self.rows[..self.rank].iter().any(|&row| row >= self.rank)
     }
 
-    /// How far C is from losing rank.
-    pub(crate) fn independence(&self) -> Independence {
-        let negative = (0..self.rank).filter(|&step| self.factor(step, step) < 0.0).count() % 2 == 1;
+    /// Writes how far C is from losing rank.
+    pub(crate) fn independence_to(&self, found: &mut Independence) {
         let (rows, columns) = (&self.rows[..self.rank], &self.columns[..self.rank]);
-        let pivot = |step: usize| Pivot {
-            constraint: rows[step],
-            unknown: columns[step],
-            size: self.pivots[step] * self.row_sizes[rows[step]],
+        let factors = |step: usize| (rows[step], columns[step], self.factor(step, step));
+        let pivot = |step: usize| {
+            let (constraint, unknown, factor) = factors(step);
+            Pivot { constraint, unknown, size: (factor * self.weights[unknown]).abs() }
         };
-        Independence {
-            pivots: (0..self.rank).map(pivot).collect(),
-            row_sizes: self.row_sizes.clone(),
-            is_negative: negative ^ is_odd(rows) ^ is_odd(columns),
-            rows: sorted(rows),
-            columns: sorted(columns),
-        }
+        let negative = (0..self.rank).filter(|&step| factors(step).2 < 0.0).count() % 2 == 1;
+        found.is_negative = negative ^ is_odd(rows) ^ is_odd(columns);
+        found.pivots.clear();
+        found.pivots.extend((0..self.rank).map(pivot));
+        found.row_sizes.clone_from(&self.row_sizes);
+        sort_to(rows, &mut found.rows);
+        sort_to(columns, &mut found.columns);
     }
 
     /// C = L U up to the order of rows and columns, with complete pivoting. Coefficients are compared after division by
@@ -173,7 +169,6 @@ impl Saddle {
                 let this = size(row, column);
                 if this > best.2 { (row, column, this) } else { best }
             });
-            self.pivots[step] = largest;
             if largest <= VANISHING_PIVOT {
                 return Err(EvaluationFailure::Constraint { index: k + self.rows[step] });
             }
@@ -304,7 +299,7 @@ impl Saddle {
 }
 
 /// How far the rows of C are from depending on each other.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Independence {
     /// The pivots of C in their order.
     pub(crate) pivots: Vec<Pivot>,
@@ -336,10 +331,10 @@ impl Independence {
     }
 }
 
-fn sorted(places: &[usize]) -> Vec<usize> {
-    let mut places = places.to_vec();
-    places.sort_unstable();
-    places
+fn sort_to(places: &[usize], sorted: &mut Vec<usize>) {
+    sorted.clear();
+    sorted.extend_from_slice(places);
+    sorted.sort_unstable();
 }
 
 /// Whether so many transpositions sort the list.

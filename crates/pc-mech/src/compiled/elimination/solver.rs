@@ -67,11 +67,14 @@ impl Solver {
         }
     }
 
-    /// How far the constraints are from losing rank, if there are any.
-    pub(crate) fn independence(&self) -> Option<Independence> {
+    /// Writes how far the constraints are from losing rank; false if there are none.
+    pub(crate) fn independence_to(&self, found: &mut Independence) -> bool {
         match self {
-            Solver::Ldl(_) => None,
-            Solver::Saddle(saddle) => Some(saddle.independence()),
+            Solver::Ldl(_) => false,
+            Solver::Saddle(saddle) => {
+                saddle.independence_to(found);
+                true
+            }
         }
     }
 

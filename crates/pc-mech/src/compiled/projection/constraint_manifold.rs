@@ -198,18 +198,18 @@ impl Surface {
         Ok(())
     }
 
-    /// How far the constraints are from losing rank at the end (t, y) of a step: where it was projected last, that is
-    /// known.
-    pub(crate) fn independence(
+    /// Writes how far the constraints are from losing rank at the end (t, y) of a step: where it was projected last, that
+    /// is known. False if there are none.
+    pub(crate) fn independence_to(
         &mut self,
-        t: f64,
-        y: &[f64],
+        (t, y): (f64, &[f64]),
         p: &[f64],
-    ) -> Result<Option<Independence>, EvaluationFailure> {
+        found: &mut Independence,
+    ) -> Result<bool, EvaluationFailure> {
         if self.factorised != t {
             self.factorise(t, y, p)?;
         }
-        Ok(self.solver.independence())
+        Ok(self.solver.independence_to(found))
     }
 
     /// The same at any state.
@@ -220,7 +220,8 @@ impl Surface {
         p: &[f64],
     ) -> Result<Option<Independence>, EvaluationFailure> {
         self.factorise(t, y, p)?;
-        Ok(self.solver.independence())
+        let mut found = Independence::default();
+        Ok(self.solver.independence_to(&mut found).then_some(found))
     }
 
     /// Takes the weights from the diagonal of the mass matrix; what has no mass weighs as little as the lightest.
