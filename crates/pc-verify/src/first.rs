@@ -250,7 +250,7 @@ impl<'g> First<'g> {
                 let mut rates = vec![f64::NAN; state.len()];
                 let evaluated = flow.motion.rhs(at.t, &state, &mut rates);
                 evaluated.map_err(|failure| refused(failure.to_string()))?;
-                let row = flow.row(at.t, &state);
+                let row = flow.row_beside(at.t, &state);
                 let own = flow.rates_of_quasi_velocities(at.t, &state, &rates).unwrap_or_default();
                 [state, rates, row, own].concat()
             }

@@ -281,7 +281,7 @@ impl Second {
     /// The row of coordinates, columns and first-order states in the state of a flow; coordinates that it
     /// leaves out are those of the start.
     pub(crate) fn row(&self, flow: &mut Flow, t: f64, state: &[f64]) -> Vec<f64> {
-        let shown = flow.row(t, state);
+        let shown = flow.row_beside(t, state);
         let names = &self.derivation.text.names;
         let known = |name: &String| Some(shown[flow.names.iter().position(|shown| shown == name)?]);
         let coordinates = names.coordinates.iter().zip(&self.start.x);

@@ -117,7 +117,7 @@ fn friction_holds_by_every_method() {
 #[test]
 fn outputs_are_those_of_the_friction_that_holds() {
     let model = point("mu = 3", "0", "2", "-mu*sign(x') + 2*cos(t)")
-        + "samples = 41\n[outputs]\nacceleration = \"d(x')\"\nfriction = \"-mu*sign(x')\"\nsquare = \"friction^2\"\n";
+        + "samples = 41\n[outputs]\nacceleration = \"d(x')\"\nfriction = \"-mu*sign(x')\"\nsquare = \"(mu*sign(x'))^2\"\n";
     for method in ["auto", "adams", "bdf", "taylor"] {
         let output = pc("held", &model, &["run", "--t-end", "5", "--method", method]);
         assert!(output.status.success(), "{}", text(&output.stderr));

@@ -46,17 +46,15 @@ impl Watch {
             Watch::Value(place) | Watch::Reciprocal(place) => place,
         }
     }
-
-    /// Whether enclosures show where it bends: those of reciprocals are too wide near the least divisor.
-    pub(crate) fn shows_bends(self) -> bool {
-        matches!(self, Watch::Value(_))
-    }
 }
 
 /// The watched functions, and the instructions that compute them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Part {
     pub(crate) watched: Vec<Watch>,
+    /// Whether rises count as places, for functions that others multiply by what may vanish where they turn, and that
+    /// enclosures do not show to bend.
+    pub(crate) shows_rises: bool,
     code: Vec<(usize, Instruction)>,
     /// Jets of constants, time, state and parameters, followed by the results.
     registers: Vec<Jet>,
@@ -160,7 +158,7 @@ impl Part {
         }
         let time = program.first_input();
         let states = (0..program.state_len()).filter(|i| needed[time + 1 + i]).collect();
-        Part { watched, code, registers, time, states, local: Vec::new() }
+        Part { watched, shows_rises: false, code, registers, time, states, local: Vec::new() }
     }
 
     /// Whether only these first components of the state are read.

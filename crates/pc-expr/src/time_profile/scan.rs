@@ -53,7 +53,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// The kind where enclosures show inflections.
+    /// The kind where rises are no places.
     fn without_rises(self) -> Kind {
         if let Kind::Rise(_) = self { Kind::Unsure } else { self }
     }
@@ -226,9 +226,9 @@ impl Scan {
             sharp += u32::from(indivisible && !plain);
             self.noise |= sharp >= NOISE;
             for (function, (track, jet)) in tracks.iter_mut().zip(&*jets).enumerate() {
-                let shows_bends = part.watched[function].shows_bends();
+                let shows_rises = part.shows_rises;
                 track.pass((a, b), jet, shortest, |t, kind| {
-                    let kind = if shows_bends { kind.without_rises() } else { kind };
+                    let kind = if shows_rises { kind } else { kind.without_rises() };
                     self.features.push_back(Feature { t, function, kind });
                 });
             }

@@ -180,7 +180,7 @@ impl Followed {
         let motions = motions(program);
         let steep = steep(program, parameters, &motions).map(|(place, kind)| (kind.watch(place), kind));
         let (watched, kinds): (Vec<Watch>, Vec<Kind>) = steep.unzip();
-        let part = Part::new(program, parameters, watched);
+        let part = Part { shows_rises: true, ..Part::new(program, parameters, watched) };
         let is_followed = !part.is_empty() && is_followed(&part, dim);
         is_followed.then(|| Followed { watched: Watched { part, scan: Scan::new() }, kinds })
     }

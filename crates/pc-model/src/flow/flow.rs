@@ -149,8 +149,19 @@ impl Flow {
     /// Coordinates, declared quasi-velocities and first-order states of a state, then the observables, named by
     /// [`columns`](Flow::columns).
     pub fn row(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
+        let observed = self.motion.observe(t, state);
+        self.row_with(observed, t, state)
+    }
+
+    /// The same with the observables [of one side](Motion::observe_beside) where the motion slides along a surface.
+    pub fn row_beside(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
+        let observed = self.motion.observe_beside(t, state);
+        self.row_with(observed, t, state)
+    }
+
+    fn row_with(&mut self, observed: Vec<f64>, t: f64, state: &[f64]) -> Vec<f64> {
         let mut row = self.shown(t, state);
-        row.extend(self.motion.observe(t, state));
+        row.extend(observed);
         let declared = self.names.len() - self.motion.states();
         row.drain(
             declared..self.motion.coordinates() + self.reading.quasi_velocities.program().outputs_len(),

@@ -416,7 +416,7 @@ fn checkpoints_of_other_motions_are_refused() {
         assert_eq!(error, CheckpointError::Version { found });
         assert_eq!(
             error.to_string(),
-            format!("it is a checkpoint of version {version} of the format, not 5")
+            format!("it is a checkpoint of version {version} of the format, not 6")
         );
     }
 }
@@ -453,7 +453,7 @@ fn sensitivities_go_on_from_checkpoints() {
                 parts,
                 from,
                 &times,
-                every(4),
+                every(20),
                 save,
                 GO_ON,
             )
@@ -483,7 +483,7 @@ fn sensitivities_go_on_from_checkpoints() {
             parts,
             begun,
             &times,
-            every(4),
+            every(20),
             |_, _| (),
             GO_ON,
         );

@@ -108,7 +108,8 @@ fn a_peak_off_the_way_costs_nothing() {
         let program = Program::new(&graph, &inputs, &[v, force]).unwrap();
         ProgramField::new(program, vec![], Backend::Fastest)
     };
-    for method in METHODS {
+    // Taylor's method chooses its order by the length of the equations.
+    for method in [Method::Auto, Method::Dop853, Method::Adams, Method::Bdf] {
         let work = |hidden| {
             let mut motion = begin(plain(hidden), &[1.0, 0.0], method);
             motion.state_at(50.0).unwrap();
