@@ -563,7 +563,8 @@ fn a_body_rests_in_a_groove() {
             let holds = (1.0 + friction) / 0.5;
             let solution = run(groove(friction), 0.0, &[0.0, 0.0], &[1.0, holds + 1.0], method);
             assert_near(solution.trajectory.state(0), &[0.0, 0.0], 1e-12, (method, friction));
-            assert_near(solution.trajectory.state(1), &[0.5 / 6.0, 0.25], 1e-9, (method, friction));
+            // It leaves with no acceleration: the time at which it does is known to 2e-7.
+            assert_near(solution.trajectory.state(1), &[0.5 / 6.0, 0.25], 1e-7, (method, friction));
         }
     }
 }
