@@ -180,7 +180,8 @@ impl Followed {
         let motions = motions(program);
         let steep = steep(program, parameters, &motions).map(|(place, kind)| (kind.watch(place), kind));
         let (watched, kinds): (Vec<Watch>, Vec<Kind>) = steep.unzip();
-        let part = Part { shows_rises: true, ..Part::new(program, parameters, watched) };
+        let mut part = Part::new(program, parameters, watched);
+        part.shows_rises = true;
         let is_followed = !part.is_empty() && is_followed(&part, dim);
         is_followed.then(|| Followed { watched: Watched { part, scan: Scan::new() }, kinds })
     }
