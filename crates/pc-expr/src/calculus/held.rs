@@ -60,25 +60,18 @@ impl Graph {
     ) -> Held<'g> {
         let mut held = Held { values: values.to_vec(), surfaces: surfaces.to_vec() };
         let moving: Vec<NodeId> = moving.iter().map(|symbol| symbol.symbol_in(self)).collect();
-        while let Some(piece) = self.first_piece(&held.values, &moving) {
-            let Piece { node, function, args } = piece;
-            let [a, b, c] = args;
-            let mut side = |function: Expr<'g>| self.side(function, &moving, &mut held.surfaces);
-            let smooth = match function {
-                Function::Sign => side(a),
-                Function::Abs => side(a) * a,
-                Function::Min => side(a - b).step(b, a),
-                Function::Max => side(a - b).step(a, b),
-                Function::Atan => {
-                    let (above, below) = self.parts(a);
-                    let side = side(below);
-                    (side * above).atan2(side * below)
-                }
-                _ => side(a).step(b, c),
-            };
+        // From within outwards: as many rounds as pieces are nested.
+        loop {
+            let pieces = self.innermost_pieces(&held.values, &moving);
+            if pieces.is_empty() {
+                break;
+            }
+            let smooth = |piece| (piece, self.smooth(piece, &moving, &mut held.surfaces));
+            let replaced: Vec<(Piece<'g>, Expr<'g>)> = pieces.into_iter().map(smooth).collect();
+            let replaced: Vec<(NodeId, Atom)> =
+                replaced.iter().map(|(piece, smooth)| (piece.node, smooth.atom_in(self))).collect();
             let roots: Vec<Atom> = held.values.iter().map(|value| value.atom_in(self)).collect();
-            let smooth = smooth.atom_in(self);
-            held.values = self.build_all(|dag| dag.substitute(&roots, &[(node, smooth)]));
+            held.values = self.build_all(|dag| dag.substitute(&roots, &replaced));
         }
         held
     }
@@ -96,63 +89,103 @@ impl Graph {
     /// ```
     pub fn blended<'g>(&'g self, values: &[Expr<'g>], sides: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let mut values = values.to_vec();
-        while let Some((node, [side, a, b])) = self.first_choice(&values, sides) {
-            let between = (1.0 + side) / 2.0 * a + (1.0 - side) / 2.0 * b;
+        loop {
+            let choices = self.innermost_choices(&values, sides);
+            if choices.is_empty() {
+                return values;
+            }
+            let between = |&(node, [side, a, b]): &(NodeId, [Expr<'g>; 3])| {
+                (node, ((1.0 + side) / 2.0 * a + (1.0 - side) / 2.0 * b).atom_in(self))
+            };
+            let replaced: Vec<(NodeId, Atom)> = choices.iter().map(between).collect();
             let roots: Vec<Atom> = values.iter().map(|value| value.atom_in(self)).collect();
-            let between = between.atom_in(self);
-            values = self.build_all(|dag| dag.substitute(&roots, &[(node, between)]));
+            values = self.build_all(|dag| dag.substitute(&roots, &replaced));
         }
-        values
     }
 
-    /// The first choice by sides alone, with its arguments.
-    fn first_choice<'g>(
+    /// The choices by sides alone that contain no other one, with their arguments.
+    fn innermost_choices<'g>(
         &'g self,
         values: &[Expr<'g>],
         sides: &[Expr<'g>],
-    ) -> Option<(NodeId, [Expr<'g>; 3])> {
+    ) -> Vec<(NodeId, [Expr<'g>; 3])> {
         let roots: Vec<Atom> = values.iter().map(|value| value.atom_in(self)).collect();
+        let sides: Vec<NodeId> = sides.iter().map(|side| side.symbol_in(self)).collect();
         let choices: Vec<(NodeId, [NodeId; 3])> = self.with(|dag| {
             let cone = Cone::below(dag, roots);
-            let choices = cone.order.iter().filter_map(|&node| match dag.node(node) {
-                Node::Call { function: Function::Step, args } => Some((node, args)),
-                _ => None,
-            });
-            choices.collect()
-        });
-        choices.into_iter().find_map(|(node, args)| {
-            let arguments = args.map(|node| self.build(|dag| dag.constant_of(Atom::Node(node))));
-            let symbols = self.symbols_of(&arguments[..1]);
-            let is_chosen = !symbols.is_empty() && symbols.iter().all(|symbol| sides.contains(symbol));
-            is_chosen.then_some((node, arguments))
-        })
-    }
-
-    /// The first node of several pieces, below all others, whose surface moves.
-    fn first_piece<'g>(&'g self, values: &[Expr<'g>], moving: &[NodeId]) -> Option<Piece<'g>> {
-        let roots: Vec<Atom> = values.iter().map(|value| value.atom_in(self)).collect();
-        let (node, function, args) = self.with(|dag| {
-            let cone = Cone::below(dag, roots);
-            let mut pieces = cone.order.iter().filter_map(|&node| match dag.node(node) {
-                Node::Call { function, args } if function.is_piecewise() || function == Function::Atan => {
-                    Some((node, function, args))
+            let by_sides = cone.depending_on(dag, &sides);
+            let is_symbol = |node: &NodeId| matches!(dag.node(*node), Node::Symbol(_));
+            let others: Vec<NodeId> =
+                cone.order.iter().copied().filter(|node| is_symbol(node) && !sides.contains(node)).collect();
+            let by_others = cone.depending_on(dag, &others);
+            let choice = |node: NodeId| match dag.node(node) {
+                Node::Call { function: Function::Step, args }
+                    if by_sides.contains(&args[0]) && !by_others.contains(&args[0]) =>
+                {
+                    Some(args)
                 }
                 _ => None,
-            });
-            let first = pieces.next()?;
+            };
+            cone.innermost(dag, choice)
+        });
+        let argument = |node: NodeId| self.build(|dag| dag.constant_of(Atom::Node(node)));
+        choices.into_iter().map(|(node, args)| (node, args.map(argument))).collect()
+    }
+
+    /// The nodes of several pieces whose surfaces move and that contain no other such node.
+    fn innermost_pieces<'g>(&'g self, values: &[Expr<'g>], moving: &[NodeId]) -> Vec<Piece<'g>> {
+        let roots: Vec<Atom> = values.iter().map(|value| value.atom_in(self)).collect();
+        let pieces = self.with(|dag| {
+            let cone = Cone::below(dag, roots);
+            let is_one = |node: &NodeId| match dag.node(*node) {
+                Node::Call { function, .. } => function.is_piecewise() || function == Function::Atan,
+                _ => false,
+            };
+            if !cone.order.iter().any(is_one) {
+                return Vec::new();
+            }
             let moves = cone.depending_on(dag, moving);
-            std::iter::once(first).chain(pieces).find(|(_, function, args)| match function {
-                Function::Min | Function::Max => moves.contains(&args[0]) || moves.contains(&args[1]),
-                Function::Atan => dag.has_pole(args[0], &moves),
-                _ => moves.contains(&args[0]),
+            cone.innermost(dag, |node| {
+                let Node::Call { function, args } = dag.node(node) else { return None };
+                let passes = match function {
+                    Function::Min | Function::Max => moves.contains(&args[0]) || moves.contains(&args[1]),
+                    Function::Atan => dag.has_pole(args[0], &moves),
+                    _ => function.is_piecewise() && moves.contains(&args[0]),
+                };
+                passes.then_some((function, args))
             })
-        })?;
-        let arity = function.arity();
-        let argument = |i: usize| {
-            let node = args[if i < arity { i } else { 0 }];
-            self.build(|dag| dag.constant_of(Atom::Node(node)))
+        });
+        let piece = |(node, (function, args)): (NodeId, (Function, [NodeId; 3]))| {
+            let arity = function.arity();
+            let argument = |i: usize| {
+                let node = args[if i < arity { i } else { 0 }];
+                self.build(|dag| dag.constant_of(Atom::Node(node)))
+            };
+            Piece { node, function, args: [argument(0), argument(1), argument(2)] }
         };
-        Some(Piece { node, function, args: [argument(0), argument(1), argument(2)] })
+        pieces.into_iter().map(piece).collect()
+    }
+
+    /// A piece with its surfaces held; adds those that are new.
+    fn smooth<'g>(
+        &'g self,
+        Piece { function, args: [a, b, c], .. }: Piece<'g>,
+        moving: &[NodeId],
+        surfaces: &mut Vec<Surface<'g>>,
+    ) -> Expr<'g> {
+        let mut side = |function: Expr<'g>| self.side(function, moving, surfaces);
+        match function {
+            Function::Sign => side(a),
+            Function::Abs => side(a) * a,
+            Function::Min => side(a - b).step(b, a),
+            Function::Max => side(a - b).step(a, b),
+            Function::Atan => {
+                let (above, below) = self.parts(a);
+                let side = side(below);
+                (side * above).atan2(side * below)
+            }
+            _ => side(a).step(b, c),
+        }
     }
 
     /// The sign of a function by the sides of its factors that move; adds those that are new.
@@ -221,6 +254,7 @@ impl Graph {
 }
 
 /// A call of a function of several pieces.
+#[derive(Clone, Copy)]
 struct Piece<'g> {
     node: NodeId,
     function: Function,

@@ -49,6 +49,23 @@ impl Cone {
         }
         active
     }
+
+    /// The nodes that `one` picks and that lie above no other one, with what it says of them.
+    pub(crate) fn innermost<T>(&self, dag: &Dag, one: impl Fn(NodeId) -> Option<T>) -> Vec<(NodeId, T)> {
+        let mut above: FxHashSet<NodeId> = FxHashSet::default();
+        let mut found = Vec::new();
+        for &node in &self.order {
+            let mut is_above = false;
+            dag.for_each_child(node, |child| is_above |= above.contains(&child));
+            if is_above {
+                above.insert(node);
+            } else if let Some(what) = one(node) {
+                above.insert(node);
+                found.push((node, what));
+            }
+        }
+        found
+    }
 }
 
 /// Values attached to the nodes of a cone; a node without one stands for itself.
