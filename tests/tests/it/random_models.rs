@@ -20,31 +20,38 @@ const UNITS_EVERY: u64 = 20;
 
 #[test]
 fn random_models_agree_with_independent_computations() {
+    agree(Subject::Models, MODELS);
+    agree(Subject::Trees, TREES);
+}
+
+#[test]
+fn random_motions_over_breaks_agree_with_an_independent_integration() {
+    agree(Subject::Breaks, BREAKS);
+}
+
+fn agree(subject: Subject, count: u64) {
     note_panics();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let limit = Duration::from_secs(3600);
     let program = Program::near_this_executable();
     if program.is_none() {
         println!("left out: commands of the program, which is not built");
     }
-    for (subject, count) in [(Subject::Models, MODELS), (Subject::Trees, TREES), (Subject::Breaks, BREAKS)] {
-        let campaign = Campaign {
-            subject,
-            seed: 1,
-            first: 0,
-            count,
-            threads,
-            emitted_every: 50,
-            program: program.clone(),
-            program_every: PROGRAM_EVERY,
-            units_every: UNITS_EVERY,
-            limit,
-        };
-        let report = Report::of(&campaign.run(|_, _| ()));
-        // Panics of models are noted, not printed.
-        println!("{}", report.text());
-        assert!(report.is_clean());
-        // A tester whose models are all refused sees nothing.
-        assert!(report.ran() * 10 > 8 * usize::try_from(count).unwrap_or(0));
-    }
+    let campaign = Campaign {
+        subject,
+        seed: 1,
+        first: 0,
+        count,
+        threads,
+        emitted_every: 50,
+        program,
+        program_every: PROGRAM_EVERY,
+        units_every: UNITS_EVERY,
+        limit: Duration::from_secs(3600),
+    };
+    let report = Report::of(&campaign.run(|_, _| ()));
+    // Panics of models are noted, not printed.
+    println!("{}", report.text());
+    assert!(report.is_clean());
+    // A tester whose models are all refused sees nothing.
+    assert!(report.ran() * 10 > 8 * usize::try_from(count).unwrap_or(0));
 }

@@ -11,7 +11,7 @@ use crate::fuzz::execution::Refusal;
 
 /// Errors add up over the steps from one passage to the next, some ten of one-step methods, each of about the tolerance; a passage
 /// is located on a polynomial of a lower order than the step.
-const OF_ONE_STEP: f64 = 1000.0;
+const OF_ONE_STEP: f64 = 500.0;
 /// Over hundreds of multistep methods, which begin at order 1 after each passage.
 const OF_MULTISTEP: f64 = 2000.0;
 /// Over thousands where the order is at most 5, with errors of one sign.

@@ -14,7 +14,7 @@ const DIRECTIONS: usize = 2;
 /// What disturbances may grow to: more leaves no digits to compare.
 const GROWTH: f64 = 3e3;
 /// Steps of differences, of a parameter or of 0.3.
-const STEP: f64 = 2e-4;
+const STEP: f64 = 5e-5;
 
 /// A motion that is known.
 #[derive(Clone, Debug)]
@@ -118,10 +118,11 @@ fn differences(specimen: &Specimen, field: &Field, motion: &Motion, j: usize) ->
                     (near + (near - far) / 3.0, (near - far) / 3.0)
                 });
                 let (values, corrections): (Vec<f64>, Vec<f64>) = slopes.unzip();
-                // The next term of the expansion is about the square of the first, of the value.
+                // The next term of the expansion is smaller by as much again; a large correction says that there is no such
+                // expansion, as beside a passage that is hardly one.
                 let doubt = corrections.iter().zip(&values).map(|(correction, value)| {
                     let part = correction.abs() / value.abs().max(1e-3);
-                    correction.abs() * part.min(1.0) * 10.0 + 1e-11 / step
+                    correction.abs() * (100.0 * part).min(1.0) + 1e-11 / step
                 });
                 Slope { doubt: doubt.collect(), values }
             })
