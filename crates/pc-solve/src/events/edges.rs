@@ -4,8 +4,7 @@
 //! Functions may have passed through zero before such an edge, √(1 − t) − 0.2 at t = 0.96 for
 //! example, although the next sample lies beyond it: samples are therefore taken up to the edge.
 
-use crate::events::root_finding::SAME;
-use crate::events::samples::{Look, Sample};
+use crate::events::samples::{Look, SAME, Sample};
 
 /// Distances from a place without a value, in roundings of the time, at which functions are
 /// evaluated on both sides of it.

@@ -5,10 +5,8 @@ use pc_expr::Direction;
 use crate::events::breaks::{Break, breaks};
 use crate::events::closer::look_closer;
 use crate::events::edges::{approach, edge};
-use crate::events::samples::{Look, Sample};
+use crate::events::samples::{Look, SAME, Sample};
 
-/// Times within this relative difference are the same: events between them are simultaneous.
-pub(super) const SAME: f64 = 64.0 * f64::EPSILON;
 /// A passage is bracketed by two times with this relative difference.
 const LOCATED: f64 = 4.0 * f64::EPSILON;
 /// In intervals of this many times that width, functions without a value have a pole.

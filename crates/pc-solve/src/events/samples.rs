@@ -1,5 +1,8 @@
 //! Values of event functions along a step.
 
+/// Times within this relative difference are the same: events between them are simultaneous.
+pub(super) const SAME: f64 = 64.0 * f64::EPSILON;
+
 /// The values of all functions at a time.
 #[derive(Debug, Clone)]
 pub(crate) struct Sample {

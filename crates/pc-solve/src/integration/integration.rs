@@ -90,9 +90,8 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) restarted: bool,
     /// Whether the motion has been restarted, by a reset for example.
     pub(crate) jumped: bool,
-    /// How it gets on, and whether its mark is a time that was reached.
+    /// How it gets on.
     pub(crate) pace: Pace,
-    pub(crate) is_paced: bool,
 }
 
 /// How a [`run`](Integration::run) ended.
@@ -147,7 +146,6 @@ impl<S: Stepper> Integration<S> {
             restarted: false,
             jumped: false,
             pace: Pace::default(),
-            is_paced: false,
         }
     }
 
@@ -199,7 +197,6 @@ impl<S: Stepper> Integration<S> {
             restarted: self.restarted,
             jumped: self.jumped,
             pace: Pace::default(),
-            is_paced: false,
         };
         integration.front.values = integration.evaluate(t, &state)?;
         integration.sides.pass(&integration.front.values);

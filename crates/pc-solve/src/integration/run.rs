@@ -2,13 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use pc_expr::{Deadline, Events};
+use pc_expr::{Deadline, Events, VectorField};
 
-use crate::error::{InputError, Reason, SolveError};
+use crate::error::{InputError, Reason, Shrinks, SolveError};
 use crate::events::events::Occurrence;
 use crate::integration::checks::finite;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::observer::{Observed, Observer};
+use crate::integration::pace::Crawl;
 use crate::integration::stepper::Stepper;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
@@ -89,6 +90,32 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
         let last = self.statistics().last_step.abs();
         Err(self.failed(Reason::Steps { steps, t, last }, None))
+    }
+
+    /// Notes a step towards `end`.
+    ///
+    /// # Errors
+    /// [`Reason::Crawls`] if the last ones have hardly advanced.
+    fn note_pace(&mut self, end: f64) -> Result<(), SolveError> {
+        let engine = &self.engine;
+        match self.pace.note(self.front.t, end, || engine.statistics().limited_steps) {
+            None => Ok(()),
+            Some(Crawl { steps, by, shortened }) => {
+                let cause = if shortened { Shrinks::Time } else { Shrinks::Component(self.fastest()) };
+                Err(self.failed(Reason::Crawls { steps, by, cause }, None))
+            }
+        }
+    }
+
+    /// The component whose rate is the largest by the tolerances.
+    fn fastest(&mut self) -> String {
+        let (t, state) = (self.front.t, self.front_state.clone());
+        let mut rates = vec![f64::NAN; state.len()];
+        // Rates that fail are as fast as any.
+        let known = self.engine.field_mut().rhs(t, &state, &mut rates).is_ok();
+        let speed = |i: usize| if known { rates[i].abs() / self.engine.tolerance(i, state[i]) } else { 0.0 };
+        let fastest = (0..state.len()).max_by(|&i, &j| speed(i).total_cmp(&speed(j))).unwrap_or(0);
+        self.field().component_name(fastest)
     }
 
     /// Checks that the deadline has not passed.
