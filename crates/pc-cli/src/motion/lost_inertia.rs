@@ -34,7 +34,8 @@ pub(crate) fn lost_inertia(
         mass.eval(t, state, &parameters, &mut values);
         values
     };
-    let (first, here) = (at(t_start, &flow.start), at(t, state));
+    // Sensitivities follow the state.
+    let (first, here) = (at(t_start, &flow.start), at(t, state.get(..flow.start.len())?));
     let unit = |i: usize| first[i * k + i].abs().sqrt();
     let scaled = |m: &[f64]| {
         SingularValues::of(&Matrix::from_fn(k, k, |i, j| m[i * k + j] / (unit(i) * unit(j)))).ok()

@@ -60,10 +60,13 @@ impl Graph {
     ) -> Held<'g> {
         let mut held = Held { values: values.to_vec(), surfaces: surfaces.to_vec() };
         let moving: Vec<NodeId> = moving.iter().map(|symbol| symbol.symbol_in(self)).collect();
-        // From within outwards: as many rounds as pieces are nested.
+        // From within outwards: as many rounds as pieces are nested. Where a piece cancels it may come back with an older
+        // expression of the same value, which does not change with it.
+        let mut done: FxHashSet<NodeId> = FxHashSet::default();
         loop {
             let pieces = self.innermost_pieces(&held.values, &moving);
-            if pieces.is_empty() {
+            let is_new = pieces.iter().fold(false, |is_new, piece| done.insert(piece.node) || is_new);
+            if !is_new {
                 break;
             }
             let smooth = |piece| (piece, self.smooth(piece, &moving, &mut held.surfaces));
@@ -216,6 +219,8 @@ impl Graph {
         let known = surfaces.iter().find(|surface| surface.function == function).map(|surface| surface.side);
         let side = known.unwrap_or_else(|| {
             let side = self.symbol(&format!("side {}", surfaces.len()));
+            let node = side.symbol_in(self);
+            self.with(|dag| dag.confine(node));
             surfaces.push(Surface { function, side });
             side
         });

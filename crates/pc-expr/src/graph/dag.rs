@@ -15,6 +15,9 @@ use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::roots::{Roots, Terms, Value};
 
+/// The bit of symbols that are confined to expressions made with them.
+const CONFINED: u64 = 1 << 63;
+
 #[derive(Debug)]
 pub(crate) struct Dag {
     pub(super) folding: Folding,
@@ -33,7 +36,7 @@ pub(crate) struct Dag {
     pub(super) nonnegative: Vec<bool>,
     /// Operations of the node written out as a tree, saturating: decides which of two nodes of equal value is kept.
     costs: Vec<u32>,
-    /// A bit for each symbol in the node; symbols 64 apart share a bit.
+    /// A bit for each symbol in the node; symbols 63 apart share a bit, and those [confined](CONFINED) have the last one.
     symbols: Vec<u64>,
     /// Nodes that sums and products above them leave closed.
     kept: FxHashSet<NodeId>,
@@ -206,7 +209,7 @@ impl Dag {
     /// Of two forms of one function the better one divides by less, as x + 1 has a value at x = 1 and (x² −
     /// 1)/(x − 1) has none, and takes fewer roots, as (√x − 1)² + 2√x is undefined below 0; where neither is
     /// worse, the shorter one is better. Two forms each with a divisor that the other lacks stay separate
-    /// nodes.
+    /// nodes, as do two of which one contains a [confined](Dag::confine) symbol.
     ///
     /// Once the budget is spent the result is undefined, so that the work ends soon.
     pub(super) fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
@@ -234,6 +237,16 @@ impl Dag {
             self.register(id);
             return Atom::Node(id);
         };
+        let is_confined = |symbols: u64| symbols & CONFINED != 0;
+        let (ours_are, theirs_are) =
+            (is_confined(self.symbols_of(candidate)), is_confined(self.symbols[equal.index()]));
+        if ours_are != theirs_are {
+            let id = self.push(candidate, value);
+            if theirs_are && let Some(slot) = self.by_value.find_mut(hash, |&known| known == equal) {
+                *slot = id;
+            }
+            return Atom::Node(id);
+        }
         let sign = if self.fingerprint(equal) == fingerprint { Number::ONE } else { Number::MINUS_ONE };
         let (ours, theirs) = (self.divisors_of(candidate), self.divisors[equal.index()]);
         let (bounds, their_bounds) = (self.limits_of(candidate), self.limits[equal.index()]);
@@ -250,6 +263,11 @@ impl Dag {
             }
         }
         Atom::Node(id)
+    }
+
+    /// Confines a symbol: where it cancels from an expression, no other one is replaced by this.
+    pub(crate) fn confine(&mut self, symbol: NodeId) {
+        self.symbols[symbol.index()] = CONFINED;
     }
 
     /// Makes a node findable by its value.
@@ -364,7 +382,7 @@ impl Dag {
         let with = |bits: u64, node: NodeId| bits | self.symbols[node.index()];
         match *candidate {
             Candidate::Constant(_) => 0,
-            Candidate::Symbol(_) => 1 << (self.names.len() % 64),
+            Candidate::Symbol(_) => 1 << (self.names.len() % 63),
             Candidate::Sum(_, terms) => terms.iter().fold(0, |bits, &(node, _)| with(bits, node)),
             Candidate::Product(factors) => factors.iter().fold(0, |bits, &(node, _)| with(bits, node)),
             Candidate::Call(function, args) => {

@@ -8,6 +8,7 @@ mod derivatives;
 mod double;
 mod factor;
 mod folding;
+mod held;
 mod jit;
 mod jit_circle;
 mod lanes;
