@@ -65,8 +65,9 @@ impl Graph {
         let mut done: FxHashSet<NodeId> = FxHashSet::default();
         loop {
             let pieces = self.innermost_pieces(&held.values, &moving);
-            let is_new = pieces.iter().fold(false, |is_new, piece| done.insert(piece.node) || is_new);
-            if !is_new {
+            let before = done.len();
+            done.extend(pieces.iter().map(|piece| piece.node));
+            if done.len() == before {
                 break;
             }
             let smooth = |piece| (piece, self.smooth(piece, &moving, &mut held.surfaces));
