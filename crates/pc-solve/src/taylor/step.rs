@@ -9,6 +9,8 @@ use crate::taylor::stepper::Taylor;
 
 /// A step that would end within this fraction of its length of a stop time or a break ends there.
 const NEAR: f64 = 1e-9;
+/// A step is at most this many times as long as the one before or as the time to where it leads, whichever is longer.
+const FARTHEST: f64 = 1e3;
 
 /// Why a step is rejected.
 pub(super) enum Refusal {
@@ -49,8 +51,10 @@ impl<F: VectorField> Taylor<F> {
         if length.is_nan() {
             return Err(self.failed(Reason::Stalled, None));
         }
-        // A finite series holds everywhere.
-        Ok(if length.is_infinite() { (towards - self.start).abs() } else { length })
+        let wanted = (towards - self.start).abs();
+        // A finite series holds everywhere. Of one that nearly ends so much is taken that places in the step can be told apart.
+        let known = wanted.max(self.statistics.last_step.abs());
+        Ok(if length.is_infinite() { wanted } else { length.min(FARTHEST * known) })
     }
 
     /// Makes a step along the series; returns the time at its end, as the sum of a number and its

@@ -35,6 +35,9 @@ const ROUNDING: f64 = 1e-12;
 /// domain.
 const SHORT: f64 = 1e-8;
 
+/// Storage up to this length is kept ready.
+const SMALL: usize = 4096;
+
 /// The conditions that define a surface, as expressions in t, x, η and parameters.
 #[derive(Debug)]
 pub(crate) struct Conditions<'a, 'g> {
@@ -90,6 +93,7 @@ pub(crate) struct Surface {
     /// x, then δπ.
     pub(super) displaced: Vec<f64>,
     room: Room,
+    pub(super) spans: Spans,
     /// The velocities to which the nearest solution is sought.
     pub(super) given: Vec<f64>,
     /// Whether g is affine in η, so that one step leads to the nearest solution.
@@ -102,6 +106,22 @@ struct Room {
     start: Vec<f64>,
     change: Vec<f64>,
     errors: Vec<f64>,
+}
+
+/// Storage for the constraints by rows at both ends of a step, and for the products of these rows.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Spans {
+    pub(super) before: Vec<f64>,
+    pub(super) later: Vec<f64>,
+    pub(super) products: Vec<f64>,
+}
+
+impl Spans {
+    /// Those of m constraints on k unknowns; of many they grow when they are needed.
+    fn of(m: usize, k: usize) -> Spans {
+        let room = |len: usize| if len <= SMALL { vec![0.0; len] } else { Vec::new() };
+        Spans { before: room(m * k), later: room(m * k), products: room(m * m) }
+    }
 }
 
 /// The part of a state that is moved.
@@ -146,6 +166,7 @@ impl Surface {
             displaced: vec![0.0; inputs.state.len()],
             places: conditions.places,
             room: Room::default(),
+            spans: Spans::of(m, k),
             given: Vec::new(),
             affine: conditions.affine,
         })

@@ -4,9 +4,9 @@ use pc_algebra::Matrix;
 
 use crate::compiled::chart::determinant;
 use crate::compiled::elimination::saddle_point::Independence;
-use crate::compiled::failure::EvaluationFailure;
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::point::Point;
-use crate::compiled::projection::constraint_manifold::Surface;
+use crate::compiled::projection::constraint_manifold::{Spans, Surface};
 use crate::compiled::projection::nearest::dot;
 use crate::numeric::singular_values::SingularValues;
 
@@ -58,23 +58,51 @@ impl Surface {
         if let Some(is_reversed) = before.is_reversed(later) {
             return Ok(is_reversed);
         }
-        let (first, second) = (self.rows(from)?, self.rows(to)?);
-        let m = later.rows.len();
-        let along = |a: usize, b: usize| dot(&first.row(a), &second.row(b));
-        let mut products: Vec<f64> = later
-            .rows
-            .iter()
-            .flat_map(|&a| later.rows.iter().map(move |&b| (a, b)))
-            .map(|(a, b)| along(a, b))
-            .collect();
-        Ok(determinant(&mut products, m) <= 0.0)
+        let mut spans = std::mem::take(&mut self.spans);
+        let orientation = self.orientation(&mut spans, &later.rows, from, to);
+        self.spans = spans;
+        Ok(orientation? <= 0.0)
+    }
+
+    /// det C C'ᵀ of these rows.
+    fn orientation(
+        &mut self,
+        Spans { before, later, products }: &mut Spans,
+        independent: &[usize],
+        from: Point<'_>,
+        to: Point<'_>,
+    ) -> Result<f64, EvaluationFailure> {
+        self.write_rows(from, before)?;
+        self.write_rows(to, later)?;
+        let row = |a: &usize| a * self.k..(a + 1) * self.k;
+        products.clear();
+        for a in independent {
+            products.extend(independent.iter().map(|b| dot(&before[row(a)], &later[row(b)])));
+        }
+        Ok(determinant(products, independent.len()))
     }
 
     /// C by rows, with each unknown in units in which its mass is 1.
     fn rows(&mut self, at: Point<'_>) -> Result<Matrix<f64>, EvaluationFailure> {
-        let rows = self.coefficients(at)?.constraints;
+        let mut rows = Vec::new();
+        self.write_rows(at, &mut rows)?;
+        Ok(Matrix::from_fn(rows.len() / self.k, self.k, |a, s| rows[a * self.k + s]))
+    }
+
+    /// Writes these rows, one after the other.
+    fn write_rows(&mut self, at: Point<'_>, rows: &mut Vec<f64>) -> Result<(), EvaluationFailure> {
+        let k = self.k;
+        rows.clear();
+        rows.resize(self.velocities.values().len() * k, 0.0);
+        self.bordered.eval(at.t, at.y, at.p, &mut self.entries);
+        check_finite(&self.entries, &self.bordered, at)?;
         self.weigh();
-        Ok(Matrix::from_fn(rows.len(), self.k, |a, s| rows[a][s] / self.weights[s].sqrt()))
+        for ((i, s), &entry) in self.lower.entries().zip(&self.entries) {
+            if i >= k && s < k {
+                rows[(i - k) * k + s] = -entry / self.weights[s].sqrt();
+            }
+        }
+        Ok(())
     }
 }
 

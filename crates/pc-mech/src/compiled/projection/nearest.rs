@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-14;
 const HALVINGS: i32 = 20;
 
 /// M and C = ∂g/∂η by rows.
-pub(in crate::compiled) struct Coefficients {
+pub(super) struct Coefficients {
     pub(super) mass: Vec<Vec<f64>>,
     pub(super) constraints: Vec<Vec<f64>>,
 }
@@ -189,7 +189,7 @@ impl Surface {
     }
 
     /// M and C at a state.
-    pub(in crate::compiled) fn coefficients(
+    pub(super) fn coefficients(
         &mut self,
         Point { t, y, p }: Point<'_>,
     ) -> Result<Coefficients, EvaluationFailure> {
