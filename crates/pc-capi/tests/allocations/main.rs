@@ -274,7 +274,7 @@ fn steps_allocate_nothing() {
             };
             // SAFETY: a live solver and room as said.
             let mut step = |e| unsafe { pc_solver_step(solver.0, 1e6, &raw mut t, y.as_mut_ptr(), n, e) };
-            for _ in 0..120 {
+            for _ in 0..60 {
                 match call(&mut step) {
                     Err(refusal) if refusal == common::by_event() => {}
                     other => other.unwrap(),
