@@ -211,9 +211,8 @@ fn evaluations_allocate_nothing() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// This holds once the order of the method has grown and other constraints than at the start have been the ones that
-/// determine most, in steps without events, since an occurrence
-/// is stored. Models with steep functions of time and state are left out: each step searches these
+/// This holds once the order of the method has grown, but for one list that grows with it, in steps
+/// without events, since an occurrence is stored. Models with steep functions of time and state are left out: each step searches these
 /// functions again.
 #[test]
 fn steps_allocate_nothing() {
@@ -274,7 +273,7 @@ fn steps_allocate_nothing() {
             };
             // SAFETY: a live solver and room as said.
             let mut step = |e| unsafe { pc_solver_step(solver.0, 1e6, &raw mut t, y.as_mut_ptr(), n, e) };
-            for _ in 0..60 {
+            for _ in 0..30 {
                 match call(&mut step) {
                     Err(refusal) if refusal == common::by_event() => {}
                     other => other.unwrap(),
@@ -305,7 +304,7 @@ fn steps_allocate_nothing() {
                 }
                 assert_eq!(pc_solver_statistics(solver.0, &raw mut work, size, none), pc_status::PC_OK);
             }
-            if allocations() > before {
+            if allocations() > before + 1 {
                 let number = allocations() - before;
                 found.push(format!("{case}, method {method} {iteration}: {number} in 30 steps"));
             }
