@@ -9,7 +9,7 @@
 //! Terms step, turn their sign or have a corner in time, coordinates, velocities and first-order states; the motion passes their
 //! surfaces or slides along them. The program is given the text. The integration here knows the formulas of the specimen, and
 //! holds all sides fixed between passages, which it decides on by Filippov's definition. What it cannot be sure of it
-//! [skips](skip::Skip).
+//! skips.
 
 mod comparison;
 mod extrapolation;
