@@ -389,8 +389,13 @@ impl Second {
             }
         }
         if !values.iter().zip(&seconds).all(|(&one, &two)| within(error(one, two), TOLERANCE)) {
-            let unsteady = self.derivation.unsteadiness(first, here, &values, &seconds);
-            noise.iter_mut().zip(unsteady).for_each(|(noise, size)| *noise = noise.max(size));
+            let aside = self.derivation.aside(first, here, &values, &seconds);
+            if let Some(errors) = aside.errors {
+                first.wanted.iter().zip(errors).for_each(|((label, _), error)| agreement.note(error, label));
+                first.compared += 1;
+                return Ok(());
+            }
+            noise.iter_mut().zip(aside.noise).for_each(|(noise, size)| *noise = noise.max(size));
         }
         let pairs = || first.wanted.iter().zip(values.iter().zip(&seconds));
         for (((label, _), (&one, &two)), noise) in pairs().zip(noise) {
@@ -484,7 +489,7 @@ impl Second {
 }
 
 /// The difference of two values relative to the size of their terms; `None` if it is subnormal.
-fn error(one: f64, two: Sized) -> f64 {
+pub(crate) fn error(one: f64, two: Sized) -> f64 {
     let difference = (one - two.value).abs();
     if difference <= f64::MIN_POSITIVE { 0.0 } else { difference / two.size }
 }

@@ -1,10 +1,11 @@
-//! Differences that jump between nearby states: they come from rounding, not from a derivation.
+//! Differences that jump between nearby states: they come from rounding or from a jump of the rates, not from a derivation.
 
+use crate::compare::error;
 use crate::derivation::Derivation;
 use crate::error::Irregular;
 use crate::first::First;
 use crate::here::Here;
-use crate::rounding::{Random, Rounding};
+use crate::rounding::{Random, Rounding, within};
 use crate::sized::Sized;
 use crate::tolerance::TOLERANCE;
 
@@ -19,36 +20,50 @@ const STATES: u64 = 4;
 /// A difference of at most this many jumps is rounding.
 const JUMPS: f64 = 4.0;
 
+/// Two derivations near a state at which they differ.
+pub(crate) struct Aside {
+    /// The sizes of terms whose rounding would explain the jumps of the differences.
+    pub(crate) noise: Vec<f64>,
+    /// The largest errors; none if the derivations differ at one of the states.
+    pub(crate) errors: Option<Vec<f64>>,
+}
+
 impl Derivation {
-    /// The sizes of terms whose rounding would explain the jumps of the differences between two derivations
-    /// near a state.
-    pub(crate) fn unsteadiness(
+    /// Compares two derivations near a state at which they differ. Where rates jump, the last bit of the state decides the
+    /// side, and each derivation may be on another one; beside it they agree.
+    pub(crate) fn aside(
         &self,
         first: &mut First<'_>,
         here: &Here,
         values: &[f64],
         seconds: &[Sized],
-    ) -> Vec<f64> {
+    ) -> Aside {
         let (wanted, exact, free) = (first.quantities(), Rounding::none(), first.free.clone());
         let mut largest = vec![0.0f64; values.len()];
+        let (mut errors, mut agree, mut compared) = (vec![0.0f64; values.len()], true, 0);
         for seed in 0..STATES {
-            let mut differences = || -> Result<Vec<f64>, Irregular> {
+            let mut both = || -> Result<_, Irregular> {
                 let place = self.random_within(&here.derived.place, ASIDE, &mut Random::new(seed))?;
                 let near = Here::new(self, self.at(&place, &exact)?)?;
                 let seconds = self.quantities(&near.derived, &wanted, free.as_deref(), &exact)?;
                 let values = first.values(self, &near, &exact)?;
-                Ok(values.iter().zip(&seconds).map(|(one, two)| one - two.value).collect())
+                Ok(values.into_iter().zip(seconds).collect::<Vec<_>>())
             };
             // Nearby states without values are left out.
-            let Ok(near) = differences() else { continue };
-            for (i, near) in near.into_iter().enumerate() {
-                let jump = (near - (values[i] - seconds[i].value)).abs();
+            let Ok(near) = both() else { continue };
+            compared += 1;
+            for (i, (one, two)) in near.into_iter().enumerate() {
+                let error = error(one, two);
+                agree &= within(error, TOLERANCE);
+                errors[i] = errors[i].max(error);
+                let jump = (one - two.value - (values[i] - seconds[i].value)).abs();
                 if jump.is_finite() {
                     largest[i] = largest[i].max(jump);
                 }
             }
         }
-        largest.into_iter().map(|jump| JUMPS * jump / TOLERANCE).collect()
+        let noise = largest.into_iter().map(|jump| JUMPS * jump / TOLERANCE).collect();
+        Aside { noise, errors: (agree && compared > STATES / 2).then_some(errors) }
     }
 }
 
@@ -81,7 +96,7 @@ mod tests {
         let here = Here::new(derivation, derivation.at(second.start(), &exact).unwrap()).unwrap();
         let seconds = derivation.quantities(&here.derived, &first.quantities(), None, &exact).unwrap();
         let values = first.values(derivation, &here, &exact).unwrap();
-        let unsteady = derivation.unsteadiness(&mut first, &here, &values, &seconds);
+        let unsteady = derivation.aside(&mut first, &here, &values, &seconds).noise;
         let rate = first.wanted.iter().position(|(label, _)| label == "the rate of x'").unwrap();
         let difference = (values[rate] - seconds[rate].value).abs();
         assert!(difference > 1e-12, "{difference:e}");

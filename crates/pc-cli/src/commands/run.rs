@@ -220,6 +220,7 @@ fn integrate_into(
         .filter(|_| begins)
         .map(|first| beyond_at_once(&mut flow, &plan, first))
         .unwrap_or_default();
+    let end = last.map(|(t, y)| (t, y.to_vec()));
     let events: Vec<String> = flow.events.events().iter().map(|event| event.name().to_owned()).collect();
     let is_full = given.as_ref().is_some_and(Given::has_failed);
     let ending = match (*ending, error) {
@@ -246,8 +247,10 @@ fn integrate_into(
     let keeps_energy = assembly.keeps_energy() && !resets;
     let lost = match &ending {
         Ending::Completed | Ending::Event { .. } if !resets => {
-            let states: Vec<(f64, &[f64])> = steps.iter().collect();
-            lost_integral(&table, (&assembly, keeps_energy), &mut flow, &states)
+            let states: Vec<(f64, &[f64])> =
+                steps.iter().chain(end.as_ref().map(|(t, y)| (*t, y.as_slice()))).collect();
+            let accuracy = (&tolerances, plan.rtol);
+            lost_integral(&table, (&assembly, keeps_energy), &mut flow, accuracy, &states)
         }
         _ => None,
     };

@@ -7,6 +7,7 @@ use pc_print::integrals_of;
 
 use crate::motion::lost::LostIntegral;
 use crate::motion::table::Table;
+use crate::motion::tolerances::Tolerances;
 
 /// The part of its scale by which an integral may drift.
 const MOST: f64 = 1e-3;
@@ -15,11 +16,18 @@ const MOST: f64 = 1e-3;
 /// energy, or beside an equilibrium.
 const ROUNDINGS: f64 = 1e3;
 
+/// A drift that errors of so many tolerances in each component make is what was asked for.
+const TOLERANCES: f64 = 100.0;
+
 /// The first integral that has drifted too far and is proved to be kept, at these states of the motion.
+///
+/// Beside its scale, the tolerances of the components are a measure of its drift: with E = e^{2γt} (p² + x²)/2 of a damped
+/// motion, the absolute tolerance of what has long come to rest is multiplied by e^{γt}.
 pub(crate) fn lost_integral(
     table: &Table,
     (assembly, keeps_energy): (&Assembly<'_>, bool),
     flow: &mut Flow,
+    (tolerances, rtol): (&Tolerances, f64),
     states: &[(f64, &[f64])],
 ) -> Option<LostIntegral> {
     let first = table.conserved().start;
@@ -36,7 +44,13 @@ pub(crate) fn lost_integral(
         };
         let name = table.columns()[j].clone();
         let lost = LostIntegral { name, start: drift.start, drift: drift.absolute, scale };
-        (drift.absolute > MOST * scale).then_some(lost)
+        if drift.start.is_finite() && !drift.absolute.is_finite() {
+            return Some(lost);
+        }
+        let is_far = drift.absolute > MOST * scale;
+        let allowed =
+            |(t, y): &(f64, &[f64])| effect_of_errors(flow, j - first, (*t, y), tolerances.errors(rtol, y));
+        (is_far && states.iter().map(allowed).all(|effect| drift.absolute > effect)).then_some(lost)
     };
     let wanted = |j: &usize| *j != energy || keeps_energy;
     let found: Vec<LostIntegral> = (first..=energy).filter(wanted).filter_map(|j| too_far(flow, j)).collect();
@@ -47,7 +61,8 @@ pub(crate) fn lost_integral(
     proved.push(table.columns()[energy].clone());
     found
         .into_iter()
-        .find(|lost| proved.contains(&lost.name) && lost.drift > rounding(assembly, flow, &lost.name, states))
+        .filter(|lost| proved.contains(&lost.name))
+        .find(|lost| !lost.drift.is_finite() || lost.drift > rounding(assembly, flow, &lost.name, states))
 }
 
 /// The larger of the largest kinetic energy and the range of the rest, from energies with and without velocities:
@@ -85,6 +100,20 @@ fn contributions(flow: &mut Flow, place: usize, t: f64, y: &[f64]) -> f64 {
         let part = (whole - flow.motion.observe(t, &without)[place]).abs();
         sum += if part.is_finite() { part } else { 0.0 };
         without[i] = y[i];
+    }
+    sum
+}
+
+/// Σ |I(y with one component in error by so many tolerances) − I(y)|
+fn effect_of_errors(flow: &mut Flow, place: usize, (t, y): (f64, &[f64]), errors: Vec<f64>) -> f64 {
+    let whole = flow.motion.observe(t, y)[place];
+    let mut wrong = y.to_vec();
+    let mut sum = 0.0;
+    for (i, error) in errors.into_iter().enumerate() {
+        wrong[i] += TOLERANCES * error;
+        let effect = (flow.motion.observe(t, &wrong)[place] - whole).abs();
+        sum += if effect.is_finite() { effect } else { 0.0 };
+        wrong[i] = y[i];
     }
     sum
 }

@@ -34,6 +34,11 @@ impl Tolerances {
         self.values.iter().copied().fold(0.0, f64::max)
     }
 
+    /// The error that each component of a state may have in a step: rtol·|yᵢ| + atolᵢ.
+    pub(crate) fn errors(&self, rtol: f64, state: &[f64]) -> Vec<f64> {
+        state.iter().zip(&self.values).map(|(value, tolerance)| rtol * value.abs() + tolerance).collect()
+    }
+
     /// This part of each.
     pub(crate) fn times(&self, part: f64) -> AbsoluteTolerance {
         let each = self.names.iter().cloned().zip(self.values.iter().map(|value| part * value));

@@ -112,6 +112,48 @@ fn friction_holds_by_every_method() {
     }
 }
 
+/// A body held by friction on belts whose speed changes slips until it is as fast as the next one.
+#[test]
+fn friction_follows_a_belt_that_changes_its_speed() {
+    // The speeds of the belts, then (x, x') at t = 5. From 1 to 2 and back the body needs 1 and the way 3/2.
+    let cases = [
+        ("step(x - 2, 2, 1)", "1", [7.5, 2.0]),
+        ("step(x - 1, step(3 - x, 2, 1), 1)", "1", [6.25, 1.0]),
+        ("step(t - 1, 1, 0)", "0", [3.5, 1.0]),
+    ];
+    for (k, (belt, speed, right)) in cases.into_iter().enumerate() {
+        let model = point("m = 1", "0", speed, &format!("-m*sign(x' - {belt})"));
+        for method in ["dop853", "adams", "bdf", "auto", "taylor"] {
+            let output = pc(&format!("belt-{k}"), &model, &["run", "--t-end", "5", "--method", method]);
+            let (said, table) = (text(&output.stderr), text(&output.stdout));
+            assert!(output.status.success() && !said.contains("side 0"), "{belt} by {method}: {said}");
+            let row: Vec<f64> = table
+                .lines()
+                .last()
+                .expect("a row")
+                .split(',')
+                .map(|cell| cell.parse().expect("a number"))
+                .collect();
+            assert_near([row[1], row[2]], right, &format!("{belt} by {method}"));
+        }
+    }
+}
+
+/// A relay that holds b where 0.12 b = −0.0968 is at the end on a jump of its rate, where rounding chooses the side: derivations
+/// are compared beside it.
+#[test]
+fn a_motion_may_end_on_a_jump() {
+    let model = point("m = 1", "0", "0", "0")
+        + "[states]\na = { start = 0.48, rate = \"-0.83*a + 0.02 - 0.95*step(0.03*b - 0.53, step(1.79*b + 0.17 - \
+           1.31*sign(1.67*a - 0.3*b - 0.73), -0.34, 0.77), -1.1)\" }\n\
+           b = { start = -0.59, rate = \"-0.84*b - 0.83 - 1.53*step(0.12*b + 0.98 - 0.96*step(-0.57*a - 0.85 + \
+           1.39*step(-1.32*a - 0.48*b - 0.86, 1.91, 0.53), -1.95, 0.92), 0.51, -0.34)\" }\n";
+    for method in ["dop853", "adams", "bdf", "taylor"] {
+        let row = last("relay", &model, &["run", "--t-end", "3", "--rtol", "1e-10", "--method", method]);
+        assert_near([row[3], row[4]], [1.2165448388892248, -0.0968 / 0.12], method);
+    }
+}
+
 /// Forces that change at times, at places, at corners and where an angle is cut: x and x' at t = 2 by every method.
 /// While friction holds a body, its acceleration is 0 and the friction is the force against the push; before, it slips.
 #[test]
@@ -152,6 +194,10 @@ fn steps_end_where_forces_change() {
             let through = (speed - 1.0) / 1000.0;
             [1.001 + speed * (1.0 - through), speed]
         }),
+        // A pulse with a corner, of the momentum 2.
+        ("exp(-abs(t - 1.3)/0.001)/0.001", "0", "0", [1.4, 2.0]),
+        // A wall, V = 2 exp(−|x − 5|/0.01): a body of the energy 1/2 comes back as from x = 5.
+        ("200*sign(x - 5)*exp(-abs(x - 5)/0.01)", "4", "1", [4.0, -1.0]),
     ];
     for (k, (force, start, speed, right)) in cases.into_iter().enumerate() {
         let model = point("m = 1", start, speed, force);

@@ -3,6 +3,9 @@
 use super::interval::Interval;
 use super::jet::Jet;
 
+/// Room for this many coefficients avoids allocations as orders grow.
+const LONGEST: usize = 64;
+
 /// A polynomial motion y(t₀ + s) = Σ_k c_k sᵏ.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PolynomialMotion<'a> {
@@ -26,6 +29,7 @@ impl PolynomialMotion<'_> {
         local: &mut Vec<f64>,
     ) -> Jet {
         local.clear();
+        local.reserve(LONGEST);
         local.extend(self.coefficients.iter().skip(i).step_by(dim));
         for first in 0..local.len() {
             for k in (first..local.len() - 1).rev() {

@@ -56,6 +56,9 @@ pub(crate) struct Part {
     /// enclosures do not show to bend.
     pub(crate) shows_rises: bool,
     code: Vec<(usize, Instruction)>,
+    /// The watched functions that are attended to, and the registers that lead to them.
+    attended: Vec<bool>,
+    needed: Vec<bool>,
     /// Jets of constants, time, state and parameters, followed by the results.
     registers: Vec<Jet>,
     /// The register of time; the components of the state follow.
@@ -131,16 +134,21 @@ fn is_copy(instruction: &Instruction, motions: &[Motion]) -> bool {
     same_steepness && moving().count() == 1
 }
 
+/// Marks what instructions of marked registers read.
+fn spread(needed: &mut [bool], code: impl DoubleEndedIterator<Item = (usize, Instruction)>) {
+    for (place, instruction) in code.rev() {
+        if needed[place] {
+            instruction.operands().for_each(|operand| needed[operand.index()] = true);
+        }
+    }
+}
+
 impl Part {
     pub(crate) fn new(program: &Program, parameters: &[f64], watched: Vec<Watch>) -> Part {
         let first = program.first_result();
         let mut needed = vec![false; program.registers_len()];
         watched.iter().for_each(|watch| needed[watch.register()] = true);
-        for (i, instruction) in program.code().iter().enumerate().rev() {
-            if needed[first + i] {
-                instruction.operands().for_each(|operand| needed[operand.index()] = true);
-            }
-        }
+        spread(&mut needed, (first..program.registers_len()).zip(program.code().iter().copied()));
         let code: Vec<_> = (first..)
             .zip(program.code())
             .filter(|&(place, _)| needed[place])
@@ -158,7 +166,29 @@ impl Part {
         }
         let time = program.first_input();
         let states = (0..program.state_len()).filter(|i| needed[time + 1 + i]).collect();
-        Part { watched, shows_rises: false, code, registers, time, states, local: Vec::new() }
+        let attended = vec![true; watched.len()];
+        Part {
+            watched,
+            shows_rises: false,
+            code,
+            attended,
+            needed,
+            registers,
+            time,
+            states,
+            local: Vec::new(),
+        }
+    }
+
+    /// Encloses only these of the watched functions from now on; the others count as constants.
+    pub(crate) fn attend_to(&mut self, functions: &[bool]) {
+        self.attended.clear();
+        self.attended.extend_from_slice(functions);
+        self.needed.fill(false);
+        for (watch, _) in self.watched.iter().zip(functions).filter(|(_, is_attended)| **is_attended) {
+            self.needed[watch.register()] = true;
+        }
+        spread(&mut self.needed, self.code.iter().copied());
     }
 
     /// Whether only these first components of the state are read.
@@ -179,17 +209,18 @@ impl Part {
     pub(crate) fn enclose(&mut self, (a, b): (f64, f64), (motion, dim): (PolynomialMotion<'_>, usize)) {
         self.registers[self.time] = Jet::line(Interval::between(a, b), 1.0);
         let near = (0.5 * ((a - motion.start) + (b - motion.start)), 0.5 * (b - a).abs());
-        for &i in &self.states {
+        for &i in self.states.iter().filter(|i| self.needed[self.time + 1 + **i]) {
             self.registers[self.time + 1 + i] = motion.component((i, dim), near, &mut self.local);
         }
-        for (place, instruction) in &self.code {
+        for (place, instruction) in self.code.iter().filter(|(place, _)| self.needed[*place]) {
             self.registers[*place] = Jet::of(instruction, |register| self.registers[register.index()]);
         }
     }
 
     /// What the watched functions are where the part was enclosed last.
     pub(crate) fn jets(&self) -> impl Iterator<Item = Jet> + '_ {
-        self.watched.iter().map(|&watch| match watch {
+        self.watched.iter().zip(&self.attended).map(|(&watch, &is_attended)| match watch {
+            _ if !is_attended => Jet::constant(0.0),
             Watch::Value(place) => self.at(place),
             Watch::Reciprocal(place) => self.at(place).recip(),
         })

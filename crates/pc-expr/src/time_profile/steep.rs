@@ -148,6 +148,7 @@ impl SteepFunctions {
         for followed in &mut self.parts {
             if !followed.is_quiet(between, along) {
                 let Watched { part, scan } = &mut followed.watched;
+                part.attend_to(&followed.loud);
                 scan.begin(part, between.0, between.1, along);
                 self.times.add(&mut followed.watched, between, along, enough, &mut self.room);
             }
@@ -172,6 +173,8 @@ impl SteepFunctions {
 struct Followed {
     watched: Watched,
     kinds: Vec<Kind>,
+    /// Which of them may hide something where they were looked at last.
+    loud: Vec<bool>,
 }
 
 impl Followed {
@@ -183,14 +186,20 @@ impl Followed {
         let mut part = Part::new(program, parameters, watched);
         part.shows_rises = true;
         let is_followed = !part.is_empty() && is_followed(&part, dim);
-        is_followed.then(|| Followed { watched: Watched { part, scan: Scan::new() }, kinds })
+        let loud = vec![true; kinds.len()];
+        is_followed.then(|| Followed { watched: Watched { part, scan: Scan::new() }, kinds, loud })
     }
 
     /// Whether none of them hides anything between two times along a motion.
     fn is_quiet(&mut self, between: (f64, f64), along: (PolynomialMotion<'_>, usize)) -> bool {
         let part = &mut self.watched.part;
+        self.loud.fill(true);
+        part.attend_to(&self.loud);
         part.enclose(between, along);
-        part.jets().zip(&self.kinds).all(|(jet, kind)| kind.is_quiet(&jet, part))
+        for ((loud, jet), kind) in self.loud.iter_mut().zip(part.jets()).zip(&self.kinds) {
+            *loud = !kind.is_quiet(&jet, part);
+        }
+        !self.loud.contains(&true)
     }
 }
 

@@ -63,7 +63,7 @@ impl<'g> FirstOrder<'g> {
             ..self.clone()
         };
         let mut functions: Vec<Expr<'g>> = held.surfaces.iter().map(|surface| surface.function).collect();
-        let names = functions.iter().map(Expr::to_string).collect();
+        let names = written_out(self.graph, &held.surfaces);
         let motion = system.compile_piece(options, LONGEST_ELIMINATION)?;
         if contains(self.graph, &functions, &self.unknowns) {
             let Form::Unrolled(_) = motion.form else { return Ok(None) };
@@ -86,6 +86,17 @@ impl<'g> FirstOrder<'g> {
             along: None,
         }))
     }
+}
+
+/// The functions of surfaces, with the signs of those before them in place of sides.
+fn written_out<'g>(graph: &'g Graph, surfaces: &[Surface<'g>]) -> Vec<String> {
+    let mut signs: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
+    let written = surfaces.iter().map(|surface| {
+        let function = graph.substitute(&[surface.function], &signs)[0];
+        signs.push((surface.side, function.sign()));
+        function.to_string()
+    });
+    written.collect()
 }
 
 impl<'g> FirstOrder<'g> {

@@ -99,7 +99,8 @@ impl VectorField for Motion {
         }
         if let Some(switches) = self.holding() {
             let written = switches.rhs(t, y, ydot);
-            if is_written(&written) {
+            // What overflows grows on from the surface: a shorter step ends before it does.
+            if is_written(&written) || ydot.iter().any(|rate| rate.is_infinite()) {
                 return written;
             }
         }

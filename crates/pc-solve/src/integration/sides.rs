@@ -44,6 +44,8 @@ struct Place<'a> {
     least: f64,
     /// The longest time that matters.
     span: f64,
+    /// The functions of the surfaces there, on the sides before.
+    before: Vec<f64>,
 }
 
 /// Whether sides are consistent with the motion that they lead to.
@@ -134,8 +136,16 @@ impl Place<'_> {
             let first = open.iter().position(|&(surface, _)| sides[surface] == 0.0).unwrap_or(0);
             return Ok(Verdict::Left(first, 1.0));
         };
+        let (values, rounding) = self.functions(sides);
         for (place, &(surface, _)) in open.iter().enumerate() {
-            let side = sides[surface];
+            let (side, value) = (sides[surface], values[surface]);
+            // Where another surface is passed this one may jump away from the motion, which goes on beside it.
+            if (value - self.before[surface]).abs() > rounding[surface] && value.abs() > rounding[surface] {
+                if value * side > 0.0 {
+                    continue;
+                }
+                return Ok(Verdict::Left(place, 1.0_f64.copysign(value)));
+            }
             if side == 0.0 {
                 let Some(i) = sliding.surfaces.iter().position(|&other| other == surface) else { continue };
                 let weight = sliding.weights[i];
@@ -259,21 +269,20 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         let (t, y, least) = (self.front.t, self.front_state.clone(), self.engine.least_size());
         let span = self.span_of_interest();
         let Some(field) = self.engine.field_mut().switching() else { return Ok(()) };
-        let mut place = Place { field, t, y: &y, direction, least, span };
+        let mut place = Place { field, t, y: &y, direction, least, span, before: Vec::new() };
         let mut sides = vec![1.0; self.held.len()];
         let mut rounding = Vec::new();
-        let mut values = Vec::new();
         // A surface contains the sides of those before it only.
         for _ in 0..=sides.len() {
-            (values, rounding) = place.functions(&sides);
+            (place.before, rounding) = place.functions(&sides);
             let signs = |value: &f64| if *value < 0.0 { -1.0 } else { 1.0 };
-            let found: Vec<f64> = values.iter().map(signs).collect();
+            let found: Vec<f64> = place.before.iter().map(signs).collect();
             if found == sides {
                 break;
             }
             sides = found;
         }
-        let is_open = |&surface: &usize| values[surface].abs() <= rounding[surface];
+        let is_open = |&surface: &usize| place.before[surface].abs() <= rounding[surface];
         let open: Open =
             (0..sides.len()).filter(is_open).map(|surface| (surface, [1.0, -1.0, 0.0])).collect();
         let decided = if open.is_empty() { Ok(Some(sides)) } else { place.decide(&sides, &open) };
@@ -314,7 +323,11 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             open.extend(slide.map(|surface| (surface, [0.0, 1.0, -1.0])));
         }
         let decided = match self.engine.field_mut().switching() {
-            Some(field) if crosses => Place { field, t, y: &y, direction, least, span }.decide(&sides, &open),
+            Some(field) if crosses => {
+                let mut place = Place { field, t, y: &y, direction, least, span, before: Vec::new() };
+                place.before = place.functions(&before).0;
+                place.decide(&sides, &open)
+            }
             _ => Ok(Some(sides)),
         };
         self.take_sides(decided, &open)?;
@@ -346,12 +359,12 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         let field = self.engine.field_mut();
         let Some(t) = break_at(field.breaks(), self.front.t) else { return Ok(()) };
         let Some(switching) = field.switching() else { return Ok(()) };
-        let mut place = Place { field: switching, t, y: &y, direction, least, span };
+        let mut place = Place { field: switching, t, y: &y, direction, least, span, before: Vec::new() };
         let (ahead, rounding) = place.functions(&before);
         field.enter(t, towards);
         let Some(switching) = field.switching() else { return Ok(()) };
-        let mut place = Place { field: switching, t, y: &y, direction, least, span };
-        let (behind, _) = place.functions(&before);
+        let mut place = Place { field: switching, t, y: &y, direction, least, span, before: Vec::new() };
+        let behind = place.functions(&before).0;
         let (mut sides, mut open) = (before.clone(), Open::new());
         for surface in (0..sides.len()).filter(|&surface| before[surface] == 0.0) {
             if (behind[surface] - ahead[surface]).abs() > rounding[surface] {
@@ -360,6 +373,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 open.push((surface, [0.0, 1.0, -1.0]));
             }
         }
+        place.before = behind;
         let decided = place.decide(&sides, &open);
         self.take_sides(decided, &open)?;
         let (time, after) = (self.front.t, self.held.sides.clone());

@@ -209,12 +209,21 @@ impl Motion {
         let start = at(self, motion.start)?;
         let mut before = start.clone();
         for part in 1..=PARTS {
-            let next = at(self, motion.start + (motion.end - motion.start) * part as f64 / PARTS as f64)?;
+            let next = at(self, motion.start + (motion.end - motion.start) * part as f64 / PARTS as f64);
+            // At the place itself there is no such space.
+            if next.is_none() && part < PARTS {
+                continue;
+            }
+            let next = next?;
             if self.turns(&before, &next)? {
                 let (mut low, mut high) = (before.0, next.0);
                 for _ in 0..HALVINGS {
-                    let middle = at(self, 0.5 * (low + high))?;
-                    if self.turns(&before, &middle)? { high = middle.0 } else { low = middle.0 }
+                    let half = 0.5 * (low + high);
+                    let Some(middle) = at(self, half) else {
+                        high = half;
+                        break;
+                    };
+                    if self.turns(&before, &middle)? { high = half } else { low = half }
                 }
                 if !self.crosses(motion, high, (start.0, &start.1))? {
                     return Some(Rank::Passed);
