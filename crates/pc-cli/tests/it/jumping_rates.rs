@@ -139,6 +139,33 @@ fn friction_follows_a_belt_that_changes_its_speed() {
     }
 }
 
+/// A spring of constant force whose rest jumps at t = 1 from 0 to −1 while the body passes: it is to the right of the rest for a
+/// short time, which one step of DOP853 contains.
+#[test]
+fn a_table_jumps_over_a_body_that_returns_within_a_step() {
+    let model = "[coordinates]\nx = 0.5\n[quasi_velocities]\n\"x'\" = -1.4\n\
+                 [inputs]\nr = { times = [0.0, 1.0, 5.0], values = [0.0, -1.0, -1.0], interpolation = \"hold\" }\n\
+                 [lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"abs(x - r)/10\"\n[simulation]\nt_end = 2\n";
+    // It passes 0 at τ with the speed v, is pushed back up to t = 1, forward up to −1, and back from there.
+    let motion = |x: f64, v: f64, a: f64, t: f64| (x + v * t + a * t * t / 2.0, v + a * t);
+    let until = |x: f64, v: f64, a: f64, to: f64| {
+        let root = (v * v + 2.0 * a * (to - x)).sqrt();
+        (-v - root) / a
+    };
+    let mut at = (0.5, -1.4);
+    let first = until(at.0, at.1, -0.1, 0.0);
+    at = motion(at.0, at.1, -0.1, first);
+    at = motion(at.0, at.1, 0.1, 1.0 - first);
+    let second = until(at.0, at.1, -0.1, -1.0);
+    at = motion(at.0, at.1, -0.1, second);
+    at = motion(at.0, at.1, 0.1, 1.0 - second);
+    assert!(first < 1.0 && second > 0.0 && second < 0.1);
+    for method in ["dop853", "adams", "bdf", "auto"] {
+        let row = last("rest", model, &["run", "--method", method, "--rtol", "1e-10"]);
+        assert_near([row[1], row[2]], at.into(), method);
+    }
+}
+
 /// A relay that holds b where 0.12 b = −0.0968 is at the end on a jump of its rate, where rounding chooses the side: derivations
 /// are compared beside it.
 #[test]

@@ -7,6 +7,7 @@ use pc_expr::{Events, Failure, PolynomialMotion, RootSeparation, VectorField};
 use crate::error::{NonFinite, Reason, SolveError};
 use crate::events::root_finding::Passage;
 use crate::events::samples::Look;
+use crate::integration::breaks::break_at;
 use crate::integration::held_sides::write_functions;
 use crate::integration::integration::Integration;
 use crate::integration::stepper::Stepper;
@@ -168,6 +169,10 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             let pieces = self.engine.limits().samples_per_step.saturating_mul(density);
             let length = to - from;
             times.extend((1..pieces).map(|k| from + length * (f64::from(k) / f64::from(pieces))));
+        }
+        // Functions may jump at a break, and return within the step.
+        if let Some(at) = break_at(self.engine.field_mut().breaks(), from) {
+            times.push(if direction > 0.0 { at.next_up() } else { at.next_down() });
         }
         times.sort_unstable_by(|a, b| ((a - b) * direction).total_cmp(&0.0));
         times.dedup();
