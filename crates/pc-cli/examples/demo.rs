@@ -5,7 +5,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use pc_cli::args::forms::RunForm;
 use pc_cli::commands::report;
 use pc_cli::commands::run::{drawn, integrate};
 use pc_cli::motion::plan::Plan;
@@ -14,7 +13,7 @@ use pc_cli::output::destination::Destination;
 use pc_cli::report::text;
 use pc_mech::Graph;
 use pc_model::document::AbsoluteTolerance;
-use pc_model::{Builtin, Model};
+use pc_model::{Builtin, Model, Variables};
 use pc_print::{Form, Layout, Page, columns, page};
 use pc_report::picture::Wanted;
 use pc_solve::Method;
@@ -82,11 +81,11 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
         method: Method::Adams,
         deadline: model.budget().deadline().clone(),
     };
-    let table = integrate(&model, RunForm::Poincare, || Ok(plan(11)))?;
+    let table = integrate(&model, Variables::QuasiVelocities, || Ok(plan(11)))?;
     show_table(&table);
 
     section("what the motion keeps: largest change of each integral");
-    let fine = integrate(&model, RunForm::Poincare, || Ok(plan(1001)))?;
+    let fine = integrate(&model, Variables::QuasiVelocities, || Ok(plan(1001)))?;
     for (name, meaning) in [
         ("energy", "kinetic plus potential energy"),
         ("area", "angular momentum about the vertical"),

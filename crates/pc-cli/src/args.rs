@@ -11,7 +11,7 @@ pub mod command_line;
 pub mod compare;
 pub mod drawn;
 mod examples;
-pub mod forms;
+pub(crate) mod forms;
 pub mod input;
 pub mod linear;
 pub mod models;

@@ -83,6 +83,7 @@ pub use ode::colouring::Colouring;
 pub use ode::events::{Direction, Event, Events};
 pub use ode::failure::Failure;
 pub use ode::lane_field::{LaneField, Watched};
+pub use ode::method::Method;
 pub use ode::pattern::Pattern;
 pub use ode::program_field::ProgramField;
 pub use ode::rate_jump::RateJump;

@@ -1,16 +1,11 @@
 //! How an FMU integrates, and over which time.
 
-use pc_model::document::{Method, Simulation};
-use pc_model::{Assembly, Flow, Model, Variables};
+use pc_expr::Method;
+use pc_model::document::Simulation;
+use pc_model::{Assembly, Flow, Model, ORDINARY_TOLERANCE, Variables};
 
 use crate::error::FmuError;
 use crate::options::{FmuOptions, FmuSolver};
-
-/// Rows of a table, unless the model says another number.
-const SAMPLES: usize = 201;
-
-/// The absolute tolerance of components of ordinary scale.
-const USUAL: f64 = 1e-12;
 
 /// The settings of a simulation.
 #[derive(Clone, Debug)]
@@ -47,9 +42,9 @@ impl Experiment {
         let t_start = assembly.t_start;
         // Importers go forward only.
         let t_end = simulation.t_end.as_ref().map(|t| t.value).filter(|&t| t > t_start);
-        let rows = simulation.samples.as_ref().map_or(SAMPLES, |samples| samples.value);
+        let rows = simulation.rows();
         let interval = t_end.map(|t| (t - t_start) / (rows.max(2) - 1) as f64);
-        let relative = simulation.rtol.as_ref().map_or(1e-9, |rtol| rtol.value);
+        let relative = simulation.relative_tolerance();
         let given = simulation.atol.as_ref().map(|atol| atol.value.clone()).unwrap_or_default();
         let mut flow = Flow::new(model, assembly, variables)?;
         let tolerances =
@@ -60,12 +55,15 @@ impl Experiment {
 
     /// The absolute tolerance of a component of the state.
     pub(crate) fn absolute(&self, name: &str) -> f64 {
-        self.absolute.iter().find(|(known, _)| known == name).map_or(USUAL, |&(_, tolerance)| tolerance)
+        self.absolute
+            .iter()
+            .find(|(known, _)| known == name)
+            .map_or(ORDINARY_TOLERANCE, |&(_, tolerance)| tolerance)
     }
 
     /// The scale of a component of the state, as importers want to know it.
     pub(crate) fn nominal(&self, name: &str) -> f64 {
-        self.absolute(name) / USUAL
+        self.absolute(name) / ORDINARY_TOLERANCE
     }
 
     /// How long it takes, the scale of small times.

@@ -30,9 +30,9 @@ pub(crate) mod tolerance;
 pub(crate) mod tree;
 
 pub use contents::{
-    Algebra, AlgebraDefinition, Body, Bracket, Constraint, ConstraintKind, Document, EquationForm, Event,
-    Gravity, HamiltonJacobi, Heading, Input, InputValue, Lagrangian, Method, Orientation, QuasiVelocity,
-    Simulation, State, TableFile,
+    Algebra, AlgebraDefinition, Body, Bracket, Constraint, ConstraintKind, Document, Event, Gravity,
+    HamiltonJacobi, Heading, Input, InputValue, Lagrangian, Orientation, QuasiVelocity, Simulation, State,
+    TableFile,
 };
 pub use draw::{Draw, DrawnPlace, DrawnShape};
 pub use expression::{Expression, Located, Name, NamedExpression};

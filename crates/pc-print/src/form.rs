@@ -24,6 +24,18 @@ pub enum Form {
 }
 
 impl Form {
+    /// All of them.
+    pub const ALL: [Form; 8] = [
+        Form::Poincare,
+        Form::Canonical,
+        Form::Lagrange,
+        Form::Voronets,
+        Form::Reduced,
+        Form::LiePoisson,
+        Form::Orthonormal,
+        Form::Hamel,
+    ];
+
     /// The variables of its state; none for the forms in velocities, which are only printed.
     pub fn variables(self) -> Option<Variables> {
         Some(match self {
@@ -37,7 +49,12 @@ impl Form {
         })
     }
 
-    /// Its name on a command line.
+    /// The one of this [`name`](Form::name).
+    pub fn named(name: &str) -> Option<Form> {
+        Form::ALL.into_iter().find(|form| form.name() == name)
+    }
+
+    /// Its name on command lines and in Python.
     pub fn name(self) -> &'static str {
         match self {
             Form::Lagrange => "lagrange",

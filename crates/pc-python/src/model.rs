@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use pc_expr::{Cancel, Limits};
 use pc_mech::{EmitOptions, Language};
-use pc_model::document::{AbsoluteTolerance, EquationForm, Method};
+use pc_model::document::AbsoluteTolerance;
 use pc_model::{Assembly, Builtin, Document, Model, Variables, deep};
 use pc_print::{Form, Layout, Page, Theory, TheoryOptions, displayed_equations, page};
 use pc_report::Check;
@@ -43,20 +43,10 @@ pub(crate) struct Changes {
 
 /// The form of this name.
 pub(crate) fn form(name: &str) -> Result<Form, Error> {
-    const FORMS: [Form; 8] = [
-        Form::Poincare,
-        Form::Canonical,
-        Form::Lagrange,
-        Form::Voronets,
-        Form::Reduced,
-        Form::LiePoisson,
-        Form::Orthonormal,
-        Form::Hamel,
-    ];
-    FORMS.into_iter().find(|form| form.name() == name).ok_or_else(|| Error::Choice {
+    Form::named(name).ok_or_else(|| Error::Choice {
         what: "the form",
         given: name.to_owned(),
-        known: FORMS.map(Form::name).to_vec(),
+        known: Form::ALL.map(Form::name).to_vec(),
     })
 }
 
@@ -66,17 +56,6 @@ pub(crate) fn variables(name: &str) -> Result<Variables, Error> {
         what: "a system in this form",
         why: "its equations are for print; use poincare, canonical, reduced, lie-poisson, orthonormal or hamel",
     })
-}
-
-fn form_of(form: EquationForm) -> &'static str {
-    match form {
-        EquationForm::Poincare => "poincare",
-        EquationForm::Canonical => "canonical",
-        EquationForm::Reduced => "reduced",
-        EquationForm::LiePoisson => "lie-poisson",
-        EquationForm::Orthonormal => "orthonormal",
-        EquationForm::Hamel => "hamel",
-    }
 }
 
 /// As a tolerance is given: a number, or a mapping of names.
@@ -90,16 +69,6 @@ fn absolute(given: AbsoluteTolerance) -> GivenTolerance {
     match given.all {
         Some(all) => GivenTolerance::All(all),
         None => GivenTolerance::Each(given.each.into_iter().collect()),
-    }
-}
-
-fn method_of(method: Method) -> &'static str {
-    match method {
-        Method::Adams => "adams",
-        Method::Bdf => "bdf",
-        Method::Dop853 => "dop853",
-        Method::Taylor => "taylor",
-        Method::Auto => "auto",
     }
 }
 
@@ -259,8 +228,8 @@ impl ModelCore {
         settings.set_item("max_step", number(&simulation.max_step))?;
         settings.set_item("accumulation", number(&simulation.accumulation))?;
         settings.set_item("samples_per_step", simulation.samples_per_step.as_ref().map(|n| n.value))?;
-        settings.set_item("method", simulation.method.as_ref().map(|method| method_of(method.value)))?;
-        settings.set_item("form", simulation.form.as_ref().map(|form| form_of(form.value)))?;
+        settings.set_item("method", simulation.method.as_ref().map(|method| method.value.name()))?;
+        settings.set_item("form", simulation.form.as_ref().map(|form| form.value.name()))?;
         Ok(settings)
     }
 

@@ -56,17 +56,11 @@ impl Plan {
         let given = self.atol.as_ref().map_or_else(AbsoluteTolerance::default, Absolute::given);
         let given = model.absolute_tolerance(given)?;
         let absolute = Tolerance::each(flow.absolute_tolerances(&given, span, self.rtol));
-        let method = match self.method.as_str() {
-            "adams" => Method::Adams,
-            "bdf" => Method::Bdf,
-            "dop853" => Method::Dop853,
-            "taylor" => Method::Taylor,
-            "auto" => Method::Auto,
-            other => {
-                let known = vec!["adams", "bdf", "dop853", "taylor", "auto"];
-                return Err(Error::Choice { what: "the method", given: other.to_owned(), known });
-            }
-        };
+        let method = Method::named(&self.method).ok_or_else(|| Error::Choice {
+            what: "the method",
+            given: self.method.clone(),
+            known: Method::ALL.map(Method::name).to_vec(),
+        })?;
         let time = self.limit_time.and_then(|seconds| std::time::Duration::try_from_secs_f64(seconds).ok());
         let limits = Limits { cancel: cancel.clone(), time, ..Limits::default() };
         let mut options = Options::new(method)

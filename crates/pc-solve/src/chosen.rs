@@ -1,6 +1,6 @@
 //! The method chosen by options.
 
-use pc_expr::{PolynomialMotion, VectorField};
+use pc_expr::{Method, PolynomialMotion, VectorField};
 
 #[cfg(feature = "cvode")]
 use crate::auto::switch::Auto;
@@ -15,7 +15,6 @@ use crate::integration::method::IntegrationMethod;
 use crate::integration::since::Since;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
-use crate::settings::method::Method;
 use crate::settings::options::Options;
 use crate::taylor::stepper::Taylor;
 

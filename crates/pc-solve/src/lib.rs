@@ -209,7 +209,8 @@ pub use integration::trajectory::Trajectory;
 #[cfg(feature = "cvode")]
 pub use lyapunov::lyapunov::{Lyapunov, LyapunovOptions, lyapunov_exponents};
 pub use pc_expr::{
-    Deadline, Direction, Event, Events, Failure, Pattern, Spent, TimeDependence, TimeProfile, VectorField,
+    Deadline, Direction, Event, Events, Failure, Method, Pattern, Spent, TimeDependence, TimeProfile,
+    VectorField,
 };
 pub use runge_kutta::{FixedStep, RungeKutta4};
 #[cfg(feature = "cvode")]
@@ -224,7 +225,7 @@ pub use sensitivity::trajectory::{
     solve_dense_with_sensitivities, solve_with_sensitivities, solve_with_sensitivities_and_events,
 };
 pub use settings::inequality::Inequality;
-pub use settings::method::{Method, NonlinearSolver};
+pub use settings::nonlinear_solver::NonlinearSolver;
 pub use settings::options::Options;
 pub use settings::tolerance::Tolerance;
 pub use solve::failure::SolveFailure;

@@ -1,7 +1,7 @@
-//! Settings, which errors refer to: `method`, `tolerance` and `inequality`, and the `options` that
+//! Settings, which errors refer to: `nonlinear_solver`, `tolerance` and `inequality`, and the `options` that
 //! contain them.
 
 pub(crate) mod inequality;
-pub(crate) mod method;
+pub(crate) mod nonlinear_solver;
 pub(crate) mod options;
 pub(crate) mod tolerance;

@@ -3,7 +3,8 @@
 use std::ffi::c_int;
 use std::time::Duration;
 
-use ::pc_model::Variables;
+use ::pc_model::document::Simulation;
+use ::pc_model::{ORDINARY_TOLERANCE, Variables};
 use pc_expr::Limits;
 use pc_solve::{Accumulation, Deadline, Krylov, LinearSolver, Method, NonlinearSolver, Options};
 
@@ -211,8 +212,8 @@ impl Default for pc_solver_options {
             iteration: pc_iteration::PC_ITERATION_OF_METHOD as c_int,
             linear_solver: pc_linear_solver::PC_LINEAR_AUTOMATIC as c_int,
             max_order: 0,
-            relative_tolerance: 1e-9,
-            absolute_tolerance: 1e-12,
+            relative_tolerance: Simulation::RELATIVE_TOLERANCE,
+            absolute_tolerance: ORDINARY_TOLERANCE,
             absolute_tolerances: std::ptr::null(),
             absolute_tolerances_length: 0,
             max_steps: 500_000,

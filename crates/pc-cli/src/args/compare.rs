@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use clap::Args;
+use pc_model::Variables;
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::drawn::DrawnArguments;
-use crate::args::forms::{RunForm, run_form};
+use crate::args::forms::run_form;
 use crate::args::options;
 use crate::args::options::{
     Format, IntegrationArguments, ModelArguments, RunArguments, Setting, VelocityArguments,
@@ -23,7 +24,7 @@ pub struct CompareArguments {
     pub second: Option<String>,
     /// Form of the equations, one for both, or that of A and that of B; else that of each file, else poincare
     #[arg(long, value_name = "FORM[,FORM]", value_delimiter = ',', value_parser = run_form)]
-    pub form: Vec<RunForm>,
+    pub form: Vec<Variables>,
     /// Give a parameter, or the start of a coordinate, velocity or first-order state, another value in each model that has it
     /// (repeatable)
     #[arg(long, value_name = "NAME=VALUE", value_parser = options::setting)]

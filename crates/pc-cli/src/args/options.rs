@@ -4,11 +4,14 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use pc_model::Variables;
 use pc_model::document::{AbsoluteTolerance, MOST_SAMPLES};
+use pc_print::Form;
+use pc_solve::Method;
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::drawn::DrawnArguments;
-use crate::args::forms::{EmitForm, Form, RunForm, choice, emit_form, form, run_form};
+use crate::args::forms::{emit_form, form, method, run_form};
 
 /// The model, the values of its parameters, and its start.
 #[derive(Clone, Debug, Args)]
@@ -232,7 +235,7 @@ pub struct RunArguments {
     /// of the file, else poincare. Columns stay the same, except that reduced and lie-poisson lack some coordinates,
     /// and hamel adds each NAME after the outputs
     #[arg(long, value_name = "FORM", value_parser = run_form)]
-    pub form: Option<RunForm>,
+    pub form: Option<Variables>,
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,
@@ -297,7 +300,7 @@ pub struct EmitArguments {
     pub velocities: VelocityArguments,
     /// Form of the equations: poincare, reduced, orthonormal or hamel (see `pc derive --help`)
     #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = emit_form)]
-    pub form: EmitForm,
+    pub form: Variables,
     /// Leave out the Jacobian
     #[arg(long, conflicts_with = "fmu")]
     pub no_jacobian: bool,
@@ -391,25 +394,6 @@ pub enum Outputs {
     Reactions,
 }
 
-/// Integration method.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Method {
-    /// Adams–Moulton formulas.
-    Adams,
-    /// Backward differentiation formulas.
-    Bdf,
-    /// Runge–Kutta of order 8 by Dormand and Prince.
-    Dop853,
-    /// Taylor series.
-    Taylor,
-    /// Runge–Kutta of order 8, or backward differentiation where the motion is stiff.
-    Auto,
-}
-
-pub(crate) fn method(text: &str) -> Result<Method, String> {
-    choice(text, &[])
-}
-
 pub(crate) fn definition(text: &str) -> Result<Setting, String> {
     setting(text).map_err(|_| "write NAME=EXPR, as in `\"v=r*φ'\"`".to_owned())
 }
@@ -475,13 +459,6 @@ pub(crate) fn samples(text: &str) -> Result<usize, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn unsupported_choices_are_named() {
-        assert_eq!(method("bdf"), Ok(Method::Bdf));
-        assert_eq!(method("taylor"), Ok(Method::Taylor));
-        assert_eq!(method("rk4").unwrap_err(), "use adams, bdf, dop853, taylor or auto");
-    }
 
     #[test]
     fn settings_are_split_at_the_first_equals_sign() {

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use pc_model::Variables;
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::drawn::DrawnArguments;
-use crate::args::forms::{RunForm, run_form};
+use crate::args::forms::run_form;
 use crate::args::options;
 use crate::args::options::{IntegrationArguments, ModelArguments, RunArguments, VelocityArguments};
 
@@ -28,7 +29,7 @@ pub struct ShownArguments {
     pub integration: IntegrationArguments,
     /// Form of the equations that are integrated, as for `pc run`
     #[arg(long, value_name = "FORM", value_parser = run_form)]
-    pub form: Option<RunForm>,
+    pub form: Option<Variables>,
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,

@@ -5,11 +5,12 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueEnum};
+use pc_model::Variables;
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::drawn::DrawnArguments;
 use crate::args::examples;
-use crate::args::forms::{RunForm, run_form};
+use crate::args::forms::run_form;
 use crate::args::options;
 use crate::args::options::{IntegrationArguments, ModelArguments, RunArguments, VelocityArguments};
 use crate::args::steady::StateArguments;
@@ -94,7 +95,7 @@ pub struct SweepArguments {
     /// Form of the equations, as for `pc run`: poincare, canonical, reduced, lie-poisson, orthonormal, or hamel where the file gives the
     /// quasi-velocities; else that of the file, else poincare. Columns are those of `pc run` in this form
     #[arg(long, value_name = "FORM", value_parser = run_form)]
-    pub form: Option<RunForm>,
+    pub form: Option<Variables>,
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,

@@ -4,7 +4,6 @@ use pc_model::{Model, UnknownValue, Variables};
 use pc_print::{visible, visible_json};
 
 use crate::args::compare::CompareArguments;
-use crate::args::forms::RunForm;
 use crate::args::input;
 use crate::args::options::{Format, Setting};
 use crate::commands::run::{integrate, integrate_again};
@@ -48,7 +47,7 @@ pub fn command(arguments: &CompareArguments) -> Result<(), CliError> {
     let mut comparison = Comparison::new(&a, &b, None, arguments)?;
     if !comparison.is_same() {
         // Two motions, or errors of integration.
-        let finer = |model: &Model, form: RunForm, (plan, run): (&Plan, &Run)| {
+        let finer = |model: &Model, form: Variables, (plan, run): (&Plan, &Run)| {
             integrate_again(model, form, || Ok(plan.finer(&run.tolerances)))
         };
         let again = finer(&first, forms[0], (&plan, &a))
@@ -61,8 +60,7 @@ pub fn command(arguments: &CompareArguments) -> Result<(), CliError> {
             comparison = Comparison::new(&a, &b, Some((c, d)), arguments)?;
         }
     }
-    let name = |form: RunForm| Variables::from(form).name();
-    let pair = Pair { first: (&a, name(forms[0])), second: (&b, name(forms[1])) };
+    let pair = Pair { first: (&a, forms[0].name()), second: (&b, forms[1].name()) };
     print(|out| match arguments.format {
         Format::Text => write!(out, "{}", visible(&pair.text(&comparison))),
         Format::Json => writeln!(out, "{}", visible_json(&pair.json(&comparison))),

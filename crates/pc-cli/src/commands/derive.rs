@@ -1,9 +1,8 @@
 //! `pc derive`: the equations of motion, printed.
 
-use pc_print::{Layout, page};
+use pc_print::{Form, Layout, page};
 use pc_verify::Outlet;
 
-use crate::args::forms::Form;
 use crate::args::input;
 use crate::args::options::DeriveArguments;
 use crate::error::CliError;
@@ -26,8 +25,8 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     say_moved(&assembly);
     say_changing_masses(&assembly);
     let layout = Layout { width: arguments.width.into(), brief: arguments.brief, inline: arguments.inline };
-    let page = page(form.into(), arguments.format.into(), &layout, model.title(), &assembly)?;
+    let page = page(form, arguments.format.into(), &layout, model.title(), &assembly)?;
     assembly.within_limits()?;
-    vouched(&model, &assembly, Outlet::Page(form.into()), arguments.verify)?;
+    vouched(&model, &assembly, Outlet::Page(form), arguments.verify)?;
     print(|out| write!(out, "{page}"))
 }

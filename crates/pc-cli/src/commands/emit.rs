@@ -5,10 +5,10 @@ use std::io::Write;
 use std::path::Path;
 
 use pc_mech::{EmitOptions, Language};
+use pc_model::Variables;
 use pc_print::energy_remark;
 use pc_verify::Outlet;
 
-use crate::args::forms::EmitForm;
 use crate::args::input;
 use crate::args::options::{EmitArguments, Lang};
 use crate::error::CliError;
@@ -29,10 +29,10 @@ const NO_TABLES: &str = "The tables of inputs are not part of this source: their
 /// # Errors
 /// [`CliError`].
 pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
-    let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == EmitForm::Hamel)?;
+    let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == Variables::Given)?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
-    let (equations, form) = assembly.equations_of(arguments.form.into())?;
+    let (equations, form) = assembly.equations_of(arguments.form)?;
     let language = match arguments.lang {
         Some(Lang::Rust) => Language::Rust,
         Some(Lang::C) | None => Language::C, // the command line requires a language
@@ -59,7 +59,7 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     if !remarks.is_empty() {
         options = options.remark(remarks.join("\n"));
     }
-    vouched(&model, &assembly, Outlet::Source(arguments.form.into()), arguments.verify)?;
+    vouched(&model, &assembly, Outlet::Source(arguments.form), arguments.verify)?;
     // With its inputs fixed at their start values, the motion would be a different one.
     if let Some(t_end) = model.document().simulation.t_end.as_ref().filter(|_| !has_tables) {
         options = options.start(assembly.t_start, &assembly.start_in(&form)?, t_end.value);

@@ -4,9 +4,9 @@ use std::io::Cursor;
 use std::io::Write;
 
 use pc_fmu::{FmiVersion, Fmu, FmuOptions, FmuSolver};
+use pc_model::Variables;
 use pc_verify::Outlet;
 
-use crate::args::forms::EmitForm;
 use crate::args::input;
 use crate::args::options::{EmitArguments, FmuMethod, FmuVersion};
 use crate::commands::emit::name;
@@ -27,7 +27,7 @@ pub fn command(arguments: &EmitArguments, version: FmuVersion) -> Result<(), Cli
         return Err(CliError::UnknownExtension { option, path, expected: ".fmu" });
     }
     let place = Place::regular(path).map_err(|source| CliError::cannot_write(path, source))?;
-    let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == EmitForm::Hamel)?;
+    let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == Variables::Given)?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     let version = match version {
@@ -44,12 +44,12 @@ pub fn command(arguments: &EmitArguments, version: FmuVersion) -> Result<(), Cli
     }
     say_dropped(&assembly);
     say_moved(&assembly);
-    let (_, form) = assembly.equations_of(arguments.form.into())?;
+    let (_, form) = assembly.equations_of(arguments.form)?;
     if let Some(remark) = choice(&assembly, &form.independent) {
         say_choice(&remark);
     }
-    vouched(&model, &assembly, Outlet::Source(arguments.form.into()), arguments.verify)?;
-    let mut fmu = Fmu::new(&model, &assembly, arguments.form.into(), &options)?;
+    vouched(&model, &assembly, Outlet::Source(arguments.form), arguments.verify)?;
+    let mut fmu = Fmu::new(&model, &assembly, arguments.form, &options)?;
     for note in fmu.notes() {
         say(format_args!("note: {note}\n"));
     }

@@ -12,7 +12,6 @@ use pc_solve::{self as solver, Events, Occurrence, Solution, Solve, Trajectory};
 use pc_verify::Jump;
 
 use crate::args::checkpoint::CheckpointArguments;
-use crate::args::forms::RunForm;
 use crate::args::input;
 use crate::args::options::{Outputs, RunArguments};
 use crate::error::CliError;
@@ -48,7 +47,7 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     let destination = Destination::table(arguments.output.as_deref())?;
     let picture =
         Destination::plot(arguments.plot.as_deref())?.map(|place| (place, arguments.drawn.wanted()));
-    let is_hamel = arguments.form == Some(RunForm::Hamel);
+    let is_hamel = arguments.form == Some(Variables::Given);
     let mut model = input::open_in(&arguments.model, &arguments.velocities, is_hamel)?;
     model.observe_reactions(arguments.outputs == Some(Outputs::Reactions));
     if arguments.outputs.is_some() && model.document().constraints.is_empty() {
@@ -95,7 +94,7 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
 /// motion is a [`Run`].
 pub fn integrate(
     model: &Model,
-    form: RunForm,
+    form: Variables,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
     let asked = Asked { verify: true, fine: true, notes: true, estimate: false };
@@ -108,7 +107,7 @@ pub fn integrate(
 /// [`CliError`] if there is no motion at all.
 pub(crate) fn integrate_again(
     model: &Model,
-    form: RunForm,
+    form: Variables,
     plan: impl FnOnce() -> Result<Plan, CliError>,
 ) -> Result<Run, CliError> {
     let asked = Asked { verify: false, fine: false, notes: false, estimate: false };
@@ -133,7 +132,7 @@ struct Asked {
 fn integrate_into(
     stream: Option<&mut Stream<'_>>,
     model: &Model,
-    form: RunForm,
+    form: Variables,
     asked: Asked,
     checkpoints: &CheckpointArguments,
     plan: impl FnOnce() -> Result<Plan, CliError>,
@@ -143,7 +142,7 @@ fn integrate_into(
     if asked.notes {
         say_notes(&assembly)?;
     }
-    let mut flow = Flow::new(model, &assembly, form.into())?;
+    let mut flow = Flow::new(model, &assembly, form)?;
     let plan = plan()?;
     let tolerances = plan.tolerances(&mut flow);
     let options = plan.options(&tolerances);

@@ -7,13 +7,12 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use pc_model::{Flow, Model};
+use pc_model::{Flow, Model, Variables};
 use pc_solve::{
     Checkpoint, CheckpointError, Ending, Options, Solution, SolveError, SolveFailure, solve_checkpointed,
 };
 
 use crate::args::checkpoint::CheckpointArguments;
-use crate::args::forms::RunForm;
 use crate::error::CliError;
 use crate::motion::checkpoint_error::CheckpointFileError;
 use crate::motion::identity;
@@ -50,7 +49,7 @@ impl Checkpoints {
         arguments: &CheckpointArguments,
         model: &Model,
         plan: &Plan,
-        form: RunForm,
+        form: Variables,
     ) -> Result<Option<Checkpoints>, CliError> {
         let Some(path) = arguments.path() else {
             return if arguments.every.is_some() {

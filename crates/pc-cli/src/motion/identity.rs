@@ -1,18 +1,17 @@
 //! Everything that the numbers of a motion, or of other work on a model, depend on: stored with what is interrupted, so that only the
 //! same command continues it.
 
-use pc_model::Model;
 use pc_model::document::AbsoluteTolerance;
+use pc_model::{Model, Variables};
 use pc_solve::Accumulation;
 
-use crate::args::forms::RunForm;
 use crate::motion::plan::Plan;
 
 /// Names and values in the order of their importance.
 pub(crate) type Identity = Vec<(String, String)>;
 
 /// Of the motion of a model.
-pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
+pub(crate) fn of_motion(model: &Model, plan: &Plan, form: Variables) -> Identity {
     let most = plan.max_steps.map(|most| ("--max-steps", most.to_string()));
     let parameters: Vec<&str> = model.parameters().map(|(name, _)| name).collect();
     let by: Vec<&str> = plan.sensitivities.iter().map(|&j| parameters[j]).collect();
@@ -26,7 +25,7 @@ pub(crate) fn of_motion(model: &Model, plan: &Plan, form: RunForm) -> Identity {
         ("--samples-per-step", plan.samples_per_step.map_or("4".to_owned(), |parts| parts.to_string())),
         ("--accumulation", format!("{:e}", plan.accumulation.unwrap_or(Accumulation::default().within))),
         ("--method", plan.method.to_string().to_lowercase()),
-        ("--form", format!("{form:?}").to_lowercase()),
+        ("--form", form.name().to_owned()),
     ];
     of_work(model, plan.into_iter().chain(most).chain(by))
 }

@@ -1,40 +1,13 @@
 //! The plan of a run, from the command line, else the model file, else the defaults.
 
-use pc_model::document::{self, AbsoluteTolerance};
-use pc_model::{Flow, Model};
+use pc_model::document::AbsoluteTolerance;
+use pc_model::{Flow, Model, Variables};
 use pc_solve::{Accumulation, Deadline, Method, Options};
 
-use crate::args::forms::RunForm;
-use crate::args::options;
 use crate::args::options::RunArguments;
 use crate::error::CliError;
 use crate::motion::sensitivities;
 use crate::motion::tolerances::Tolerances;
-
-/// The method of this name on the command line.
-fn of_arguments(method: options::Method) -> Method {
-    match method {
-        options::Method::Adams => Method::Adams,
-        options::Method::Bdf => Method::Bdf,
-        options::Method::Dop853 => Method::Dop853,
-        options::Method::Taylor => Method::Taylor,
-        options::Method::Auto => Method::Auto,
-    }
-}
-
-/// The method of this name in a file.
-fn of_file(method: document::Method) -> Method {
-    match method {
-        document::Method::Adams => Method::Adams,
-        document::Method::Bdf => Method::Bdf,
-        document::Method::Dop853 => Method::Dop853,
-        document::Method::Auto => Method::Auto,
-        document::Method::Taylor => Method::Taylor,
-    }
-}
-
-/// Default number of rows of a table.
-const SAMPLES: usize = 201;
 
 /// Tolerances that are much smaller.
 const FINER: f64 = 1e-2;
@@ -72,9 +45,9 @@ pub struct Plan {
 
 impl Plan {
     /// The form of the equations, from the command line or the file.
-    pub fn form(model: &Model, arguments: &RunArguments) -> RunForm {
-        let written = model.document().simulation.form.as_ref().map(|form| form.value.into());
-        arguments.form.or(written).unwrap_or(RunForm::Poincare)
+    pub fn form(model: &Model, arguments: &RunArguments) -> Variables {
+        let written = model.document().simulation.form.as_ref().map(|form| form.value);
+        arguments.form.or(written).unwrap_or(Variables::QuasiVelocities)
     }
 
     /// The plan for a model, from the command line and the file.
@@ -84,21 +57,20 @@ impl Plan {
     /// [`CliError::Tolerance`].
     pub fn new(model: &Model, arguments: &RunArguments) -> Result<Plan, CliError> {
         let simulation = &model.document().simulation;
-        let t_start = simulation.t_start.as_ref().map_or(0.0, |t| t.value);
+        let t_start = simulation.start_time();
         let no_end = || CliError::NoEnd { model: model.document().source.name().to_owned() };
         let t_end = arguments.t_end.or(simulation.t_end.as_ref().map(|t| t.value)).ok_or_else(no_end)?;
         if t_end == t_start {
             return Err(CliError::EndIsStart { t: t_end });
         }
         let written = simulation.method.as_ref().map(|method| method.value);
-        let method =
-            arguments.integration.method.map(of_arguments).or(written.map(of_file)).unwrap_or(Method::Auto);
+        let method = arguments.integration.method.or(written).unwrap_or_default();
         let sensitivities = sensitivities::parameters(model, &arguments.sensitivities)?;
         Ok(Plan {
             t_start,
             t_end,
-            samples: arguments.samples.or(simulation.samples.as_ref().map(|n| n.value)).unwrap_or(SAMPLES),
-            rtol: arguments.integration.rtol.or(simulation.rtol.as_ref().map(|r| r.value)).unwrap_or(1e-9),
+            samples: arguments.samples.unwrap_or_else(|| simulation.rows()),
+            rtol: arguments.integration.rtol.unwrap_or_else(|| simulation.relative_tolerance()),
             atol: model.absolute_tolerance(arguments.integration.absolute()).map_err(CliError::Tolerance)?,
             max_step: arguments.integration.max_step.or(simulation.max_step.as_ref().map(|h| h.value)),
             max_steps: arguments.integration.max_steps,

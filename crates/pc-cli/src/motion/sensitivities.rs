@@ -3,7 +3,7 @@
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 
-use pc_model::{Flow, Model, UnknownParameter};
+use pc_model::{Flow, Model, UnknownParameter, Variables};
 use pc_solve::{
     Checkpoint, Options, Sensitivities, SensitivitySolution, Solution, SolveError, SolveFailure,
     solve_checkpointed_with_sensitivities, solve_with_sensitivities_and_events,
@@ -12,7 +12,6 @@ use pc_solve::{
 use pc_expr::VectorField;
 use pc_verify::Slope;
 
-use crate::args::forms::RunForm;
 use crate::error::CliError;
 
 /// The parameters of these names, by their numbers.
@@ -43,10 +42,10 @@ impl Derivatives {
     ///
     /// # Errors
     /// [`CliError::Model`] where the start has no derivative.
-    pub(crate) fn new(model: &Model, form: RunForm, parameters: &[usize]) -> Result<Derivatives, CliError> {
+    pub(crate) fn new(model: &Model, form: Variables, parameters: &[usize]) -> Result<Derivatives, CliError> {
         let mut wanted = Sensitivities::new();
         for &j in parameters {
-            wanted = wanted.by_parameter_from(j, Flow::start_by_parameter(model, form.into(), j)?);
+            wanted = wanted.by_parameter_from(j, Flow::start_by_parameter(model, form, j)?);
         }
         let names: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
         let names = parameters.iter().map(|&j| names[j].clone()).collect();

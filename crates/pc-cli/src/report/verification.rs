@@ -5,7 +5,6 @@ use pc_model::{Assembly, Flow, Model, Variables};
 use pc_report::Check;
 use pc_verify::{Agreement, Jump, Options, Outlet, Second, Slope, VerifyError, verify, vouch};
 
-use crate::args::forms::RunForm;
 use crate::args::options::VerifyArguments;
 use crate::error::CliError;
 use crate::report::text::say;
@@ -81,11 +80,10 @@ pub struct Verification {
 
 impl Verification {
     /// The second derivation of a model in a form, not compared anywhere yet.
-    pub fn new(model: &Model, assembly: &Assembly<'_>, form: RunForm) -> Verification {
-        let form = Variables::from(form).name();
+    pub fn new(model: &Model, assembly: &Assembly<'_>, form: Variables) -> Verification {
         Verification {
             second: Second::new(model, assembly),
-            form,
+            form: form.name(),
             outcomes: Vec::new(),
             derivatives: Vec::new(),
             resets: Vec::new(),

@@ -13,7 +13,6 @@ use super::record::{Record, Status};
 use super::shard::Shard;
 use super::sheet::{Column, Kind};
 use super::work::{Consume, Members, Work, chain, line};
-use crate::args::forms::RunForm;
 use crate::error::CliError;
 use crate::motion::interrupt;
 use crate::motion::memory;
@@ -26,7 +25,7 @@ use crate::report::verification::Verification;
 /// Integrates each member.
 pub(crate) struct Motions {
     members: Members,
-    form: RunForm,
+    form: Variables,
     plan: Plan,
     times: Vec<f64>,
     /// By the scale of the model itself, so that members in one vector share them.
@@ -52,11 +51,11 @@ impl Motions {
     pub(crate) fn new(
         model: Model,
         design: Design,
-        (plan, form): (Plan, RunForm),
+        (plan, form): (Plan, Variables),
         all_rows: bool,
         threads: usize,
     ) -> Result<Motions, CliError> {
-        let Begin { table, tolerances, prototype } = begun(&model, &design, &plan, form.into());
+        let Begin { table, tolerances, prototype } = begun(&model, &design, &plan, form);
         let shown = table.as_ref().map_or_else(|| written(&model), Columns::of);
         // Of each member at work its trajectory, its table, its record and the bytes of that.
         let numbers = (4 * shown.names.len() * threads) as u64;
@@ -143,7 +142,7 @@ impl Motions {
         if let Some(flow) = self.prototype.as_ref().and_then(|known| known.flow(model, self.plan.t_start)) {
             return Ok(flow);
         }
-        let flow = derived(model, self.form.into()).map_err(|error| error.diagnostic().message.clone())?;
+        let flow = derived(model, self.form).map_err(|error| error.diagnostic().message.clone())?;
         let own = Columns::of(&Table::of(&flow));
         let is_alike = own.in_rows(!self.all_rows) == self.members.columns();
         let other = || format!("its table has other columns than the sweep: {}", own.names.join(", "));

@@ -57,7 +57,7 @@ impl<'g> Assembler<'g, '_> {
         let mut given = self.given_start(&parameters)?;
         self.check_rotations(&parameters)?;
         self.normalise_quaternions(&mut given.values)?;
-        let t_start = document.simulation.t_start.as_ref().map_or(0.0, |t| t.value);
+        let t_start = document.simulation.start_time();
         let mut constraints = self.constraints()?;
         let mut at = parameters.clone();
         at.push((self.graph.symbol("t"), t_start));

@@ -55,7 +55,7 @@ impl Parameters {
             state: Vec::new(),
             parameters: written(document).map(|(name, _)| graph.symbol(&name.text)).collect(),
         };
-        let t_start = document.simulation.t_start.as_ref().map_or(0.0, |t| t.value);
+        let t_start = document.simulation.start_time();
         let mut tables = document.inputs.iter().filter_map(|input| tables::of(document, input).transpose());
         let (mut values, mut formulas) = (Vec::new(), Vec::new());
         for (place, (_, expression)) in written(document).enumerate() {

@@ -1,6 +1,6 @@
 //! The text of a model as a typed document: every entry with its place, names not yet resolved.
 
-use pc_expr::Direction;
+use pc_expr::{Direction, Method};
 use pc_mech::Interpolation;
 
 use crate::diagnostics::source::{Place, Source};
@@ -9,6 +9,7 @@ use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::inertia::Inertia;
 use crate::document::joints::{Point, TreeBody};
 use crate::document::tolerance::AbsoluteTolerance;
+use crate::variables::Variables;
 
 /// A model as written. Every list is in the order of the file.
 #[derive(Clone, Debug, Default)]
@@ -271,38 +272,6 @@ pub struct Event {
     pub reset: Vec<NamedExpression>,
 }
 
-/// Integration methods.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Backward differentiation formulas.
-    Bdf,
-    /// Adams–Moulton formulas.
-    Adams,
-    /// Taylor series.
-    Taylor,
-    /// Dormand–Prince of order 8.
-    Dop853,
-    /// The program's choice.
-    Auto,
-}
-
-/// Forms of the equations of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EquationForm {
-    /// Equations for η.
-    Poincare,
-    /// Equations for the momenta.
-    Canonical,
-    /// Equations for η without coordinates that nothing depends on.
-    Reduced,
-    /// Equations for the momenta of these.
-    LiePoisson,
-    /// Equations in a frame that is orthonormal in the kinetic metric.
-    Orthonormal,
-    /// Equations for the quasi-velocities that the section gives.
-    Hamel,
-}
-
 /// The settings of a run; the program chooses those left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Simulation {
@@ -328,13 +297,35 @@ pub struct Simulation {
     /// Integration method.
     pub method: Option<Located<Method>>,
     /// Form of the equations.
-    pub form: Option<Located<EquationForm>>,
+    pub form: Option<Located<Variables>>,
     /// The quasi-velocities of the form `hamel`, by linear forms in the velocities.
     pub hamel: Vec<NamedExpression>,
     /// The velocities that are to be independent; the program's choice where there are none.
     pub independent: Vec<Located<String>>,
     /// Integrals, or `energy`, to whose values at the start the motion is projected.
     pub project: Vec<Located<String>>,
+}
+
+impl Simulation {
+    /// The rows of a table, unless others are given.
+    pub const ROWS: usize = 201;
+    /// The relative tolerance, unless another is given.
+    pub const RELATIVE_TOLERANCE: f64 = 1e-9;
+
+    /// The start time; 0 if it is left out.
+    pub fn start_time(&self) -> f64 {
+        self.t_start.as_ref().map_or(0.0, |t| t.value)
+    }
+
+    /// The number of rows, [`ROWS`](Simulation::ROWS) if it is left out.
+    pub fn rows(&self) -> usize {
+        self.samples.as_ref().map_or(Simulation::ROWS, |samples| samples.value)
+    }
+
+    /// The relative tolerance, [`RELATIVE_TOLERANCE`](Simulation::RELATIVE_TOLERANCE) if it is left out.
+    pub fn relative_tolerance(&self) -> f64 {
+        self.rtol.as_ref().map_or(Simulation::RELATIVE_TOLERANCE, |rtol| rtol.value)
+    }
 }
 
 impl Document {

@@ -1,13 +1,14 @@
 //! The sections on the run: events and simulation.
 
-use pc_expr::Direction;
+use pc_expr::{Direction, Method};
 
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::document::contents::{EquationForm, Event, Method, Simulation};
+use crate::document::contents::{Event, Simulation};
 use crate::document::expression::{Located, Name, NamedExpression};
 use crate::document::tolerance::AbsoluteTolerance;
+use crate::variables::Variables;
 
 /// The most rows of a table: each is held in memory.
 pub const MOST_SAMPLES: usize = 10_000_000;
@@ -30,23 +31,10 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
             "samples_per_step" => result.samples_per_step = Some(samples_per_step(&item)?),
             "accumulation" => result.accumulation = Some(part(&item)?),
             "method" => {
-                result.method = Some(item.choice(&[
-                    ("bdf", Method::Bdf),
-                    ("adams", Method::Adams),
-                    ("taylor", Method::Taylor),
-                    ("dop853", Method::Dop853),
-                    ("auto", Method::Auto),
-                ])?);
+                result.method = Some(item.choice(&Method::ALL.map(|method| (method.name(), method)))?);
             }
             "form" => {
-                result.form = Some(item.choice(&[
-                    ("poincare", EquationForm::Poincare),
-                    ("canonical", EquationForm::Canonical),
-                    ("reduced", EquationForm::Reduced),
-                    ("lie-poisson", EquationForm::LiePoisson),
-                    ("orthonormal", EquationForm::Orthonormal),
-                    ("hamel", EquationForm::Hamel),
-                ])?);
+                result.form = Some(item.choice(&Variables::ALL.map(|form| (form.name(), form)))?);
             }
             "hamel" => result.hamel = hamel(&item)?,
             "independent" => {
@@ -72,7 +60,7 @@ pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
             }
         }
     }
-    let is_hamel = result.form.as_ref().is_some_and(|form| form.value == EquationForm::Hamel);
+    let is_hamel = result.form.as_ref().is_some_and(|form| form.value == Variables::Given);
     match (is_hamel, result.hamel.is_empty()) {
         (true, true) => Err(table.error(ErrorKind::Missing { key: "hamel", example: HAMEL })),
         (false, false) => {

@@ -9,8 +9,8 @@ use crate::flow::event_slopes::EventSlopes;
 use crate::flow::events::FlowEvents;
 use crate::flow::free_form::FreeForm;
 use crate::flow::reading::Reading;
-use crate::flow::variables::Variables;
 use crate::model::model::Model;
+use crate::variables::Variables;
 
 /// Equations of motion of a model, compiled and tried at the start, with the columns of a table.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use crate::assembly::assembly::Assembly;
 use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
-use crate::flow::variables::Variables;
+use crate::variables::Variables;
 
 /// A definition of a quasi-velocity of which only this part is independent of those before it is dependent.
 const DEPENDENT: f64 = 1e-6;

@@ -6,8 +6,8 @@ use pc_mech::VectorField;
 
 use crate::assembly::assembly::Assembly;
 use crate::flow::flow::Flow;
-use crate::flow::variables::Variables;
 use crate::model::model::Model;
+use crate::variables::Variables;
 
 /// A start of which a projection moves each component by at most this part satisfies the constraints up to the rounding of its
 /// digits; a tenth of the distance at which a model is refused.

@@ -3,8 +3,8 @@
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::flow::flow::Flow;
-use crate::flow::variables::Variables;
 use crate::model::model::Model;
+use crate::variables::Variables;
 
 /// The step of a central difference, as a part of the size of a parameter, that is accurate to ten digits:
 /// truncation and rounding errors are equal.

@@ -6,7 +6,7 @@ use crate::document::tolerance::AbsoluteTolerance;
 use crate::flow::flow::Flow;
 
 /// The absolute tolerance of components of ordinary scale.
-const USUAL: f64 = 1e-12;
+pub const ORDINARY_TOLERANCE: f64 = 1e-12;
 
 /// Of the largest component: the rounding of its terms in the rates of the others, which no step can be shorter for.
 const LEAST: f64 = 1e-16;
@@ -49,7 +49,7 @@ pub fn absolute_tolerances(
     let scales = scales(start, &rates, (t_end - t_start).abs());
     // No tolerance is 0, however small the numbers are.
     let least = (LEAST * largest(&scales)).max(f64::MIN_POSITIVE);
-    scales.iter().map(|scale| USUAL.min((rtol * scale).max(least))).collect()
+    scales.iter().map(|scale| ORDINARY_TOLERANCE.min((rtol * scale).max(least))).collect()
 }
 
 /// sᵢ
@@ -82,7 +82,7 @@ mod tests {
     fn tolerances<const N: usize>(start: [f64; N], rates: [f64; N]) -> Vec<f64> {
         let scales = scales(&start, &rates, 10.0);
         let least = LEAST * largest(&scales);
-        scales.iter().map(|scale| USUAL.min((1e-9 * scale).max(least))).collect()
+        scales.iter().map(|scale| ORDINARY_TOLERANCE.min((1e-9 * scale).max(least))).collect()
     }
 
     #[test]

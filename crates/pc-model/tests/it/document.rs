@@ -1,12 +1,11 @@
 //! The text of a model: how it is read, every refusal in full, and arbitrary input.
 
-use pc_expr::Direction;
 use pc_expr::parse::{Ast, AstKind, Span};
+use pc_expr::{Direction, Method};
 use pc_model::document::{
-    AlgebraDefinition, ConstraintKind, EquationForm, Expression, Inertia, Method, NamedExpression,
-    Orientation,
+    AlgebraDefinition, ConstraintKind, Expression, Inertia, NamedExpression, Orientation,
 };
-use pc_model::{Category, Document, ErrorKind, Source};
+use pc_model::{Category, Document, ErrorKind, Source, Variables};
 use proptest::prelude::*;
 
 const SLEIGH: &str = r#"[model]
@@ -201,7 +200,7 @@ fn every_entry() {
     assert_eq!(simulation.t_end.unwrap().value, 1000.0);
     assert_eq!(simulation.samples.unwrap().value, 16);
     assert_eq!(simulation.method.unwrap().value, Method::Bdf);
-    assert_eq!(simulation.form.unwrap().value, EquationForm::Canonical);
+    assert_eq!(simulation.form.unwrap().value, Variables::Momenta);
 }
 
 /// The names in a tree, as written in the file at their spans.

@@ -7,9 +7,24 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import disjoint_base
 
-__all__ = ["DenseCore", "Function", "ModelCore", "SystemCore", "__version__", "builtin_names", "draw"]
+__all__ = [
+    "METHOD",
+    "RTOL",
+    "SAMPLES",
+    "DenseCore",
+    "Function",
+    "ModelCore",
+    "SystemCore",
+    "__version__",
+    "builtin_names",
+    "draw",
+]
 
 __version__: str
+
+SAMPLES: int
+RTOL: float
+METHOD: str
 
 _Floats = npt.NDArray[np.float64]
 

@@ -22,9 +22,6 @@ if TYPE_CHECKING:
 
     Floats = npt.NDArray[np.float64]
 
-#: Rows of a motion if nobody says how many.
-SAMPLES = 201
-
 
 class System(_native.SystemCore):
     """ẏ = f(t, y) of a model, compiled, with values of parameters and start that can be set.
@@ -188,7 +185,7 @@ class System(_native.SystemCore):
     def _plan(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """The settings of an integration: those given, else those of the text, else the defaults."""
         written = self._model.simulation
-        plan: dict[str, Any] = {"method": "auto", "rtol": 1e-9, "atol": given.get("atol")}
+        plan: dict[str, Any] = {"method": _native.METHOD, "rtol": _native.RTOL, "atol": given.get("atol")}
         if isinstance(plan["atol"], Mapping):
             plan["atol"] = dict(plan["atol"])
         for name in ("method", "rtol", "max_step", "samples_per_step", "accumulation"):
@@ -211,7 +208,7 @@ class System(_native.SystemCore):
             raise ValueError("the text says no end of time: give t_end")
         if end == self.t0:
             raise ValueError(f"the end t = {end} is the start")
-        count = samples or self._model.simulation["samples"] or SAMPLES
+        count = samples or self._model.simulation["samples"] or _native.SAMPLES
         if count < 2:
             raise ValueError("a motion has at least 2 samples, its start and its end")
         # As `pc run` spaces them, to the last bit.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use pc_expr::VectorField;
+use pc_expr::{Method, VectorField};
 
 use super::growth::Growth;
 use crate::cvode::cvode::Cvode;
@@ -12,7 +12,6 @@ use crate::error::SolveError;
 use crate::integration::checks::{check_inequalities, check_start};
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
-use crate::settings::method::Method;
 use crate::settings::options::Options;
 
 /// A BDF step of length h with h ρ below this is not stiff. It takes about two evaluations of f and

@@ -2,7 +2,7 @@
 
 use std::ffi::c_int;
 
-use pc_expr::VectorField;
+use pc_expr::{Method, VectorField};
 use sundials_sys as sys;
 
 use super::foresight::Foresight;
@@ -19,7 +19,6 @@ use crate::integration::checks::{check_inequalities, check_start};
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
 use crate::settings::inequality::Inequality;
-use crate::settings::method::Method;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 

@@ -1,6 +1,6 @@
 //! Construction of the method from a problem and options.
 
-use pc_expr::VectorField;
+use pc_expr::{Method, VectorField};
 
 use super::arithmetic::padded;
 use super::control::Control;
@@ -12,7 +12,6 @@ use crate::foresight::places::Places;
 use crate::integration::checks::{check_inequalities, check_start, finite};
 use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
-use crate::settings::method::Method;
 use crate::settings::options::Options;
 
 /// The explicit Runge–Kutta method of order 8 of Dormand and Prince as a

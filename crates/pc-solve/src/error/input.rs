@@ -1,9 +1,8 @@
 //! Errors of a problem or an option.
 
-use pc_expr::RateJump;
+use pc_expr::{Method, RateJump};
 
 use crate::settings::inequality::Inequality;
-use crate::settings::method::Method;
 
 /// What is wrong with a problem or an option.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

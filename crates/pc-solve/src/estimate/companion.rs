@@ -1,9 +1,8 @@
 //! The companion of a motion: how it is integrated a second time, more accurately.
 
-use pc_expr::VectorField;
+use pc_expr::{Method, VectorField};
 
 use crate::integration::statistics::Statistics;
-use crate::settings::method::Method;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 

@@ -4,7 +4,7 @@ use crate::cvode::linear::krylov::Krylov;
 use crate::cvode::linear::solver::LinearSolver;
 use crate::error::InputError;
 use crate::integration::checks::positive;
-use crate::settings::method::NonlinearSolver;
+use crate::settings::nonlinear_solver::NonlinearSolver;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 

@@ -3,7 +3,7 @@
 //! The state of the method is (y, s₁, s₂, …), with the equations of variation for the columns; outside it is y.
 
 use pc_expr::{
-    Failure, PolynomialMotion, SteepFunctions, Switching, TaylorSeries, TimeDependence, VectorField,
+    Failure, Method, PolynomialMotion, SteepFunctions, Switching, TaylorSeries, TimeDependence, VectorField,
 };
 
 use crate::cvode::cvode::Cvode;
@@ -18,7 +18,6 @@ use crate::integration::method::IntegrationMethod;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::inequality::Inequality;
-use crate::settings::method::Method;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 use crate::taylor::stepper::Taylor;

@@ -1,6 +1,6 @@
 //! Options of an integration.
 
-use pc_expr::Deadline;
+use pc_expr::{Deadline, Method};
 
 #[cfg(feature = "cvode")]
 use crate::cvode::linear::solver::LinearSolver;
@@ -9,7 +9,7 @@ use crate::events::events::Accumulation;
 use crate::integration::checks::{check_length, finite, positive};
 use crate::integration::limits::Limits;
 use crate::settings::inequality::Inequality;
-use crate::settings::method::{Method, NonlinearSolver};
+use crate::settings::nonlinear_solver::NonlinearSolver;
 use crate::settings::tolerance::Tolerance;
 
 /// Method, tolerances and limits of an integration.

@@ -1,6 +1,6 @@
 //! Taylor's method as a stepper.
 
-use pc_expr::{PolynomialMotion, VectorField};
+use pc_expr::{Method, PolynomialMotion, VectorField};
 
 use crate::error::{IntegrationError, Reason, SolveError};
 use crate::foresight::places::Places;
@@ -8,7 +8,6 @@ use crate::integration::checks::{check_inequalities, check_start, finite};
 use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
-use crate::settings::method::Method;
 use crate::settings::options::Options;
 use crate::taylor::polynomial::Polynomial;
 use crate::taylor::step_length::Tolerances;

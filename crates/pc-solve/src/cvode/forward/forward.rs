@@ -13,7 +13,7 @@ use crate::cvode::forward::sensitivities::{Correction, Sensitivities, Sensitivit
 use crate::cvode::forward::variation::Variation;
 use crate::cvode::handles::{NonlinearIteration, Vector};
 use crate::error::{Reason, SolveError};
-use crate::settings::method::NonlinearSolver;
+use crate::settings::nonlinear_solver::NonlinearSolver;
 use crate::settings::options::Options;
 
 impl<F: VectorField> Cvode<F> {

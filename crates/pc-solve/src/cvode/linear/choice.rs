@@ -4,7 +4,7 @@ use pc_expr::{Pattern, VectorField};
 
 use crate::cvode::linear::solver::LinearSolver;
 use crate::error::InputError;
-use crate::settings::method::NonlinearSolver;
+use crate::settings::nonlinear_solver::NonlinearSolver;
 use crate::settings::options::Options;
 
 /// Number of components from which sparse factors are worth their overhead …

@@ -1,8 +1,7 @@
 //! What all members share.
 
-use pc_expr::Deadline;
+use pc_expr::{Deadline, Method};
 
-use crate::settings::method::Method;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 

@@ -1,14 +1,14 @@
-//! Methods, and how their implicit equations are solved.
+//! The methods of integration.
 
 use std::fmt;
 
 /// A family of variable-step methods.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum Method {
-    /// Backward differentiation formulas of orders 1 to 5, for stiff systems.
-    Bdf,
     /// Adams–Moulton formulas of orders 1 to 12, for non-stiff systems.
     Adams,
+    /// Backward differentiation formulas of orders 1 to 5, for stiff systems.
+    Bdf,
     /// The explicit Runge–Kutta method of order 8 of Dormand and Prince, for non-stiff systems at
     /// tolerances of 1e-6 and below: the fastest if f is cheap.
     Dop853,
@@ -16,13 +16,30 @@ pub enum Method {
     /// fastest at tolerances of 1e-8 and below, and accurate to rounding.
     Taylor,
     /// [`Dop853`](Method::Dop853) where the motion is not stiff, [`Bdf`](Method::Bdf) where
-    /// stiffness is detected.
+    /// stiffness is detected: that of a run for which no other is given.
+    #[default]
     Auto,
 }
 
 impl Method {
     /// All of them.
-    pub const ALL: [Method; 5] = [Method::Bdf, Method::Adams, Method::Dop853, Method::Taylor, Method::Auto];
+    pub const ALL: [Method; 5] = [Method::Adams, Method::Bdf, Method::Dop853, Method::Taylor, Method::Auto];
+
+    /// Its name in model files, on command lines and in Python.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Adams => "adams",
+            Method::Bdf => "bdf",
+            Method::Dop853 => "dop853",
+            Method::Taylor => "taylor",
+            Method::Auto => "auto",
+        }
+    }
+
+    /// The one of this [`name`](Method::name).
+    pub fn named(name: &str) -> Option<Method> {
+        Method::ALL.into_iter().find(|method| method.name() == name)
+    }
 
     /// The highest order of the family.
     pub fn highest_order(self) -> u32 {
@@ -45,14 +62,4 @@ impl fmt::Display for Method {
             Method::Auto => "auto",
         })
     }
-}
-
-/// How the implicit equation of a step is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum NonlinearSolver {
-    /// Newton's iteration, with a [`LinearSolver`](crate::LinearSolver).
-    Newton,
-    /// Fixed-point iteration, which needs no matrix but in a stiff system converges for small steps
-    /// only.
-    FixedPoint,
 }
