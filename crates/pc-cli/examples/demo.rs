@@ -6,16 +6,17 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use pc_cli::commands::report;
-use pc_cli::commands::run::{drawn, integrate};
-use pc_cli::motion::plan::Plan;
-use pc_cli::motion::run::Run;
+use pc_cli::commands::run::drawn;
 use pc_cli::output::destination::Destination;
-use pc_cli::report::text;
 use pc_mech::Graph;
 use pc_model::document::AbsoluteTolerance;
-use pc_model::{Builtin, Model, Variables};
-use pc_print::{Form, Layout, Page, columns, page};
+use pc_model::{Builtin, Model};
+use pc_print::{Form, Layout, Page, columns, page, small};
 use pc_report::picture::Wanted;
+use pc_run::motion::integrate::Besides;
+use pc_run::motion::run::Run;
+use pc_run::observer::Nobody;
+use pc_run::plan::wishes::Wishes;
 use pc_solve::Method;
 
 const MODEL: &str = "heavy-top-lagrange";
@@ -67,25 +68,22 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
     }
 
     section("the motion, relative tolerance 1e-12");
-    let plan = |samples| Plan {
-        sensitivities: Vec::new(),
-        t_start: 0.0,
-        t_end: 10.0,
-        samples,
-        rtol: 1e-12,
-        atol: AbsoluteTolerance { all: Some(1e-14), each: Vec::new() },
-        max_step: None,
-        max_steps: None,
-        samples_per_step: None,
-        accumulation: None,
-        method: Method::Adams,
-        deadline: model.budget().deadline().clone(),
+    let run = |samples| {
+        let wishes = Wishes {
+            t_end: Some(10.0),
+            samples: Some(samples),
+            rtol: Some(1e-12),
+            atol: AbsoluteTolerance { all: Some(1e-14), each: Vec::new() },
+            method: Some(Method::Adams),
+            ..Wishes::default()
+        };
+        Run::of(&model, &wishes, &Besides::shown(), None, &Nobody)
     };
-    let table = integrate(&model, Variables::QuasiVelocities, || Ok(plan(11)))?;
+    let table = run(11)?;
     show_table(&table);
 
     section("what the motion keeps: largest change of each integral");
-    let fine = integrate(&model, Variables::QuasiVelocities, || Ok(plan(1001)))?;
+    let fine = run(1001)?;
     for (name, meaning) in [
         ("energy", "kinetic plus potential energy"),
         ("area", "angular momentum about the vertical"),
@@ -93,7 +91,7 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
     ] {
         let column = fine.table.columns().iter().position(|column| column == name);
         let drift = fine.table.drift(column.ok_or("an integral is gone")?);
-        println!("  {name:8}{:>9}    {meaning}", text::small(drift.absolute));
+        println!("  {name:8}{:>9}    {meaning}", small(drift.absolute));
     }
 
     section("the result");
@@ -111,7 +109,7 @@ fn demonstrate() -> Result<f64, Box<dyn Error>> {
     let end = fine.table.rows().next_back().ok_or("the motion is empty")?;
     let difference = end[1..].iter().zip(REFERENCE).map(|(value, right)| (value - right).abs());
     let difference = difference.fold(0.0, f64::max);
-    println!("  at t = 10 the state differs from the reference by at most {}", text::small(difference));
+    println!("  at t = 10 the state differs from the reference by at most {}", small(difference));
     Ok(difference)
 }
 

@@ -1,16 +1,22 @@
-//! Exit codes that errors of several kinds share.
+//! Exit codes.
 
-/// Two motions that were compared are not the same.
-pub(crate) const DIFFERENT: u8 = 1;
+use pc_run::Category;
 
 /// A wrong command line.
 pub(crate) const USAGE: u8 = 2;
 
-/// The request is not defined for this model.
-pub(crate) const INCONSISTENT: u8 = 4;
-
-/// A numerical method did not converge or did not reach its end.
-pub(crate) const FAILED: u8 = 5;
-
 /// A result that could not be written.
 pub(crate) const UNWRITTEN: u8 = 6;
+
+/// That of an error of a run.
+pub(crate) fn of(category: Category) -> u8 {
+    match category {
+        Category::Different => 1,
+        Category::Request => USAGE,
+        Category::Text => 3,
+        Category::Undefined => 4,
+        Category::Failed => 5,
+        Category::Unwritten => UNWRITTEN,
+        Category::Interrupted => 130,
+    }
+}

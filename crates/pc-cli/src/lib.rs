@@ -27,13 +27,9 @@ mod exit_code;
 pub mod args;
 pub(crate) mod bench;
 pub mod commands;
-pub mod compare;
 pub mod import;
-pub mod linear;
-pub mod motion;
 pub mod output;
 pub mod plot;
-pub mod report;
-pub mod sweep;
+pub mod terminal;
 
 pub use error::CliError;

@@ -7,12 +7,11 @@ use clap::Parser;
 use pc_cli::CliError;
 use pc_cli::args::command_line::{Arguments, Command};
 use pc_cli::commands::{
-    bench, check, compare, completions, derive, emit, equilibria, fmu, import, linearize, man, models, new,
-    report, run, schema, theory, version,
+    bench, check, compare, completions, derive, emit, equilibria, fmu, import, linearize, man, merge, models,
+    new, report, run, schema, sweep, theory, version,
 };
 use pc_cli::output::standard_output;
-use pc_cli::report::text;
-use pc_cli::sweep;
+use pc_cli::terminal::text;
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -39,8 +38,8 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::command(arguments),
         Command::Report(arguments) => report::command(arguments),
         Command::Animate(arguments) => report::animate(arguments),
-        Command::Sweep(arguments) => sweep::command::command(arguments),
-        Command::Merge(arguments) => sweep::merge::command(arguments),
+        Command::Sweep(arguments) => sweep::command(arguments),
+        Command::Merge(arguments) => merge::command(arguments),
         Command::Compare(arguments) => compare::command(arguments),
         Command::Bench(arguments) => bench::command(arguments),
         Command::Emit(arguments) => match arguments.fmu {

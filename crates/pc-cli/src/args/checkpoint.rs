@@ -1,9 +1,10 @@
 //! Arguments for checkpoints.
 
 use std::num::NonZeroU64;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
+use pc_run::motion::checkpoints::CheckpointFiles;
 
 /// Arguments of `pc run` for checkpoints.
 #[derive(Clone, Debug, Default, Args)]
@@ -21,8 +22,12 @@ pub struct CheckpointArguments {
 }
 
 impl CheckpointArguments {
-    /// The file in which checkpoints are kept, if they are.
-    pub fn path(&self) -> Option<&Path> {
-        self.checkpoint.as_deref().or(self.resume.as_deref())
+    /// The files.
+    pub(crate) fn files(&self) -> CheckpointFiles {
+        CheckpointFiles {
+            checkpoint: self.checkpoint.clone(),
+            every: self.every,
+            resume: self.resume.clone(),
+        }
     }
 }

@@ -4,14 +4,13 @@ use std::time::Duration;
 
 use clap::Args;
 use pc_model::Variables;
+use pc_run::compare::comparison::Question;
+use pc_run::compare::difference::Allowance;
+use pc_run::plan::wishes::Wishes;
 
-use crate::args::checkpoint::CheckpointArguments;
-use crate::args::drawn::DrawnArguments;
 use crate::args::forms::run_form;
 use crate::args::options;
-use crate::args::options::{
-    Format, IntegrationArguments, ModelArguments, RunArguments, Setting, VelocityArguments,
-};
+use crate::args::options::{Format, IntegrationArguments, ModelArguments, Setting};
 
 /// Arguments of `pc compare`.
 #[derive(Clone, Debug, Args)]
@@ -74,24 +73,22 @@ impl CompareArguments {
         }
     }
 
-    /// The corresponding arguments of `pc run`, of A or, with 1, of B.
-    pub fn as_run(&self, which: usize, t_end: Option<f64>) -> RunArguments {
-        RunArguments {
-            velocities: VelocityArguments::default(),
-            sensitivities: Vec::new(),
-            estimate: false,
-            model: self.model(&self.first),
+    /// What is wished of A or, with 1, of B.
+    pub(crate) fn wishes(&self, which: usize, t_end: Option<f64>) -> Wishes {
+        Wishes {
+            form: self.form.get(which).or(self.form.first()).copied(),
             t_end,
             samples: self.samples,
-            integration: self.integration.clone(),
-            form: self.form.get(which).or(self.form.first()).copied(),
-            project: Vec::new(),
-            outputs: None,
-            no_verify: false,
-            output: None,
-            plot: None,
-            drawn: DrawnArguments::default(),
-            checkpoints: CheckpointArguments::default(),
+            ..self.integration.wishes()
+        }
+    }
+
+    /// What is compared.
+    pub(crate) fn question(&self) -> Question {
+        Question {
+            allowance: Allowance { relative: self.tolerance, absolute: self.absolute },
+            columns: self.columns.clone(),
+            pairs: self.map.iter().map(|map| (map.name.clone(), map.value.clone())).collect(),
         }
     }
 }

@@ -1,5 +1,6 @@
-//! Choices by name: methods, and the forms of the equations that a command takes.
+//! Choices by name: methods, the forms of the equations that a command takes, and words.
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pc_model::Variables;
 use pc_print::Form;
 use pc_solve::Method;
@@ -22,6 +23,20 @@ pub(super) fn emit_form(text: &str) -> Result<Variables, String> {
 /// The forms that are integrated.
 pub(super) fn run_form(text: &str) -> Result<Variables, String> {
     choice(text, &Variables::ALL.map(|form| (form.name(), form)), &["lagrange", "voronets"])
+}
+
+/// The values of these words, each with its help.
+pub(super) fn by_word<T, const N: usize>(
+    known: [(&'static str, &'static str, T); N],
+) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let words = known.map(|(word, help, _)| PossibleValue::new(word).help(help));
+    PossibleValuesParser::new(words).try_map(move |given| {
+        let found = known.iter().find(|(word, ..)| *word == given);
+        found.map(|(.., value)| *value).ok_or_else(|| format!("there is no `{given}`"))
+    })
 }
 
 /// One of these by its name; those of `later` are not supported yet.

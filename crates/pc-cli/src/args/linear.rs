@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use pc_run::sweep::values::Vary;
 
 use crate::args::options::{self, ModelArguments, VerifyArguments};
 use crate::args::steady::StateArguments;
-use crate::args::sweep::{self, Vary};
+use crate::args::sweep;
+
 
 /// How a table of matrices is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use pc_model::Variables;
 use pc_model::document::{AbsoluteTolerance, MOST_SAMPLES};
 use pc_print::Form;
+use pc_run::plan::wishes::Wishes;
 use pc_solve::Method;
 
 use crate::args::checkpoint::CheckpointArguments;
@@ -205,11 +206,20 @@ pub struct ToleranceSetting {
 }
 
 impl IntegrationArguments {
-    /// The absolute tolerances that are given.
-    pub(crate) fn absolute(&self) -> AbsoluteTolerance {
+    /// What is wished of the integration.
+    pub(crate) fn wishes(&self) -> Wishes {
         let all = self.atol.iter().rev().find(|setting| setting.name.is_none()).map(|setting| setting.value);
         let own = |setting: &ToleranceSetting| Some((setting.name.clone()?, setting.value));
-        AbsoluteTolerance { all, each: self.atol.iter().filter_map(own).collect() }
+        Wishes {
+            rtol: self.rtol,
+            atol: AbsoluteTolerance { all, each: self.atol.iter().filter_map(own).collect() },
+            max_step: self.max_step,
+            max_steps: self.max_steps,
+            samples_per_step: self.events.samples_per_step,
+            accumulation: self.events.accumulation,
+            method: self.method,
+            ..Wishes::default()
+        }
     }
 }
 
@@ -257,7 +267,7 @@ pub struct RunArguments {
     /// Do not compare the motion at its start and at its end with a second derivation
     #[arg(long)]
     pub no_verify: bool,
-    /// Write the table to FILE.csv, FILE.json or FILE.npz instead of standard output
+    /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Draw the motion into FILE.svg, FILE.png or FILE.pdf: in groups of like scale, with events and the drift of integrals,
@@ -270,6 +280,19 @@ pub struct RunArguments {
     /// Checkpoints.
     #[command(flatten)]
     pub checkpoints: CheckpointArguments,
+}
+
+impl RunArguments {
+    /// What is wished of the run.
+    pub(crate) fn wishes(&self) -> Wishes {
+        Wishes {
+            form: self.form,
+            t_end: self.t_end,
+            samples: self.samples,
+            sensitivities: self.sensitivities.clone(),
+            ..self.integration.wishes()
+        }
+    }
 }
 
 /// Arguments of `pc emit`.

@@ -4,12 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use pc_model::Variables;
+use pc_run::plan::wishes::Wishes;
 
-use crate::args::checkpoint::CheckpointArguments;
-use crate::args::drawn::DrawnArguments;
 use crate::args::forms::run_form;
 use crate::args::options;
-use crate::args::options::{IntegrationArguments, ModelArguments, RunArguments, VelocityArguments};
+use crate::args::options::{IntegrationArguments, ModelArguments};
 
 /// The motion on a page.
 #[derive(Clone, Debug, Args)]
@@ -79,24 +78,8 @@ pub struct AnimateArguments {
 }
 
 impl ShownArguments {
-    /// The corresponding arguments of `pc run`.
-    pub fn as_run(&self) -> RunArguments {
-        RunArguments {
-            velocities: VelocityArguments::default(),
-            sensitivities: Vec::new(),
-            estimate: false,
-            model: self.model.clone(),
-            t_end: self.t_end,
-            samples: self.samples,
-            integration: self.integration.clone(),
-            form: self.form,
-            project: self.project.clone(),
-            outputs: None,
-            no_verify: false,
-            output: None,
-            plot: None,
-            drawn: DrawnArguments::default(),
-            checkpoints: CheckpointArguments::default(),
-        }
+    /// What is wished of the motion.
+    pub(crate) fn wishes(&self) -> Wishes {
+        Wishes { form: self.form, t_end: self.t_end, samples: self.samples, ..self.integration.wishes() }
     }
 }

@@ -1,47 +1,24 @@
 //! Arguments of `pc sweep`.
 
-use std::fmt;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args, ValueEnum};
+use clap::builder::TypedValueParser;
+use clap::{ArgGroup, Args};
 use pc_model::Variables;
+use pc_run::plan::wishes::Wishes;
+use pc_run::sweep::design::Variation;
+use pc_run::sweep::law::{Law, LawError, Random};
+use pc_run::sweep::of::SweepOf;
+use pc_run::sweep::shard::Shard;
+use pc_run::sweep::sweep::SweepWishes;
+use pc_run::sweep::values::{Values, Vary};
 
-use crate::args::checkpoint::CheckpointArguments;
-use crate::args::drawn::DrawnArguments;
 use crate::args::examples;
-use crate::args::forms::run_form;
+use crate::args::forms::{by_word, run_form};
 use crate::args::options;
-use crate::args::options::{IntegrationArguments, ModelArguments, RunArguments, VelocityArguments};
+use crate::args::options::{IntegrationArguments, ModelArguments};
 use crate::args::steady::StateArguments;
-use crate::sweep::shard::Shard;
-
-/// What a sweep finds of each member.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SweepOf {
-    /// Its motion, as `pc run`.
-    Run,
-    /// The eigenvalues at a state near its start, as `pc linearize`.
-    Linearize,
-    /// Its properties, as `pc check`.
-    Check,
-}
-
-impl SweepOf {
-    /// As on the command line.
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            SweepOf::Run => "run",
-            SweepOf::Linearize => "linearize",
-            SweepOf::Check => "check",
-        }
-    }
-
-    /// The one of this word.
-    pub(crate) fn of_word(word: &str) -> Option<SweepOf> {
-        [SweepOf::Run, SweepOf::Linearize, SweepOf::Check].into_iter().find(|of| of.word() == word)
-    }
-}
 
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]
@@ -65,7 +42,7 @@ pub struct SweepArguments {
     #[command(flatten)]
     pub model: ModelArguments,
     /// Of each member its motion (run), its eigenvalues (linearize), or its properties (check)
-    #[arg(long, value_name = "WHAT", default_value = "run")]
+    #[arg(long, value_name = "WHAT", default_value = "run", value_parser = sweep_of())]
     pub of: SweepOf,
     /// Vary a parameter or start value over N evenly spaced values from FROM to TO, both included; NAME=FROM:TO:N:log
     /// spaces them in a constant ratio, NAME=A,B,… lists them (repeatable)
@@ -171,111 +148,38 @@ impl SweepArguments {
         first(SweepOf::Run, &of_runs).or_else(|| first(SweepOf::Linearize, &of_linearizations))
     }
 
-    /// The corresponding arguments of `pc run` for one member.
-    pub fn as_run(&self) -> RunArguments {
-        RunArguments {
-            velocities: VelocityArguments::default(),
-            sensitivities: Vec::new(),
-            estimate: false,
-            model: self.model.clone(),
-            t_end: self.t_end,
-            samples: self.rows,
-            integration: self.integration.clone(),
-            form: self.form,
-            project: self.project.clone(),
-            outputs: None,
-            no_verify: true,
-            output: None,
-            plot: None,
-            drawn: DrawnArguments::default(),
-            checkpoints: CheckpointArguments::default(),
+    /// What is varied.
+    pub(crate) fn variation(&self) -> Variation {
+        let SweepArguments { vary, random, samples, seed, .. } = self;
+        Variation { vary: vary.clone(), random: random.clone(), samples: *samples, seed: *seed }
+    }
+
+    /// What is found of each member, and how.
+    pub(crate) fn wishes(&self) -> SweepWishes {
+        SweepWishes {
+            of: self.of,
+            run: Wishes {
+                form: self.form,
+                t_end: self.t_end,
+                samples: self.rows,
+                ..self.integration.wishes()
+            },
+            state: self.state.choice(),
+            threads: self.threads,
         }
     }
 }
 
-/// `NAME=FROM:TO:N`, `NAME=FROM:TO:N:log` or `NAME=A,B,…`
-#[derive(Clone, Debug, PartialEq)]
-pub struct Vary {
-    /// The parameter, coordinate or quasi-velocity.
-    pub name: String,
-    /// Its values.
-    pub values: Values,
-}
-
-/// The values of a varied quantity, at least one.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Values {
-    /// From one number to another, this many, evenly spaced.
-    Even(f64, f64, u64),
-    /// From one number to another, this many, with a constant ratio.
-    Logarithmic(f64, f64, u64),
-    /// These values.
-    List(Vec<f64>),
-}
-
-impl Values {
-    /// How many there are.
-    pub fn count(&self) -> u64 {
-        match self {
-            Values::Even(_, _, count) | Values::Logarithmic(_, _, count) => *count,
-            Values::List(list) => list.len() as u64,
-        }
-    }
-
-    /// All of them, in order.
-    pub(crate) fn in_order(&self) -> Vec<f64> {
-        (0..self.count()).map(|place| self.at(place)).collect()
-    }
-
-    /// Value number `place`; the ends of a range are exact.
-    pub fn at(&self, place: u64) -> f64 {
-        let part = |count: u64| place as f64 / (count - 1) as f64;
-        match self {
-            Values::List(list) => list[place as usize],
-            Values::Even(from, _, _) | Values::Logarithmic(from, _, _) if place == 0 => *from,
-            Values::Even(_, to, count) | Values::Logarithmic(_, to, count) if place == count - 1 => *to,
-            Values::Even(from, to, count) => from + (to - from) * part(*count),
-            // Decimal logarithms keep powers of ten between powers of ten exact.
-            Values::Logarithmic(from, to, count) => {
-                let (a, b) = (from.abs().log10(), to.abs().log10());
-                10f64.powf(a + (b - a) * part(*count)).copysign(*from)
-            }
-        }
-    }
-}
-
-/// As on the command line.
-impl fmt::Display for Vary {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}=", self.name)?;
-        match &self.values {
-            Values::Even(from, to, count) => write!(f, "{from}:{to}:{count}"),
-            Values::Logarithmic(from, to, count) => write!(f, "{from}:{to}:{count}:log"),
-            Values::List(list) => {
-                write!(f, "{}", list.iter().map(f64::to_string).collect::<Vec<_>>().join(","))
-            }
-        }
-    }
-}
-
-/// `NAME=DISTRIBUTION`
-#[derive(Clone, Debug, PartialEq)]
-pub struct Random {
-    /// The parameter, coordinate or quasi-velocity.
-    pub name: String,
-    /// The distribution.
-    pub law: Law,
-}
-
-/// A distribution.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Law {
-    /// Mean and standard deviation.
-    Normal(f64, f64),
-    /// Least and largest value.
-    Uniform(f64, f64),
-    /// Mean and standard deviation of the logarithm.
-    LogNormal(f64, f64),
+/// The values of `--of`.
+fn sweep_of() -> impl TypedValueParser<Value = SweepOf> {
+    by_word(SweepOf::ALL.map(|of| {
+        let help = match of {
+            SweepOf::Run => "Its motion, as `pc run`",
+            SweepOf::Linearize => "The eigenvalues at a state near its start, as `pc linearize`",
+            SweepOf::Check => "Its properties, as `pc check`",
+        };
+        (of.word(), help, of)
+    }))
 }
 
 pub(crate) fn vary(text: &str) -> Result<Vary, String> {
@@ -334,14 +238,10 @@ fn random(text: &str) -> Result<Random, String> {
         law.trim().strip_suffix(')').and_then(|law| law.split_once('(')).ok_or_else(usage)?;
     let (a, b) = numbers.split_once(',').ok_or_else(usage)?;
     let (a, b) = (options::finite(a.trim())?, options::finite(b.trim())?);
-    let law = match kind.trim() {
-        "normal" if b >= 0.0 => Law::Normal(a, b),
-        "lognormal" if b >= 0.0 => Law::LogNormal(a, b),
-        "normal" | "lognormal" => return Err("the standard deviation must not be negative".to_owned()),
-        "uniform" if a <= b && (b - a).is_finite() => Law::Uniform(a, b),
-        "uniform" => return Err("the first bound must be the lower one".to_owned()),
-        _ => return Err(usage()),
-    };
+    let law = Law::of(kind.trim(), a, b).map_err(|error| match error {
+        LawError::Unknown { .. } => usage(),
+        LawError::Deviation | LawError::Bounds => error.to_string(),
+    })?;
     match name.trim() {
         "" => Err(usage()),
         name => Ok(Random { name: name.to_owned(), law }),
@@ -353,17 +253,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_follow_their_spacing() {
-        let all = |values: Values| (0..values.count()).map(|i| values.at(i)).collect::<Vec<_>>();
-        assert_eq!(all(Values::Even(1.0, 2.0, 3)), [1.0, 1.5, 2.0]);
-        assert_eq!(all(Values::Logarithmic(1e-3, 100.0, 6)), [1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0]);
-        // Rounding of the logarithm.
-        let negative = all(Values::Logarithmic(-8.0, -2.0, 3));
-        assert!((negative[1] + 4.0).abs() < 1e-14 && negative[0] == -8.0 && negative[2] == -2.0);
-        assert_eq!(all(Values::List(vec![5.0, 1.0])), [5.0, 1.0]);
+    fn variations_are_shown_as_they_are_written() {
         for text in ["m=1:2:3", "m=0.001:10:5:log", "m=5,1,-2"] {
             assert_eq!(vary(text).map(|vary| vary.to_string()), Ok(text.to_owned()));
         }
+        assert_eq!(random("x=normal(0, 0.1)").map(|random| random.to_string()), Ok("x=normal(0,0.1)".to_owned()));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 
 use crate::bench::derivation::{Derivation, STAGES};
 use crate::bench::measure::{Times, Variant};
-use crate::report::text::labelled;
+use crate::terminal::text::labelled;
 
 /// The measurements of a model.
 pub(crate) struct Figures<'v> {

@@ -14,8 +14,9 @@ use crate::bench::kernels::Derived;
 use crate::bench::measure::interleave;
 use crate::bench::page::Figures;
 use crate::error::CliError;
+use crate::terminal::observer::Terminal;
 use crate::output::standard_output::print;
-use crate::report::notes::say_moved;
+use pc_run::motion::remarks::say_moved;
 
 /// Prints the times of derivations and evaluations.
 ///
@@ -31,7 +32,7 @@ pub fn command(arguments: &BenchArguments) -> Result<(), CliError> {
     };
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
-    say_moved(&assembly);
+    say_moved(&assembly, &Terminal);
     let derived = Derived::new(&model, &assembly)?;
     let mut variants = derived.variants()?;
     assembly.within_limits()?;

@@ -5,9 +5,10 @@ use pc_print::{visible, visible_json};
 use crate::args::input;
 use crate::args::options::{CheckArguments, Format};
 use crate::error::CliError;
+use crate::terminal::observer::Terminal;
 use crate::output::standard_output::print;
-use crate::report::notes::say_moved;
-use crate::report::verification::checked;
+use pc_run::motion::remarks::say_moved;
+use pc_run::motion::verification::checked;
 
 /// Prints the properties of a model before it is run.
 ///
@@ -17,7 +18,7 @@ pub fn command(arguments: &CheckArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
     let graph = model.graph();
     let (assembly, equations) = input::derive(&model, &graph)?;
-    say_moved(&assembly);
+    say_moved(&assembly, &Terminal);
     let check = checked(&model, &assembly, &equations)?;
     print(|out| match arguments.format {
         Format::Text => write!(out, "{}", visible(&check.text())),

@@ -1,19 +1,17 @@
 //! `pc compare`: whether two models, or two forms of one, have the same motion.
 
-use pc_model::{Model, UnknownValue, Variables};
+use pc_model::{Model, UnknownValue};
 use pc_print::{visible, visible_json};
+use pc_run::compare::compared::Compared;
+use pc_run::compare::error::CompareError;
+use pc_run::plan::plan::Plan;
 
 use crate::args::compare::CompareArguments;
 use crate::args::input;
 use crate::args::options::{Format, Setting};
-use crate::commands::run::{integrate, integrate_again};
-use crate::compare::comparison::Comparison;
-use crate::compare::error::CompareError;
-use crate::compare::page::{Pair, differences};
 use crate::error::CliError;
-use crate::motion::plan::Plan;
-use crate::motion::run::{Ending, Run};
 use crate::output::standard_output::print;
+use crate::terminal::observer::Terminal;
 
 /// Integrates both motions, and prints how far they are apart.
 ///
@@ -24,56 +22,18 @@ pub fn command(arguments: &CompareArguments) -> Result<(), CliError> {
     let (first, second) = models(arguments)?;
     let written = |model: &Model| model.document().simulation.t_end.as_ref().map(|t| t.value);
     let t_end = arguments.t_end.or(written(&first)).or(written(&second));
-    let run_of_a = arguments.as_run(0, t_end);
-    let plan = Plan::new(&first, &run_of_a)?;
-    let mut run_of_b = arguments.as_run(1, t_end);
-    run_of_b.samples = Some(plan.samples);
-    let other = Plan::new(&second, &run_of_b)?;
-    if plan.t_start != other.t_start {
-        return Err(CompareError::Starts { first: plan.t_start, second: other.t_start }.into());
-    }
-    let forms = [Plan::form(&first, &run_of_a), Plan::form(&second, &run_of_b)];
+    let wishes = [arguments.wishes(0, t_end), arguments.wishes(1, t_end)];
+    let forms = [Plan::form(&first, &wishes[0]), Plan::form(&second, &wishes[1])];
     if arguments.second.is_none() && forms[0] == forms[1] {
         return Err(CompareError::OneMotion.into());
     }
-    let a = integrate(&first, forms[0], || Ok(plan.clone()))?;
-    if is_stopped(&a) {
-        return a.outcome();
-    }
-    let b = integrate(&second, forms[1], || Ok(other.clone()))?;
-    if is_stopped(&b) {
-        return b.outcome();
-    }
-    let mut comparison = Comparison::new(&a, &b, None, arguments)?;
-    if !comparison.is_same() {
-        // Two motions, or errors of integration.
-        let finer = |model: &Model, form: Variables, (plan, run): (&Plan, &Run)| {
-            integrate_again(model, form, || Ok(plan.finer(&run.tolerances)))
-        };
-        let again = finer(&first, forms[0], (&plan, &a))
-            .and_then(|c| Ok((c, finer(&second, forms[1], (&other, &b))?)));
-        // Where smaller tolerances cannot be met, there is nothing to tell errors by.
-        if let Ok((c, d)) = &again
-            && !is_stopped(c)
-            && !is_stopped(d)
-        {
-            comparison = Comparison::new(&a, &b, Some((c, d)), arguments)?;
-        }
-    }
-    let pair = Pair { first: (&a, forms[0].name()), second: (&b, forms[1].name()) };
+    let question = arguments.question();
+    let compared = Compared::of([&first, &second], [&wishes[0], &wishes[1]], &question, &Terminal)?;
     print(|out| match arguments.format {
-        Format::Text => write!(out, "{}", visible(&pair.text(&comparison))),
-        Format::Json => writeln!(out, "{}", visible_json(&pair.json(&comparison))),
+        Format::Text => write!(out, "{}", visible(&compared.text())),
+        Format::Json => writeln!(out, "{}", visible_json(&compared.json())),
     })?;
-    let differences = differences(&comparison);
-    a.outcome()?;
-    b.outcome()?;
-    if differences.is_empty() { Ok(()) } else { Err(CompareError::Different { differences }.into()) }
-}
-
-/// Whether Ctrl-C or a limit ended a run.
-fn is_stopped(run: &Run) -> bool {
-    matches!(run.ending, Ending::Interrupted | Ending::Ended(_))
+    Ok(compared.outcome()?)
 }
 
 /// The two models, with their parameters and starts set.

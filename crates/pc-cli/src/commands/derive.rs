@@ -6,9 +6,10 @@ use pc_verify::Outlet;
 use crate::args::input;
 use crate::args::options::DeriveArguments;
 use crate::error::CliError;
+use crate::terminal::observer::Terminal;
 use crate::output::standard_output::print;
-use crate::report::notes::{say_changing_masses, say_dropped, say_moved};
-use crate::report::verification::vouched;
+use pc_run::motion::remarks::{say_changing_masses, say_dropped, say_moved};
+use pc_run::motion::verification::vouched;
 
 /// Prints the equations of a model.
 ///
@@ -21,12 +22,14 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let form = arguments.form.or(written).unwrap_or(Form::Poincare);
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
-    say_dropped(&assembly);
-    say_moved(&assembly);
-    say_changing_masses(&assembly);
+    say_dropped(&assembly, &Terminal);
+    say_moved(&assembly, &Terminal);
+    say_changing_masses(&assembly, &Terminal);
     let layout = Layout { width: arguments.width.into(), brief: arguments.brief, inline: arguments.inline };
     let page = page(form, arguments.format.into(), &layout, model.title(), &assembly)?;
     assembly.within_limits()?;
-    vouched(&model, &assembly, Outlet::Page(form), arguments.verify)?;
+    if !arguments.verify.no_verify {
+        vouched(&model, &assembly, Outlet::Page(form), &Terminal)?;
+    }
     print(|out| write!(out, "{page}"))
 }

@@ -12,11 +12,14 @@ use pc_verify::Outlet;
 use crate::args::input;
 use crate::args::options::{EmitArguments, Lang};
 use crate::error::CliError;
-use crate::output::place::{Place, file};
+use crate::terminal::observer::Terminal;
+use pc_run::files::error::FileError;
+use pc_run::files::place::{Place, file};
 use crate::output::standard_output::print;
-use crate::report::notes::{choice, say_choice, say_dropped, say_moved};
-use crate::report::text::say;
-use crate::report::verification::vouched;
+use pc_run::observer::Observer;
+use pc_run::motion::remarks::{choice, say_dropped, say_moved};
+use crate::terminal::text::say;
+use pc_run::motion::verification::vouched;
 
 const NO_EVENTS: &str =
     "The events of the model are not part of this source: it has the equations between them.";
@@ -39,11 +42,11 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     };
     let mut options = EmitOptions::new(language, name(model.document().source.name()));
     options = options.title(model.title()).jacobian(!arguments.no_jacobian);
-    say_dropped(&assembly);
-    say_moved(&assembly);
+    say_dropped(&assembly, &Terminal);
+    say_moved(&assembly, &Terminal);
     let mut remarks = Vec::new();
     if let Some(remark) = choice(&assembly, &form.independent) {
-        say_choice(&remark);
+        Terminal.remark(&remark);
         remarks.push(remark);
         remarks.extend(energy_remark(&assembly).map(str::to_owned));
     }
@@ -59,7 +62,9 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     if !remarks.is_empty() {
         options = options.remark(remarks.join("\n"));
     }
-    vouched(&model, &assembly, Outlet::Source(arguments.form), arguments.verify)?;
+    if !arguments.verify.no_verify {
+        vouched(&model, &assembly, Outlet::Source(arguments.form), &Terminal)?;
+    }
     // With its inputs fixed at their start values, the motion would be a different one.
     if let Some(t_end) = model.document().simulation.t_end.as_ref().filter(|_| !has_tables) {
         options = options.start(assembly.t_start, &assembly.start_in(&form)?, t_end.value);
@@ -75,17 +80,17 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
             }
         };
     };
-    fs::create_dir_all(directory).map_err(|source| CliError::cannot_write(directory, source))?;
+    fs::create_dir_all(directory).map_err(|source| FileError::cannot_write(directory, source))?;
     let mut places = Vec::new();
     for file in &files {
         let path = directory.join(&file.name);
-        places.push(Place::regular(&path).map_err(|source| CliError::cannot_write(&path, source))?);
+        places.push(Place::regular(&path).map_err(|source| FileError::cannot_write(&path, source))?);
     }
     for (file, place) in files.iter().zip(&places) {
         let path = place.path();
         place
             .write(|out| out.write_all(file.text.as_bytes()))
-            .map_err(|source| CliError::cannot_write(path, source))?;
+            .map_err(|source| FileError::cannot_write(path, source))?;
         say(format_args!("{}\n", path.display()));
     }
     Ok(())

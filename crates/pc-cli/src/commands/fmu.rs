@@ -11,10 +11,13 @@ use crate::args::input;
 use crate::args::options::{EmitArguments, FmuMethod, FmuVersion};
 use crate::commands::emit::name;
 use crate::error::CliError;
-use crate::output::place::Place;
-use crate::report::notes::{choice, say_choice, say_dropped, say_moved};
-use crate::report::text::say;
-use crate::report::verification::vouched;
+use crate::terminal::observer::Terminal;
+use pc_run::files::error::FileError;
+use pc_run::files::place::Place;
+use pc_run::observer::Observer;
+use pc_run::motion::remarks::{choice, say_dropped, say_moved};
+use crate::terminal::text::say;
+use pc_run::motion::verification::vouched;
 
 /// Writes the FMU of a model, whole or not at all.
 ///
@@ -23,10 +26,10 @@ use crate::report::verification::vouched;
 pub fn command(arguments: &EmitArguments, version: FmuVersion) -> Result<(), CliError> {
     let path = &arguments.output;
     if path.extension().is_none_or(|ending| ending != "fmu") {
-        let (option, path) = ("--output", path.clone());
-        return Err(CliError::UnknownExtension { option, path, expected: ".fmu" });
+        let (option, path, expected) = ("--output", path.clone(), ".fmu".to_owned());
+        return Err(FileError::UnknownExtension { option, path, expected }.into());
     }
-    let place = Place::regular(path).map_err(|source| CliError::cannot_write(path, source))?;
+    let place = Place::regular(path).map_err(|source| FileError::cannot_write(path, source))?;
     let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == Variables::Given)?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
@@ -42,13 +45,15 @@ pub fn command(arguments: &EmitArguments, version: FmuVersion) -> Result<(), Cli
             (FmuMethod::Rk4, step) => FmuSolver::RungeKutta4 { step: step.unwrap_or(f64::NAN) },
         });
     }
-    say_dropped(&assembly);
-    say_moved(&assembly);
+    say_dropped(&assembly, &Terminal);
+    say_moved(&assembly, &Terminal);
     let (_, form) = assembly.equations_of(arguments.form)?;
     if let Some(remark) = choice(&assembly, &form.independent) {
-        say_choice(&remark);
+        Terminal.remark(&remark);
     }
-    vouched(&model, &assembly, Outlet::Source(arguments.form), arguments.verify)?;
+    if !arguments.verify.no_verify {
+        vouched(&model, &assembly, Outlet::Source(arguments.form), &Terminal)?;
+    }
     let mut fmu = Fmu::new(&model, &assembly, arguments.form, &options)?;
     for note in fmu.notes() {
         say(format_args!("note: {note}\n"));
@@ -57,10 +62,10 @@ pub fn command(arguments: &EmitArguments, version: FmuVersion) -> Result<(), Cli
         fmu = fmu.compiled()?;
     }
     let mut archive = Cursor::new(Vec::new());
-    fmu.write(&mut archive).map_err(|source| CliError::cannot_write(path, source))?;
+    fmu.write(&mut archive).map_err(|source| FileError::cannot_write(path, source))?;
     place
         .write(|out| out.write_all(archive.get_ref()))
-        .map_err(|source| CliError::cannot_write(place.path(), source))?;
+        .map_err(|source| FileError::cannot_write(place.path(), source))?;
     say(format_args!("{}\n", path.display()));
     Ok(())
 }

@@ -8,9 +8,10 @@ use pc_model::document::{read_bounded, read_file_bounded};
 use crate::args::options::ImportArguments;
 use crate::error::CliError;
 use crate::import::model_of_urdf;
-use crate::output::place::{Place, file};
+use pc_run::files::error::FileError;
+use pc_run::files::place::{Place, file};
 use crate::output::standard_output::print;
-use crate::report::text::say;
+use crate::terminal::text::say;
 
 /// Writes the text model of a robot in URDF.
 ///
@@ -21,7 +22,7 @@ pub fn command(arguments: &ImportArguments) -> Result<(), CliError> {
     let name = path.map_or("<stdin>".to_owned(), |path| path.display().to_string());
     let place = file(arguments.output.as_deref()).map(|output| (output, Place::new(output)));
     let place = place
-        .map(|(output, place)| place.map_err(|source| CliError::no_place(output, source)))
+        .map(|(output, place)| place.map_err(|source| FileError::no_place(output, source)))
         .transpose()?;
     let bytes = path.map_or_else(|| read_bounded(io::stdin().lock()), read_file_bounded);
     let bytes = bytes.map_err(|source| CliError::Read { name: name.clone(), source })?;
@@ -38,6 +39,6 @@ pub fn command(arguments: &ImportArguments) -> Result<(), CliError> {
         None => print(|out| out.write_all(text.as_bytes())),
         Some(place) => place
             .write(|out| out.write_all(text.as_bytes()))
-            .map_err(|source| CliError::cannot_write(place.path(), source)),
+            .map_err(|source| FileError::cannot_write(place.path(), source).into()),
     }
 }

@@ -10,9 +10,10 @@ use pc_expr::parse::nearest;
 use crate::args::command_line::Arguments;
 use crate::args::tools::ManArguments;
 use crate::error::CliError;
-use crate::output::place::{Place, file};
+use pc_run::files::error::FileError;
+use pc_run::files::place::{Place, file};
 use crate::output::standard_output::{self, print};
-use crate::report::text::say;
+use crate::terminal::text::say;
 
 /// Prints a page, or writes all of them into a directory.
 ///
@@ -26,11 +27,11 @@ pub fn command(arguments: &ManArguments) -> Result<(), CliError> {
         let Some((_, page)) = found else { return Err(no_such_command(&wanted, &pages)) };
         return print(|out| out.write_all(page));
     };
-    fs::create_dir_all(directory).map_err(|source| CliError::cannot_write(directory, source))?;
+    fs::create_dir_all(directory).map_err(|source| FileError::cannot_write(directory, source))?;
     for (name, page) in &pages {
         let path = directory.join(format!("{name}.1"));
-        let place = Place::regular(&path).map_err(|source| CliError::cannot_write(&path, source))?;
-        place.write(|out| out.write_all(page)).map_err(|source| CliError::cannot_write(&path, source))?;
+        let place = Place::regular(&path).map_err(|source| FileError::cannot_write(&path, source))?;
+        place.write(|out| out.write_all(page)).map_err(|source| FileError::cannot_write(&path, source))?;
         say(format_args!("{}\n", path.display()));
     }
     Ok(())

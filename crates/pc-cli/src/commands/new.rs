@@ -8,9 +8,10 @@ use pc_model::document::SCHEMA;
 
 use crate::args::tools::NewArguments;
 use crate::error::CliError;
-use crate::output::place::{Place, file};
+use pc_run::files::error::FileError;
+use pc_run::files::place::{Place, file};
 use crate::output::standard_output::print;
-use crate::report::text::say;
+use crate::terminal::text::say;
 
 /// The file of the schema beside a model.
 const SCHEMA_FILE: &str = "pc-model.schema.json";
@@ -25,13 +26,13 @@ pub fn command(arguments: &NewArguments) -> Result<(), CliError> {
     let Some(path) = file(arguments.output.as_deref()) else {
         return print(|out| out.write_all(text.as_bytes()));
     };
-    let place = Place::fresh(path).map_err(|source| CliError::no_place(path, source))?;
+    let place = Place::fresh(path).map_err(|source| FileError::no_place(path, source))?;
     if arguments.schema {
         write_schema(&path.with_file_name(SCHEMA_FILE))?;
     }
     place
         .create(|out| out.write_all(text.as_bytes()))
-        .map_err(|source| CliError::cannot_write(path, source))?;
+        .map_err(|source| FileError::cannot_write(path, source))?;
     let name = path.display();
     say(format_args!("{name}: now `pc check {name}`, `pc derive {name}`, `pc run {name}`\n"));
     Ok(())
@@ -47,9 +48,9 @@ fn write_schema(path: &Path) -> Result<(), CliError> {
             Ok(())
         }
         Err(_) => {
-            let place = Place::fresh(path).map_err(|source| CliError::no_place(path, source))?;
+            let place = Place::fresh(path).map_err(|source| FileError::no_place(path, source))?;
             let written = place.create(|out| out.write_all(SCHEMA.as_bytes()));
-            written.map_err(|source| CliError::cannot_write(path, source))
+            written.map_err(|source| FileError::cannot_write(path, source).into())
         }
     }
 }

@@ -2,15 +2,18 @@
 
 use pc_model::Model;
 use pc_report::{Record, Scene, animation, report};
+use pc_run::RunError;
+use pc_run::motion::integrate::Besides;
+use pc_run::motion::run::Run;
+use pc_run::plan::plan::Plan;
+use pc_run::plan::wishes::Wishes;
 
 use crate::args::input;
 use crate::args::report::{AnimateArguments, ReportArguments, ShownArguments};
-use crate::commands::run::integrate;
 use crate::error::CliError;
-use crate::motion::plan::Plan;
-use crate::motion::run::Run;
 use crate::output::destination::{Destination, Encoding};
 use crate::plot::gif::{frames, nearest};
+use crate::terminal::observer::Terminal;
 
 /// Points with which a curve looks smooth.
 const SMOOTH: usize = 601;
@@ -29,13 +32,13 @@ pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
     }
     model.observe_reactions(!model.document().constraints.is_empty());
     let run = match integrated(&mut model, &arguments.shown) {
-        Err(CliError::NoEnd { .. }) => None,
+        Err(CliError::Run(RunError::NoEnd { .. })) => None,
         run => Some(run?),
     };
     let none = || Record { remark: Some(NO_END.to_owned()), ..Record::default() };
     let record = run.as_ref().map_or_else(none, Run::record);
     destination.write_page(&report(&model, Some(&record))?)?;
-    run.map_or(Ok(()), Run::outcome)
+    Ok(run.map_or(Ok(()), Run::outcome)?)
 }
 
 const NO_END: &str = "There is no motion: the text says no end of time, and --t-end was not given.";
@@ -66,7 +69,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
         }
         _ => destination.write_page(&animation(title, &scene))?,
     }
-    run.outcome()
+    Ok(run.outcome()?)
 }
 
 /// The page of a model with a motion that has been integrated.
@@ -79,11 +82,11 @@ pub fn page(model: &Model, run: &Run) -> Result<String, CliError> {
 
 /// The motion, with enough rows for smooth curves.
 fn integrated(model: &mut Model, shown: &ShownArguments) -> Result<Run, CliError> {
-    let arguments = shown.as_run();
-    for name in &arguments.project {
+    for name in &shown.project {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
-    let plan = Plan::new(model, &arguments)?;
-    let samples = shown.samples.unwrap_or(plan.samples.max(SMOOTH));
-    integrate(model, Plan::form(model, &arguments), || Ok(Plan { samples, ..plan }))
+    let wishes = shown.wishes();
+    let rows = Plan::of(model, &wishes)?.samples;
+    let wishes = Wishes { samples: Some(shown.samples.unwrap_or(rows.max(SMOOTH))), ..wishes };
+    Ok(Run::of(model, &wishes, &Besides::shown(), None, &Terminal)?)
 }

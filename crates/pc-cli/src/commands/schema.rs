@@ -6,7 +6,8 @@ use pc_model::document::SCHEMA;
 
 use crate::args::tools::SchemaArguments;
 use crate::error::CliError;
-use crate::output::place::{Place, file};
+use pc_run::files::error::FileError;
+use pc_run::files::place::{Place, file};
 use crate::output::standard_output::print;
 
 /// Writes the schema.
@@ -18,8 +19,8 @@ pub fn command(arguments: &SchemaArguments) -> Result<(), CliError> {
     match file(arguments.output.as_deref()) {
         None => print(|out| out.write_all(text)),
         Some(path) => {
-            let place = Place::new(path).map_err(|source| CliError::no_place(path, source))?;
-            place.write(|out| out.write_all(text)).map_err(|source| CliError::cannot_write(path, source))
+            let place = Place::new(path).map_err(|source| FileError::no_place(path, source))?;
+            place.write(|out| out.write_all(text)).map_err(|source| FileError::cannot_write(path, source).into())
         }
     }
 }

@@ -7,9 +7,10 @@ use pc_verify::Outlet;
 use crate::args::input;
 use crate::args::options::TheoryArguments;
 use crate::error::CliError;
+use crate::terminal::observer::Terminal;
 use crate::output::standard_output::print;
-use crate::report::notes::{say_dropped, say_moved};
-use crate::report::verification::vouched;
+use pc_run::motion::remarks::{say_dropped, say_moved};
+use pc_run::motion::verification::vouched;
 
 /// Prints the theory of a model.
 ///
@@ -19,10 +20,12 @@ pub fn command(arguments: &TheoryArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
-    say_dropped(&assembly);
-    say_moved(&assembly);
+    say_dropped(&assembly, &Terminal);
+    say_moved(&assembly, &Terminal);
     let options = TheoryOptions { degree: arguments.degree, functions: arguments.functions.clone() };
     let page = Theory::of(&model, &assembly, &options)?.printed(arguments.format.into());
-    vouched(&model, &assembly, Outlet::Equations(Variables::QuasiVelocities), arguments.verify)?;
+    if !arguments.verify.no_verify {
+        vouched(&model, &assembly, Outlet::Equations(Variables::QuasiVelocities), &Terminal)?;
+    }
     print(|out| write!(out, "{page}"))
 }

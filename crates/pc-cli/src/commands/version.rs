@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use crate::error::CliError;
 use crate::output::standard_output::print;
-use crate::report::text::labelled;
+use crate::terminal::text::labelled;
 
 /// Prints the version; where `verbose`, also what was built in, for which system, and what the processor offers.
 ///

@@ -2,20 +2,22 @@
 
 use std::io::{self, ErrorKind, Write};
 
+use pc_run::files::error::FileError;
+use pc_run::files::kept::Kept;
+use pc_run::files::rescue::elsewhere;
+
 use crate::error::{CliError, STANDARD_OUTPUT};
-use crate::output::kept::Kept;
-use crate::output::rescue::elsewhere;
 
 /// Writes to standard output.
 ///
 /// # Errors
-/// [`CliError::Write`], which needs no message where the reader has gone away (`pc run … | head`).
+/// [`FileError::Write`], which needs no message where the reader has gone away (`pc run … | head`).
 pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
     attempt(write).map_err(error)
 }
 
 /// Writes a result to standard output, or else to a file in the directory of temporary files.
-pub(super) fn print_or_keep(
+pub(crate) fn print_or_keep(
     name: &str,
     write: impl Fn(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), CliError> {
@@ -39,5 +41,5 @@ pub fn error(source: io::Error) -> CliError {
 }
 
 fn unwritten(source: io::Error, kept: Kept) -> CliError {
-    CliError::Write { path: STANDARD_OUTPUT.to_owned(), kept, source }
+    FileError::Write { path: STANDARD_OUTPUT.to_owned(), kept, source }.into()
 }

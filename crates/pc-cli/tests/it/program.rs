@@ -252,7 +252,7 @@ fn wrong_usage_is_exit_2_and_suggests_a_correction() {
     refuses(&["run", "euler-top", "--form", "voronets"], 2, "not supported yet");
     refuses(&["derive", "euler-top", "--format", "html"], 2, "possible values: text, latex, json");
     refuses(&["sweep", "euler-top"], 2, "sweep");
-    refuses(&["run", "euler-top", "-o", "motion.xlsx"], 2, ".csv, .json or .npz");
+    refuses(&["run", "euler-top", "-o", "motion.xlsx"], 2, ".csv, .json, .npz or .parquet");
     refuses(&["run", "euler-top", "--plot", "motion.gif"], 2, ".svg, .png or .pdf");
     refuses(&["run", "euler-top", "-o", "no/such/directory/a.csv"], 2, "no directory no/such/directory");
     refuses(&[], 2, "Usage");

@@ -10,7 +10,7 @@ use crate::modules;
 use std::path::Path;
 
 /// Crates that other programs use; `pc-capi` has its own list, programs and the Python package have none.
-const LIBRARIES: [&str; 11] = [
+const LIBRARIES: [&str; 12] = [
     "pc-expr",
     "pc-algebra",
     "pc-mech",
@@ -20,6 +20,7 @@ const LIBRARIES: [&str; 11] = [
     "pc-print",
     "pc-verify",
     "pc-report",
+    "pc-run",
     "pc-fmu",
     "pc-solve",
 ];

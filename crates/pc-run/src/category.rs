@@ -1,0 +1,29 @@
+//! The kinds of errors: what whoever asked for a run can do about one.
+
+/// The kind of an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Category {
+    /// Two motions that were compared are not the same.
+    Different,
+    /// The request is wrong, whatever the model.
+    Request,
+    /// The text of the model is wrong, or asks for something that cannot be done yet.
+    Text,
+    /// What was asked for is not defined for this model, or exceeds its limits.
+    Undefined,
+    /// A numerical method did not converge or did not reach its end.
+    Failed,
+    /// A result could not be written.
+    Unwritten,
+    /// The observer ended the run.
+    Interrupted,
+}
+
+impl From<pc_model::Category> for Category {
+    fn from(category: pc_model::Category) -> Category {
+        match category {
+            pc_model::Category::Text | pc_model::Category::Unsupported => Category::Text,
+            pc_model::Category::Inconsistent | pc_model::Category::Spent => Category::Undefined,
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Errors of comparisons.
+
+use pc_expr::parse::ParseError;
+
+use crate::category::Category;
+
+/// A comparison that cannot be made, or motions that differ.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// One model in one form.
+    #[error("there is one motion only: give another model, or two forms as in `--form poincare,canonical`")]
+    OneMotion,
+    /// More forms than models.
+    #[error("--form: {count} forms are given for two motions; give one or two")]
+    Forms {
+        /// How many.
+        count: usize,
+    },
+    /// Two models from standard input.
+    #[error("only one of the models can come from standard input")]
+    StandardInput,
+    /// The motions begin at different times.
+    #[error("the motions begin at t = {first} and t = {second}: `t_start` in [simulation] must be the same")]
+    Starts {
+        /// That of the first.
+        first: f64,
+        /// That of the second.
+        second: f64,
+    },
+    /// There is nothing to be compared.
+    #[error(
+        "no column but the energy is in both motions: the first has {}, the second {}; say what corresponds, as in `--map \
+         \"r=sqrt(x^2+y^2)\"`",
+        first.join(", "), second.join(", ")
+    )]
+    NothingShared {
+        /// The columns of the first.
+        first: Vec<String>,
+        /// Those of the second.
+        second: Vec<String>,
+    },
+    /// A column that is not in both motions.
+    #[error("--columns: `{name}` is not a column of both motions; these are {}", shared.join(", "))]
+    NotShared {
+        /// The requested name.
+        name: String,
+        /// The columns of both.
+        shared: Vec<String>,
+    },
+    /// Text that is not an expression.
+    #[error("--map: `{text}`: {error}; {}", error.help())]
+    Expression {
+        /// As written.
+        text: String,
+        /// What is wrong with it.
+        error: ParseError,
+    },
+    /// A name that is neither a column nor a parameter.
+    #[error("--map: `{text}`: `{name}` is neither a column nor a parameter of {model}; these are {}", known.join(", "))]
+    UnknownName {
+        /// The expression.
+        text: String,
+        /// The name in it.
+        name: String,
+        /// The model.
+        model: String,
+        /// The columns and parameters of the model.
+        known: Vec<String>,
+    },
+    /// A derivative, which a table does not have.
+    #[error("--map: `{text}`: d() cannot be taken of columns; make it an entry of [outputs] in the model")]
+    Derivative {
+        /// The expression.
+        text: String,
+    },
+    /// The motions are not the same.
+    #[error("the motions differ: {}", differences.join("; "))]
+    Different {
+        /// What differs.
+        differences: Vec<String>,
+    },
+}
+
+impl CompareError {
+    /// The kind of the error.
+    pub fn category(&self) -> Category {
+        match self {
+            CompareError::Different { .. } => Category::Different,
+            _ => Category::Request,
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! The errors of runs.
+
+use pc_model::{ModelError, UnknownParameter, UnknownStart};
+use pc_print::{short, small};
+use pc_report::ReportError;
+use pc_solve::{Code, SolveError, Spent};
+use pc_verify::VerifyError;
+
+use crate::category::Category;
+use crate::compare::error::CompareError;
+use crate::files::error::FileError;
+use crate::linear::error::LinearError;
+use crate::motion::checkpoint_error::CheckpointFileError;
+use crate::motion::lost::LostIntegral;
+use crate::sweep::error::SweepError;
+
+/// An error of a run.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// Sensitivities by something that is not a parameter.
+    #[error("--sensitivities: {0}")]
+    Sensitivities(UnknownParameter),
+    /// A tolerance of something that is no component of the state.
+    #[error("--atol: {0}")]
+    Tolerance(#[source] UnknownStart),
+    /// Neither the wishes nor the model give an end time.
+    #[error(
+        "{model}: no end time: give `--t-end T`, or `t_end = T` in the section [simulation] of the model"
+    )]
+    NoEnd {
+        /// Name of the model file.
+        model: String,
+    },
+    /// An end time equal to the start time.
+    #[error("the end time {t} is the start time: nothing to integrate")]
+    EndIsStart {
+        /// That time.
+        t: f64,
+    },
+    /// More rows than the memory limit allows.
+    #[error(
+        "{rows} rows of {numbers} numbers would take {} MiB, more than the limit of {} MiB; ask for fewer, give \
+         --limit-memory {}M, or for a single motion only -o FILE.csv, whose rows are written as they are computed",
+        bytes.div_ceil(1 << 20),
+        limit >> 20,
+        bytes.div_ceil(1 << 20)
+    )]
+    Rows {
+        /// How many are wanted.
+        rows: u64,
+        /// Numbers in memory for each row.
+        numbers: u64,
+        /// Memory that they would take.
+        bytes: u64,
+        /// Memory that they may take.
+        limit: u64,
+    },
+    /// Something wrong with the model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The equations disagree with a second derivation: one of the two is wrong, by a defect of
+    /// this program.
+    #[error("{0}; no result is returned, because one of them is wrong through a defect of this program")]
+    Verify(Box<VerifyError>),
+    /// Something wrong with a file.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Something wrong with checkpoints.
+    #[error(transparent)]
+    Checkpoints(#[from] CheckpointFileError),
+    /// Something wrong with a sweep.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    /// Something wrong with a linearization or with equilibria.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+    /// Motions that differ, or cannot be compared.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    /// The integration could not continue.
+    #[error("the integration failed{}", at(.cause, names))]
+    Integration {
+        /// Why.
+        #[source]
+        cause: Box<SolveError>,
+        /// Names of the components of the state.
+        names: Vec<String>,
+        /// Whether forces jump where the state changes, as dry friction does.
+        jumps: bool,
+        /// The velocity that has lost its inertia, and what is left of it.
+        lost_inertia: Option<(String, f64)>,
+    },
+    /// An integral that is proved to be kept has changed.
+    #[error(
+        "the motion is wrong: {} is proved to be kept at {}, and drifts by {}, more than a thousandth of its scale {}; \
+         the rows are written as they were computed",
+        .0.name, short(.0.start, 6), small(.0.drift), small(.0.scale)
+    )]
+    Lost(LostIntegral),
+    /// The time limit ended the integration.
+    #[error("ended at t = {}: {limit}", short(*t, 17))]
+    Ended {
+        /// How far the integration was.
+        t: f64,
+        /// The limit.
+        limit: Spent,
+    },
+    /// The observer ended the integration, as by Ctrl-C.
+    #[error("interrupted at t = {}", short(*t, 17))]
+    Interrupted {
+        /// How far the integration was.
+        t: f64,
+    },
+}
+
+impl From<ReportError> for RunError {
+    fn from(error: ReportError) -> RunError {
+        match error {
+            ReportError::Model(error) => RunError::Model(error),
+            ReportError::Verify(error) => RunError::Verify(error),
+        }
+    }
+}
+
+impl RunError {
+    /// The kind of the error.
+    pub fn category(&self) -> Category {
+        match self {
+            RunError::Model(error) => error.category().into(),
+            RunError::File(error) => error.category(),
+            RunError::Sweep(error) => error.category(),
+            RunError::Linear(error) => error.category(),
+            RunError::Compare(error) => error.category(),
+            RunError::Verify(_) | RunError::Rows { .. } | RunError::Ended { .. } => Category::Undefined,
+            RunError::Integration { .. } | RunError::Lost(_) => Category::Failed,
+            RunError::Interrupted { .. } => Category::Interrupted,
+            RunError::Sensitivities(_)
+            | RunError::Tolerance(_)
+            | RunError::NoEnd { .. }
+            | RunError::EndIsStart { .. }
+            | RunError::Checkpoints(_) => Category::Request,
+        }
+    }
+
+    /// What may help, where that is known.
+    pub fn help(&self) -> Vec<String> {
+        let mut help = Vec::new();
+        if let RunError::Lost(_) = self {
+            help.push(
+                "take a smaller --rtol and compare; --project keeps an integral, though not the motion; if it is lost at \
+                 one time, the motion is singular there"
+                    .to_owned(),
+            );
+        }
+        if let RunError::Integration { lost_inertia: Some((velocity, part)), .. } = self {
+            help.push(format!(
+                "the mass matrix becomes singular there: of the inertia of {velocity} at the start {} is left",
+                small(*part)
+            ));
+        }
+        if let RunError::Integration { cause, jumps: true, .. } = self
+            && cause.code() == Some(Code::TooMuchWork)
+        {
+            help.push(
+                "the forces jump, as dry friction does, and the motion may stay where they do, chattering: have [events] \
+                 change the law there, as the built-in model stick-slip-block does"
+                    .to_owned(),
+            );
+        }
+        help
+    }
+}
+
+/// The time and state of the integration, with the names of the state.
+fn at(cause: &SolveError, names: &[String]) -> String {
+    let Some((t, state)) = cause.reached() else { return String::new() };
+    let state: String =
+        names.iter().zip(state).map(|(name, value)| format!(", {name} = {}", short(*value, 17))).collect();
+    format!(" at t = {}{state}", short(t, 17))
+}

@@ -1,0 +1,101 @@
+//! Files that are replaced whole: written beside the old one, then put in its place.
+
+use std::fs::{self, File, Metadata, OpenOptions};
+use std::io::{self, BufWriter, Seek, Write};
+use std::path::Path;
+
+use tempfile::NamedTempFile;
+
+use crate::files::partial;
+use crate::files::place::Place;
+
+/// A buffered writer to a file.
+pub type FileWriter<'f> = BufWriter<&'f mut File>;
+
+impl Place {
+    /// Puts what `write` writes there. Until all of it is on disk, an existing file stays
+    /// unchanged.
+    ///
+    /// # Errors
+    /// [`io::Error`]
+    pub fn write(&self, write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>) -> io::Result<()> {
+        match &self.device {
+            Some(device) => fill(&mut device.try_clone()?, write),
+            None => self.replace(write).map_err(|(error, _)| error),
+        }
+    }
+
+    /// The same for a file that did not exist; if it has been created since, it is kept.
+    ///
+    /// # Errors
+    /// [`io::Error`]
+    pub fn create(&self, write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>) -> io::Result<()> {
+        let mut made = partial::make(&self.file)?;
+        fill(made.as_file_mut(), write)?;
+        made.as_file().sync_all()?;
+        made.persist_noclobber(&self.file).map(drop).map_err(|error| error.error)
+    }
+
+    /// The same for a regular file; an error comes with what could be written.
+    pub(super) fn replace(
+        &self,
+        write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
+    ) -> Result<(), (io::Error, Option<NamedTempFile>)> {
+        let mut made = partial::make(&self.file).map_err(|error| (error, None))?;
+        match fill(made.as_file_mut(), write) {
+            Ok(()) => self.put(made),
+            Err(error) => Err((error, Some(made))),
+        }
+    }
+
+    /// Moves a file made beside the place to it.
+    pub(super) fn put(&self, mut made: NamedTempFile) -> Result<(), (io::Error, Option<NamedTempFile>)> {
+        let replaced = made.as_file().sync_all().and_then(|()| match fs::metadata(&self.file) {
+            Err(_) => Ok(true),
+            Ok(old) => take_after(made.as_file(), &old),
+        });
+        match replaced {
+            Ok(true) => made.persist(&self.file).map(drop).map_err(|error| (error.error, Some(error.file))),
+            Ok(false) => overwrite(made.as_file_mut(), &self.file).map_err(|error| (error, Some(made))),
+            Err(error) => Err((error, Some(made))),
+        }
+    }
+}
+
+/// Writes to a file; after a failure, the unwritten rest is not tried again.
+pub(super) fn fill(
+    file: &mut File,
+    write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut out = BufWriter::new(file);
+    let written = write(&mut out).and_then(|()| out.flush());
+    drop(out.into_parts());
+    written
+}
+
+/// Gives a file the owner and mode of the one that it replaces; false where this is not permitted.
+#[cfg(unix)]
+fn take_after(made: &File, old: &Metadata) -> io::Result<bool> {
+    use std::os::unix::fs::{MetadataExt, fchown};
+    let new = made.metadata()?;
+    if (new.uid(), new.gid()) != (old.uid(), old.gid())
+        && fchown(made, Some(old.uid()), Some(old.gid())).is_err()
+    {
+        return Ok(false);
+    }
+    made.set_permissions(old.permissions())?;
+    Ok(true)
+}
+
+#[cfg(not(unix))]
+fn take_after(_: &File, _: &Metadata) -> io::Result<bool> {
+    Ok(true)
+}
+
+/// Copies the complete file into one of another user, who remains its owner.
+fn overwrite(made: &mut File, file: &Path) -> io::Result<()> {
+    let mut old = OpenOptions::new().write(true).truncate(true).open(file)?;
+    made.rewind()?;
+    io::copy(made, &mut old)?;
+    old.sync_all()
+}

@@ -1,0 +1,88 @@
+//! Rows that are written as they are computed.
+
+use std::io::{self, BufWriter, Write};
+use std::ops::ControlFlow;
+
+use tempfile::NamedTempFile;
+
+use crate::files::error::FileError;
+use crate::files::kept::Kept;
+use crate::files::place::Place;
+use crate::files::rescue::beside;
+use crate::files::partial;
+use crate::table::csv;
+use crate::table::rows::Cell;
+
+/// A table of comma-separated values that grows beside the file that it replaces at the end.
+#[derive(Debug)]
+pub struct Stream<'p> {
+    place: &'p Place,
+    /// The file, once begun.
+    out: Option<BufWriter<NamedTempFile>>,
+    /// The error that ended the writing.
+    error: Option<io::Error>,
+}
+
+/// Bytes that are written at once.
+const BLOCK: usize = 1 << 20;
+
+impl<'p> Stream<'p> {
+    /// To a regular file.
+    pub(crate) fn to(place: &'p Place) -> Stream<'p> {
+        Stream { place, out: None, error: None }
+    }
+
+    /// Makes the file, with the line of names.
+    ///
+    /// # Errors
+    /// [`FileError::Write`]
+    pub(crate) fn begin(&mut self, columns: &[String]) -> Result<(), FileError> {
+        let begun = partial::make(&self.place.file).and_then(|made| {
+            let mut out = BufWriter::with_capacity(BLOCK, made);
+            writeln!(out, "{}", csv::header(columns))?;
+            self.out = Some(out);
+            Ok(())
+        });
+        begun.map_err(|source| FileError::cannot_write(self.place.path(), source))
+    }
+
+    /// Whether the file has been made.
+    pub fn is_begun(&self) -> bool {
+        self.out.is_some()
+    }
+
+    /// Writes a row; breaks where this fails.
+    pub(crate) fn row(&mut self, numbers: &[f64]) -> ControlFlow<()> {
+        let Some(out) = &mut self.out else { return ControlFlow::Break(()) };
+        if let Err(error) = csv::row(numbers.iter().copied().map(Cell::Number), out) {
+            self.error = Some(error);
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Whether a row could not be written.
+    pub(crate) fn has_failed(&self) -> bool {
+        self.error.is_some()
+    }
+
+    /// Puts the table at its place, or its complete rows beside it.
+    ///
+    /// # Errors
+    /// [`FileError::Write`] that says where it is.
+    pub fn end(self) -> Result<(), FileError> {
+        let Some(mut out) = self.out else { return Ok(()) };
+        let flushed = self.error.map_or_else(|| out.flush(), Err);
+        let (made, _) = out.into_parts(); // what could not be written is not tried again
+        let (source, part) = match flushed {
+            Err(error) => (error, Some(made)),
+            Ok(()) => match self.place.put(made) {
+                Ok(()) => return Ok(()),
+                Err(failed) => failed,
+            },
+        };
+        let kept =
+            part.and_then(|part| beside(&self.place.file, part)).map_or(Kept::Nowhere, Kept::Beginning);
+        Err(FileError::Write { path: self.place.path().display().to_string(), kept, source })
+    }
+}

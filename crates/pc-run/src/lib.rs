@@ -1,0 +1,49 @@
+//! A run of a model: what is asked for becomes a plan, the plan a motion, the motion a table.
+//!
+//! ```text
+//! Wishes ─ Model ─► Plan ─► Run ─► table, summary, record
+//! Variation ─► Design ─► Sweep ─► Journal ─► table, picture
+//! StateChoice ─► Linearized, Locus, Found     two Runs ─► Compared
+//! ```
+//! The program `pc` and the Python package are front ends of this crate: they say what is wished, watch as
+//! [`Observer`](observer::Observer), and show what comes out. Whatever the front end, the same wishes give the same numbers,
+//! compared with the same second derivation.
+//!
+//! ```
+//! use pc_model::{Builtin, Model};
+//! use pc_run::motion::integrate::Besides;
+//! use pc_run::motion::run::{Ending, Run};
+//! use pc_run::observer::Nobody;
+//! use pc_run::plan::wishes::Wishes;
+//!
+//! let model = Model::new(Builtin::named("double-pendulum").expect("built in").document()?);
+//! let wishes = Wishes { t_end: Some(2.0), samples: Some(5), ..Wishes::default() };
+//! let besides = Besides { verify: true, ..Besides::default() };
+//! let run = Run::of(&model, &wishes, &besides, None, &Nobody)?;
+//! assert!(matches!(run.ending, Ending::Completed));
+//! assert_eq!(run.table.len(), 5);
+//! let energy = run.table.conserved().last().expect("a column");
+//! assert!(run.table.drift(energy).absolute < 1e-7);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Around it
+//!
+//! Below: [`pc_model`], the models; [`pc_verify`], the second derivation; [`pc_solve`], the motions; [`pc_analysis`],
+//! linearizations and equilibria; [`pc_report`], pictures and pages. Above: [pc-cli](../pc_cli/index.html), the program `pc`.
+
+mod category;
+mod chain;
+pub mod compare;
+mod error;
+pub mod files;
+pub mod linear;
+pub mod motion;
+pub mod observer;
+pub mod plan;
+pub mod sweep;
+pub mod table;
+
+pub use category::Category;
+pub use chain::chain;
+pub use error::RunError;

@@ -1,0 +1,211 @@
+//! The equilibria in a box, for people and for programs.
+
+use pc_analysis::{Equilibria, EquilibriumSearch, FoundEquilibrium};
+use pc_model::Model;
+use pc_print::{eigenvalues_in_words, labelled, one_line, short, stability_in_words, wrapped};
+use serde_json::{Value, json};
+
+use crate::error::RunError;
+use crate::files::error::FileError;
+use crate::linear::error::LinearError;
+use crate::linear::ground::{Ground, placed};
+use crate::linear::json::map;
+use crate::linear::output::Contents;
+use crate::linear::text::rounded;
+use crate::observer::Observer;
+use crate::table::csv::{field, header};
+use crate::table::file::TableFile;
+
+/// Columns of a line after its number.
+const WIDTH: usize = 92;
+const LABEL: usize = 4;
+
+/// The largest value that Newton's method may leave of a zero.
+const ZERO: f64 = 1e-9;
+
+/// Where equilibria are looked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Search {
+    /// Lower and upper bounds of coordinates and first-order states, by their names.
+    pub bounds: Vec<(String, f64, f64)>,
+    /// The number of starts of Newton's method.
+    pub starts: usize,
+}
+
+impl Default for Search {
+    fn default() -> Search {
+        Search { bounds: Vec::new(), starts: 256 }
+    }
+}
+
+/// The equilibria of a model that a search has found.
+#[derive(Debug)]
+pub struct Found {
+    title: String,
+    names: Vec<String>,
+    /// How many of the names are coordinates.
+    places: usize,
+    /// The equilibria.
+    pub equilibria: Equilibria,
+}
+
+impl Found {
+    /// Looks for the equilibria of a model.
+    ///
+    /// # Errors
+    /// [`RunError`], also where none is found.
+    pub fn of(
+        model: &Model,
+        wanted: &Search,
+        verify: bool,
+        observer: &dyn Observer,
+    ) -> Result<Found, RunError> {
+        let graph = model.graph();
+        let mut ground = Ground::vouched(model, &graph, verify, observer)?;
+        let integrals = ground.integrals();
+        let mut search = EquilibriumSearch::default().starts(wanted.starts);
+        for (i, (name, low, high)) in wanted.bounds.iter().enumerate() {
+            if wanted.bounds[..i].iter().any(|(known, ..)| known == name) {
+                return Err(LinearError::Twice { name: name.clone() }.into());
+            }
+            search = search.within(name, *low, *high);
+        }
+        let at = (ground.assembly.t_start, ground.start.as_slice());
+        let found = search.run(&ground.equations, &mut ground.linearizer, at, integrals.list());
+        ground.assembly.within_limits()?;
+        let equilibria = found.map_err(|error| placed(&ground.assembly, error, false))?;
+        if equilibria.list.is_empty() {
+            let (starts, converged) = (equilibria.starts, equilibria.converged);
+            return Err(LinearError::NoEquilibrium { starts, converged }.into());
+        }
+        Ok(Found {
+            title: model.title().to_owned(),
+            names: ground.linearizer.names().to_vec(),
+            places: ground.equations.system().frame().coordinates().len(),
+            equilibria,
+        })
+    }
+
+    /// A paragraph for each.
+    pub fn text(&self) -> String {
+        text(&self.title, &self.names, self.places, &self.equilibria)
+    }
+
+    /// The equilibria as one JSON object.
+    pub fn json(&self) -> Value {
+        json(&self.title, &self.names, &self.equilibria)
+    }
+
+    /// A line for each: its state, energy, verdict, family, and real and imaginary part of each eigenvalue.
+    pub fn csv(&self) -> String {
+        csv(&self.names, &self.equilibria)
+    }
+
+    /// Writes them to a file.
+    ///
+    /// # Errors
+    /// [`FileError::Write`], which says where the result was kept.
+    pub fn write(&self, file: &TableFile) -> Result<(), FileError> {
+        Contents { json: &self.json(), csv: &self.csv(), arrays: &[], texts: &[] }.write(file)
+    }
+}
+
+/// The components of a state that are shown: all but the quasi-velocities that vanish.
+fn shown<'a>(names: &'a [String], found: &FoundEquilibrium, places: usize) -> Vec<(&'a str, f64)> {
+    let all = names.iter().zip(&found.state).enumerate();
+    let is_shown = |&(i, (_, value)): &(usize, (&String, &f64))| i < places || value.abs() > ZERO;
+    all.filter(is_shown).map(|(_, (name, &value))| (name.as_str(), value)).collect()
+}
+
+/// A paragraph for each; `places` is the number of coordinates.
+fn text(title: &str, names: &[String], places: usize, found: &Equilibria) -> String {
+    let mut text = format!("{}\n", one_line(title));
+    for (number, one) in (1..).zip(&found.list) {
+        let values = shown(names, one, places);
+        let values = values.into_iter().map(|(name, value)| format!("{name} = {}", rounded(value)));
+        let energy = format!("energy {}", rounded(one.energy));
+        let tolerance = one.motion.tolerance.max(ZERO);
+        let mut lines = wrapped(values, WIDTH);
+        lines.push(stability_in_words(&one.motion.stability()));
+        let eigenvalues = eigenvalues_in_words(&one.motion.eigenvalues, tolerance);
+        lines.extend(wrapped([energy, "eigenvalues ".to_owned() + &eigenvalues.join(", ")], WIDTH));
+        lines.extend(family(one));
+        text += &labelled(&format!("{number}:"), LABEL, &lines);
+    }
+    if !found.anywhere.is_empty() {
+        text += &labelled("at", LABEL, &wrapped([format!("any {}", found.anywhere.join(", "))], WIDTH));
+    }
+    let bounds = found.bounds.iter();
+    let bounds = bounds.map(|(name, low, high)| format!("{name} = {}..{}", short(*low, 4), short(*high, 4)));
+    let over: Vec<String> = bounds.collect();
+    let over = if over.is_empty() { String::new() } else { format!(" over {}", over.join(", ")) };
+    let starts = format!(
+        "found from {} starts{over}, of which {} converged; there may be others",
+        found.starts, found.converged
+    );
+    text += &format!("  {starts}\n");
+    text
+}
+
+fn family(one: &FoundEquilibrium) -> Option<String> {
+    let dimensions = match one.family {
+        0 => return None,
+        1 => "1 dimension".to_owned(),
+        n => format!("{n} dimensions"),
+    };
+    Some(match one.members {
+        1 => format!("one of a family of {dimensions}"),
+        members => format!("one of a family of {dimensions}, of which {members} were found"),
+    })
+}
+
+/// The equilibria as one JSON object.
+fn json(title: &str, names: &[String], found: &Equilibria) -> Value {
+    let one = |one: &FoundEquilibrium| {
+        json!({
+            "state": map(names.iter().map(String::as_str).zip(one.state.iter().copied())),
+            "energy": one.energy,
+            "components": one.linearization.components,
+            "eigenvalues": one.motion.eigenvalues.iter().map(|l| [l.real, l.imaginary]).collect::<Vec<_>>(),
+            "first_approximation": one.motion.first_approximation.to_string(),
+            "second_variation": one.motion.second_variation.as_ref().map(|second| second.verdict.to_string()),
+            "verdict": stability_in_words(&one.motion.stability()),
+            "family": one.family,
+            "members": one.members,
+        })
+    };
+    let bounds = found.bounds.iter().map(|(name, low, high)| (name.clone(), json!([low, high])));
+    json!({
+        "model": title,
+        "equilibria": found.list.iter().map(one).collect::<Value>(),
+        "anywhere": found.anywhere,
+        "box": bounds.collect::<serde_json::Map<_, _>>(),
+        "starts": found.starts,
+        "converged": found.converged,
+    })
+}
+
+/// A line for each: its state, energy, verdict, family, and real and imaginary part of each eigenvalue.
+fn csv(names: &[String], found: &Equilibria) -> String {
+    let count = found.list.iter().map(|one| one.motion.eigenvalues.len()).max().unwrap_or(0);
+    let mut columns = names.to_vec();
+    columns.extend(["energy", "verdict", "family", "members"].map(str::to_owned));
+    columns.extend((1..=count).flat_map(|i| [format!("re{i}"), format!("im{i}")]));
+    let mut text = header(&columns) + "\n";
+    for one in &found.list {
+        let numbers = one.state.iter().chain([&one.energy]).map(|value| format!("{value:.16e}"));
+        let words = [
+            field(&stability_in_words(&one.motion.stability())),
+            one.family.to_string(),
+            one.members.to_string(),
+        ];
+        let eigenvalues = (0..count).flat_map(|i| {
+            one.motion.eigenvalues.get(i).map_or([f64::NAN; 2], |value| [value.real, value.imaginary])
+        });
+        let row: Vec<String> =
+            numbers.chain(words).chain(eigenvalues.map(|value| format!("{value:.16e}"))).collect();
+        text += &row.join(",");
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,149 @@
+//! The motions near a state to first order.
+
+use pc_analysis::{Linearization, Stability};
+use pc_model::Model;
+use pc_print::stability_in_words;
+use serde_json::{Map, Value, json};
+
+use crate::error::RunError;
+use crate::files::error::FileError;
+use crate::linear::arrays::of_linearization;
+use crate::linear::ground::{Ground, placed};
+use crate::linear::near::{CyclicChoice, near};
+use crate::linear::output::Contents;
+use crate::linear::state::{At, StateChoice};
+use crate::linear::{compared, json, text};
+use crate::observer::Observer;
+use crate::table::array::Array;
+use crate::table::csv::field;
+use crate::table::file::TableFile;
+
+/// A linearization of a model, with the stability of its state.
+#[derive(Debug)]
+pub struct Linearized {
+    title: String,
+    parameters: Vec<(String, f64)>,
+    at: At,
+    /// The linearization.
+    pub linear: Linearization,
+    /// The stability, as `pc check` judges it; none of a state that is not steady.
+    pub stability: Option<Stability>,
+}
+
+impl Linearized {
+    /// The linearization of a model at the chosen state; where it is to be verified, equations and
+    /// matrices are compared with a second derivation.
+    ///
+    /// # Errors
+    /// [`RunError`]
+    pub fn of(
+        model: &Model,
+        state: &StateChoice,
+        verify: bool,
+        observer: &dyn Observer,
+    ) -> Result<Linearized, RunError> {
+        let graph = model.graph();
+        let mut ground = Ground::vouched(model, &graph, verify, observer)?;
+        let (t, start) = (ground.assembly.t_start, ground.start.clone());
+        let linear = near(&mut ground.linearizer, t, &start, state, CyclicChoice::OfState)
+            .map_err(|error| placed(&ground.assembly, error, true))?;
+        if verify {
+            compared::compare(model, &ground.assembly, &linear, observer)?;
+        }
+        let stability = ground.stability(&linear);
+        ground.assembly.within_limits()?;
+        Ok(Linearized {
+            title: model.title().to_owned(),
+            parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
+            at: state.at,
+            linear,
+            stability,
+        })
+    }
+
+    /// The linearization for people.
+    pub fn text(&self) -> String {
+        text::page(&self.title, &self.linear, self.stability.as_ref(), self.at != At::Start)
+    }
+
+    /// The linearization as one JSON object; docs/linearization.md says what the members are.
+    pub fn json(&self) -> Value {
+        let parameters = self.parameters.iter().map(|(name, value)| (name.as_str(), *value));
+        let mut all = Map::new();
+        all.insert("model".to_owned(), json!(self.title));
+        all.insert("parameters".to_owned(), json::map(parameters));
+        all.insert("at".to_owned(), json!(self.at.word()));
+        all.extend(json::members(&self.linear));
+        all.insert("stability".to_owned(), json!(self.stability.as_ref().map(stability_in_words)));
+        Value::from(all)
+    }
+
+    /// A line for each number.
+    pub fn csv(&self) -> String {
+        csv(&self.linear)
+    }
+
+    /// Writes it to a file.
+    ///
+    /// # Errors
+    /// [`FileError::Write`], which says where the result was kept.
+    pub fn write(&self, file: &TableFile) -> Result<(), FileError> {
+        let contents = Contents {
+            json: &self.json(),
+            csv: &self.csv(),
+            arrays: &of_linearization(&self.linear),
+            texts: &names(&self.linear),
+        };
+        contents.write(file)
+    }
+}
+
+/// Names for the rows and columns of the arrays, each list separated by commas.
+fn names(linear: &Linearization) -> Vec<(&'static str, String)> {
+    let state: Vec<&str> = linear.state.iter().map(|(name, _)| name.as_str()).collect();
+    let mut names = vec![
+        ("state_names", state.join(",")),
+        ("components", linear.components.join(",")),
+        ("inputs", linear.inputs.join(",")),
+        ("outputs", linear.outputs.join(",")),
+    ];
+    if let Ok(second) = &linear.second_order {
+        names.push(("coordinates", second.coordinates.join(",")));
+    }
+    names
+}
+
+/// A line for each number: its array, the names of its row and column, the number; real and
+/// imaginary parts have separate lines.
+fn csv(linear: &Linearization) -> String {
+    let (y, u, h) = (&linear.components, &linear.inputs, &linear.outputs);
+    let numbers = |count: usize| (1..=count).map(|i| i.to_string()).collect::<Vec<_>>();
+    let states: Vec<String> = linear.state.iter().map(|(name, _)| name.clone()).collect();
+    let q = linear.second_order.as_ref().map(|second| second.coordinates.clone()).unwrap_or_default();
+    let of = |array: &Array| match array.name.as_str() {
+        "state" => (states.clone(), vec![String::new()]),
+        "A" => (y.clone(), y.clone()),
+        "B" => (y.clone(), u.clone()),
+        "C" => (h.clone(), y.clone()),
+        "D" => (h.clone(), u.clone()),
+        "modes" => (y.clone(), numbers(array.columns)),
+        "F" => (q.clone(), u.clone()),
+        "M" | "G" | "K" => (q.clone(), q.clone()),
+        _ => (numbers(array.rows), vec![String::new()]),
+    };
+    let mut text = "array,row,column,value\n".to_owned();
+    for array in of_linearization(linear) {
+        let (rows, columns) = of(&array);
+        let parts = match &array.imaginary {
+            None => vec![("", &array.real)],
+            Some(imaginary) => vec![".re", ".im"].into_iter().zip([&array.real, imaginary]).collect(),
+        };
+        for (part, values) in parts {
+            for (place, value) in values.iter().enumerate() {
+                let (row, column) = (&rows[place / array.columns], &columns[place % array.columns]);
+                text += &format!("{}{part},{},{},{value:.16e}\n", array.name, field(row), field(column));
+            }
+        }
+    }
+    text
+}

@@ -1,0 +1,181 @@
+//! The eigenvalues over a parameter, as text and tables.
+
+use pc_analysis::{Eigenvalue, RootLocus};
+use pc_model::Model;
+use pc_print::short;
+use pc_report::picture::{Curve, Panel, Picture, Scale};
+use serde_json::{Value, json};
+
+use crate::category::Category;
+use crate::error::RunError;
+use crate::files::error::FileError;
+use crate::linear::arrays::of_locus;
+use crate::linear::error::LinearError;
+use crate::linear::ground::Ground;
+use crate::linear::near::Varied;
+use crate::linear::output::Contents;
+use crate::linear::state::StateChoice;
+use crate::linear::text::{aligned, complex};
+use crate::observer::Observer;
+use crate::sweep::values::Vary;
+use crate::table::csv::field;
+use crate::table::file::TableFile;
+
+/// A root locus with its model and parameter.
+#[derive(Debug)]
+pub struct Locus {
+    title: String,
+    /// The parameter or start value that is varied.
+    name: String,
+    components: Vec<String>,
+    /// The eigenvalues.
+    pub locus: RootLocus,
+    /// The values that have no linearization, with the reason.
+    pub missing: Vec<(f64, String)>,
+}
+
+impl Locus {
+    /// The eigenvalues of a model for each value of the varied quantity.
+    ///
+    /// # Errors
+    /// [`RunError`], also where no value has a linearization.
+    pub fn of(
+        model: &Model,
+        vary: &Vary,
+        state: &StateChoice,
+        verify: bool,
+        observer: &dyn Observer,
+    ) -> Result<Locus, RunError> {
+        let graph = model.graph();
+        let ground = Ground::vouched(model, &graph, verify, observer)?;
+        let linearizations = Varied::of(model, &ground, state);
+        let values = vary.values.in_order();
+        let mut locus = Locus {
+            title: model.title().to_owned(),
+            name: vary.name.clone(),
+            components: Vec::new(),
+            locus: RootLocus::default(),
+            missing: Vec::new(),
+        };
+        for &value in &values {
+            ground.assembly.within_limits()?;
+            let mut varied = model.clone();
+            varied.set_value(&vary.name, value).map_err(LinearError::Varied)?;
+            let found = linearizations.linearization(&varied);
+            let eigenvalues = match &found {
+                Ok(linear) => {
+                    locus.components.clone_from(&linear.components);
+                    Some(linear.spectrum.eigenvalues())
+                }
+                // A wrong request is wrong for all values.
+                Err(error) if error.category() == Category::Request => return found.map(|_| locus),
+                Err(error) => {
+                    locus.missing.push((value, error.to_string()));
+                    None
+                }
+            };
+            let pushed = locus.locus.push(value, eigenvalues);
+            pushed.map_err(|cause| LinearError::Branches { name: vary.name.clone(), value, cause })?;
+        }
+        match locus.missing.first() {
+            Some((_, first)) if locus.missing.len() == values.len() => {
+                Err(LinearError::NoneSteady { values: values.len(), first: first.clone() }.into())
+            }
+            _ => {
+                locus.say_missing(observer);
+                Ok(locus)
+            }
+        }
+    }
+
+    fn say_missing(&self, observer: &dyn Observer) {
+        for (value, reason) in &self.missing {
+            let reason = reason.lines().next().unwrap_or_default();
+            observer.remark(&format!("nothing at {} = {}: {reason}", self.name, short(*value, 6)));
+        }
+    }
+
+    /// A line for each value.
+    pub fn text(&self) -> String {
+        let branches = self.locus.branches();
+        let header = std::iter::once(self.name.clone()).chain((1..=branches.len()).map(|i| format!("λ{i}")));
+        let mut table: Vec<Vec<String>> = vec![header.collect()];
+        for (i, &value) in self.locus.values().iter().enumerate() {
+            let cell = |lambda: Option<Eigenvalue>| {
+                lambda.map_or("-".to_owned(), |l| complex((l.real, l.imaginary)))
+            };
+            table.push(
+                std::iter::once(short(value, 6))
+                    .chain(branches.iter().map(|branch| cell(branch[i])))
+                    .collect(),
+            );
+        }
+        format!("{}\n{}", pc_print::one_line(&self.title), aligned(&table))
+    }
+
+    /// The value, then real and imaginary part of each branch.
+    pub fn csv(&self) -> String {
+        let branches = self.locus.branches();
+        let names = (1..=branches.len()).flat_map(|i| [format!("re{i}"), format!("im{i}")]);
+        let header: Vec<String> = std::iter::once(field(&self.name)).chain(names).collect();
+        let mut text = header.join(",") + "\n";
+        for (i, value) in self.locus.values().iter().enumerate() {
+            text += &format!("{value:.16e}");
+            for branch in branches {
+                let (re, im) = branch[i].map_or((f64::NAN, f64::NAN), |l| (l.real, l.imaginary));
+                text += &format!(",{re:.16e},{im:.16e}");
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    /// The locus as one JSON object.
+    pub fn json(&self) -> Value {
+        let parts = |branch: &Vec<Option<Eigenvalue>>, part: fn(&Eigenvalue) -> f64| {
+            branch.iter().map(|lambda| lambda.as_ref().map(part)).collect::<Vec<_>>()
+        };
+        let branch = |branch: &Vec<Option<Eigenvalue>>| json!({ "real": parts(branch, |l| l.real), "imaginary": parts(branch, |l| l.imaginary) });
+        let missing = self.missing.iter().map(|(value, reason)| json!({ "value": value, "reason": reason }));
+        json!({
+            "model": self.title,
+            "parameter": self.name,
+            "components": self.components,
+            "values": self.locus.values(),
+            "branches": self.locus.branches().iter().map(branch).collect::<Value>(),
+            "missing": missing.collect::<Value>(),
+        })
+    }
+
+    /// Real parts and imaginary parts over the parameter.
+    pub fn picture(&self) -> Picture {
+        let curves = |part: fn(&Eigenvalue) -> f64| {
+            let points = |branch: &Vec<Option<Eigenvalue>>| {
+                let all = self.locus.values().iter().zip(branch);
+                all.filter_map(|(&value, lambda)| Some((value, part(lambda.as_ref()?)))).collect::<Vec<_>>()
+            };
+            let curve = |(i, branch)| Curve { name: format!("λ{i}"), points: points(branch) };
+            (1..).zip(self.locus.branches()).map(curve).collect()
+        };
+        let panel = |title, part| Panel::over(&self.name, title, Scale::Linear, curves(part));
+        Picture {
+            title: self.title.clone(),
+            remarks: Vec::new(),
+            panels: vec![panel("Re λ", |l| l.real), panel("Im λ", |l| l.imaginary)],
+        }
+    }
+
+    /// Writes it to a file.
+    ///
+    /// # Errors
+    /// [`FileError::Write`], which says where the result was kept.
+    pub fn write(&self, file: &TableFile) -> Result<(), FileError> {
+        let contents = Contents {
+            json: &self.json(),
+            csv: &self.csv(),
+            arrays: &of_locus(&self.locus),
+            texts: &[("parameter", self.name.clone()), ("components", self.components.join(","))],
+        };
+        contents.write(file)
+    }
+}

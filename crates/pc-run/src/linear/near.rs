@@ -1,0 +1,108 @@
+//! The linearizations of one model, at the state that is chosen, for any values.
+
+use std::sync::{Mutex, PoisonError};
+
+use pc_analysis::{AnalysisError, CyclicCoordinates, Linearization, Linearizer, SteadyOptions};
+use pc_model::Model;
+
+use crate::error::RunError;
+use crate::linear::error::LinearError;
+use crate::linear::ground::{Ground, placed};
+use crate::linear::state::{At, Cyclic, StateChoice};
+
+/// Which cyclic coordinates are kept if nothing is said of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CyclicChoice {
+    /// All at an equilibrium, none of a motion.
+    OfState,
+    /// None: the number of components is the same for all values of a parameter.
+    None,
+}
+
+/// The linearization at the chosen state near a start.
+pub(crate) fn near(
+    linearizer: &mut Linearizer,
+    t: f64,
+    start: &[f64],
+    state: &StateChoice,
+    choice: CyclicChoice,
+) -> Result<Linearization, AnalysisError> {
+    let mut guess = start.to_vec();
+    let mut held = state.hold.clone();
+    match state.at {
+        At::Start => return linearizer.at(t, start),
+        At::Steady => {}
+        At::Rest => {
+            let moving = linearizer.quasi_velocities();
+            guess[moving.clone()].fill(0.0);
+            held.extend(linearizer.names()[moving].iter().cloned());
+        }
+    }
+    let options = SteadyOptions::default().fixed(held);
+    let kept = CyclicCoordinates::KeptAtRest;
+    match (state.cyclic, choice) {
+        (Some(Cyclic::Keep), _) => linearizer.steady_with(t, &guess, &options, kept),
+        (Some(Cyclic::Drop), _) | (None, CyclicChoice::None) => linearizer.steady(t, &guess, &options),
+        (None, CyclicChoice::OfState) => {
+            let all = linearizer.steady_with(t, &guess, &options, kept)?;
+            if all.cyclic.is_empty() { Ok(all) } else { linearizer.steady(t, &guess, &options) }
+        }
+    }
+}
+
+/// The linearizations of a model for other values of its parameters and of its start.
+#[derive(Debug)]
+pub(crate) struct Varied {
+    t: f64,
+    state: StateChoice,
+    /// Compiled once, with the place of each component of the state among the start values; none where other values may
+    /// lead to other equations.
+    common: Option<(Mutex<Linearizer>, Vec<usize>)>,
+}
+
+impl Varied {
+    /// Those of a model, which is known with the values that it has.
+    pub(crate) fn of(model: &Model, ground: &Ground<'_>, state: &StateChoice) -> Varied {
+        let places = ground.places(model);
+        Varied {
+            t: ground.assembly.t_start,
+            state: state.clone(),
+            common: places.map(|places| (Mutex::new(ground.linearizer.clone()), places)),
+        }
+    }
+
+    /// That of the model with other values.
+    ///
+    /// # Errors
+    /// [`RunError`]; of a model whose equations depend on the values, at the place in the file that is to blame.
+    pub(crate) fn linearization(&self, model: &Model) -> Result<Linearization, RunError> {
+        let Some((linearizer, places)) = &self.common else {
+            let graph = model.graph();
+            let mut own = Ground::new(model, &graph)?;
+            let start = own.start.clone();
+            let found = near(&mut own.linearizer, self.t, &start, &self.state, CyclicChoice::None);
+            return found.map_err(|error| placed(&own.assembly, error, true));
+        };
+        // Each value has its own, on whatever thread it is: what was computed before leaves no trace.
+        let mut linearizer = linearizer.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let values = model.start()?;
+        let parameters: Vec<f64> = model.parameters().map(|(_, value)| value).collect();
+        linearizer.set_parameters(&parameters);
+        let start: Vec<f64> = places.iter().map(|&place| values[place]).collect();
+        let found = near(&mut linearizer, self.t, &start, &self.state, CyclicChoice::None);
+        found.map_err(|error| LinearError::of(error, true).into())
+    }
+
+    /// The most components that a linearization has, those at the start of the model as it is.
+    ///
+    /// # Errors
+    /// [`RunError`] where the parts of the equations are not defined there.
+    pub(crate) fn most_components(&self, ground: &mut Ground<'_>) -> Result<usize, RunError> {
+        let cyclic = match (self.state.at, self.state.cyclic) {
+            (At::Start, _) | (_, Some(Cyclic::Keep)) => CyclicCoordinates::KeptAtRest,
+            (At::Steady | At::Rest, _) => CyclicCoordinates::LeftOut,
+        };
+        let found = ground.linearizer.components(self.t, &ground.start, cyclic);
+        found.map_err(|error| placed(&ground.assembly, error, true))
+    }
+}

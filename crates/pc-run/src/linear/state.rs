@@ -1,0 +1,61 @@
+//! The state about which equations are linearized, as it is chosen.
+
+/// The kind of state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum At {
+    /// The equilibrium or steady motion near the start: all but the cyclic coordinates rest.
+    #[default]
+    Steady,
+    /// The equilibrium near the start with all quasi-velocities 0.
+    Rest,
+    /// The start, steady or not.
+    Start,
+}
+
+impl At {
+    /// All of them.
+    pub const ALL: [At; 3] = [At::Steady, At::Rest, At::Start];
+
+    /// In a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            At::Steady => "steady",
+            At::Rest => "rest",
+            At::Start => "start",
+        }
+    }
+}
+
+/// Which cyclic coordinates are components of the state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cyclic {
+    /// Those that rest.
+    Keep,
+    /// None.
+    Drop,
+}
+
+impl Cyclic {
+    /// All of them.
+    pub const ALL: [Cyclic; 2] = [Cyclic::Keep, Cyclic::Drop];
+
+    /// In a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Cyclic::Keep => "keep",
+            Cyclic::Drop => "drop",
+        }
+    }
+}
+
+/// The state, and what of it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StateChoice {
+    /// The kind of state.
+    pub at: At,
+    /// Components that keep their start values while a steady state is looked for.
+    pub hold: Vec<String>,
+    /// The cyclic coordinates that are kept; else those of an equilibrium and of the start, none of
+    /// a motion and where values are varied.
+    pub cyclic: Option<Cyclic>,
+}

@@ -1,0 +1,372 @@
+//! From a model and its plan to a run.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use pc_mech::Expr;
+use pc_model::{Assembly, Flow, Model, Variables};
+use pc_report::dropped;
+use pc_solve::{self as solver, Events, Options, Solution, Solve, SolveError, Trajectory};
+
+use crate::error::RunError;
+use crate::files::stream::Stream;
+use crate::motion::checkpoints::{CheckpointFiles, Checkpoints};
+use crate::motion::estimate::{self, Estimate};
+use crate::motion::fine;
+use crate::motion::lost::LostIntegral;
+use crate::motion::lost_inertia::lost_inertia;
+use crate::motion::lost_integral::lost_integral;
+use crate::motion::remarks;
+use crate::motion::run::{Ending, Run};
+use crate::motion::sensitivities::Derivatives;
+use crate::motion::step_states::StepStates;
+use crate::motion::streamed::{Streamed, note_residuals};
+use crate::motion::table::Table;
+use crate::motion::verification::Verification;
+use crate::observer::Observer;
+use crate::plan::memory;
+use crate::plan::plan::Plan;
+use crate::plan::tolerances::{Tolerances, note_largest};
+use crate::plan::wishes::Wishes;
+
+/// What a run has besides its rows; nothing by default.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Besides {
+    /// Whether the equations are compared with a second derivation, at the start and, where this is
+    /// fast, at the end.
+    pub verify: bool,
+    /// Whether the run has the motion between its rows, with the points that smooth curves need.
+    pub fine: bool,
+    /// Whether the observer is told what to know of the equations.
+    pub remarks: bool,
+    /// Whether the table has the errors of its columns.
+    pub estimate: bool,
+    /// Checkpoints.
+    pub checkpoints: CheckpointFiles,
+}
+
+impl Besides {
+    /// What a motion has that is to be shown: it is verified, and has the points of smooth curves.
+    pub fn shown() -> Besides {
+        Besides { verify: true, fine: true, remarks: true, ..Besides::default() }
+    }
+}
+
+impl Run {
+    /// Derives, compiles and integrates the motion of a model. Whatever the form, the table shows
+    /// quasi-velocities. Rows that are too many for memory go to the `stream` as they are computed.
+    ///
+    /// # Errors
+    /// [`RunError`] if there is no motion at all, or the second derivation disagrees; an incomplete
+    /// motion is a run.
+    pub fn of(
+        model: &Model,
+        wishes: &Wishes,
+        besides: &Besides,
+        stream: Option<&mut Stream<'_>>,
+        observer: &dyn Observer,
+    ) -> Result<Run, RunError> {
+        let plan = || Plan::of(model, wishes);
+        integrated(model, Plan::form(model, wishes), plan, besides, stream, observer)
+    }
+
+    /// The same by a plan.
+    ///
+    /// # Errors
+    /// As for [`of`](Run::of).
+    pub fn planned(
+        model: &Model,
+        plan: Plan,
+        besides: &Besides,
+        observer: &dyn Observer,
+    ) -> Result<Run, RunError> {
+        integrated(model, plan.form, || Ok(plan), besides, None, observer)
+    }
+}
+
+/// The plan comes once the model is known to be sound.
+fn integrated(
+    model: &Model,
+    form: Variables,
+    plan: impl FnOnce() -> Result<Plan, RunError>,
+    besides: &Besides,
+    stream: Option<&mut Stream<'_>>,
+    observer: &dyn Observer,
+) -> Result<Run, RunError> {
+    let graph = model.graph();
+    let assembly = model.assemble(&graph)?;
+    if besides.remarks {
+        remarks::say(&assembly, observer)?;
+    }
+    let flow = Flow::new(model, &assembly, form)?;
+    let plan = plan()?;
+    Integration { model, assembly: &assembly, flow, plan, besides, observer }.run(stream)
+}
+
+/// A motion that is about to be integrated.
+struct Integration<'r, 'g> {
+    model: &'r Model,
+    assembly: &'r Assembly<'g>,
+    flow: Flow,
+    plan: Plan,
+    besides: &'r Besides,
+    observer: &'r dyn Observer,
+}
+
+/// A motion as far as it was integrated.
+struct Solved {
+    solution: Solution,
+    error: Option<SolveError>,
+    steps: StepStates,
+    wall: Duration,
+}
+
+impl Integration<'_, '_> {
+    fn run(mut self, stream: Option<&mut Stream<'_>>) -> Result<Run, RunError> {
+        let tolerances = self.plan.tolerances(&mut self.flow);
+        let options = self.plan.options(&tolerances);
+        let stream = self.within_memory(stream)?;
+        let mut checkpoints = Checkpoints::new(&self.besides.checkpoints, self.model, &self.plan)?;
+        let mut derivatives = match self.plan.sensitivities.as_slice() {
+            [] => None,
+            by => Some(Derivatives::new(self.model, self.plan.form, by)?),
+        };
+        let mut verification =
+            self.besides.verify.then(|| Verification::new(self.model, self.assembly, self.plan.form));
+        if let Some(verification) = &mut verification {
+            let Integration { flow, assembly, plan, .. } = &self;
+            verification.compare(flow, assembly, "the start", plan.t_start, &flow.start)?;
+        }
+        // Derivatives are known at the rows alone, and a resumed motion is not integrated from its
+        // start again.
+        let mut again = (self.besides.fine && self.is_plain()).then(|| self.flow.clone());
+        let mut beside = self.besides.estimate.then(|| self.flow.clone());
+        let observer = self.observer;
+        let mut streamed = stream.map(|stream| Streamed::new(&self.flow, stream, observer)).transpose()?;
+
+        let solved = self.solve(&options, (&mut checkpoints, &mut derivatives, &mut streamed))?;
+
+        let Integration { flow, plan, .. } = &mut self;
+        let estimate = beside
+            .as_mut()
+            .map(|flow| estimate::companion(flow, (plan, &options), &solved.solution, observer));
+        let trajectory = &solved.solution.trajectory;
+        let statistics = *trajectory.statistics();
+        let last = match &streamed {
+            Some(streamed) => streamed.last.clone(),
+            None => trajectory.last().map(|(t, y)| (t, y.to_vec())),
+        };
+        let is_full = streamed.as_ref().is_some_and(Streamed::has_failed);
+        let (mut table, constraints, mut largest) = match streamed {
+            Some(streamed) => (streamed.table, streamed.constraints, streamed.largest),
+            None => {
+                let table = Table::with_derivatives(flow, trajectory, derivatives.as_ref());
+                (table, residuals(flow, trajectory), Vec::new())
+            }
+        };
+        trajectory.iter().for_each(|(_, y)| note_largest(&mut largest, y));
+        let estimate = estimate.map(|estimate| {
+            Estimate::of(&estimate, flow, (&solved.solution, &tolerances), &mut table)
+        });
+        let fine = again.as_mut().and_then(|flow| {
+            fine::table(flow, (plan, &options), statistics.steps, statistics.current_time, observer)
+        });
+        if let Some(verification) = &mut verification {
+            self.verify(verification, &solved.solution, last.as_ref(), derivatives.as_ref())?;
+        }
+        let passed_at_start = self.passed_at_start(&solved.steps);
+        let ending = self.ending(solved.solution.ending, solved.error, is_full);
+        let lost = self.lost(&ending, &table, &tolerances, &solved.steps, last.as_ref());
+        let lost_inertia = self.lost_inertia(&ending);
+        let Integration { model, assembly, flow, plan, .. } = self;
+        let Solution { occurrences, slides, .. } = solved.solution;
+        Ok(Run {
+            title: model.title().to_owned(),
+            parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
+            state: flow.motion.names().to_vec(),
+            never_exceeded: tolerances.never_exceeded(&written_start(model), &largest),
+            tolerances,
+            table,
+            estimate,
+            constraints,
+            dropped: dropped(assembly),
+            jumps: jumps(assembly),
+            keeps_energy: keeps_energy(assembly),
+            lost,
+            lost_inertia,
+            fine,
+            statistics,
+            plan,
+            events: names_of_events(&flow),
+            passed_at_start,
+            occurrences: occurrences.iter().map(|occurrence| (occurrence.event, occurrence.time)).collect(),
+            slides,
+            ending,
+            verification,
+            wall: solved.wall,
+        })
+    }
+
+    /// Whether the motion goes from its start to its end without derivatives and checkpoints.
+    fn is_plain(&self) -> bool {
+        self.besides.checkpoints.path().is_none() && self.plan.sensitivities.is_empty()
+    }
+
+    /// The stream, if the rows are to go there; an error if they would take too much memory.
+    fn within_memory<'s, 'p>(
+        &self,
+        stream: Option<&'s mut Stream<'p>>,
+    ) -> Result<Option<&'s mut Stream<'p>>, RunError> {
+        let Integration { model, flow, plan, besides, .. } = self;
+        let numbers = memory::numbers(flow, plan, besides.checkpoints.path().is_some(), besides.estimate);
+        let (rows, limits) = (plan.samples as u64, model.budget().limits());
+        let is_streamed = self.is_plain() && !besides.estimate && memory::is_much(rows, numbers, limits);
+        let stream = stream.filter(|_| is_streamed);
+        // Of rows that are written at once, only the times are held.
+        memory::allow(rows, if stream.is_some() { 1 } else { numbers }, limits)?;
+        Ok(stream)
+    }
+
+    fn solve(
+        &mut self,
+        options: &Options,
+        (checkpoints, derivatives, streamed): (
+            &mut Option<Checkpoints>,
+            &mut Option<Derivatives>,
+            &mut Option<Streamed<'_, '_>>,
+        ),
+    ) -> Result<Solved, RunError> {
+        let Integration { flow, plan, observer, .. } = self;
+        let mut progress = observer.motion((plan.t_start, plan.t_end));
+        let mut steps = StepStates::new();
+        let step = |t: f64, y: &[f64]| {
+            progress(t);
+            steps.note(t, y);
+            if observer.is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let start = Instant::now();
+        let (solution, error) = match (checkpoints, derivatives, streamed) {
+            (Some(checkpoints), derivatives, _) => {
+                checkpoints.solve(flow, (plan, options), derivatives.as_mut(), step, *observer)?
+            }
+            (None, None, Some(streamed)) => streamed.follow(flow, (plan, options), step),
+            (None, Some(derivatives), _) => {
+                derivatives.follow(flow, plan.t_start, &plan.times(), options, step)
+            }
+            (None, None, None) => Solve::new(&mut flow.motion, plan.t_start, &flow.start)
+                .method(options)
+                .events(&mut flow.events)
+                .follow(&plan.times(), step),
+        };
+        Ok(Solved { solution, error, wall: start.elapsed(), steps })
+    }
+
+    /// Compares the end, derivatives there, and the states after resets.
+    fn verify(
+        &self,
+        verification: &mut Verification,
+        solution: &Solution,
+        last: Option<&(f64, Vec<f64>)>,
+        derivatives: Option<&Derivatives>,
+    ) -> Result<(), RunError> {
+        let Integration { model, assembly, flow, plan, .. } = self;
+        if let Some((t, y)) = last
+            && *t != plan.t_start
+            && !verification.is_long(flow)
+        {
+            verification.compare(flow, assembly, "the end", *t, y)?;
+            if let Some(derivatives) = derivatives {
+                let slopes = derivatives.slopes(&mut flow.clone(), *t, y);
+                verification.compare_derivatives(model, assembly, flow, (*t, y), &slopes)?;
+            }
+        }
+        verification.compare_resets(model, assembly, flow, &solution.occurrences)
+    }
+
+    /// The events whose functions are zero at the start and go on in the direction of the event:
+    /// this is no passage. The sides are those at the end of the first step, or of the part of it
+    /// before an event. None are known of a motion that was resumed.
+    fn passed_at_start(&mut self, steps: &StepStates) -> Vec<usize> {
+        let Integration { flow, plan, besides, .. } = self;
+        let Some((t, y)) = steps.iter().next().filter(|_| besides.checkpoints.resume.is_none()) else {
+            return Vec::new();
+        };
+        let count = flow.events.events().len();
+        let (mut before, mut after) = (vec![f64::NAN; count], vec![f64::NAN; count]);
+        let start = flow.start.clone();
+        let evaluated = flow.events.evaluate(plan.t_start, &start, &mut before).is_ok()
+            && flow.events.evaluate(t, y, &mut after).is_ok();
+        let goes = |&i: &usize| before[i] == 0.0 && flow.events.events()[i].crosses().leaves(-after[i]);
+        if evaluated { (0..count).filter(goes).collect() } else { Vec::new() }
+    }
+
+    fn ending(&self, ending: Option<solver::Ending>, error: Option<SolveError>, is_full: bool) -> Ending {
+        match (ending, error) {
+            (_, Some(error)) => error.ended().map_or_else(|| Ending::Failed(Box::new(error)), Ending::Ended),
+            (Some(solver::Ending::Completed), None) => Ending::Completed,
+            (Some(solver::Ending::Event { event }), None) => {
+                Ending::Event { name: self.flow.events.events()[event].name().to_owned() }
+            }
+            (Some(solver::Ending::Stopped) | None, None) if is_full => Ending::Unwritten,
+            (Some(solver::Ending::Stopped) | None, None) => Ending::Interrupted,
+        }
+    }
+
+    /// An integral that a completed motion has lost; a reset may change them.
+    fn lost(
+        &mut self,
+        ending: &Ending,
+        table: &Table,
+        tolerances: &Tolerances,
+        steps: &StepStates,
+        last: Option<&(f64, Vec<f64>)>,
+    ) -> Option<LostIntegral> {
+        let is_whole = matches!(ending, Ending::Completed | Ending::Event { .. });
+        if !is_whole || has_resets(self.assembly) {
+            return None;
+        }
+        let states: Vec<(f64, &[f64])> =
+            steps.iter().chain(last.map(|(t, y)| (*t, y.as_slice()))).collect();
+        let of = (self.assembly, keeps_energy(self.assembly));
+        lost_integral(table, of, &mut self.flow, (tolerances, self.plan.rtol), &states)
+    }
+
+    fn lost_inertia(&mut self, ending: &Ending) -> Option<(String, f64)> {
+        let Ending::Failed(error) = ending else { return None };
+        lost_inertia(self.assembly, &mut self.flow, self.plan.t_start, error.reached()?)
+    }
+}
+
+fn has_resets(assembly: &Assembly<'_>) -> bool {
+    assembly.events.iter().any(|event| !event.resets.is_empty())
+}
+
+/// Whether nothing depends on time and neither forces nor events change the energy.
+fn keeps_energy(assembly: &Assembly<'_>) -> bool {
+    assembly.keeps_energy() && !has_resets(assembly)
+}
+
+fn names_of_events(flow: &Flow) -> Vec<String> {
+    flow.events.events().iter().map(|event| event.name().to_owned()).collect()
+}
+
+/// The start values as the text or the wishes have them.
+fn written_start(model: &Model) -> Vec<(String, f64)> {
+    model.start().map(|values| model.start_names().into_iter().zip(values).collect()).unwrap_or_default()
+}
+
+/// Whether forces or the Lagrangian jump where the state changes.
+fn jumps(assembly: &Assembly<'_>) -> bool {
+    let (system, graph) = (&assembly.system, assembly.system.graph());
+    let (state, lagrangian) = (system.state(), system.lagrangian());
+    let jumps = |&f: &Expr<'_>| graph.applies(f, &state, |function| !function.is_continuous());
+    system.forces().iter().chain([&lagrangian]).any(jumps)
+}
+
+fn residuals(flow: &mut Flow, trajectory: &Trajectory) -> Vec<(String, f64)> {
+    let mut worst: Vec<(String, f64)> = flow.constraint_names().into_iter().map(|name| (name, 0.0)).collect();
+    for (t, y) in trajectory.iter() {
+        note_residuals(&mut worst, flow, t, y);
+    }
+    worst
+}

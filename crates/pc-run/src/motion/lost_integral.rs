@@ -1,0 +1,158 @@
+//! Integrals that are proved to be kept, and that a computed motion has lost all the same.
+
+use pc_expr::Weighed;
+use pc_mech::{Expr, Neighbourhood};
+use pc_model::{Assembly, Flow, Variables};
+use pc_print::integrals_of;
+
+use crate::motion::lost::LostIntegral;
+use crate::motion::table::Table;
+use crate::plan::tolerances::Tolerances;
+
+/// The part of its scale by which an integral may drift.
+const MOST: f64 = 1e-3;
+
+/// A drift of so many units in the last place of the terms of an integral is rounding, as under a large constant in the
+/// energy, or beside an equilibrium.
+const ROUNDINGS: f64 = 1e3;
+
+/// A drift that errors of so many tolerances in each component make is what was asked for.
+const TOLERANCES: f64 = 100.0;
+
+/// The first integral that has drifted too far and is proved to be kept, at these states of the motion.
+///
+/// Beside its scale, the tolerances of the components are a measure of its drift: with E = e^{2γt} (p² + x²)/2 of a damped
+/// motion, the absolute tolerance of what has long come to rest is multiplied by e^{γt}.
+pub(crate) fn lost_integral(
+    table: &Table,
+    (assembly, keeps_energy): (&Assembly<'_>, bool),
+    flow: &mut Flow,
+    (tolerances, rtol): (&Tolerances, f64),
+    states: &[(f64, &[f64])],
+) -> Option<LostIntegral> {
+    let first = table.conserved().start;
+    let energy = table.conserved().end.checked_sub(1)?;
+    let too_far = |flow: &mut Flow, j: usize| {
+        let drift = table.drift(j);
+        // The value at the start is a scale of others than the energy, whose zero is arbitrary.
+        if j != energy && drift.absolute <= MOST * drift.start.abs() {
+            return None;
+        }
+        let scale = match j == energy {
+            true => scale_of_energy(flow, energy - first, states),
+            false => states.iter().map(|(t, y)| contributions(flow, j - first, *t, y)).fold(0.0, f64::max),
+        };
+        let name = table.columns()[j].clone();
+        let lost = LostIntegral { name, start: drift.start, drift: drift.absolute, scale };
+        if drift.start.is_finite() && !drift.absolute.is_finite() {
+            return Some(lost);
+        }
+        let is_far = drift.absolute > MOST * scale;
+        let allowed =
+            |(t, y): &(f64, &[f64])| effect_of_errors(flow, j - first, (*t, y), tolerances.errors(rtol, y));
+        (is_far && states.iter().map(allowed).all(|effect| drift.absolute > effect)).then_some(lost)
+    };
+    let wanted = |j: &usize| *j != energy || keeps_energy;
+    let found: Vec<LostIntegral> = (first..=energy).filter(wanted).filter_map(|j| too_far(flow, j)).collect();
+    if found.is_empty() {
+        return None;
+    }
+    let mut proved = proved(assembly);
+    proved.push(table.columns()[energy].clone());
+    found
+        .into_iter()
+        .filter(|lost| proved.contains(&lost.name))
+        .find(|lost| !lost.drift.is_finite() || lost.drift > rounding(assembly, flow, &lost.name, states))
+}
+
+/// The larger of the largest kinetic energy and the range of the rest, from energies with and without velocities:
+/// constants are no part of it. Infinite where nothing is known, as constraints that are not affine may leave no motion
+/// at rest.
+fn scale_of_energy(flow: &mut Flow, place: usize, states: &[(f64, &[f64])]) -> f64 {
+    let (mut kinetic, mut least, mut most) = (0.0f64, f64::INFINITY, f64::NEG_INFINITY);
+    for (t, y) in states {
+        let mut at_rest = y.to_vec();
+        at_rest[moving(flow)].fill(0.0);
+        let (energy, rest) = (flow.motion.observe(*t, y)[place], flow.motion.observe(*t, &at_rest)[place]);
+        if energy.is_finite() && rest.is_finite() {
+            kinetic = kinetic.max((energy - rest).abs());
+            (least, most) = (least.min(rest), most.max(rest));
+        }
+    }
+    if least > most { f64::INFINITY } else { kinetic.max(most - least) }
+}
+
+/// The places of the velocities or momenta in the state.
+fn moving(flow: &Flow) -> std::ops::Range<usize> {
+    let motion = &flow.motion;
+    motion.coordinates()..motion.names().len() - motion.states()
+}
+
+/// Σ |I(y) − I(y without one of its components)|: without a velocity, or with a coordinate as at the start.
+fn contributions(flow: &mut Flow, place: usize, t: f64, y: &[f64]) -> f64 {
+    let start = flow.start.clone();
+    let moving = moving(flow);
+    let whole = flow.motion.observe(t, y)[place];
+    let mut without = y.to_vec();
+    let mut sum = 0.0;
+    for i in 0..y.len() {
+        without[i] = if moving.contains(&i) { 0.0 } else { start[i] };
+        let part = (whole - flow.motion.observe(t, &without)[place]).abs();
+        sum += if part.is_finite() { part } else { 0.0 };
+        without[i] = y[i];
+    }
+    sum
+}
+
+/// Σ |I(y with one component in error by so many tolerances) − I(y)|
+fn effect_of_errors(flow: &mut Flow, place: usize, (t, y): (f64, &[f64]), errors: Vec<f64>) -> f64 {
+    let whole = flow.motion.observe(t, y)[place];
+    let mut wrong = y.to_vec();
+    let mut sum = 0.0;
+    for (i, error) in errors.into_iter().enumerate() {
+        wrong[i] += TOLERANCES * error;
+        let effect = (flow.motion.observe(t, &wrong)[place] - whole).abs();
+        sum += if effect.is_finite() { effect } else { 0.0 };
+        wrong[i] = y[i];
+    }
+    sum
+}
+
+/// What rounding may do to an integral: some units in the last place of its largest term, those of the energy being
+/// the terms of the Lagrangian. Infinite where these cannot be evaluated.
+fn rounding(assembly: &Assembly<'_>, flow: &mut Flow, name: &str, states: &[(f64, &[f64])]) -> f64 {
+    let system = &assembly.system;
+    let declared = system.integrals().iter().find(|(known, _)| known == name);
+    let function = declared.map_or_else(|| system.lagrangian(), |(_, value)| *value);
+    let parameters = flow.motion.parameters().to_vec();
+    let mut size = |t: f64, y: &[f64]| {
+        let names: Vec<String> = flow.columns();
+        let row = flow.row(t, y);
+        let value = |symbol: &Expr<'_>| {
+            names.iter().position(|known| *known == symbol.to_string()).map(|place| row[place])
+        };
+        let mut at = vec![(system.frame().time(), Weighed::rounded(t))];
+        at.extend(
+            system.parameters().iter().zip(&parameters).map(|((p, _), value)| (*p, Weighed::rounded(*value))),
+        );
+        let known = system.state().into_iter().filter_map(|symbol| Some((symbol, value(&symbol)?)));
+        at.extend(known.map(|(symbol, value)| (symbol, Weighed::rounded(value))));
+        system.graph().evaluate(&[function], &at).map_or(f64::INFINITY, |values| values[0].size())
+    };
+    ROUNDINGS * f64::EPSILON * states.iter().map(|(t, y)| size(*t, y)).fold(0.0, f64::max)
+}
+
+/// The names of the integrals of the text that are proved to be kept everywhere.
+fn proved(assembly: &Assembly<'_>) -> Vec<String> {
+    let system = &assembly.system;
+    if system.integrals().is_empty() {
+        return Vec::new();
+    }
+    let mut centre = system.parameters().to_vec();
+    centre.push((system.frame().time(), assembly.t_start));
+    centre.extend(system.state().into_iter().zip(assembly.start.iter().copied()));
+    let Ok((equations, _)) = assembly.equations_of(Variables::QuasiVelocities) else { return Vec::new() };
+    let integrals = integrals_of(assembly, &equations, &Neighbourhood { centre }, false);
+    let kept = integrals.list().iter().filter(|integral| integral.is_conserved() && !integral.jumps);
+    kept.map(|integral| integral.name.clone()).collect()
+}

@@ -1,0 +1,84 @@
+//! The table of a run as a file.
+
+use std::io::{self, Write};
+
+use serde_json::{Map, Value, json};
+
+use crate::files::error::FileError;
+use crate::motion::run::Run;
+use crate::motion::summary;
+use crate::motion::table::Table;
+#[cfg(feature = "parquet")]
+use crate::table::parquet;
+use crate::table::file::{Format, TableFile};
+use crate::table::rows::{Cell, Column, Kind, Rows, Take};
+use crate::table::{csv, json, npz};
+
+impl Rows for Table {
+    fn columns(&self) -> Vec<Column> {
+        Table::columns(self).iter().map(|name| Column::new(name, Kind::Number)).collect()
+    }
+
+    fn count(&self) -> Option<u64> {
+        Some(self.len() as u64)
+    }
+
+    fn each(&self, take: Take<'_>) -> io::Result<()> {
+        let mut cells = Vec::new();
+        self.rows().try_for_each(|row| {
+            cells.clear();
+            cells.extend(row.iter().copied().map(Cell::Number));
+            take(&cells)
+        })
+    }
+
+    fn each_of(&self, j: usize, take: &mut dyn FnMut(Cell<'_>) -> io::Result<()>) -> io::Result<()> {
+        self.column(j).try_for_each(|value| take(Cell::Number(value)))
+    }
+}
+
+impl Run {
+    /// Writes the table, with parameters, events and summary where the format has room for them.
+    ///
+    /// # Errors
+    /// [`FileError::Write`], which says where the table was kept; an existing file is then
+    /// unchanged.
+    pub fn write(&self, file: &TableFile) -> Result<(), FileError> {
+        file.place.write_or_keep(file.format == Format::Csv, |out| match file.format {
+            Format::Json => self.write_json(out),
+            Format::Npz => npz::write(&self.table, &self.times_of_events(), out),
+            #[cfg(feature = "parquet")]
+            Format::Parquet => parquet::write("motion", &self.table, out),
+            Format::Csv | Format::Mat => self.write_csv(out),
+        })
+    }
+
+    /// Writes the table as comma-separated values.
+    ///
+    /// # Errors
+    /// [`io::Error`]
+    pub fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
+        csv::write(&self.table, out)
+    }
+
+    fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {
+        let parameters: Map<String, Value> =
+            self.parameters.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
+        let before = [("model", json!(self.title)), ("parameters", Value::from(parameters))];
+        let occurred = |&(event, t): &(usize, f64)| json!({ "name": self.events[event], "time": t });
+        let events = (!self.events.is_empty())
+            .then(|| ("events", self.occurrences.iter().map(occurred).collect::<Value>()));
+        let after: Vec<(&str, Value)> = events.into_iter().chain([("summary", summary::json(self))]).collect();
+        json::write(&before, &self.table, &after, out)
+    }
+
+    /// The times of each event, as `events/NAME`.
+    fn times_of_events(&self) -> Vec<(String, Vec<f64>)> {
+        let times = |event: usize| {
+            let occurrences = self.occurrences.iter().filter(|(number, _)| *number == event);
+            occurrences.map(|&(_, t)| t).collect()
+        };
+        let events = self.events.iter().enumerate();
+        events.map(|(event, name)| (format!("events/{name}"), times(event))).collect()
+    }
+}

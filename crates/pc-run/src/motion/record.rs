@@ -1,0 +1,57 @@
+//! A run for pages and pictures.
+
+use std::ops::Range;
+
+use pc_report::{Columns, Kind, Record, Samples};
+
+use crate::motion::run::{Ending, Run};
+use crate::motion::table::Table;
+use crate::motion::summary;
+use pc_print::short;
+
+impl Run {
+    /// The run for pages and pictures.
+    pub fn record(&self) -> Record {
+        let at = || short(self.statistics.current_time, 6);
+        let remark = match &self.ending {
+            Ending::Completed => None,
+            Ending::Event { name } => Some(format!("The event {name} ended the motion.")),
+            Ending::Failed(_) => {
+                Some(format!("The motion failed at t = {}; what was reached is shown.", at()))
+            }
+            ending => {
+                Some(format!("The motion was {} at t = {}; what was reached is shown.", ending.word(), at()))
+            }
+        };
+        Record {
+            rows: samples(&self.table),
+            fine: self.fine.as_ref().map(samples),
+            summary: summary::entries(self)
+                .into_iter()
+                .map(|(label, lines)| (label.to_owned(), lines))
+                .collect(),
+            keeps_energy: self.keeps_energy,
+            events: self.occurrences.iter().map(|&(_, t)| t).collect(),
+            remark,
+        }
+    }
+}
+
+fn samples(table: &Table) -> Samples {
+    let columns = |kind, places: Range<usize>| Columns {
+        kind,
+        list: places.map(|j| (table.columns()[j].clone(), table.column(j).collect())).collect(),
+    };
+    Samples {
+        times: table.column(0).collect(),
+        columns: vec![
+            columns(Kind::Coordinates, table.coordinates()),
+            columns(Kind::QuasiVelocities, table.quasi_velocities()),
+            columns(Kind::States, table.states()),
+            columns(Kind::Conserved, table.conserved()),
+            columns(Kind::Outputs, table.outputs()),
+            columns(Kind::Derivatives, table.derivatives()),
+            columns(Kind::Errors, table.errors()),
+        ],
+    }
+}

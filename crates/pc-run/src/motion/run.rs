@@ -1,0 +1,137 @@
+//! A motion as far as it was computed, with a record of the run.
+
+use std::time::Duration;
+
+use pc_solve::{Slide, SolveError, Spent, Statistics};
+
+use crate::error::RunError;
+use crate::motion::estimate::Estimate;
+use crate::motion::lost::LostIntegral;
+use crate::plan::plan::Plan;
+use crate::motion::table::Table;
+use crate::plan::tolerances::Tolerances;
+use crate::motion::verification::Verification;
+
+/// A motion as far as it was computed, with a record of the run.
+#[derive(Debug)]
+pub struct Run {
+    /// The title of the model.
+    pub title: String,
+    /// The parameters with their values.
+    pub parameters: Vec<(String, f64)>,
+    /// The plan.
+    pub plan: Plan,
+    /// Names of the components of the state that was integrated.
+    pub state: Vec<String>,
+    /// Their absolute tolerances.
+    pub tolerances: Tolerances,
+    /// What is said of components that never exceed theirs.
+    pub never_exceeded: Vec<String>,
+    /// The table as far as it was reached.
+    pub table: Table,
+    /// The motion between its rows too, with the points that pictures need, where that was
+    /// requested.
+    pub fine: Option<Table>,
+    /// What is known of the global errors, where they were requested.
+    pub estimate: Option<Estimate>,
+    /// The constraints that are held, with the largest residual of each at the output times.
+    pub constraints: Vec<(String, f64)>,
+    /// The constraints that were dropped, each with the reason.
+    pub dropped: Vec<(String, String)>,
+    /// Whether forces jump where the state changes, as dry friction does.
+    pub jumps: bool,
+    /// Whether the motion keeps its energy: nothing depends on time and the forces do no work.
+    pub keeps_energy: bool,
+    /// The names of the events that the model has.
+    pub events: Vec<String>,
+    /// The numbers of the events whose functions are zero at the start and go on in their direction,
+    /// which is no occurrence.
+    pub passed_at_start: Vec<usize>,
+    /// The occurrences, in order: the numbers of events, and their times.
+    pub occurrences: Vec<(usize, f64)>,
+    /// The parts of the motion that slide along a surface on which forces jump.
+    pub slides: Vec<Slide>,
+    /// How it ended.
+    pub ending: Ending,
+    /// An integral that is proved to be kept, and is not: the motion is wrong.
+    pub lost: Option<LostIntegral>,
+    /// Of a motion that failed, the velocity that has lost its inertia, and what is left of it.
+    pub lost_inertia: Option<(String, f64)>,
+    /// The result of the second derivation, if it was made.
+    pub verification: Option<Verification>,
+    /// The work done.
+    pub statistics: Statistics,
+    /// The time it took.
+    pub wall: Duration,
+}
+
+/// How a run ended.
+#[derive(Debug)]
+pub enum Ending {
+    /// At its end.
+    Completed,
+    /// By a terminal event.
+    Event {
+        /// Its name.
+        name: String,
+    },
+    /// By Ctrl-C.
+    Interrupted,
+    /// By the time limit.
+    Ended(Spent),
+    /// A row could not be written.
+    Unwritten,
+    /// The integration could not continue.
+    Failed(Box<SolveError>),
+}
+
+impl Ending {
+    /// In a word.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Ending::Completed => "completed",
+            Ending::Event { .. } => "event",
+            Ending::Interrupted => "interrupted",
+            Ending::Ended(_) => "ended by its limit",
+            Ending::Unwritten => "not written",
+            Ending::Failed(_) => "failed",
+        }
+    }
+}
+
+impl Run {
+    /// The error of a run that the observer or a limit of time has ended.
+    pub fn stopped(&self) -> Option<RunError> {
+        let t = self.statistics.current_time;
+        match self.ending {
+            Ending::Interrupted => Some(RunError::Interrupted { t }),
+            Ending::Ended(limit) => Some(RunError::Ended { t, limit }),
+            Ending::Completed | Ending::Event { .. } | Ending::Unwritten | Ending::Failed(_) => None,
+        }
+    }
+
+    /// An error unless the run was completed and kept what it is proved to keep.
+    ///
+    /// # Errors
+    /// [`RunError::Lost`], [`RunError::Interrupted`], [`RunError::Ended`],
+    /// [`RunError::Integration`].
+    pub fn outcome(self) -> Result<(), RunError> {
+        let stopped = self.stopped();
+        if let Some(lost) = self.lost {
+            return Err(RunError::Lost(lost));
+        }
+        if let Some(stopped) = stopped {
+            return Err(stopped);
+        }
+        match self.ending {
+            Ending::Failed(cause) => Err(RunError::Integration {
+                cause,
+                names: self.state,
+                jumps: self.jumps,
+                lost_inertia: self.lost_inertia,
+            }),
+            // The error of the file says why it is unwritten.
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! A motion whose rows are written as they are computed, so that they take no memory.
+
+use std::ops::ControlFlow;
+
+use pc_model::Flow;
+use pc_solve::{Options, Solution, Solve, SolveError, SolveFailure};
+
+use crate::files::error::FileError;
+use crate::files::stream::Stream;
+use crate::observer::Observer;
+use crate::plan::plan::Plan;
+use crate::motion::table::Table;
+use crate::plan::tolerances::note_largest;
+
+/// A record of the rows that were written.
+pub(crate) struct Streamed<'s, 'p> {
+    /// A second flow to compute rows with, since the integration uses the first.
+    flow: Flow,
+    stream: &'s mut Stream<'p>,
+    observer: &'s dyn Observer,
+    /// The last row, and the drifts so far.
+    pub(crate) table: Table,
+    /// The largest residual of each constraint.
+    pub(crate) constraints: Vec<(String, f64)>,
+    /// The largest magnitude of each component of the state.
+    pub(crate) largest: Vec<f64>,
+    /// The last output.
+    pub(crate) last: Option<(f64, Vec<f64>)>,
+}
+
+impl<'s, 'p> Streamed<'s, 'p> {
+    /// # Errors
+    /// [`FileError::Write`]
+    pub(crate) fn new(
+        flow: &Flow,
+        stream: &'s mut Stream<'p>,
+        observer: &'s dyn Observer,
+    ) -> Result<Streamed<'s, 'p>, FileError> {
+        let table = Table::streamed(flow);
+        stream.begin(table.columns())?;
+        let constraints = flow.constraint_names().into_iter().map(|name| (name, 0.0)).collect();
+        Ok(Streamed { flow: flow.clone(), stream, observer, table, constraints, largest: Vec::new(), last: None })
+    }
+
+    /// Integrates the motion as far as possible, without its states; the error says why not
+    /// further.
+    pub(crate) fn follow(
+        &mut self,
+        flow: &mut Flow,
+        (plan, options): (&Plan, &Options),
+        step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
+    ) -> (Solution, Option<SolveError>) {
+        let solve =
+            Solve::new(&mut flow.motion, plan.t_start, &flow.start).method(options).events(&mut flow.events);
+        SolveFailure::split(solve.run_given(&plan.times(), |t, y| self.take(t, y), step))
+    }
+
+    /// Whether a row could not be written.
+    pub(crate) fn has_failed(&self) -> bool {
+        self.stream.has_failed()
+    }
+
+    fn take(&mut self, t: f64, y: &[f64]) -> ControlFlow<()> {
+        // A step may have many rows, so steps alone do not notice Ctrl-C in time.
+        if self.observer.is_stopped() {
+            return ControlFlow::Break(());
+        }
+        self.table.give(&mut self.flow, t, y);
+        note_residuals(&mut self.constraints, &mut self.flow, t, y);
+        note_largest(&mut self.largest, y);
+        self.last = Some((t, y.to_vec()));
+        match self.table.rows().next_back() {
+            Some(row) => self.stream.row(row),
+            None => ControlFlow::Continue(()),
+        }
+    }
+}
+
+/// Raises the largest residuals to those at (t, y).
+pub(crate) fn note_residuals(worst: &mut [(String, f64)], flow: &mut Flow, t: f64, y: &[f64]) {
+    for ((_, worst), residual) in worst.iter_mut().zip(flow.constraint_residuals(t, y)) {
+        // f64::max would lose a NaN
+        if residual.abs() > *worst || residual.is_nan() {
+            *worst = residual.abs();
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! The plan of a run: from what is wished, else from the text of the model, else the defaults.
+
+use pc_model::document::AbsoluteTolerance;
+use pc_model::{Flow, Model, UnknownParameter, Variables};
+use pc_solve::{Accumulation, Deadline, Method, Options};
+
+use crate::error::RunError;
+use crate::plan::tolerances::Tolerances;
+use crate::plan::wishes::Wishes;
+
+/// Tolerances that are much smaller.
+const FINER: f64 = 1e-2;
+/// Rounding is no smaller in a few operations.
+const LEAST: f64 = 1e-14;
+
+/// Time span, rows, method, tolerances and limit of the steps of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Form of the equations.
+    pub form: Variables,
+    /// Start time.
+    pub t_start: f64,
+    /// End time, which may lie before the start.
+    pub t_end: f64,
+    /// Number of rows, at least 2.
+    pub samples: usize,
+    /// Relative tolerance.
+    pub rtol: f64,
+    /// Absolute tolerances, as far as they are given.
+    pub atol: AbsoluteTolerance,
+    /// Largest length of a step, if it is limited.
+    pub max_step: Option<f64>,
+    /// The most steps from one row to the next, if given.
+    pub max_steps: Option<u64>,
+    /// The number of parts of each step that are searched for events, if given.
+    pub samples_per_step: Option<u32>,
+    /// The fraction of the first interval at which events count as accumulated, if given.
+    pub accumulation: Option<f64>,
+    /// Method.
+    pub method: Method,
+    /// The parameters, by their numbers, by which the motion is to be differentiated.
+    pub sensitivities: Vec<usize>,
+    /// The deadline of all work on the model.
+    pub deadline: Deadline,
+}
+
+impl Plan {
+    /// The plan of a run of a model.
+    ///
+    /// # Errors
+    /// [`RunError::NoEnd`], [`RunError::EndIsStart`], [`RunError::Sensitivities`],
+    /// [`RunError::Tolerance`].
+    pub fn of(model: &Model, wishes: &Wishes) -> Result<Plan, RunError> {
+        let simulation = &model.document().simulation;
+        let t_start = simulation.start_time();
+        let no_end = || RunError::NoEnd { model: model.document().source.name().to_owned() };
+        let t_end = wishes.t_end.or(simulation.t_end.as_ref().map(|t| t.value)).ok_or_else(no_end)?;
+        if t_end == t_start {
+            return Err(RunError::EndIsStart { t: t_end });
+        }
+        let written = simulation.method.as_ref().map(|method| method.value);
+        Ok(Plan {
+            form: Plan::form(model, wishes),
+            t_start,
+            t_end,
+            samples: wishes.samples.unwrap_or_else(|| simulation.rows()),
+            rtol: wishes.rtol.unwrap_or_else(|| simulation.relative_tolerance()),
+            atol: model.absolute_tolerance(wishes.atol.clone()).map_err(RunError::Tolerance)?,
+            max_step: wishes.max_step.or(simulation.max_step.as_ref().map(|h| h.value)),
+            max_steps: wishes.max_steps,
+            samples_per_step: wishes
+                .samples_per_step
+                .or(simulation.samples_per_step.as_ref().map(|n| n.value)),
+            accumulation: wishes.accumulation.or(simulation.accumulation.as_ref().map(|p| p.value)),
+            method: wishes.method.or(written).unwrap_or_default(),
+            sensitivities: parameters(model, &wishes.sensitivities)?,
+            deadline: model.budget().deadline().clone(),
+        })
+    }
+
+    /// The form of the equations, known before there is a plan.
+    pub fn form(model: &Model, wishes: &Wishes) -> Variables {
+        let written = model.document().simulation.form.as_ref().map(|form| form.value);
+        wishes.form.or(written).unwrap_or(Variables::QuasiVelocities)
+    }
+
+    /// The times of the rows, evenly spaced, start and end included.
+    pub fn times(&self) -> Vec<f64> {
+        let last = self.samples - 1;
+        let span = self.t_end - self.t_start;
+        let inner = (0..last).map(|i| self.t_start + span * (i as f64 / last as f64));
+        inner.chain([self.t_end]).collect()
+    }
+
+    /// The absolute tolerance of each component of the state of a flow.
+    pub fn tolerances(&self, flow: &mut Flow) -> Tolerances {
+        Tolerances::new(&self.atol, flow, (self.t_start, self.t_end), self.rtol)
+    }
+
+    /// Method, tolerances, the limit of steps and that of time for the integrator.
+    pub fn options(&self, tolerances: &Tolerances) -> Options {
+        let mut options = Options::new(self.method)
+            .relative_tolerance(self.rtol)
+            .absolute_tolerance(tolerances.tolerance())
+            .deadline(self.deadline.clone());
+        if let Some(parts) = self.samples_per_step {
+            options = options.samples_per_step(parts);
+        }
+        if let Some(within) = self.accumulation {
+            options = options.accumulation(Accumulation { within, ..Accumulation::default() });
+        }
+        if let Some(most) = self.max_steps {
+            options = options.max_steps(most);
+        }
+        match self.max_step {
+            Some(length) => options.max_step(length),
+            None => options,
+        }
+    }
+
+    /// The same at tolerances of a hundredth of those of a run: what this changes are errors of integration.
+    pub fn finer(&self, tolerances: &Tolerances) -> Plan {
+        let rtol = (self.rtol * FINER).max(LEAST);
+        Plan { rtol, atol: tolerances.times(FINER), ..self.clone() }
+    }
+
+    /// Method, tolerances and the limit of steps in words.
+    pub fn in_words(&self, tolerances: &Tolerances) -> String {
+        let limit = self.max_step.map_or_else(String::new, |length| format!(", steps to {length:e}"));
+        format!("{}, rtol {:e}, atol {}{limit}", self.method, self.rtol, tolerances.in_words())
+    }
+}
+
+/// The parameters of these names, by their numbers.
+fn parameters(model: &Model, names: &[String]) -> Result<Vec<usize>, RunError> {
+    let known: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
+    let place = |name: &String| {
+        let unknown = || UnknownParameter { name: name.clone(), known: known.clone() };
+        known.iter().position(|known| known == name).ok_or_else(|| RunError::Sensitivities(unknown()))
+    };
+    names.iter().map(place).collect()
+}

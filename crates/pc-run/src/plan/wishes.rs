@@ -1,0 +1,32 @@
+//! What whoever asks for a run says of it; the text of the model and the defaults say the rest.
+
+use pc_model::Variables;
+use pc_model::document::AbsoluteTolerance;
+use pc_solve::Method;
+
+/// What is wished of a run; nothing by default.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wishes {
+    /// Form of the equations.
+    pub form: Option<Variables>,
+    /// End time.
+    pub t_end: Option<f64>,
+    /// Number of rows, at least 2.
+    pub samples: Option<usize>,
+    /// Relative tolerance.
+    pub rtol: Option<f64>,
+    /// Absolute tolerances, as far as they are given.
+    pub atol: AbsoluteTolerance,
+    /// Largest length of a step.
+    pub max_step: Option<f64>,
+    /// The most steps from one row to the next.
+    pub max_steps: Option<u64>,
+    /// The number of parts of each step that are searched for events.
+    pub samples_per_step: Option<u32>,
+    /// The fraction of the first interval at which events count as accumulated.
+    pub accumulation: Option<f64>,
+    /// Method.
+    pub method: Option<Method>,
+    /// The names of the parameters by which the motion is differentiated.
+    pub sensitivities: Vec<String>,
+}

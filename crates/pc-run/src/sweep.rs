@@ -1,0 +1,26 @@
+//! One model for many values of parameters and starts, in one table.
+//!
+//! Read `design` first, the values of the members, each of a grid of `values` or drawn by a `law`; `of` is what is found of one. `members`
+//! are their models, `work` is what is done for one, which is one of its `motions`, `linearizations` and `checks`; `record` is its
+//! result, kept in a `journal` on disk until the `output` is made, row by row of a `sheet`, and the `picture`, which has a
+//! `picture_error`. `sweep` is the whole, or a `shard` of it; `shards` are all of these. `error` lists the errors.
+
+mod checks;
+pub mod design;
+pub mod error;
+pub mod journal;
+pub mod law;
+mod linearizations;
+mod members;
+mod motions;
+pub mod of;
+pub mod output;
+pub mod picture;
+pub mod picture_error;
+pub mod record;
+pub mod shard;
+pub mod shards;
+pub mod sheet;
+pub mod sweep;
+pub mod values;
+mod work;

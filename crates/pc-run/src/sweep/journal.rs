@@ -1,0 +1,292 @@
+//! The finished members of a sweep, kept on disk until its table is complete.
+//!
+//! ```text
+//! pc sweep journal\n
+//! frame of the header: the model and the options, [[what, value], …] in JSON
+//! frame of a record, for members 0, 1, 2, …
+//! ```
+//! A frame is length, CRC-32 and bytes. Records are only appended, each with one call of the
+//! system; an incomplete record at the end is cut off.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use super::error::SweepError;
+use super::record::{Record, Status};
+use super::shard::Shard;
+use crate::motion::identity;
+use crate::motion::identity::Identity;
+
+const MAGIC: &[u8] = b"pc sweep journal\n";
+
+/// A journal, locked until it is dropped.
+#[derive(Debug)]
+pub struct Journal {
+    path: PathBuf,
+    file: File,
+    /// Where the records begin.
+    records: u64,
+    /// The members that they belong to.
+    shard: Shard,
+    tally: Tally,
+}
+
+/// Finished members in order.
+pub trait Records {
+    /// The records.
+    ///
+    /// # Errors
+    /// [`io::Error`] of the file.
+    fn records(&self) -> io::Result<Box<dyn Iterator<Item = io::Result<Record>> + '_>>;
+
+    /// The file that keeps them if the table cannot be written; none where they stay in their
+    /// shards anyway.
+    fn kept(&self) -> Option<&Path>;
+}
+
+/// The numbers of members by how they ended.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Members that are finished.
+    pub done: u64,
+    /// The completed ones among them.
+    pub completed: u64,
+    /// Those that a terminal event has ended.
+    pub by_event: u64,
+    /// The first few others, with their messages.
+    pub others: Vec<(u64, Status, String)>,
+}
+
+/// Most messages that are kept.
+const MESSAGES: usize = 5;
+
+impl Tally {
+    /// The sum of several journals.
+    pub(crate) fn sum<'t>(parts: impl Iterator<Item = &'t Tally>) -> Tally {
+        let mut sum = Tally::default();
+        for part in parts {
+            sum.done += part.done;
+            sum.completed += part.completed;
+            sum.by_event += part.by_event;
+            sum.others.extend(part.others.iter().cloned());
+        }
+        sum.others.sort_by_key(|(member, ..)| *member);
+        sum.others.truncate(MESSAGES);
+        sum
+    }
+
+    fn count(&mut self, record: &Record) {
+        self.done += 1;
+        match record.status {
+            Status::Completed => self.completed += 1,
+            Status::Event => self.by_event += 1,
+            status if self.others.len() < MESSAGES => {
+                self.others.push((record.member, status, record.message.clone()));
+            }
+            Status::Failed | Status::Refused | Status::Panicked => {}
+        }
+    }
+}
+
+impl Journal {
+    /// The path of the journal of a whole sweep, beside its table.
+    pub(crate) fn beside(table: &Path) -> PathBuf {
+        let mut name = table.as_os_str().to_owned();
+        name.push(".partial");
+        PathBuf::from(name)
+    }
+
+    /// The journal of a shard: a new one, or the one that the same sweep has left.
+    ///
+    /// # Errors
+    /// [`SweepError`] if it belongs to another sweep or is in use.
+    pub(crate) fn open(path: PathBuf, shard: Shard, header: &Identity) -> Result<Journal, SweepError> {
+        let refused = |source| SweepError::Journal { journal: path.clone(), source };
+        if std::fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
+            return Err(SweepError::Foreign { journal: path });
+        }
+        let file = OpenOptions::new().read(true).append(true).create(true).open(&path).map_err(refused)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(SweepError::InUse { journal: path }),
+            Err(TryLockError::Error(source)) => return Err(refused(source)),
+        }
+        let mut beginning = MAGIC.to_vec();
+        let text = serde_json::to_vec(header).map_err(|error| refused(error.into()))?;
+        beginning.extend(frame(&text));
+        let records = beginning.len() as u64;
+        let mut journal = Journal { path, file, records, shard, tally: Tally::default() };
+        journal.begin(&beginning, header)?;
+        let refused = |source| SweepError::Journal { journal: journal.path.clone(), source };
+        let (tally, end) = journal.scan().map_err(refused)?;
+        journal.file.set_len(end).map_err(refused)?;
+        Ok(Journal { tally, ..journal })
+    }
+
+    /// A journal that is only read, with its header, from which `shard` reads the shard.
+    ///
+    /// # Errors
+    /// [`SweepError`] if the file is not a journal, or is in use.
+    pub(crate) fn finished(
+        path: &Path,
+        shard: impl FnOnce(&Identity) -> Option<Shard>,
+    ) -> Result<(Journal, Identity), SweepError> {
+        let path = path.to_owned();
+        let refused = |source| SweepError::Journal { journal: path.clone(), source };
+        let file = File::open(&path).map_err(refused)?;
+        match file.try_lock_shared() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(SweepError::InUse { journal: path }),
+            Err(TryLockError::Error(source)) => return Err(refused(source)),
+        }
+        let mut journal = Journal { path, file, records: 0, shard: Shard::ALL, tally: Tally::default() };
+        let mut reader = journal
+            .reader(0)
+            .map_err(|source| SweepError::Journal { journal: journal.path.clone(), source })?;
+        let text = read_magic(&mut reader).and_then(|()| Ok(read_frame(&mut reader)?.unwrap_or_default()));
+        let header = text.ok().and_then(|text| {
+            let header = serde_json::from_slice::<Identity>(&text).ok()?;
+            Some(((MAGIC.len() + text.len()) as u64 + FRAME, shard(&header)?, header))
+        });
+        let Some((records, shard, header)) = header else {
+            return Err(SweepError::NoShard { path: journal.path });
+        };
+        (journal.records, journal.shard) = (records, shard);
+        match journal.scan() {
+            Ok((tally, _)) => Ok((Journal { tally, ..journal }, header)),
+            Err(source) => Err(SweepError::Journal { journal: journal.path, source }),
+        }
+    }
+
+    /// Writes the `beginning`, unless the file has it.
+    fn begin(&mut self, beginning: &[u8], header: &Identity) -> Result<(), SweepError> {
+        let refused = |source| SweepError::Journal { journal: self.path.clone(), source };
+        let mut found = Vec::new();
+        let reader = self.reader(0).map_err(refused)?;
+        reader.take(beginning.len() as u64).read_to_end(&mut found).map_err(refused)?;
+        if found == beginning {
+            return Ok(());
+        }
+        if beginning.starts_with(&found) {
+            // A new file, or an incomplete beginning.
+            self.file.set_len(0).map_err(refused)?;
+            return self.file.write_all(beginning).map_err(refused);
+        }
+        let mut reader = self.reader(0).map_err(refused)?;
+        let other = read_magic(&mut reader).and_then(|()| Ok(read_frame(&mut reader)?.unwrap_or_default()));
+        let other = other.ok().and_then(|text| serde_json::from_slice::<Identity>(&text).ok());
+        Err(match other.and_then(|other| identity::difference(&other, header)) {
+            Some(what) => SweepError::OtherSweep { journal: self.path.clone(), what },
+            None => SweepError::Foreign { journal: self.path.clone() },
+        })
+    }
+
+    /// The numbers of records by how they ended, and where the records end.
+    fn scan(&self) -> io::Result<(Tally, u64)> {
+        let (mut tally, mut end) = (Tally::default(), self.records);
+        let mut reader = self.reader(self.records)?;
+        while let Some(bytes) = read_frame(&mut reader)? {
+            match Record::from_bytes(&bytes) {
+                Some(record) if record.member == self.shard.member(tally.done) => tally.count(&record),
+                _ => break,
+            }
+            end += FRAME + bytes.len() as u64;
+        }
+        Ok((tally, end))
+    }
+
+    /// Appends the member that comes next.
+    ///
+    /// # Errors
+    /// [`SweepError::Append`]
+    pub(crate) fn append(&mut self, record: &Record) -> Result<(), SweepError> {
+        let written = self.file.write_all(&frame(&record.to_bytes()));
+        let done = self.tally.done;
+        written.map_err(|source| SweepError::Append { journal: self.path.clone(), done, source })?;
+        self.tally.count(record);
+        Ok(())
+    }
+
+    /// The shard whose members it has.
+    pub(crate) fn shard(&self) -> Shard {
+        self.shard
+    }
+
+    /// The path of the file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The numbers of members by how they ended.
+    pub fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    /// Removes the journal once the table is complete.
+    ///
+    /// # Errors
+    /// [`SweepError::Journal`]
+    pub fn remove(self) -> Result<(), SweepError> {
+        std::fs::remove_file(&self.path)
+            .map_err(|source| SweepError::Journal { journal: self.path.clone(), source })
+    }
+
+    fn reader(&self, from: u64) -> io::Result<BufReader<&File>> {
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(from))?;
+        Ok(BufReader::new(file))
+    }
+}
+
+impl Records for Journal {
+    fn records(&self) -> io::Result<Box<dyn Iterator<Item = io::Result<Record>> + '_>> {
+        let mut reader = self.reader(self.records)?;
+        let mut left = self.tally.done;
+        Ok(Box::new(std::iter::from_fn(move || {
+            left = left.checked_sub(1)?;
+            let bytes = match read_frame(&mut reader) {
+                Ok(bytes) => bytes,
+                Err(error) => return Some(Err(error)),
+            };
+            let record = bytes.as_deref().and_then(Record::from_bytes);
+            Some(
+                record.ok_or_else(|| {
+                    io::Error::new(io::ErrorKind::InvalidData, "a record has changed on disk")
+                }),
+            )
+        })))
+    }
+
+    fn kept(&self) -> Option<&Path> {
+        Some(&self.path)
+    }
+}
+
+/// Length of a frame without its bytes.
+const FRAME: u64 = 12;
+
+fn frame(bytes: &[u8]) -> Vec<u8> {
+    let mut frame = Vec::with_capacity(FRAME as usize + bytes.len());
+    frame.extend((bytes.len() as u64).to_le_bytes());
+    frame.extend(crc32fast::hash(bytes).to_le_bytes());
+    frame.extend(bytes);
+    frame
+}
+
+/// The bytes of the next frame; none if it is incomplete or damaged.
+fn read_frame(reader: &mut impl Read) -> io::Result<Option<Vec<u8>>> {
+    let mut head = Vec::new();
+    reader.by_ref().take(FRAME).read_to_end(&mut head)?;
+    let Some((length, crc)) = head.split_first_chunk::<8>() else { return Ok(None) };
+    let (length, mut bytes) = (u64::from_le_bytes(*length), Vec::new());
+    reader.by_ref().take(length).read_to_end(&mut bytes)?;
+    let whole = bytes.len() as u64 == length && crc == crc32fast::hash(&bytes).to_le_bytes();
+    Ok(whole.then_some(bytes))
+}
+
+fn read_magic(reader: &mut impl Read) -> io::Result<()> {
+    let mut magic = [0; MAGIC.len()];
+    reader.read_exact(&mut magic)?;
+    if magic == MAGIC { Ok(()) } else { Err(io::ErrorKind::InvalidData.into()) }
+}

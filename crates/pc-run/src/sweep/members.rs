@@ -1,0 +1,81 @@
+//! The models of a sweep, with what is known of each before it begins.
+
+use pc_model::Model;
+
+use super::design::Design;
+use super::record::{Record, Status};
+use crate::table::rows::{Column, Kind};
+use crate::chain::{chain, line};
+use crate::error::RunError;
+
+/// The models of a sweep.
+pub(crate) struct Members {
+    model: Model,
+    design: Design,
+    columns: Vec<Column>,
+}
+
+impl Members {
+    /// Those whose rows have these columns.
+    pub(crate) fn new(model: Model, design: Design, columns: Vec<Column>) -> Members {
+        Members { model, design, columns }
+    }
+
+    /// What stands in a row, beside number, values and status of the member.
+    pub(crate) fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The record of a member that could not start, before anything is known of it but its values: one row of nothing.
+    pub(crate) fn blank(&self, member: u64) -> Record {
+        let words = self.columns.iter().filter(|column| column.kind == Kind::Text).count();
+        Record {
+            member,
+            status: Status::Refused,
+            steps: 0,
+            message: String::new(),
+            values: self.design.values(member),
+            rows: vec![f64::NAN; self.columns.len() - words],
+            words: vec![String::new(); words],
+        }
+    }
+
+    /// The model of a member.
+    pub(crate) fn model(&self, blank: &Record) -> Model {
+        let mut model = self.design.model(&self.model, &blank.values);
+        // Memory is each member's own, time that of all.
+        model.within(self.model.budget().beside());
+        model
+    }
+
+    /// The models of the first member, of one in the middle and of the last.
+    pub(crate) fn samples(&self) -> Vec<Model> {
+        let last = self.design.members().saturating_sub(1);
+        let mut members = vec![0, last / 2, last];
+        members.dedup();
+        members.into_iter().map(|member| self.model(&self.blank(member))).collect()
+    }
+
+    /// Whether the limit of time has passed.
+    pub(crate) fn is_over(&self) -> bool {
+        self.model.budget().deadline().passed().is_some()
+    }
+
+    /// The record of a member that ended with an error; none if time was over.
+    pub(crate) fn ended(&self, status: Status, message: &str, blank: Record) -> Option<Record> {
+        (!self.is_over()).then(|| Record { status, message: line(message), ..blank })
+    }
+
+    /// That of a member whose computation panicked.
+    pub(crate) fn panicked(&self, member: u64, message: &str) -> Record {
+        Record { status: Status::Panicked, message: line(message), ..self.blank(member) }
+    }
+}
+
+/// What is wrong, without its place in the file.
+pub(crate) fn message(error: &RunError) -> String {
+    match error {
+        RunError::Model(error) => error.diagnostic().message.clone(),
+        other => chain(other).lines().next().unwrap_or_default().to_owned(),
+    }
+}

@@ -1,0 +1,293 @@
+//! The motion of each member.
+
+use std::ops::{ControlFlow, Range};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use pc_expr::{LaneField, VectorField};
+use pc_model::document::NamedExpression;
+use pc_model::{Flow, Model, ModelError, Prototype, Variables};
+use pc_solve::{Ending, Ensemble, EnsembleError, Events, Options, Solution, Solve, Stop, Trajectory};
+
+use super::design::Design;
+use super::record::{Record, Status};
+use super::shard::Shard;
+use crate::table::rows::{Column, Kind};
+use super::members::Members;
+use super::work::{Consume, Work};
+use crate::chain::{chain, line};
+use crate::error::RunError;
+use crate::plan::memory;
+use crate::plan::plan::Plan;
+use crate::motion::table::Table;
+use crate::plan::tolerances::Tolerances;
+use pc_print::short;
+use crate::motion::verification::Verification;
+
+/// Integrates each member.
+pub(crate) struct Motions {
+    members: Members,
+    plan: Plan,
+    times: Vec<f64>,
+    /// By the scale of the model itself, so that members in one vector share them.
+    tolerances: Tolerances,
+    options: Options,
+    /// Whether all rows are wanted instead of the last, with the drifts.
+    all_rows: bool,
+    /// How many these are.
+    rows: usize,
+    prototype: Option<Prototype>,
+    /// How many came to their end beside others.
+    beside: AtomicU64,
+}
+
+/// A member before its motion: its equations with what is known of it, or its record; none if time was over.
+type Begun = Result<Box<(Flow, Record)>, Option<Record>>;
+
+impl Motions {
+    /// `all_rows`: whether all rows of the plan are wanted instead of the last; so many members are at work at a time.
+    ///
+    /// # Errors
+    /// [`RunError::Rows`] if the rows of these take more memory than they may.
+    pub(crate) fn new(
+        model: Model,
+        design: Design,
+        plan: Plan,
+        all_rows: bool,
+        threads: usize,
+    ) -> Result<Motions, RunError> {
+        let Begin { table, tolerances, prototype } = begun(&model, &design, &plan);
+        let shown = table.as_ref().map_or_else(|| written(&model), Columns::of);
+        // Of each member at work its trajectory, its table, its record and the bytes of that.
+        let numbers = (4 * shown.names.len() * threads) as u64;
+        memory::allow(plan.samples as u64, numbers, model.budget().limits())?;
+        let columns = shown.in_rows(!all_rows);
+        Ok(Motions {
+            members: Members::new(model, design, columns),
+            times: plan.times(),
+            options: plan.options(&tolerances),
+            tolerances,
+            all_rows,
+            rows: if all_rows { plan.samples } else { 1 },
+            plan,
+            prototype,
+            beside: AtomicU64::new(0),
+        })
+    }
+
+    /// What is known of a member before its motion and, if it can be integrated beside others, its field and its start.
+    fn begin(&self, member: u64) -> (Begun, Option<(LaneField, Vec<f64>)>) {
+        let blank = self.members.blank(member);
+        match self.flow(&self.members.model(&blank)) {
+            Ok(mut flow) => {
+                let free = flow.events.events().is_empty() && flow.motion.breaks().is_empty();
+                let lane = if free { flow.motion.lanes() } else { None };
+                let lane = lane.map(|field| (field, flow.start.clone()));
+                (Ok(Box::new((flow, blank))), lane)
+            }
+            Err(error) => (Err(self.members.ended(Status::Refused, &error, blank)), None),
+        }
+    }
+
+    /// The record of a member that came to its end beside others.
+    fn completed(&self, begun: Begun, trajectory: &Trajectory) -> Option<Record> {
+        let (mut flow, blank) = *begun.ok()?;
+        self.beside.fetch_add(1, Ordering::Relaxed);
+        Some(Record {
+            status: Status::Completed,
+            steps: trajectory.statistics().steps,
+            rows: self.rows_of(&mut flow, trajectory, None),
+            ..blank
+        })
+    }
+
+    /// Integrates a member; none if it was stopped on its way, or time was over.
+    fn integrate(&self, begun: Begun, stop: &Stop<'_>) -> Option<Record> {
+        let (mut flow, blank) = match begun {
+            Ok(begun) => *begun,
+            Err(record) => return record,
+        };
+        let observer = |_, _: &[f64]| {
+            if stop.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let solve = Solve::new(&mut flow.motion, self.plan.t_start, &flow.start).method(&self.options);
+        let (motion, error) = solve.events(&mut flow.events).follow(&self.times, observer);
+        let Solution { trajectory, ending, .. } = motion;
+        if ending == Some(Ending::Stopped) || error.as_ref().is_some_and(|error| error.ended().is_some()) {
+            return None;
+        }
+        let reached = error.as_ref().and_then(|error| error.reached());
+        let (status, message) = match (&error, ending) {
+            (Some(error), _) => (Status::Failed, line(&chain(error))),
+            (None, Some(Ending::Event { event })) => {
+                (Status::Event, format!("ended by the event {}", flow.events.events()[event].name()))
+            }
+            (None, _) => (Status::Completed, String::new()),
+        };
+        Some(Record {
+            status,
+            steps: trajectory.statistics().steps,
+            message,
+            rows: self.rows_of(&mut flow, &trajectory, reached),
+            ..blank
+        })
+    }
+
+    /// The motion of a member, or what is wrong with it.
+    fn flow(&self, model: &Model) -> Result<Flow, String> {
+        if let Some(flow) = self.prototype.as_ref().and_then(|known| known.flow(model, self.plan.t_start)) {
+            return Ok(flow);
+        }
+        let flow = derived(model, self.plan.form).map_err(|error| error.diagnostic().message.clone())?;
+        let own = Columns::of(&Table::of(&flow));
+        let is_alike = own.in_rows(!self.all_rows) == self.members.columns();
+        let other = || format!("its table has other columns than the sweep: {}", own.names.join(", "));
+        is_alike.then_some(flow).ok_or_else(other)
+    }
+
+    /// All rows, or the last one with the drifts; what was `reached` is one more. There is a row in any case.
+    fn rows_of(&self, flow: &mut Flow, trajectory: &Trajectory, reached: Option<(f64, &[f64])>) -> Vec<f64> {
+        let table = Table::new(flow, trajectory);
+        let last = reached.map(|(t, y)| std::iter::once(t).chain(flow.row(t, y)).collect::<Vec<f64>>());
+        let nothing = || vec![f64::NAN; table.columns().len()];
+        if self.all_rows {
+            let rows: Vec<f64> = table.rows().flatten().copied().chain(last.into_iter().flatten()).collect();
+            return if rows.is_empty() { nothing() } else { rows };
+        }
+        let drifts: Vec<f64> = table.conserved().map(|j| drift(&table, last.as_deref(), j)).collect();
+        let row = last.or_else(|| table.rows().next_back().map(<[f64]>::to_vec));
+        row.unwrap_or_else(nothing).into_iter().chain(drifts).collect()
+    }
+}
+
+impl Work for Motions {
+    fn members(&self) -> &Members {
+        &self.members
+    }
+
+    fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// With the equations that the members are integrated by, be they their own or those of all.
+    fn vouched(&self) -> Result<(), RunError> {
+        for model in self.members.samples() {
+            let graph = model.graph();
+            // A member that is refused says so in its record.
+            let (Ok(assembly), Ok(flow)) = (model.assemble(&graph), self.flow(&model)) else { continue };
+            let mut verification = Verification::new(&model, &assembly, self.plan.form);
+            verification.compare(&flow, &assembly, "the start", self.plan.t_start, &flow.start)?;
+        }
+        Ok(())
+    }
+
+    /// As far as that can be, side by side in vectors.
+    fn records(
+        &self,
+        ensemble: &Ensemble<'_>,
+        shard: Shard,
+        places: Range<u64>,
+        consume: Consume<'_>,
+    ) -> Result<Ending, EnsembleError> {
+        ensemble.map_in_lanes(
+            places,
+            (self.plan.t_start, &self.times, &self.options),
+            |place| self.begin(shard.member(place)),
+            |_, begun, trajectory| self.completed(begun, &trajectory),
+            |_, begun, stop| self.integrate(begun, stop),
+            consume,
+        )
+    }
+
+    fn said(&self) -> Vec<(&'static str, String)> {
+        let span = format!("{} to {}", short(self.plan.t_start, 10), short(self.plan.t_end, 10));
+        vec![("method", self.plan.in_words(&self.tolerances)), ("time", span)]
+    }
+
+    fn done(&self) -> String {
+        match self.beside.load(Ordering::Relaxed) {
+            0 => String::new(),
+            beside => format!(", {beside} side by side in vectors"),
+        }
+    }
+}
+
+/// The columns of a motion, with those of them that should stay constant.
+struct Columns {
+    names: Vec<String>,
+    conserved: Range<usize>,
+}
+
+impl Columns {
+    /// Those of the table that the rows come from.
+    fn of(table: &Table) -> Columns {
+        Columns { names: table.columns().to_vec(), conserved: table.conserved() }
+    }
+
+    /// The columns of a member, with the drifts of what should stay constant if these are wanted.
+    fn in_rows(&self, drifts: bool) -> Vec<Column> {
+        let kept = if drifts { &self.names[self.conserved.clone()] } else { &[] };
+        let drifts = kept.iter().map(|name| format!("drift({name})"));
+        self.names.iter().cloned().chain(drifts).map(|name| Column::new(name, Kind::Number)).collect()
+    }
+}
+
+/// The columns of `pc run` as far as the text has them, for a sweep of which no member begins.
+fn written(model: &Model) -> Columns {
+    let document = model.document();
+    let named = |list: &[NamedExpression]| list.iter().map(|item| item.name.text.clone()).collect::<Vec<_>>();
+    let state = [vec!["t".to_owned()], model.start_names()].concat();
+    let kept = [named(&document.integrals), vec!["energy".to_owned()]].concat();
+    let conserved = state.len()..state.len() + kept.len();
+    Columns { names: [state, kept, named(&document.outputs)].concat(), conserved }
+}
+
+/// What is known before the first member is begun.
+#[derive(Default)]
+struct Begin {
+    /// The table without its rows; none where no member has a motion.
+    table: Option<Table>,
+    tolerances: Tolerances,
+    /// The equations, where the members differ from the model by numbers alone.
+    prototype: Option<Prototype>,
+}
+
+/// What is known by the model itself; where it has no motion by the first member that has one. It is the same for each shard.
+fn begun(model: &Model, design: &Design, plan: &Plan) -> Begin {
+    let variables = plan.form;
+    let of = |flow: &mut Flow| (Some(Table::of(flow)), plan.tolerances(flow));
+    let graph = model.graph();
+    let own = model.assemble(&graph).ok().and_then(|assembly| {
+        let mut flow = Flow::new(model, &assembly, variables).ok()?;
+        let (table, tolerances) = of(&mut flow);
+        Some(Begin { table, tolerances, prototype: Prototype::of(model, &assembly, variables, flow) })
+    });
+    if let Some(begin) = own {
+        return begin;
+    }
+    let in_time = |_: &u64| model.budget().deadline().passed().is_none();
+    let first = (0..design.members()).take_while(in_time).find_map(|member| {
+        let mut model = design.model(model, &design.values(member));
+        model.within(model.budget().beside());
+        let (table, tolerances) = of(&mut derived(&model, variables).ok()?);
+        Some(Begin { table, tolerances, prototype: None })
+    });
+    first.unwrap_or_default()
+}
+
+/// The flow of a model, derived anew.
+fn derived(model: &Model, variables: Variables) -> Result<Flow, ModelError> {
+    let graph = model.graph();
+    Flow::new(model, &model.assemble(&graph)?, variables)
+}
+
+/// max |I(t) − I(t_start)| of column `j`, with one row more.
+fn drift(table: &Table, more: Option<&[f64]>, j: usize) -> f64 {
+    let drift = table.drift(j).absolute;
+    match (table.rows().next(), more) {
+        (Some(first), Some(more)) => {
+            let change = (more[j] - first[j]).abs();
+            if change > drift || change.is_nan() { change } else { drift } // f64::max would lose a NaN
+        }
+        _ => drift,
+    }
+}

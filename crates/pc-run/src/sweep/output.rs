@@ -1,0 +1,32 @@
+//! The table of a sweep as a file, made from its records in memory that does not depend on their number.
+
+use serde_json::json;
+
+use super::journal::Records;
+use super::sheet::{Sheet, SweepTable};
+use crate::files::error::FileError;
+use crate::files::kept::Kept;
+use crate::table::file::{Format, TableFile};
+#[cfg(feature = "parquet")]
+use crate::table::parquet;
+use crate::table::{csv, json, npz};
+
+/// Writes the table of the model with this title.
+///
+/// # Errors
+/// [`FileError::Write`]; an existing file is then unchanged.
+pub fn write(file: &TableFile, title: &str, sheet: &Sheet, records: &dyn Records) -> Result<(), FileError> {
+    let table = SweepTable { sheet, records };
+    let written = file.place.write(|out| match file.format {
+        Format::Json => json::write(&[("model", json!(title))], &table, &[], out),
+        Format::Npz => npz::write(&table, &[], out),
+        #[cfg(feature = "parquet")]
+        Format::Parquet => parquet::write("sweep", &table, out),
+        Format::Csv | Format::Mat => csv::write(&table, out),
+    });
+    written.map_err(|source| FileError::Write {
+        path: file.path().display().to_string(),
+        kept: records.kept().map_or(Kept::Nowhere, |path| Kept::Journal(path.to_owned())),
+        source,
+    })
+}

@@ -1,0 +1,188 @@
+//! The table of a sweep: rows of numbers and text, member by member.
+
+use std::io;
+
+use serde_json::json;
+
+use super::journal::Records;
+use super::of::SweepOf;
+use super::record::Record;
+use crate::table::rows::{Cell, Column, Kind, Rows, Take};
+
+/// A record that is not made of whole rows: names and numbers do not come from one table.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "member {member} has {} varied values, {} numbers and {} words, which do not fill rows of {}, {} and {}; no table is written, because this is a defect of this program",
+    found[0], found[1], found[2], columns[0], columns[1], columns[2]
+)]
+pub struct Misshapen {
+    /// The member.
+    pub member: u64,
+    /// Its varied values, its numbers and its words.
+    pub found: [usize; 3],
+    /// Those of one row.
+    pub columns: [usize; 3],
+}
+
+/// The columns.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sheet {
+    of: SweepOf,
+    columns: Vec<Column>,
+    /// How many values are varied.
+    varied: usize,
+    /// How many columns are results.
+    results: usize,
+}
+
+impl Sheet {
+    /// Number of the member, what is varied, how it ended, then `results`, steps of a motion, and message.
+    pub(crate) fn new(of: SweepOf, names: &[String], results: &[Column]) -> Sheet {
+        let varied: Vec<Column> = names.iter().map(|name| Column::new(name, Kind::Number)).collect();
+        // What is varied and shown is the same, as a parameter that is an integral would be: names are of one space.
+        let taken: Vec<&str> = varied.iter().chain(results).map(|column| column.name.as_str()).collect();
+        let free = |name: &str, kind| {
+            let mut name = name.to_owned();
+            while taken.contains(&name.as_str()) {
+                name.push('_');
+            }
+            vec![Column::new(name, kind)]
+        };
+        let steps = if of == SweepOf::Run { free("steps", Kind::Integer) } else { Vec::new() };
+        let (member, status) = (free("member", Kind::Integer), free("status", Kind::Text));
+        let message = free("message", Kind::Text);
+        let columns = [member, varied.clone(), status, results.to_vec(), steps, message].concat();
+        Sheet { of, columns, varied: varied.len(), results: results.len() }
+    }
+
+    /// What each member is.
+    pub(crate) fn of(&self) -> SweepOf {
+        self.of
+    }
+
+    /// The sheet as text.
+    pub(crate) fn to_text(&self) -> String {
+        let columns: Vec<_> =
+            self.columns.iter().map(|column| json!([column.name, column.kind as u8])).collect();
+        json!([self.of.word(), self.varied, self.results, columns]).to_string()
+    }
+
+    /// The sheet from its text.
+    pub(crate) fn from_text(text: &str) -> Option<Sheet> {
+        type Parts = (String, usize, usize, Vec<(String, u8)>);
+        let (of, varied, results, columns): Parts = serde_json::from_str(text).ok()?;
+        let of = SweepOf::of_word(&of)?;
+        let kind = |kind| match kind {
+            0 => Some(Kind::Integer),
+            1 => Some(Kind::Number),
+            2 => Some(Kind::Text),
+            _ => None,
+        };
+        let columns: Option<Vec<_>> =
+            columns.into_iter().map(|(name, k)| Some(Column::new(name, kind(k)?))).collect();
+        // member, what is varied, status, results, steps, message
+        let others = if of == SweepOf::Run { 4 } else { 3 };
+        let all = varied.checked_add(results)?.checked_add(others)?;
+        let columns = columns.filter(|columns| columns.len() == all && results > 0)?;
+        Some(Sheet { of, columns, varied, results })
+    }
+
+    /// Names of the varied quantities.
+    pub(crate) fn varied(&self) -> impl Iterator<Item = &str> {
+        self.columns[1..=self.varied].iter().map(|column| column.name.as_str())
+    }
+
+    /// The columns of results.
+    fn results(&self) -> &[Column] {
+        let from = self.varied + 2;
+        &self.columns[from..from + self.results]
+    }
+
+    /// Names of the numbers among the results.
+    pub(crate) fn numbers(&self) -> Vec<&str> {
+        let numbers = self.results().iter().filter(|column| column.kind == Kind::Number);
+        numbers.map(|column| column.name.as_str()).collect()
+    }
+
+    /// All columns.
+    pub(crate) fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// An error unless the numbers and words of a member fill whole rows, at least one.
+    ///
+    /// # Errors
+    /// [`Misshapen`]
+    pub(crate) fn check(&self, record: &Record) -> Result<(), Misshapen> {
+        let words = self.results().iter().filter(|column| column.kind == Kind::Text).count();
+        let numbers = self.results().len() - words;
+        let rows = |found: usize, columns: usize| match (columns, found) {
+            (0, 0) => Some(None),
+            (0, _) => None,
+            _ => (found > 0 && found.is_multiple_of(columns)).then_some(Some(found / columns)),
+        };
+        let of_both = (rows(record.rows.len(), numbers), rows(record.words.len(), words));
+        let is_whole = match of_both {
+            (Some(Some(a)), Some(Some(b))) => a == b,
+            (Some(_), Some(_)) => true,
+            _ => false,
+        };
+        let is_varied = record.values.len() == self.varied;
+        (is_whole && is_varied).then_some(()).ok_or(Misshapen {
+            member: record.member,
+            found: [record.values.len(), record.rows.len(), record.words.len()],
+            columns: [self.varied, numbers, words],
+        })
+    }
+
+    /// The rows of a member, at least one.
+    ///
+    /// # Errors
+    /// [`Misshapen`], as [`io::ErrorKind::InvalidData`].
+    pub(crate) fn rows<'r>(&self, record: &'r Record) -> io::Result<impl Iterator<Item = Vec<Cell<'r>>>> {
+        self.check(record).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
+        let (mut numbers, mut words) = (record.rows.iter(), record.words.iter());
+        let mut result = move |column: &Column| match column.kind {
+            Kind::Text => words.next().map(|word| Cell::Text(word)),
+            Kind::Number | Kind::Integer => numbers.next().map(|&number| Cell::Number(number)),
+        };
+        Ok(std::iter::from_fn(move || {
+            let mut cells = vec![Cell::Integer(record.member)];
+            cells.extend(record.values.iter().copied().map(Cell::Number));
+            cells.push(Cell::Text(record.status.word()));
+            for column in self.results() {
+                cells.push(result(column)?);
+            }
+            if self.of == SweepOf::Run {
+                cells.push(Cell::Integer(record.steps));
+            }
+            cells.push(Cell::Text(&record.message));
+            Some(cells)
+        }))
+    }
+}
+
+/// The members of a sweep as a table.
+pub struct SweepTable<'s> {
+    /// Its columns.
+    pub sheet: &'s Sheet,
+    /// The finished members.
+    pub records: &'s dyn Records,
+}
+
+impl Rows for SweepTable<'_> {
+    fn columns(&self) -> Vec<Column> {
+        self.sheet.columns().to_vec()
+    }
+
+    fn count(&self) -> Option<u64> {
+        None
+    }
+
+    fn each(&self, take: Take<'_>) -> io::Result<()> {
+        for record in self.records.records()? {
+            self.sheet.rows(&record?)?.try_for_each(|row| take(&row))?;
+        }
+        Ok(())
+    }
+}

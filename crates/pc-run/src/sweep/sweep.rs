@@ -1,0 +1,288 @@
+//! A sweep: one model for many values of parameters and starts.
+//!
+//! ```text
+//! Design ─ values of a member ─► Work ─ its motion, eigenvalues or properties ─► Record ─► Journal ─► table
+//!          on all cores, by pc_solve::Ensemble                       in the order of the members
+//! ```
+//! The journal is the only link between a member and the table, so a sweep may end at any moment and continue later.
+
+use std::num::NonZeroUsize;
+use std::ops::{ControlFlow, Range};
+use std::path::Path;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use pc_model::{Category, Model};
+use pc_solve::{Deadline, Ending, Ensemble, Panicked};
+
+use super::checks::Checks;
+use super::design::{Design, Variation};
+use super::error::SweepError;
+use super::journal::{Journal, Tally};
+use super::linearizations::Linearizations;
+use super::motions::Motions;
+use super::of::SweepOf;
+use super::record::Record;
+use super::shard::Shard;
+use super::sheet::Sheet;
+use super::work::Work;
+use super::{picture, shards};
+use crate::error::RunError;
+use crate::linear::state::StateChoice;
+use crate::motion::identity::{self, Identity};
+use crate::motion::remarks::say_dropped;
+use crate::observer::Observer;
+use crate::plan::plan::Plan;
+use crate::plan::wishes::Wishes;
+
+/// Bytes of finished members that may wait for an earlier one.
+const WAITING: usize = 64 << 20;
+/// Finished members that may wait for an earlier one.
+const MOST_WAITING: usize = 4096;
+
+/// What is found of each member.
+#[derive(Clone, Debug, Default)]
+pub struct SweepWishes {
+    /// What a sweep finds.
+    pub of: SweepOf,
+    /// How motions are integrated; their rows are wanted where `samples` are, else the last with the drifts.
+    pub run: Wishes,
+    /// The state of linearizations.
+    pub state: StateChoice,
+    /// The number of threads; else one for each core. The result is the same for any.
+    pub threads: Option<NonZeroUsize>,
+}
+
+/// A sweep that is about to begin.
+pub struct Sweep {
+    title: String,
+    deadline: Deadline,
+    work: Box<dyn Work>,
+    sheet: Sheet,
+    threads: Option<NonZeroUsize>,
+    members: u64,
+    is_random: bool,
+    /// How many values each quantity of a grid has.
+    counts: Vec<u64>,
+    /// What the result depends on.
+    header: Identity,
+}
+
+/// The members of a sweep that were computed.
+#[derive(Clone, Debug)]
+pub struct Swept {
+    /// How many were finished before.
+    pub before: u64,
+    /// All of them, by how they ended.
+    pub tally: Tally,
+    /// The time it took.
+    pub wall: Duration,
+}
+
+impl Sweep {
+    /// The sweep of a model, whose names in `set` are not varied.
+    ///
+    /// # Errors
+    /// [`RunError`] if the text of the model is wrong, or the work is not defined for it.
+    pub fn new(
+        model: Model,
+        variation: &Variation,
+        set: &[&str],
+        wishes: &SweepWishes,
+        observer: &dyn Observer,
+    ) -> Result<Sweep, RunError> {
+        let design = Design::new(&model, variation, set)?;
+        let (members, names) = (design.members(), design.names());
+        let (title, deadline) = (model.title().to_owned(), model.budget().deadline().clone());
+        let (work, depends_on) = begun(wishes, model, design, observer)?;
+        let sheet = Sheet::new(wishes.of, &names, work.members().columns());
+        Ok(Sweep {
+            title,
+            deadline,
+            work,
+            sheet,
+            threads: wishes.threads,
+            members,
+            is_random: variation.samples.is_some(),
+            counts: variation.vary.iter().map(|vary| vary.values.count()).collect(),
+            header: header(depends_on, variation, wishes),
+        })
+    }
+
+    /// Compares the first member, one in the middle and the last with a second derivation of each.
+    ///
+    /// # Errors
+    /// [`RunError::Verify`] if that disagrees.
+    pub fn vouched(&self) -> Result<(), RunError> {
+        self.work.vouched()
+    }
+
+    /// The title of the model.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The columns of its table.
+    pub fn sheet(&self) -> &Sheet {
+        &self.sheet
+    }
+
+    /// Whether the members are drawn.
+    pub fn is_random(&self) -> bool {
+        self.is_random
+    }
+
+    /// Labelled lines on the work.
+    pub fn said(&self) -> Vec<(&'static str, String)> {
+        self.work.said()
+    }
+
+    /// What is to be said of the work that was done, behind the time it took.
+    pub fn done(&self) -> String {
+        self.work.done()
+    }
+
+    /// An error unless a picture of these columns can be drawn.
+    ///
+    /// # Errors
+    /// [`SweepError::Drawn`]
+    pub fn drawable(&self, columns: &[String]) -> Result<(), SweepError> {
+        picture::check(&self.sheet, columns, &self.counts, self.is_random).map_err(SweepError::Drawn)
+    }
+
+    /// The journal beside the table with this path: a new one, or the one that the same sweep, or
+    /// the same shard of it, has left.
+    ///
+    /// # Errors
+    /// [`SweepError`] if it belongs to another sweep or is in use.
+    pub fn journal(&self, table: &Path, shard: Option<Shard>) -> Result<Journal, SweepError> {
+        match shard {
+            Some(shard) => {
+                let header = self.header.clone();
+                let header = shards::described(header, shard, self.members, &self.title, &self.sheet);
+                Journal::open(shard.beside(table), shard, &header)
+            }
+            None => Journal::open(Journal::beside(table), Shard::ALL, &self.header),
+        }
+    }
+
+    /// Computes the members that the journal does not have.
+    ///
+    /// # Errors
+    /// [`RunError`]; finished members are kept.
+    pub fn run(&self, journal: &mut Journal, observer: &dyn Observer) -> Result<Swept, RunError> {
+        let shard = journal.shard();
+        let (members, before) = (shard.members(self.members), journal.tally().done);
+        let start = Instant::now();
+        let mut progress = observer.members(before, members);
+        let mut kept = Ok(());
+        let ending = self.each(shard, before..members, observer, &mut |place, record| {
+            kept = self.sheet.check(&record).map_err(SweepError::from).and_then(|()| journal.append(&record));
+            progress(place + 1);
+            if kept.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        drop(progress);
+        kept?;
+        let done = journal.tally().done;
+        if ending? == Ending::Stopped && done < members {
+            return Err(match self.deadline.passed() {
+                Some(limit) if !observer.is_stopped() => SweepError::Ended { done, members, limit },
+                _ => SweepError::Interrupted { done, members },
+            }
+            .into());
+        }
+        Ok(Swept { before, tally: journal.tally().clone(), wall: start.elapsed() })
+    }
+
+    /// The records of the members of a shard at these places, in their order, until `take` breaks.
+    fn each(
+        &self,
+        shard: Shard,
+        places: Range<u64>,
+        observer: &dyn Observer,
+        take: &mut dyn FnMut(u64, Record) -> ControlFlow<()>,
+    ) -> Result<Ending, SweepError> {
+        let row = 8 * self.work.members().columns().len() * self.work.rows();
+        let window = NonZeroUsize::new((WAITING / row.max(1)).min(MOST_WAITING)).unwrap_or(NonZeroUsize::MIN);
+        let mut ensemble = Ensemble::new().window(window).stopped_by(observer.stop());
+        if let Some(threads) = self.threads {
+            ensemble = ensemble.threads(threads);
+        }
+        let mut consume = |place, record: Result<Option<_>, Panicked>| {
+            let record = record.unwrap_or_else(|panicked| {
+                Some(self.work.members().panicked(shard.member(place), &panicked.message))
+            });
+            // A member without a record was interrupted, or ended by a limit.
+            let Some(record) = record else { return ControlFlow::Break(()) };
+            match take(place, record) {
+                ControlFlow::Continue(()) if !observer.is_stopped() => ControlFlow::Continue(()),
+                _ => ControlFlow::Break(()),
+            }
+        };
+        Ok(self.work.records(&ensemble, shard, places, &mut consume)?)
+    }
+}
+
+/// The work that is asked for, with what it depends on.
+fn begun(
+    wishes: &SweepWishes,
+    model: Model,
+    design: Design,
+    observer: &dyn Observer,
+) -> Result<(Box<dyn Work>, Identity), RunError> {
+    Ok(match wishes.of {
+        SweepOf::Run => {
+            look(&model, observer)?;
+            let plan = Plan::of(&model, &wishes.run)?;
+            let identity = identity::of_motion(&model, &plan);
+            let all_rows = wishes.run.samples.is_some();
+            (Box::new(Motions::new(model, design, plan, all_rows, threads(wishes))?), identity)
+        }
+        SweepOf::Linearize => {
+            let state = &wishes.state;
+            let identity = identity::of_work(&model, Linearizations::depends_on(state));
+            (Box::new(Linearizations::new(model, design, state, observer)?), identity)
+        }
+        SweepOf::Check => {
+            look(&model, observer)?;
+            let identity = identity::of_work(&model, []);
+            (Box::new(Checks::new(model, design)), identity)
+        }
+    })
+}
+
+fn threads(wishes: &SweepWishes) -> usize {
+    let available = || thread::available_parallelism().ok();
+    wishes.threads.or_else(available).map_or(1, NonZeroUsize::get)
+}
+
+/// An error unless the text of the model is right. A model that is inconsistent only for its
+/// parameter values may be consistent in a member.
+fn look(model: &Model, observer: &dyn Observer) -> Result<(), RunError> {
+    let graph = model.graph();
+    match model.assemble(&graph) {
+        Ok(assembly) => {
+            say_dropped(&assembly, observer);
+            Ok(())
+        }
+        Err(error) if error.category() == Category::Inconsistent => Ok(()),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// What the result depends on.
+fn header(depends_on: Identity, variation: &Variation, wishes: &SweepWishes) -> Identity {
+    let list = |items: &mut dyn Iterator<Item = String>| items.collect::<Vec<_>>().join(" ");
+    let number = |number: Option<String>| number.unwrap_or_else(|| "none".to_owned());
+    let entries = [
+        ("--vary", list(&mut variation.vary.iter().map(ToString::to_string))),
+        ("--random", list(&mut variation.random.iter().map(ToString::to_string))),
+        ("--samples", number(variation.samples.map(|samples| samples.to_string()))),
+        ("--seed", variation.seed.to_string()),
+        ("--rows", number(wishes.run.samples.map(|rows| rows.to_string()))),
+    ];
+    let mut header = depends_on;
+    header.insert(0, ("--of".to_owned(), wishes.of.word().to_owned()));
+    header.extend(entries.map(|(name, value)| (name.to_owned(), value)));
+    header
+}

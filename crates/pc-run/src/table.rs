@@ -1,0 +1,14 @@
+//! Tables, each format with one writer for motions, sweeps and linearizations.
+//!
+//! `rows` are a table as formats see it, `array` is a matrix with a name; `csv`, `json`, `npz`, `parquet` and `mat` are the formats, among
+//! which the name of a `file` chooses.
+
+pub mod array;
+pub mod csv;
+pub mod file;
+pub(crate) mod json;
+pub(crate) mod mat;
+pub(crate) mod npz;
+#[cfg(feature = "parquet")]
+pub(crate) mod parquet;
+pub mod rows;
