@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::error::Error;
 use crate::model::renewed;
-use crate::plan::Plan;
+use crate::plan::{Wished, options};
 use crate::system::SystemCore;
 use crate::task::attended;
 
@@ -43,11 +43,13 @@ impl DenseCore {
 #[pymethods]
 impl SystemCore {
     /// The motion to `end`, or to a terminal event before.
-    fn dense(&self, py: Python<'_>, end: f64, plan: Plan) -> PyResult<DenseCore> {
-        let (mut model, mut flow) = self.now();
+    fn dense(&self, py: Python<'_>, end: f64, wished: Wished) -> PyResult<DenseCore> {
+        let (mut model, derived) = self.now();
         let cancel = renewed(&mut model);
         let (t_start, dim) = (self.inventory.t_start, self.dim());
-        let options = plan.options((&model, &mut flow), (t_start, end), &cancel)?;
+        let plan = wished.plan(&model, self.variables, &cancel)?;
+        let mut flow = derived.flow.clone();
+        let options = options(&plan, &mut flow);
         let work = move || {
             deep(|| {
                 let solve = Solve::new(&mut flow.motion, t_start, &flow.start);

@@ -5,7 +5,9 @@ use std::error::Error as _;
 use pc_mech::{Failure, MechError};
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_report::ReportError;
-use pc_solve::{EnsembleError, InputError, SolveError};
+use pc_run::sweep::error::SweepError;
+use pc_run::{RunError, chain};
+use pc_solve::{InputError, SolveError};
 use pc_verify::VerifyError;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -32,11 +34,13 @@ pub(crate) enum Error {
     #[error(transparent)]
     Report(#[from] ReportError),
     #[error(transparent)]
+    Run(#[from] RunError),
+    #[error(transparent)]
     Solve(#[from] SolveError),
     #[error(transparent)]
     Input(#[from] InputError),
     #[error(transparent)]
-    Ensemble(#[from] EnsembleError),
+    Sweep(#[from] SweepError),
     #[error("{what} is `{given}`; choose one of {}", known.join(", "))]
     Choice { what: &'static str, given: String, known: Vec<&'static str> },
     #[error("{what} has {given} numbers instead of {expected}")]
@@ -47,24 +51,10 @@ pub(crate) enum Error {
     Unsupported { what: &'static str, why: &'static str },
     #[error("another thread is setting values of this system")]
     Busy,
-    #[error("`{name}({first}, {second})` is no distribution")]
+    #[error("`{name}({first}, {second})` is not a valid distribution")]
     Law { name: String, first: f64, second: f64 },
-    #[error("this is an error of the program, which a report would help to mend: {message}")]
+    #[error("internal error; please report it: {message}")]
     Panic { message: String },
-}
-
-/// An error with its causes, in one line each.
-pub(crate) fn chain(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut source = error.source();
-    while let Some(error) = source {
-        let cause = error.to_string();
-        if !text.ends_with(&cause) {
-            text += &format!("; because: {cause}");
-        }
-        source = error.source();
-    }
-    text
 }
 
 /// A class of `chetaev._errors`.
@@ -98,6 +88,23 @@ fn of_model(py: Python<'_>, error: &ModelError) -> PyErr {
     }
 }
 
+/// In the words of the package, where the program has its own.
+fn of_run(py: Python<'_>, error: &RunError) -> PyErr {
+    match error {
+        RunError::Model(error) => of_model(py, error),
+        RunError::Verify(error) => match &**error {
+            VerifyError::Model(error) => of_model(py, error),
+            VerifyError::Disagreement(_) => raised(py, "DisagreementError", error.to_string()),
+            _ => raised(py, "ChetaevError", chain(error.as_ref())),
+        },
+        RunError::Tolerance(unknown) => raised(py, "UnknownNameError", unknown.to_string()),
+        RunError::Sensitivities(unknown) => raised(py, "UnknownNameError", unknown.to_string()),
+        RunError::NoEnd { .. } => PyValueError::new_err("the text says no end of time: give t_end"),
+        RunError::EndIsStart { t } => PyValueError::new_err(format!("the end t = {t} is the start")),
+        other => raised(py, "ChetaevError", chain(other)),
+    }
+}
+
 impl From<Error> for PyErr {
     fn from(error: Error) -> PyErr {
         Python::attach(|py| match &error {
@@ -123,7 +130,11 @@ impl From<Error> for PyErr {
             | Error::Law { .. }
             | Error::Solve(SolveError::Input(_))
             | Error::Input(_) => PyValueError::new_err(chain(&error)),
-            Error::Ensemble(_) | Error::Panic { .. } => PyRuntimeError::new_err(chain(&error)),
+            Error::Sweep(SweepError::UnknownValue(unknown)) => {
+                raised(py, "UnknownNameError", unknown.to_string())
+            }
+            Error::Run(error) => of_run(py, error),
+            Error::Sweep(_) | Error::Panic { .. } => PyRuntimeError::new_err(chain(&error)),
             Error::Solve(_) => raised(py, "IntegrationError", chain(&error)),
         })
     }

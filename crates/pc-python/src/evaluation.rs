@@ -108,7 +108,7 @@ impl SystemCore {
         let state: Vec<f64> = y.as_array().iter().copied().collect();
         self.check_length(state.len())?;
         let mut values = vec![f64::NAN; quantity.shape.iter().product()];
-        let outcome = (quantity.evaluate)(&mut self.state().flow, t, &state, &mut values);
+        let outcome = (quantity.evaluate)(&mut self.state().derived.flow, t, &state, &mut values);
         outcome.map_err(Error::from)?;
         if quantity.shape.is_empty() {
             return Ok(values[0].into_pyobject(y.py())?.into_any());
@@ -294,7 +294,7 @@ impl SystemCore {
                         &mut many[..]
                     }
                 };
-                let outcome = self.state().flow.motion.rhs(t, y, rates);
+                let outcome = self.state().derived.flow.motion.rhs(t, y, rates);
                 outcome.map_err(Error::from)?;
                 return Ok(PyArray1::from_slice(array.py(), rates).into_any());
             }
@@ -318,7 +318,7 @@ impl SystemCore {
     fn jac_sparsity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
         let n = self.dim();
         let mut entries = vec![true; n * n];
-        if let Some(pattern) = self.state().flow.motion.sparsity() {
+        if let Some(pattern) = self.state().derived.flow.motion.sparsity() {
             entries.fill(false);
             for j in 0..n {
                 for &i in pattern.column(j) {

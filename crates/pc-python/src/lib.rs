@@ -26,8 +26,6 @@ use pyo3::prelude::*;
 /// The native part of the package.
 #[pymodule]
 mod _native {
-    use pc_model::document::Simulation;
-    use pc_solve::Method;
     use pyo3::prelude::*;
 
     #[pymodule_export]
@@ -43,9 +41,6 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        module.add("SAMPLES", Simulation::ROWS)?;
-        module.add("RTOL", Simulation::RELATIVE_TOLERANCE)?;
-        module.add("METHOD", Method::default().name())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

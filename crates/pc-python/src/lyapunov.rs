@@ -1,11 +1,12 @@
 //! Lyapunov exponents of a motion.
 
 use pc_model::deep;
+use pc_run::plan::plan::Plan;
 use pc_solve::{LyapunovOptions, lyapunov_exponents};
 use pyo3::prelude::*;
 
 use crate::model::renewed;
-use crate::plan::Plan;
+use crate::plan::{Wished, options};
 use crate::system::SystemCore;
 use crate::task::attended;
 
@@ -18,14 +19,16 @@ impl SystemCore {
         count: usize,
         interval: f64,
         intervals: (u32, u32),
-        plan: Plan,
+        wished: Wished,
     ) -> PyResult<(Vec<f64>, Vec<f64>)> {
-        let (mut model, mut flow) = self.now();
+        let (mut model, derived) = self.now();
         let cancel = renewed(&mut model);
         let t_start = self.inventory.t_start;
         let (intervals, transient) = intervals;
         let end = t_start + interval * f64::from(intervals.saturating_add(transient));
-        let options = plan.options((&model, &mut flow), (t_start, end), &cancel)?;
+        let plan = wished.plan(&model, self.variables, &cancel)?;
+        let mut flow = derived.flow.clone();
+        let options = options(&Plan { t_end: end, ..plan }, &mut flow);
         let work = move || {
             deep(|| {
                 let wanted = LyapunovOptions::new(count, interval, intervals).transient(transient);

@@ -1,25 +1,32 @@
-//! The settings of an integration.
+//! What Python wishes of a run.
 
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 use pc_expr::{Cancel, Deadline, Limits};
 use pc_model::document::AbsoluteTolerance;
-use pc_model::{Flow, Model};
-use pc_solve::{Accumulation, Method, Options, Tolerance};
+use pc_model::{Flow, Model, Variables};
+use pc_run::plan::plan::Plan;
+use pc_run::plan::wishes::Wishes;
+use pc_solve::{Method, Options};
 use pyo3::prelude::*;
 
 use crate::error::Error;
 
-/// Method, tolerances and limits, as a mapping of Python has them.
+/// What is wished, as a mapping of Python has it; None for what is that of the text, or else the default.
 #[derive(Clone, FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Plan {
-    method: String,
-    rtol: f64,
+pub(crate) struct Wished {
+    t_end: Option<f64>,
+    samples: Option<usize>,
+    times: Option<Vec<f64>>,
+    method: Option<String>,
+    rtol: Option<f64>,
     atol: Option<Absolute>,
     max_step: Option<f64>,
     samples_per_step: Option<u32>,
     accumulation: Option<f64>,
+    sensitivities: Vec<String>,
     limit_time: Option<f64>,
 }
 
@@ -42,40 +49,45 @@ impl Absolute {
     }
 }
 
-impl Plan {
-    /// The options of an integration of the flow of a model over a span of time, which `cancel` ends.
+impl Wished {
+    /// The plan of a run of a model in a form, which `cancel` ends.
     ///
     /// # Errors
-    /// [`Error::Choice`] for an unknown method, [`Error::Start`] for a tolerance of what is no component of the state.
-    pub(crate) fn options(
-        &self,
-        (model, flow): (&Model, &mut Flow),
-        span: (f64, f64),
-        cancel: &Cancel,
-    ) -> Result<Options, Error> {
-        let given = self.atol.as_ref().map_or_else(AbsoluteTolerance::default, Absolute::given);
-        let given = model.absolute_tolerance(given)?;
-        let absolute = Tolerance::each(flow.absolute_tolerances(&given, span, self.rtol));
-        let method = Method::named(&self.method).ok_or_else(|| Error::Choice {
-            what: "the method",
-            given: self.method.clone(),
-            known: Method::ALL.map(Method::name).to_vec(),
-        })?;
-        let time = self.limit_time.and_then(|seconds| std::time::Duration::try_from_secs_f64(seconds).ok());
+    /// [`Error::Choice`] for an unknown method, and those of [`Plan::of`].
+    pub(crate) fn plan(&self, model: &Model, form: Variables, cancel: &Cancel) -> Result<Plan, Error> {
+        let method = self.method.as_deref().map(|given| {
+            Method::named(given).ok_or_else(|| Error::Choice {
+                what: "the method",
+                given: given.to_owned(),
+                known: Method::ALL.map(Method::name).to_vec(),
+            })
+        });
+        let wishes = Wishes {
+            form: Some(form),
+            t_end: self.t_end,
+            samples: self.samples,
+            times: self.times.clone(),
+            rtol: self.rtol,
+            atol: self.atol.as_ref().map_or_else(AbsoluteTolerance::default, Absolute::given),
+            max_step: self.max_step,
+            max_steps: None,
+            samples_per_step: self.samples_per_step,
+            accumulation: self.accumulation,
+            method: method.transpose()?,
+            sensitivities: self.sensitivities.clone(),
+        };
+        let time = self.limit_time.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
         let limits = Limits { cancel: cancel.clone(), time, ..Limits::default() };
-        let mut options = Options::new(method)
-            .relative_tolerance(self.rtol)
-            .absolute_tolerance(absolute)
-            .deadline(Deadline::new(&limits));
-        if let Some(parts) = self.samples_per_step {
-            options = options.samples_per_step(parts);
-        }
-        if let Some(within) = self.accumulation {
-            options = options.accumulation(Accumulation { within, ..Accumulation::default() });
-        }
-        if let Some(length) = self.max_step {
-            options = options.max_step(length);
-        }
-        Ok(options)
+        Ok(Plan { deadline: Deadline::new(&limits), ..Plan::of(model, &wishes)? })
     }
+
+    /// Whether there are derivatives by parameters.
+    pub(crate) fn differentiates(&self) -> bool {
+        !self.sensitivities.is_empty()
+    }
+}
+
+/// The options of an integration by a plan.
+pub(crate) fn options(plan: &Plan, flow: &mut Flow) -> Options {
+    plan.options(&plan.tolerances(flow))
 }

@@ -24,7 +24,7 @@ impl Function {
     fn at(&self, py: Python<'_>, t: f64, y: Vec<f64>) -> PyResult<f64> {
         let system = self.system.get();
         system.check_length(y.len())?;
-        let parameters = system.state().flow.motion.parameters().to_vec();
+        let parameters = system.state().derived.flow.motion.parameters().to_vec();
         let mut value = [f64::NAN];
         py.detach(|| {
             let mut function = self.value.lock().unwrap_or_else(PoisonError::into_inner);
@@ -68,7 +68,7 @@ impl SystemCore {
             let derived = self.derive(py, move |model| MassMatrix::of(model, variables))?;
             *self.mass.lock().unwrap_or_else(PoisonError::into_inner) = Some(derived);
         }
-        let parameters = self.state().flow.motion.parameters().to_vec();
+        let parameters = self.state().derived.flow.motion.parameters().to_vec();
         let mut known = self.mass.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(MassMatrix { entries, transform, size }) = &mut *known else {
             return Ok((0, Vec::new())); // it has just been derived, and nobody takes it away

@@ -1,128 +1,40 @@
 //! Many motions of one model, on all cores.
 
 use std::num::NonZeroUsize;
-use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use numpy::prelude::*;
 use numpy::{PyArray1, PyArray2};
-use pc_expr::{Cancel, Events};
-use pc_model::{Flow, Model, Prototype, Variables};
-use pc_solve::{Ending, Ensemble, Options, Solution, Solve, Stop, member_stream};
+use pc_model::deep;
+use pc_run::observer::{Observer, Progress};
+use pc_run::sweep::design::Design;
+use pc_run::sweep::law::{Law, LawError};
+use pc_run::sweep::record::Record;
+use pc_run::sweep::sweep::Sweep;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rand_distr::{Distribution, LogNormal, Normal, Uniform};
 
-use crate::error::{Error, chain};
+use crate::error::Error;
 use crate::model::renewed;
-use crate::plan::Plan;
-use crate::system::{SystemCore, derived};
+use crate::plan::Wished;
+use crate::system::SystemCore;
 use crate::task::attended;
 
-/// What all members have in common.
-struct Members {
-    model: Model,
-    variables: Variables,
-    prototype: Option<Arc<Prototype>>,
-    /// Each with whether it is a start value.
-    targets: Vec<(String, bool)>,
-    /// Of each member one after the other.
-    values: Vec<f64>,
-    t_start: f64,
-    times: Vec<f64>,
-    options: Options,
-    /// Whether all rows are wanted instead of the last.
-    all_rows: bool,
-    /// The names of the numbers in a row of each, after its time.
-    columns: Vec<String>,
+/// Python, waiting for a sweep.
+#[derive(Default)]
+struct Waiting {
+    stop: AtomicBool,
+    done: AtomicU64,
 }
 
-/// What is known of a member.
-struct Member {
-    status: &'static str,
-    message: String,
-    steps: u64,
-    /// Rows with their times in front, filled up where they were not reached.
-    rows: Vec<f64>,
-}
-
-impl Members {
-    fn rows(&self) -> usize {
-        if self.all_rows { self.times.len() } else { 1 }
+impl Observer for Waiting {
+    fn stop(&self) -> &AtomicBool {
+        &self.stop
     }
 
-    /// How many numbers a row has, with its time.
-    fn width(&self) -> usize {
-        1 + self.columns.len()
-    }
-
-    fn blank(&self, status: &'static str, message: String) -> Member {
-        Member { status, message, steps: 0, rows: vec![f64::NAN; self.rows() * self.width()] }
-    }
-
-    fn flow(&self, member: u64) -> Result<Flow, Error> {
-        let mut model = self.model.clone();
-        let values = self.values.chunks_exact(self.targets.len()).nth(member as usize).unwrap_or_default();
-        for ((name, is_start), &value) in self.targets.iter().zip(values) {
-            match is_start {
-                true => model.set_start(name, value)?,
-                false => model.set(name, value)?,
-            }
-        }
-        // Memory is each member's own, time that of all.
-        model.within(self.model.budget().beside());
-        if let Some(flow) = self.prototype.as_ref().and_then(|known| known.flow(&model, self.t_start)) {
-            return Ok(flow);
-        }
-        derived(&model, self.variables)
-    }
-
-    fn integrate(&self, member: u64, stop: &Stop<'_>) -> Member {
-        let mut flow = match self.flow(member) {
-            Ok(flow) => flow,
-            Err(error) => {
-                let message = match &error {
-                    Error::Model(error) => error.diagnostic().message.clone(),
-                    other => chain(other),
-                };
-                return self.blank("refused", message);
-            }
-        };
-        let own = flow.columns();
-        if own != self.columns {
-            let message = format!("its table has other columns than that of the system: {}", own.join(", "));
-            return self.blank("refused", message);
-        }
-        let observer = |_: f64, _: &[f64]| match stop.requested() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        };
-        let solve = Solve::new(&mut flow.motion, self.t_start, &flow.start).method(&self.options);
-        let (solution, error) = solve.events(&mut flow.events).follow(&self.times, observer);
-        let Solution { trajectory, ending, .. } = solution;
-        let (status, message) = match (&error, ending) {
-            (Some(error), _) => ("failed", chain(error)),
-            (None, Some(Ending::Event { event })) => ("event", flow.events.events()[event].name().to_owned()),
-            (None, _) => ("completed", String::new()),
-        };
-        let mut rows = Vec::with_capacity(self.rows() * self.width());
-        let mut put = |t: f64, y: &[f64]| {
-            rows.push(t);
-            rows.extend(flow.row(t, y));
-        };
-        match self.all_rows {
-            true => trajectory.iter().for_each(|(t, y)| put(t, y)),
-            false => {
-                let reached = error.as_ref().and_then(|error| error.reached()).or_else(|| trajectory.last());
-                if let Some((t, y)) = reached {
-                    put(t, y);
-                }
-            }
-        }
-        rows.truncate(self.rows() * self.width()); // a terminal event has a row of its own
-        rows.resize(self.rows() * self.width(), f64::NAN);
-        Member { status, message, steps: trajectory.statistics().steps, rows }
+    fn members(&self, _before: u64, _members: u64) -> Progress<'_, u64> {
+        Box::new(|done| self.done.store(done, Ordering::Relaxed))
     }
 }
 
@@ -132,92 +44,80 @@ pub(crate) fn draw<'py>(
     py: Python<'py>,
     laws: Vec<(String, f64, f64)>,
     seed: u64,
-    members: usize,
+    members: u64,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let mut values = Vec::with_capacity(laws.len() * members);
-    for member in 0..members as u64 {
-        let mut stream = member_stream(seed, member);
-        for (name, first, second) in &laws {
-            let refused = || Error::Law { name: name.clone(), first: *first, second: *second };
-            let known = || {
-                let known = vec!["normal", "lognormal", "uniform"];
-                Error::Choice { what: "the distribution", given: name.clone(), known }
-            };
-            let value = match name.as_str() {
-                "normal" => Normal::new(*first, *second).map(|law| law.sample(&mut stream)).ok(),
-                "lognormal" => LogNormal::new(*first, *second).map(|law| law.sample(&mut stream)).ok(),
-                "uniform" => Uniform::new_inclusive(*first, *second).map(|law| law.sample(&mut stream)).ok(),
-                _ => return Err(known().into()),
-            };
-            values.push(value.filter(|value: &f64| value.is_finite()).ok_or_else(refused)?);
+    let law = |(name, first, second): &(String, f64, f64)| match Law::of(name, *first, *second) {
+        Ok(law) if first.is_finite() && second.is_finite() => Ok(law),
+        Err(LawError::Unknown { .. }) => {
+            Err(Error::Choice { what: "the distribution", given: name.clone(), known: Law::NAMES.to_vec() })
         }
-    }
-    PyArray1::from_vec(py, values).reshape([members, laws.len()])
+        _ => Err(Error::Law { name: name.clone(), first: *first, second: *second }),
+    };
+    let laws = laws.iter().map(law).collect::<Result<Vec<_>, Error>>()?;
+    let values: Vec<f64> = (0..members).flat_map(|member| Law::draw(&laws, seed, member)).collect();
+    PyArray1::from_vec(py, values).reshape([members as usize, laws.len()])
+}
+
+/// All rows of a member, as many as of all others: a terminal event has a row of its own, and what was not reached is NaN.
+fn rows_of(record: &Record, rows: usize, width: usize) -> Vec<f64> {
+    let mut numbers = record.rows.clone(); // the drifts behind a single row are cut off
+    numbers.truncate(rows * width);
+    numbers.resize(rows * width, f64::NAN);
+    numbers
 }
 
 #[pymethods]
 impl SystemCore {
-    /// The motions of members whose `values` stand one after the other; `progress` is told now and then how many are done.
+    /// The motions of members whose `values` of the quantities stand one after the other; `progress` is told now and then how many are
+    /// done. Where it is to be verified, the first member, one in the middle and the last are compared with a second derivation.
     #[expect(clippy::too_many_arguments, reason = "those of Python")]
     fn ensemble<'py>(
         &self,
         py: Python<'py>,
-        targets: Vec<(String, bool)>,
+        names: Vec<String>,
         values: Vec<f64>,
-        times: Vec<f64>,
-        plan: Plan,
+        wished: Wished,
         all_rows: bool,
         threads: Option<NonZeroUsize>,
+        verify: Option<bool>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (mut model, mut flow) = self.now();
-        let cancel: Cancel = renewed(&mut model);
-        let t_start = self.inventory.t_start;
-        let end = times.last().copied().unwrap_or(t_start);
-        let options = plan.options((&model, &mut flow), (t_start, end), &cancel)?;
-        let members = (values.len() / targets.len().max(1)) as u64;
-        let work = Members {
-            model,
-            variables: self.variables,
-            prototype: self.prototype.clone(),
-            targets,
-            values,
-            t_start,
-            times,
-            options,
-            all_rows,
-            columns: self.inventory.columns.clone(),
+        let (mut model, derived) = self.now();
+        let cancel = renewed(&mut model);
+        let plan = wished.plan(&model, self.variables, &cancel)?;
+        let rows = if all_rows { plan.samples } else { 1 };
+        let width = 1 + self.inventory.columns.len();
+        let verify = verify.unwrap_or(self.inventory.verify);
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let design = Design::listed(&model, &names, values).map_err(Error::from)?;
+        let waiting = Arc::new(Waiting::default());
+        let work = {
+            let waiting = Arc::clone(&waiting);
+            move || {
+                deep(|| {
+                    let sweep = Sweep::of_motions(model, design, (plan, all_rows), &derived, threads)?;
+                    if verify {
+                        sweep.vouched()?;
+                    }
+                    Ok(sweep.collect(&*waiting)?)
+                })
+            }
         };
-        let (rows, width) = (work.rows(), work.width());
-        let done = Arc::new(AtomicU64::new(0));
-        let counted = Arc::clone(&done);
         let tick = |py: Python<'_>| match &progress {
-            Some(progress) => progress.call1(py, (done.load(Ordering::Relaxed),)).map(drop),
+            Some(progress) => progress.call1(py, (waiting.done.load(Ordering::Relaxed),)).map(drop),
             None => Ok(()),
         };
-        let ended = cancel.clone();
-        let all = attended(py, &cancel, tick, move || {
-            let mut ensemble = Ensemble::new();
-            if let Some(threads) = threads {
-                ensemble = ensemble.threads(threads);
-            }
-            let mut all: Vec<Member> = Vec::new();
-            let consume = |_: u64, member: Result<Member, pc_solve::Panicked>| {
-                all.push(member.unwrap_or_else(|panic| work.blank("panicked", panic.message)));
-                counted.fetch_add(1, Ordering::Relaxed);
-                if ended.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            };
-            ensemble.map(0..members, |member, stop| work.integrate(member, stop), consume)?;
-            Ok(all)
+        let all = attended(py, &cancel, tick, work).inspect_err(|_| {
+            waiting.stop.store(true, Ordering::Relaxed);
         })?;
         if let Some(progress) = &progress {
             progress.call1(py, (all.len(),))?;
         }
         let result = PyDict::new(py);
-        result.set_item("status", all.iter().map(|member| member.status).collect::<Vec<_>>())?;
+        result.set_item("status", all.iter().map(|member| member.status.word()).collect::<Vec<_>>())?;
         result.set_item("message", all.iter().map(|member| &member.message).collect::<Vec<_>>())?;
         result.set_item("steps", all.iter().map(|member| member.steps).collect::<Vec<_>>())?;
-        let values: Vec<f64> = all.iter().flat_map(|member| &member.rows).copied().collect();
+        let values: Vec<f64> = all.iter().flat_map(|member| rows_of(member, rows, width)).collect();
         result.set_item("values", PyArray1::from_vec(py, values).reshape([all.len(), rows, width])?)?;
         Ok(result)
     }

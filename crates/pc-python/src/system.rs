@@ -1,9 +1,11 @@
 //! Equations of motion, compiled, with the values of parameters and start.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
 use pc_expr::Events;
-use pc_model::{Flow, Model, Prototype, Variables, deep};
+use pc_model::{Flow, Model, Variables, deep};
+use pc_run::motion::derived::Derived;
 use pc_verify::Outlet;
 use pyo3::prelude::*;
 
@@ -16,8 +18,6 @@ use crate::task::attended;
 #[pyclass(frozen, subclass, module = "chetaev._native")]
 pub(crate) struct SystemCore {
     pub(crate) variables: Variables,
-    /// What other values make no difference to; none where they may.
-    pub(crate) prototype: Option<Arc<Prototype>>,
     pub(crate) inventory: Inventory,
     state: Mutex<State>,
     /// Held while values are set, which may take a derivation. Nobody waits for it, perhaps with the interpreter's lock in hand.
@@ -25,6 +25,8 @@ pub(crate) struct SystemCore {
     /// Flows for calls that take long, with the version of the values that they have.
     spare: Mutex<Vec<(u64, Flow)>>,
     pub(crate) mass: Mutex<Option<MassMatrix>>,
+    /// Whether a motion has been compared with a second derivation.
+    pub(crate) verified: AtomicBool,
 }
 
 /// What never changes.
@@ -38,13 +40,13 @@ pub(crate) struct Inventory {
     pub(crate) columns: Vec<String>,
     pub(crate) shown: usize,
     /// Whether equations are compared with a second derivation before they leave.
-    verify: bool,
+    pub(crate) verify: bool,
 }
 
 /// What changes with the values.
 pub(crate) struct State {
     pub(crate) model: Model,
-    pub(crate) flow: Flow,
+    pub(crate) derived: Derived,
     version: u64,
 }
 
@@ -60,17 +62,17 @@ impl SystemCore {
         let state = self.state();
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         spare.retain(|(version, _)| *version == state.version);
-        spare.pop().unwrap_or_else(|| (state.version, state.flow.clone()))
+        spare.pop().unwrap_or_else(|| (state.version, state.derived.flow.clone()))
     }
 
     pub(crate) fn put_back(&self, flow: (u64, Flow)) {
         self.spare.lock().unwrap_or_else(PoisonError::into_inner).push(flow);
     }
 
-    /// The model with the values as they are now, and its flow.
-    pub(crate) fn now(&self) -> (Model, Flow) {
+    /// The model with the values as they are now, and its equations.
+    pub(crate) fn now(&self) -> (Model, Derived) {
         let state = self.state();
-        (state.model.clone(), state.flow.clone())
+        (state.model.clone(), state.derived.clone())
     }
 
     /// Does work that derives from the model with the values as they are now.
@@ -89,12 +91,6 @@ impl SystemCore {
     }
 }
 
-/// The flow of a model, derived anew.
-pub(crate) fn derived(model: &Model, variables: Variables) -> Result<Flow, Error> {
-    let graph = model.graph();
-    Ok(Flow::new(model, &model.assemble(&graph)?, variables)?)
-}
-
 #[pymethods]
 impl SystemCore {
     #[new]
@@ -107,8 +103,7 @@ impl SystemCore {
             deep(|| {
                 let graph = model.graph();
                 let assembly = model.assemble(&graph)?;
-                let flow = Flow::new(&model, &assembly, variables)?;
-                let prototype = Prototype::of(&model, &assembly, variables, flow.clone());
+                let derived = Derived::of(&model, &assembly, variables)?;
                 let t_start = assembly.t_start;
                 if verify {
                     vouched(&model, &assembly, Outlet::Equations(variables))?;
@@ -116,11 +111,11 @@ impl SystemCore {
                 }
                 drop(assembly);
                 drop(graph);
-                Ok((model, flow, prototype, t_start))
+                Ok((model, derived, t_start))
             })
         };
-        let (model, flow, prototype, t_start) = attended(py, &cancel, |_| Ok(()), derive)?;
-        let motion = &flow.motion;
+        let (model, derived, t_start) = attended(py, &cancel, |_| Ok(()), derive)?;
+        let (flow, motion) = (&derived.flow, &derived.flow.motion);
         let inventory = Inventory {
             names: motion.names().to_vec(),
             t_start,
@@ -131,15 +126,15 @@ impl SystemCore {
             shown: flow.names.len(),
             verify,
         };
-        let state = State { version: 0, model, flow };
+        let state = State { version: 0, model, derived };
         Ok(SystemCore {
             variables,
-            prototype: prototype.map(Arc::new),
             inventory,
             state: Mutex::new(state),
             setting: Mutex::new(()),
             spare: Mutex::new(Vec::new()),
             mass: Mutex::new(None),
+            verified: AtomicBool::new(false),
         })
     }
 
@@ -165,13 +160,13 @@ impl SystemCore {
     /// Names of the constraints that are kept by projection.
     #[getter]
     fn constraint_names(&self) -> Vec<String> {
-        self.state().flow.constraint_names()
+        self.state().derived.flow.constraint_names()
     }
 
     /// Names of the events.
     #[getter]
     fn event_names(&self) -> Vec<String> {
-        self.state().flow.events.events().iter().map(|event| event.name().to_owned()).collect()
+        self.state().derived.flow.events.events().iter().map(|event| event.name().to_owned()).collect()
     }
 
     /// The time at the start.
@@ -182,7 +177,7 @@ impl SystemCore {
 
     /// The state at the start.
     fn start_state(&self) -> Vec<f64> {
-        self.state().flow.start.clone()
+        self.state().derived.flow.start.clone()
     }
 
     /// The model with the values as they are now.
@@ -211,16 +206,12 @@ impl SystemCore {
         }
         let cancel = renewed(&mut model);
         let (variables, t_start) = (self.variables, self.inventory.t_start);
-        let flow = match self.prototype.as_ref().and_then(|prototype| prototype.flow(&model, t_start)) {
-            Some(flow) => flow,
-            None => {
-                let model = model.clone();
-                attended(py, &cancel, |_| Ok(()), move || deep(|| derived(&model, variables)))?
-            }
-        };
+        let (derived, known) = (self.state().derived.clone(), model.clone());
+        let work = move || deep(|| Ok(derived.renewed(&known, variables, t_start)?));
+        let derived = attended(py, &cancel, |_| Ok(()), work)?;
         let mut state = self.state();
         state.model = model;
-        state.flow = flow;
+        state.derived = derived;
         state.version += 1;
         Ok(())
     }

@@ -24,14 +24,15 @@ t_end = 1.0
 
 def test_all_combinations_in_order() -> None:
     system = chetaev.Model.builtin("heavy-top-lagrange").system()
-    sweep = system.sweep({"mg": [0.5, 1.0], "ω3": [2.0, 3.0, 4.0]}, t_end=1.0, rows=5)
+    # By dop853 sixteen members go side by side, with other last digits than one alone.
+    sweep = system.sweep({"mg": [0.5, 1.0], "ω3": [2.0, 3.0, 4.0]}, t_end=1.0, rows=5, method="adams")
     assert list(sweep["mg"]) == [0.5] * 3 + [1.0] * 3
     assert list(sweep["ω3(start)"]) == [2.0, 3.0, 4.0] * 2
     assert sweep["γ3"].shape == (6, 5) and (sweep["ω3"][:, 0] == sweep["ω3(start)"]).all()
     assert sweep.members == 6 and (sweep.steps > 0).all()
     for k in range(6):
         system.parameters["mg"], system.start["ω3"] = sweep["mg"][k], sweep["ω3(start)"][k]
-        assert (system.run(1.0, samples=5)["γ3"] == sweep["γ3"][k]).all()
+        assert (system.run(1.0, samples=5, method="adams")["γ3"] == sweep["γ3"][k]).all()
 
 
 def test_members_that_are_refused_say_why() -> None:
@@ -63,5 +64,5 @@ def test_wrong_sweeps_are_refused() -> None:
             system.sweep(**arguments)
     with pytest.raises(ValueError, match="choose one of normal"):
         system.sweep(random={"g": ("cauchy", 0, 1)}, members=2)
-    with pytest.raises(ValueError, match="no distribution"):
+    with pytest.raises(ValueError, match="not a valid distribution"):
         system.sweep(random={"g": ("uniform", 2, 1)}, members=2)

@@ -1,6 +1,6 @@
 //! The computation of a motion, from a plan to a finished run.
 //!
-//! In go a model and its plan, out comes a [`Run`](run::Run), by `integrate`. `checkpoints`, with their `identity` and `checkpoint_error`,
+//! In go a model and its plan, out comes a [`Run`](run::Run), by `integrate`, of equations that may have been `derived` before. `checkpoints`, with their `identity` and `checkpoint_error`,
 //! continue an interrupted run; `sensitivities` are derivatives by parameters, `estimate` the global
 //! errors; `streamed` is a motion whose rows are written at once. `verification` compares it with a second derivation, `remarks` are what to
 //! know of the equations. `lost_integral` finds, at some `step_states`, what was proved to be kept and is `lost`, `lost_inertia`
@@ -10,6 +10,7 @@
 
 pub mod checkpoint_error;
 pub mod checkpoints;
+pub mod derived;
 pub mod estimate;
 mod fine;
 pub(crate) mod identity;

@@ -9,7 +9,6 @@ use crate::args::options::{self, ModelArguments, VerifyArguments};
 use crate::args::steady::StateArguments;
 use crate::args::sweep;
 
-
 /// How a table of matrices is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum MatrixFormat {

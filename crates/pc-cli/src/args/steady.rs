@@ -33,7 +33,9 @@ impl StateArguments {
 fn at() -> impl TypedValueParser<Value = At> {
     by_word(At::ALL.map(|at| {
         let help = match at {
-            At::Steady => "The equilibrium or steady motion near the start: all but the cyclic coordinates rest",
+            At::Steady => {
+                "The equilibrium or steady motion near the start: all but the cyclic coordinates rest"
+            }
             At::Rest => "The equilibrium near the start with all quasi-velocities 0",
             At::Start => "The start, steady or not",
         };

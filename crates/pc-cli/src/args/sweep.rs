@@ -257,7 +257,10 @@ mod tests {
         for text in ["m=1:2:3", "m=0.001:10:5:log", "m=5,1,-2"] {
             assert_eq!(vary(text).map(|vary| vary.to_string()), Ok(text.to_owned()));
         }
-        assert_eq!(random("x=normal(0, 0.1)").map(|random| random.to_string()), Ok("x=normal(0,0.1)".to_owned()));
+        assert_eq!(
+            random("x=normal(0, 0.1)").map(|random| random.to_string()),
+            Ok("x=normal(0,0.1)".to_owned())
+        );
     }
 
     #[test]

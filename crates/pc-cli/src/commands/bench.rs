@@ -14,8 +14,8 @@ use crate::bench::kernels::Derived;
 use crate::bench::measure::interleave;
 use crate::bench::page::Figures;
 use crate::error::CliError;
-use crate::terminal::observer::Terminal;
 use crate::output::standard_output::print;
+use crate::terminal::observer::Terminal;
 use pc_run::motion::remarks::say_moved;
 
 /// Prints the times of derivations and evaluations.

@@ -5,8 +5,8 @@ use pc_print::{visible, visible_json};
 use crate::args::input;
 use crate::args::options::{CheckArguments, Format};
 use crate::error::CliError;
-use crate::terminal::observer::Terminal;
 use crate::output::standard_output::print;
+use crate::terminal::observer::Terminal;
 use pc_run::motion::remarks::say_moved;
 use pc_run::motion::verification::checked;
 

@@ -12,14 +12,14 @@ use pc_verify::Outlet;
 use crate::args::input;
 use crate::args::options::{EmitArguments, Lang};
 use crate::error::CliError;
+use crate::output::standard_output::print;
 use crate::terminal::observer::Terminal;
+use crate::terminal::text::say;
 use pc_run::files::error::FileError;
 use pc_run::files::place::{Place, file};
-use crate::output::standard_output::print;
-use pc_run::observer::Observer;
 use pc_run::motion::remarks::{choice, say_dropped, say_moved};
-use crate::terminal::text::say;
 use pc_run::motion::verification::vouched;
+use pc_run::observer::Observer;
 
 const NO_EVENTS: &str =
     "The events of the model are not part of this source: it has the equations between them.";

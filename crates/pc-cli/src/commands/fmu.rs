@@ -12,12 +12,12 @@ use crate::args::options::{EmitArguments, FmuMethod, FmuVersion};
 use crate::commands::emit::name;
 use crate::error::CliError;
 use crate::terminal::observer::Terminal;
+use crate::terminal::text::say;
 use pc_run::files::error::FileError;
 use pc_run::files::place::Place;
-use pc_run::observer::Observer;
 use pc_run::motion::remarks::{choice, say_dropped, say_moved};
-use crate::terminal::text::say;
 use pc_run::motion::verification::vouched;
+use pc_run::observer::Observer;
 
 /// Writes the FMU of a model, whole or not at all.
 ///

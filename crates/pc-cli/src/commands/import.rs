@@ -8,10 +8,10 @@ use pc_model::document::{read_bounded, read_file_bounded};
 use crate::args::options::ImportArguments;
 use crate::error::CliError;
 use crate::import::model_of_urdf;
-use pc_run::files::error::FileError;
-use pc_run::files::place::{Place, file};
 use crate::output::standard_output::print;
 use crate::terminal::text::say;
+use pc_run::files::error::FileError;
+use pc_run::files::place::{Place, file};
 
 /// Writes the text model of a robot in URDF.
 ///

@@ -10,10 +10,10 @@ use pc_expr::parse::nearest;
 use crate::args::command_line::Arguments;
 use crate::args::tools::ManArguments;
 use crate::error::CliError;
-use pc_run::files::error::FileError;
-use pc_run::files::place::{Place, file};
 use crate::output::standard_output::{self, print};
 use crate::terminal::text::say;
+use pc_run::files::error::FileError;
+use pc_run::files::place::{Place, file};
 
 /// Prints a page, or writes all of them into a directory.
 ///

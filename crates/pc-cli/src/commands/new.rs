@@ -8,10 +8,10 @@ use pc_model::document::SCHEMA;
 
 use crate::args::tools::NewArguments;
 use crate::error::CliError;
-use pc_run::files::error::FileError;
-use pc_run::files::place::{Place, file};
 use crate::output::standard_output::print;
 use crate::terminal::text::say;
+use pc_run::files::error::FileError;
+use pc_run::files::place::{Place, file};
 
 /// The file of the schema beside a model.
 const SCHEMA_FILE: &str = "pc-model.schema.json";

@@ -6,9 +6,9 @@ use pc_model::document::SCHEMA;
 
 use crate::args::tools::SchemaArguments;
 use crate::error::CliError;
+use crate::output::standard_output::print;
 use pc_run::files::error::FileError;
 use pc_run::files::place::{Place, file};
-use crate::output::standard_output::print;
 
 /// Writes the schema.
 ///
@@ -20,7 +20,9 @@ pub fn command(arguments: &SchemaArguments) -> Result<(), CliError> {
         None => print(|out| out.write_all(text)),
         Some(path) => {
             let place = Place::new(path).map_err(|source| FileError::no_place(path, source))?;
-            place.write(|out| out.write_all(text)).map_err(|source| FileError::cannot_write(path, source).into())
+            place
+                .write(|out| out.write_all(text))
+                .map_err(|source| FileError::cannot_write(path, source).into())
         }
     }
 }

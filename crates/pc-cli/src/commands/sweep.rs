@@ -75,7 +75,8 @@ pub(super) fn draw(
 pub(super) fn judged(tally: &Tally) -> Result<(), CliError> {
     match tally.others.first() {
         Some((_, _, first)) if tally.completed + tally.by_event == 0 => {
-            Err(RunError::from(SweepError::NoneCompleted { members: tally.done, first: first.clone() }).into())
+            Err(RunError::from(SweepError::NoneCompleted { members: tally.done, first: first.clone() })
+                .into())
         }
         _ => Ok(()),
     }

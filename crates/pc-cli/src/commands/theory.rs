@@ -7,8 +7,8 @@ use pc_verify::Outlet;
 use crate::args::input;
 use crate::args::options::TheoryArguments;
 use crate::error::CliError;
-use crate::terminal::observer::Terminal;
 use crate::output::standard_output::print;
+use crate::terminal::observer::Terminal;
 use pc_run::motion::remarks::{say_dropped, say_moved};
 use pc_run::motion::verification::vouched;
 

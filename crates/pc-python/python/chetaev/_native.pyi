@@ -8,9 +8,6 @@ import numpy.typing as npt
 from typing_extensions import disjoint_base
 
 __all__ = [
-    "METHOD",
-    "RTOL",
-    "SAMPLES",
     "DenseCore",
     "Function",
     "ModelCore",
@@ -21,10 +18,6 @@ __all__ = [
 ]
 
 __version__: str
-
-SAMPLES: int
-RTOL: float
-METHOD: str
 
 _Floats = npt.NDArray[np.float64]
 
@@ -96,21 +89,19 @@ class SystemCore:
     def energy(self, t: npt.ArrayLike, y: npt.ArrayLike) -> Any: ...
     def mass_entries(self, t: float, y: Sequence[float]) -> tuple[int, list[float]]: ...
     def poisson_bracket(self, f: str, g: str) -> Function: ...
-    def integrate(
-        self, times: Sequence[float], plan: dict[str, Any], sensitivities: Sequence[str], estimate: bool
-    ) -> _Outcome: ...
-    def dense(self, end: float, plan: dict[str, Any]) -> DenseCore: ...
+    def integrate(self, wished: dict[str, Any], estimate: bool, verify: bool | None) -> _Outcome: ...
+    def dense(self, end: float, wished: dict[str, Any]) -> DenseCore: ...
     def exponents(
-        self, count: int, interval: float, intervals: tuple[int, int], plan: dict[str, Any]
+        self, count: int, interval: float, intervals: tuple[int, int], wished: dict[str, Any]
     ) -> tuple[list[float], list[float]]: ...
     def ensemble(
         self,
-        targets: Sequence[tuple[str, bool]],
+        names: Sequence[str],
         values: Sequence[float],
-        times: Sequence[float],
-        plan: dict[str, Any],
+        wished: dict[str, Any],
         all_rows: bool,
         threads: int | None,
+        verify: bool | None,
         progress: Callable[[int], object] | None,
     ) -> _Swept: ...
     def animation_page(self, recorded: dict[str, Any]) -> str | None: ...

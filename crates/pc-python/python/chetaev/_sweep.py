@@ -110,16 +110,8 @@ def swept(
         names = tuple(random)
         laws = [(law, float(first), float(second)) for law, first, second in random.values()]
         values = _native.draw(laws, seed, members)
-    parameters, starts = set(system.parameters), set(system.start)
-    targets = []
-    for name in names:
-        if name not in parameters | starts:
-            known = ", ".join([*system.parameters, *system.start])
-            raise UnknownNameError(f"there is no `{name}` to vary; there are {known}")
-        targets.append((name, name not in parameters))
-    times = system._times(t_end, rows or 2, None)
-    plan = system._plan(settings)
-    all_rows = rows is not None
+    verify = settings.pop("verify", None)
+    wished = system._wished(t_end=t_end, samples=rows or 2, **settings)
     called, bar = None, None
     if progress:
         try:
@@ -129,11 +121,11 @@ def swept(
         bar = tqdm(total=len(values), unit="member")
         called = lambda done: bar.update(done - bar.n)  # noqa: E731
     try:
-        found = system.ensemble(
-            targets, values.ravel().tolist(), (times if all_rows else times[-1:]).tolist(), plan, all_rows, threads, called
-        )
+        all_rows = rows is not None
+        found = system.ensemble(list(names), values.ravel().tolist(), wished, all_rows, threads, verify, called)
     finally:
         if bar is not None:
             bar.close()
-    varied = {name + ("(start)" if is_start else ""): values[:, j] for j, (name, is_start) in enumerate(targets)}
+    parameters = set(system.parameters)
+    varied = {name if name in parameters else f"{name}(start)": values[:, j] for j, name in enumerate(names)}
     return Sweep(varied, system.columns, found)

@@ -182,39 +182,41 @@ class System(_native.SystemCore):
         """
         return Bracket(self, str(f), str(g))
 
-    def _plan(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """The settings of an integration: those given, else those of the text, else the defaults."""
-        written = self._model.simulation
-        plan: dict[str, Any] = {"method": _native.METHOD, "rtol": _native.RTOL, "atol": given.get("atol")}
-        if isinstance(plan["atol"], Mapping):
-            plan["atol"] = dict(plan["atol"])
-        for name in ("method", "rtol", "max_step", "samples_per_step", "accumulation"):
-            value = given.get(name)
-            plan[name] = plan.get(name) if value is None and written[name] is None else (
-                written[name] if value is None else value
-            )
-        plan["limit_time"] = given.get("limit_time")
-        return plan
-
-    def _times(self, t_end: float | None, samples: int | None, times: npt.ArrayLike | None) -> Floats:
+    def _wished(
+        self,
+        *,
+        t_end: float | None = None,
+        samples: int | None = None,
+        times: npt.ArrayLike | None = None,
+        method: str | None = None,
+        rtol: float | None = None,
+        atol: float | Mapping[str, float] | None = None,
+        max_step: float | None = None,
+        samples_per_step: int | None = None,
+        accumulation: float | None = None,
+        sensitivities: Sequence[str] = (),
+        limit_time: float | None = None,
+    ) -> dict[str, Any]:
+        """What is wished of an integration, as the native part takes it; None is that of the text, or else the default."""
         import numpy as np
 
-        if times is not None:
-            if t_end is not None or samples is not None:
-                raise ValueError("give either times, or t_end and samples")
-            return np.asarray(times, dtype=float)
-        end = self._model.simulation["t_end"] if t_end is None else float(t_end)
-        if end is None:
-            raise ValueError("the text says no end of time: give t_end")
-        if end == self.t0:
-            raise ValueError(f"the end t = {end} is the start")
-        count = samples or self._model.simulation["samples"] or _native.SAMPLES
-        if count < 2:
+        if times is not None and (t_end is not None or samples is not None):
+            raise ValueError("give either times, or t_end and samples")
+        if samples is not None and samples < 2:
             raise ValueError("a motion has at least 2 samples, its start and its end")
-        # As `pc run` spaces them, to the last bit.
-        spaced = self.t0 + (end - self.t0) * (np.arange(count) / (count - 1))
-        spaced[-1] = end
-        return spaced
+        return {
+            "t_end": None if t_end is None else float(t_end),
+            "samples": samples,
+            "times": None if times is None else np.asarray(times, dtype=float).tolist(),
+            "method": method,
+            "rtol": rtol,
+            "atol": dict(atol) if isinstance(atol, Mapping) else atol,
+            "max_step": max_step,
+            "samples_per_step": samples_per_step,
+            "accumulation": accumulation,
+            "sensitivities": list(sensitivities),
+            "limit_time": limit_time,
+        }
 
     def run(
         self,
@@ -232,6 +234,7 @@ class System(_native.SystemCore):
         sensitivities: Sequence[str] = (),
         estimate: bool = False,
         limit_time: float | None = None,
+        verify: bool | None = None,
     ) -> Motion:
         """Integrates the motion from the start.
 
@@ -267,6 +270,9 @@ class System(_native.SystemCore):
             accurate motion.
         limit_time : float, optional
             Seconds after which it ends with an error.
+        verify : bool, optional
+            Whether the motion is compared with a second derivation at its start and its end; the first motion of a system is
+            unless given, and none of a system with ``verify=False``.
 
         Returns
         -------
@@ -275,7 +281,10 @@ class System(_native.SystemCore):
         Raises
         ------
         IntegrationError
-            Where the integration cannot go on; its ``motion`` is what was reached.
+            Where the integration cannot go on, or the motion has lost an integral that it is proved to keep; its ``motion`` is
+            what was reached.
+        DisagreementError
+            Where the second derivation gives another motion.
 
         Examples
         --------
@@ -304,21 +313,23 @@ class System(_native.SystemCore):
                 sensitivities=sensitivities,
                 estimate=estimate,
                 limit_time=limit_time,
+                verify=verify,
             )
-        at = self._times(t_end, samples, times)
-        plan = self._plan(
-            {
-                "method": method,
-                "rtol": rtol,
-                "atol": atol,
-                "max_step": max_step,
-                "samples_per_step": samples_per_step,
-                "accumulation": accumulation,
-                "limit_time": limit_time,
-            }
+        wished = self._wished(
+            t_end=t_end,
+            samples=samples,
+            times=times,
+            method=method,
+            rtol=rtol,
+            atol=atol,
+            max_step=max_step,
+            samples_per_step=samples_per_step,
+            accumulation=accumulation,
+            sensitivities=sensitivities,
+            limit_time=limit_time,
         )
-        outcome = self.integrate(at.tolist(), plan, list(sensitivities), estimate)
-        motion = Motion(self, plan, outcome)
+        outcome = self.integrate(wished, estimate, verify)
+        motion = Motion(self, wished, outcome)
         if outcome["error"] is not None:
             raise IntegrationError(outcome["error"], motion)
         return motion
@@ -360,7 +371,8 @@ class System(_native.SystemCore):
         progress : bool
             Whether to show progress, by tqdm where it is installed.
         **settings
-            ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`.
+            ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`. The first member, one in the middle and the last are
+            compared with a second derivation unless ``verify=False``.
 
         Examples
         --------
@@ -391,8 +403,9 @@ class System(_native.SystemCore):
         """
         import numpy as np
 
-        plan = self._plan(settings)
-        exponents, history = self.exponents(count, float(interval), (intervals, transient), plan)
+        end = self.t0 + float(interval) * (intervals + transient)
+        wished = self._wished(t_end=end, **settings)
+        exponents, history = self.exponents(count, float(interval), (intervals, transient), wished)
         return Lyapunov(np.array(exponents), np.array(history).reshape(-1, count))
 
     def report(self, motion: Motion | None = None) -> Page:

@@ -51,9 +51,8 @@ impl Compared {
         let b = run(models[1], &second, &besides)?;
         let mut comparison = Comparison::new(&a, &b, None, question)?;
         if !comparison.is_same() {
-            let finer = |model, plan: &Plan, of: &Run| {
-                run(model, &plan.finer(&of.tolerances), &Besides::default())
-            };
+            let finer =
+                |model, plan: &Plan, of: &Run| run(model, &plan.finer(&of.tolerances), &Besides::default());
             // Where smaller tolerances cannot be met, there is nothing to tell errors by.
             if let Ok(c) = finer(models[0], &first, &a)
                 && let Ok(d) = finer(models[1], &second, &b)

@@ -141,7 +141,7 @@ fn column(run: &Run, name: &str) -> Vec<f64> {
 
 /// How the ends differ.
 fn ends(first: &Run, second: &Run, allowance: Allowance) -> Option<String> {
-    let (a, b) = (reached(first), reached(second));
+    let (a, b) = (first.reached(), second.reached());
     let is_event = |run: &Run| matches!(run.ending, Ending::Event { .. });
     let allowed = if is_event(first) && is_event(second) { allowance.at(a.abs().max(b.abs())) } else { 0.0 };
     if is_event(first) == is_event(second) && (a - b).abs() <= allowed {
@@ -152,19 +152,10 @@ fn ends(first: &Run, second: &Run, allowance: Allowance) -> Option<String> {
 
 /// How a motion ended, in words.
 pub(super) fn ending(run: &Run) -> String {
-    let t = reached(run);
+    let t = run.reached();
     match &run.ending {
         Ending::Event { name } => format!("is ended by the event {name} at t = {t}"),
         Ending::Completed => format!("goes on to t = {t}"),
         ending => format!("{} at t = {t}", ending.word()),
-    }
-}
-
-/// How far a motion went.
-pub(super) fn reached(run: &Run) -> f64 {
-    match (&run.ending, run.occurrences.last()) {
-        (Ending::Event { .. }, Some(&(_, t))) => t,
-        (Ending::Completed, _) => run.plan.t_end,
-        _ => run.statistics.current_time,
     }
 }

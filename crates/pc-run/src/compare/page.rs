@@ -4,7 +4,7 @@ use pc_print::{columns, one_line};
 use serde_json::{Value, json};
 
 use crate::compare::compared::Compared;
-use crate::compare::comparison::{Comparison, ending, reached};
+use crate::compare::comparison::{Comparison, ending};
 use crate::compare::difference::Difference;
 use crate::motion::run::Run;
 use pc_print::{labelled, short, small, wrapped};
@@ -52,7 +52,7 @@ impl Compared {
                 "form": run.plan.form.name(),
                 "method": run.plan.method.to_string().to_lowercase(),
                 "ending": run.ending.word(),
-                "t_reached": reached(run),
+                "t_reached": run.reached(),
             })
         };
         let column = |found: &Difference| {

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile};
 
-use crate::files::error::FileError;
 use crate::files::atomic::{FileWriter, fill};
+use crate::files::error::FileError;
 use crate::files::kept::Kept;
 use crate::files::place::Place;
 
@@ -48,10 +48,7 @@ impl Place {
 const LONGEST: usize = 100;
 
 /// Writes the result to a new file in the directory of temporary files, if that is possible.
-pub fn elsewhere(
-    name: &str,
-    write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
-) -> Option<PathBuf> {
+pub fn elsewhere(name: &str, write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>) -> Option<PathBuf> {
     let end = &name[name.ceil_char_boundary(name.len().saturating_sub(LONGEST))..];
     let mut file = Builder::new().prefix("pc-").suffix(&format!("-{end}")).tempfile().ok()?;
     fill(file.as_file_mut(), write).and_then(|()| file.as_file().sync_all()).ok()?;

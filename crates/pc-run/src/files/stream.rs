@@ -7,9 +7,9 @@ use tempfile::NamedTempFile;
 
 use crate::files::error::FileError;
 use crate::files::kept::Kept;
+use crate::files::partial;
 use crate::files::place::Place;
 use crate::files::rescue::beside;
-use crate::files::partial;
 use crate::table::csv;
 use crate::table::rows::Cell;
 

@@ -18,9 +18,9 @@ use crate::files::place::Place;
 use crate::motion::checkpoint_error::CheckpointFileError;
 use crate::motion::identity;
 use crate::motion::identity::Identity;
-use crate::plan::plan::Plan;
 use crate::motion::sensitivities::Derivatives;
 use crate::observer::Observer;
+use crate::plan::plan::Plan;
 
 /// Internal steps from one checkpoint to the next by default: many more than the few dozen short
 /// steps after a restart.
@@ -69,11 +69,7 @@ impl Checkpoints {
         plan: &Plan,
     ) -> Result<Option<Checkpoints>, RunError> {
         let Some(path) = files.path() else {
-            return if files.every.is_some() {
-                Err(CheckpointFileError::Nowhere.into())
-            } else {
-                Ok(None)
-            };
+            return if files.every.is_some() { Err(CheckpointFileError::Nowhere.into()) } else { Ok(None) };
         };
         // A file would replace a device.
         let place = Place::regular(path).map_err(|source| FileError::no_place(path, source))?;
@@ -159,9 +155,8 @@ impl Checkpoints {
         let is_ended = error.as_ref().is_some_and(|error: &SolveError| error.ended().is_some());
         if motion.ending == Some(Ending::Stopped) || is_ended {
             let path = self.place.path().display();
-            observer.remark(&format!(
-                "the same command with --resume {path} continues from the last checkpoint"
-            ));
+            observer
+                .remark(&format!("the same command with --resume {path} continues from the last checkpoint"));
         }
         Ok((motion, error))
     }

@@ -5,9 +5,9 @@ use std::ops::{ControlFlow, Range};
 use pc_model::Flow;
 use pc_solve::{Ending, ErrorEstimate, Events, Method, Options, Solution, error_of};
 
-use crate::plan::plan::Plan;
 use crate::motion::table::Table;
 use crate::observer::Observer;
+use crate::plan::plan::Plan;
 use crate::plan::tolerances::Tolerances;
 use pc_print::short;
 

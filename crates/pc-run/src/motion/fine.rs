@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 use pc_model::Flow;
 use pc_solve::{Method, Options, Segment, Solve};
 
-use crate::plan::plan::Plan;
 use crate::motion::table::Table;
 use crate::observer::Observer;
+use crate::plan::plan::Plan;
 
 /// Most numbers in memory.
 const MOST_NUMBERS: usize = 4_000_000;

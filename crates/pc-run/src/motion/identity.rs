@@ -1,8 +1,8 @@
 //! Everything that the numbers of a motion, or of other work on a model, depend on: stored with what is interrupted, so that only the
 //! same command continues it.
 
-use pc_model::document::AbsoluteTolerance;
 use pc_model::Model;
+use pc_model::document::AbsoluteTolerance;
 use pc_solve::Accumulation;
 
 use crate::plan::plan::Plan;

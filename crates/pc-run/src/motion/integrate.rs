@@ -3,19 +3,18 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use pc_mech::Expr;
 use pc_model::{Assembly, Flow, Model, Variables};
-use pc_report::dropped;
 use pc_solve::{self as solver, Events, Options, Solution, Solve, SolveError, Trajectory};
 
 use crate::error::RunError;
 use crate::files::stream::Stream;
 use crate::motion::checkpoints::{CheckpointFiles, Checkpoints};
+use crate::motion::derived::{Derived, Facts};
 use crate::motion::estimate::{self, Estimate};
 use crate::motion::fine;
 use crate::motion::lost::LostIntegral;
 use crate::motion::lost_inertia::lost_inertia;
-use crate::motion::lost_integral::lost_integral;
+use crate::motion::lost_integral;
 use crate::motion::remarks;
 use crate::motion::run::{Ending, Run};
 use crate::motion::sensitivities::Derivatives;
@@ -82,6 +81,24 @@ impl Run {
     ) -> Result<Run, RunError> {
         integrated(model, plan.form, || Ok(plan), besides, None, observer)
     }
+
+    /// The same of equations that have been derived, with the values that the model has. They are
+    /// derived again only to be verified, or where a lost integral or inertia is to be explained.
+    ///
+    /// # Errors
+    /// As for [`of`](Run::of).
+    pub fn of_derived(
+        model: &Model,
+        derived: &Derived,
+        plan: Plan,
+        besides: &Besides,
+        observer: &dyn Observer,
+    ) -> Result<Run, RunError> {
+        let (flow, facts) = (derived.flow.clone(), derived.facts.clone());
+        let graph = besides.verify.then(|| model.graph());
+        let assembly = graph.as_ref().map(|graph| model.assemble(graph)).transpose()?;
+        Integration { model, assembly: assembly.as_ref(), facts, flow, plan, besides, observer }.run(None)
+    }
 }
 
 /// The plan comes once the model is known to be sound.
@@ -100,13 +117,16 @@ fn integrated(
     }
     let flow = Flow::new(model, &assembly, form)?;
     let plan = plan()?;
-    Integration { model, assembly: &assembly, flow, plan, besides, observer }.run(stream)
+    let facts = Facts::of(&assembly);
+    Integration { model, assembly: Some(&assembly), facts, flow, plan, besides, observer }.run(stream)
 }
 
 /// A motion that is about to be integrated.
 struct Integration<'r, 'g> {
     model: &'r Model,
-    assembly: &'r Assembly<'g>,
+    /// None where it has not been derived for this run.
+    assembly: Option<&'r Assembly<'g>>,
+    facts: Facts,
     flow: Flow,
     plan: Plan,
     besides: &'r Besides,
@@ -131,12 +151,16 @@ impl Integration<'_, '_> {
             [] => None,
             by => Some(Derivatives::new(self.model, self.plan.form, by)?),
         };
-        let mut verification =
-            self.besides.verify.then(|| Verification::new(self.model, self.assembly, self.plan.form));
-        if let Some(verification) = &mut verification {
-            let Integration { flow, assembly, plan, .. } = &self;
-            verification.compare(flow, assembly, "the start", plan.t_start, &flow.start)?;
-        }
+        let verified = self.assembly.filter(|_| self.besides.verify);
+        let mut verification = match verified {
+            Some(assembly) => {
+                let Integration { model, flow, plan, .. } = &self;
+                let mut verification = Verification::new(model, assembly, plan.form);
+                verification.compare(flow, assembly, "the start", plan.t_start, &flow.start)?;
+                Some((verification, assembly))
+            }
+            None => None,
+        };
         // Derivatives are known at the rows alone, and a resumed motion is not integrated from its
         // start again.
         let mut again = (self.besides.fine && self.is_plain()).then(|| self.flow.clone());
@@ -165,21 +189,20 @@ impl Integration<'_, '_> {
             }
         };
         trajectory.iter().for_each(|(_, y)| note_largest(&mut largest, y));
-        let estimate = estimate.map(|estimate| {
-            Estimate::of(&estimate, flow, (&solved.solution, &tolerances), &mut table)
-        });
+        let estimate = estimate
+            .map(|estimate| Estimate::of(&estimate, flow, (&solved.solution, &tolerances), &mut table));
         let fine = again.as_mut().and_then(|flow| {
             fine::table(flow, (plan, &options), statistics.steps, statistics.current_time, observer)
         });
-        if let Some(verification) = &mut verification {
-            self.verify(verification, &solved.solution, last.as_ref(), derivatives.as_ref())?;
+        if let Some((verification, assembly)) = &mut verification {
+            self.verify(verification, assembly, &solved.solution, last.as_ref(), derivatives.as_ref())?;
         }
         let passed_at_start = self.passed_at_start(&solved.steps);
         let ending = self.ending(solved.solution.ending, solved.error, is_full);
-        let lost = self.lost(&ending, &table, &tolerances, &solved.steps, last.as_ref());
-        let lost_inertia = self.lost_inertia(&ending);
-        let Integration { model, assembly, flow, plan, .. } = self;
-        let Solution { occurrences, slides, .. } = solved.solution;
+        let lost = self.lost(&ending, &table, &tolerances, &solved.steps, last.as_ref())?;
+        let lost_inertia = self.lost_inertia(&ending)?;
+        let Integration { model, facts, flow, plan, .. } = self;
+        let Solution { trajectory, occurrences, slides, .. } = solved.solution;
         Ok(Run {
             title: model.title().to_owned(),
             parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
@@ -187,11 +210,12 @@ impl Integration<'_, '_> {
             never_exceeded: tolerances.never_exceeded(&written_start(model), &largest),
             tolerances,
             table,
+            trajectory,
             estimate,
             constraints,
-            dropped: dropped(assembly),
-            jumps: jumps(assembly),
-            keeps_energy: keeps_energy(assembly),
+            dropped: facts.dropped,
+            jumps: facts.jumps,
+            keeps_energy: facts.keeps_energy,
             lost,
             lost_inertia,
             fine,
@@ -199,12 +223,23 @@ impl Integration<'_, '_> {
             plan,
             events: names_of_events(&flow),
             passed_at_start,
-            occurrences: occurrences.iter().map(|occurrence| (occurrence.event, occurrence.time)).collect(),
+            occurrences,
             slides,
             ending,
-            verification,
+            verification: verification.map(|(verification, _)| verification),
             wall: solved.wall,
         })
+    }
+
+    /// Does something with the assembled model, which is assembled for it where it has not been.
+    fn assembled<T>(&self, work: impl FnOnce(&Assembly<'_>) -> T) -> Result<T, RunError> {
+        match self.assembly {
+            Some(assembly) => Ok(work(assembly)),
+            None => {
+                let graph = self.model.graph();
+                Ok(work(&self.model.assemble(&graph)?))
+            }
+        }
     }
 
     /// Whether the motion goes from its start to its end without derivatives and checkpoints.
@@ -265,11 +300,12 @@ impl Integration<'_, '_> {
     fn verify(
         &self,
         verification: &mut Verification,
+        assembly: &Assembly<'_>,
         solution: &Solution,
         last: Option<&(f64, Vec<f64>)>,
         derivatives: Option<&Derivatives>,
     ) -> Result<(), RunError> {
-        let Integration { model, assembly, flow, plan, .. } = self;
+        let Integration { model, flow, plan, .. } = self;
         if let Some((t, y)) = last
             && *t != plan.t_start
             && !verification.is_long(flow)
@@ -320,30 +356,29 @@ impl Integration<'_, '_> {
         tolerances: &Tolerances,
         steps: &StepStates,
         last: Option<&(f64, Vec<f64>)>,
-    ) -> Option<LostIntegral> {
+    ) -> Result<Option<LostIntegral>, RunError> {
         let is_whole = matches!(ending, Ending::Completed | Ending::Event { .. });
-        if !is_whole || has_resets(self.assembly) {
-            return None;
+        if !is_whole || self.facts.has_resets {
+            return Ok(None);
         }
-        let states: Vec<(f64, &[f64])> =
-            steps.iter().chain(last.map(|(t, y)| (*t, y.as_slice()))).collect();
-        let of = (self.assembly, keeps_energy(self.assembly));
-        lost_integral(table, of, &mut self.flow, (tolerances, self.plan.rtol), &states)
+        let states: Vec<(f64, &[f64])> = steps.iter().chain(last.map(|(t, y)| (*t, y.as_slice()))).collect();
+        let accuracy = (tolerances, self.plan.rtol);
+        let keeps_energy = self.facts.keeps_energy;
+        let suspects = lost_integral::suspects(table, keeps_energy, &mut self.flow, accuracy, &states);
+        if suspects.is_empty() {
+            return Ok(None);
+        }
+        let energy = &table.columns()[table.conserved().end - 1];
+        let mut flow = self.flow.clone();
+        self.assembled(|assembly| lost_integral::lost(suspects, energy, assembly, &mut flow, &states))
     }
 
-    fn lost_inertia(&mut self, ending: &Ending) -> Option<(String, f64)> {
-        let Ending::Failed(error) = ending else { return None };
-        lost_inertia(self.assembly, &mut self.flow, self.plan.t_start, error.reached()?)
+    fn lost_inertia(&self, ending: &Ending) -> Result<Option<(String, f64)>, RunError> {
+        let Ending::Failed(error) = ending else { return Ok(None) };
+        let Some(reached) = error.reached() else { return Ok(None) };
+        let (mut flow, t_start) = (self.flow.clone(), self.plan.t_start);
+        self.assembled(|assembly| lost_inertia(assembly, &mut flow, t_start, reached))
     }
-}
-
-fn has_resets(assembly: &Assembly<'_>) -> bool {
-    assembly.events.iter().any(|event| !event.resets.is_empty())
-}
-
-/// Whether nothing depends on time and neither forces nor events change the energy.
-fn keeps_energy(assembly: &Assembly<'_>) -> bool {
-    assembly.keeps_energy() && !has_resets(assembly)
 }
 
 fn names_of_events(flow: &Flow) -> Vec<String> {
@@ -353,14 +388,6 @@ fn names_of_events(flow: &Flow) -> Vec<String> {
 /// The start values as the text or the wishes have them.
 fn written_start(model: &Model) -> Vec<(String, f64)> {
     model.start().map(|values| model.start_names().into_iter().zip(values).collect()).unwrap_or_default()
-}
-
-/// Whether forces or the Lagrangian jump where the state changes.
-fn jumps(assembly: &Assembly<'_>) -> bool {
-    let (system, graph) = (&assembly.system, assembly.system.graph());
-    let (state, lagrangian) = (system.state(), system.lagrangian());
-    let jumps = |&f: &Expr<'_>| graph.applies(f, &state, |function| !function.is_continuous());
-    system.forces().iter().chain([&lagrangian]).any(jumps)
 }
 
 fn residuals(flow: &mut Flow, trajectory: &Trajectory) -> Vec<(String, f64)> {

@@ -19,19 +19,19 @@ const ROUNDINGS: f64 = 1e3;
 /// A drift that errors of so many tolerances in each component make is what was asked for.
 const TOLERANCES: f64 = 100.0;
 
-/// The first integral that has drifted too far and is proved to be kept, at these states of the motion.
+/// The integrals that have drifted too far at these states of the motion, if they are kept; the energy may be.
 ///
 /// Beside its scale, the tolerances of the components are a measure of its drift: with E = e^{2γt} (p² + x²)/2 of a damped
 /// motion, the absolute tolerance of what has long come to rest is multiplied by e^{γt}.
-pub(crate) fn lost_integral(
+pub(crate) fn suspects(
     table: &Table,
-    (assembly, keeps_energy): (&Assembly<'_>, bool),
+    keeps_energy: bool,
     flow: &mut Flow,
     (tolerances, rtol): (&Tolerances, f64),
     states: &[(f64, &[f64])],
-) -> Option<LostIntegral> {
+) -> Vec<LostIntegral> {
     let first = table.conserved().start;
-    let energy = table.conserved().end.checked_sub(1)?;
+    let Some(energy) = table.conserved().end.checked_sub(1) else { return Vec::new() };
     let too_far = |flow: &mut Flow, j: usize| {
         let drift = table.drift(j);
         // The value at the start is a scale of others than the energy, whose zero is arbitrary.
@@ -53,13 +53,20 @@ pub(crate) fn lost_integral(
         (is_far && states.iter().map(allowed).all(|effect| drift.absolute > effect)).then_some(lost)
     };
     let wanted = |j: &usize| *j != energy || keeps_energy;
-    let found: Vec<LostIntegral> = (first..=energy).filter(wanted).filter_map(|j| too_far(flow, j)).collect();
-    if found.is_empty() {
-        return None;
-    }
+    (first..=energy).filter(wanted).filter_map(|j| too_far(flow, j)).collect()
+}
+
+/// The first of these that is proved to be kept, and has drifted by more than rounding.
+pub(crate) fn lost(
+    suspects: Vec<LostIntegral>,
+    energy: &str,
+    assembly: &Assembly<'_>,
+    flow: &mut Flow,
+    states: &[(f64, &[f64])],
+) -> Option<LostIntegral> {
     let mut proved = proved(assembly);
-    proved.push(table.columns()[energy].clone());
-    found
+    proved.push(energy.to_owned());
+    suspects
         .into_iter()
         .filter(|lost| proved.contains(&lost.name))
         .find(|lost| !lost.drift.is_finite() || lost.drift > rounding(assembly, flow, &lost.name, states))

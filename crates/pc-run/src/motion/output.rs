@@ -2,15 +2,16 @@
 
 use std::io::{self, Write};
 
+use pc_solve::Occurrence;
 use serde_json::{Map, Value, json};
 
 use crate::files::error::FileError;
 use crate::motion::run::Run;
 use crate::motion::summary;
 use crate::motion::table::Table;
+use crate::table::file::{Format, TableFile};
 #[cfg(feature = "parquet")]
 use crate::table::parquet;
-use crate::table::file::{Format, TableFile};
 use crate::table::rows::{Cell, Column, Kind, Rows, Take};
 use crate::table::{csv, json, npz};
 
@@ -65,18 +66,19 @@ impl Run {
         let parameters: Map<String, Value> =
             self.parameters.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
         let before = [("model", json!(self.title)), ("parameters", Value::from(parameters))];
-        let occurred = |&(event, t): &(usize, f64)| json!({ "name": self.events[event], "time": t });
+        let occurred = |occurrence: &Occurrence| json!({ "name": self.events[occurrence.event], "time": occurrence.time });
         let events = (!self.events.is_empty())
             .then(|| ("events", self.occurrences.iter().map(occurred).collect::<Value>()));
-        let after: Vec<(&str, Value)> = events.into_iter().chain([("summary", summary::json(self))]).collect();
+        let after: Vec<(&str, Value)> =
+            events.into_iter().chain([("summary", summary::json(self))]).collect();
         json::write(&before, &self.table, &after, out)
     }
 
     /// The times of each event, as `events/NAME`.
     fn times_of_events(&self) -> Vec<(String, Vec<f64>)> {
         let times = |event: usize| {
-            let occurrences = self.occurrences.iter().filter(|(number, _)| *number == event);
-            occurrences.map(|&(_, t)| t).collect()
+            let occurrences = self.occurrences.iter().filter(|occurrence| occurrence.event == event);
+            occurrences.map(|occurrence| occurrence.time).collect()
         };
         let events = self.events.iter().enumerate();
         events.map(|(event, name)| (format!("events/{name}"), times(event))).collect()

@@ -5,8 +5,8 @@ use std::ops::Range;
 use pc_report::{Columns, Kind, Record, Samples};
 
 use crate::motion::run::{Ending, Run};
-use crate::motion::table::Table;
 use crate::motion::summary;
+use crate::motion::table::Table;
 use pc_print::short;
 
 impl Run {
@@ -31,7 +31,7 @@ impl Run {
                 .map(|(label, lines)| (label.to_owned(), lines))
                 .collect(),
             keeps_energy: self.keeps_energy,
-            events: self.occurrences.iter().map(|&(_, t)| t).collect(),
+            events: self.occurrences.iter().map(|occurrence| occurrence.time).collect(),
             remark,
         }
     }

@@ -2,15 +2,15 @@
 
 use std::time::Duration;
 
-use pc_solve::{Slide, SolveError, Spent, Statistics};
+use pc_solve::{Occurrence, Slide, SolveError, Spent, Statistics, Trajectory};
 
 use crate::error::RunError;
 use crate::motion::estimate::Estimate;
 use crate::motion::lost::LostIntegral;
-use crate::plan::plan::Plan;
 use crate::motion::table::Table;
-use crate::plan::tolerances::Tolerances;
 use crate::motion::verification::Verification;
+use crate::plan::plan::Plan;
+use crate::plan::tolerances::Tolerances;
 
 /// A motion as far as it was computed, with a record of the run.
 #[derive(Debug)]
@@ -29,6 +29,8 @@ pub struct Run {
     pub never_exceeded: Vec<String>,
     /// The table as far as it was reached.
     pub table: Table,
+    /// The states of the rows; none where these were written as they were computed.
+    pub trajectory: Trajectory,
     /// The motion between its rows too, with the points that pictures need, where that was
     /// requested.
     pub fine: Option<Table>,
@@ -47,8 +49,8 @@ pub struct Run {
     /// The numbers of the events whose functions are zero at the start and go on in their direction,
     /// which is no occurrence.
     pub passed_at_start: Vec<usize>,
-    /// The occurrences, in order: the numbers of events, and their times.
-    pub occurrences: Vec<(usize, f64)>,
+    /// The occurrences of events, in order.
+    pub occurrences: Vec<Occurrence>,
     /// The parts of the motion that slide along a surface on which forces jump.
     pub slides: Vec<Slide>,
     /// How it ended.
@@ -100,6 +102,15 @@ impl Ending {
 }
 
 impl Run {
+    /// The time that it reached.
+    pub fn reached(&self) -> f64 {
+        match (&self.ending, self.occurrences.last()) {
+            (Ending::Event { .. }, Some(occurrence)) => occurrence.time,
+            (Ending::Completed, _) => self.plan.t_end,
+            _ => self.statistics.current_time,
+        }
+    }
+
     /// The error of a run that the observer or a limit of time has ended.
     pub fn stopped(&self) -> Option<RunError> {
         let t = self.statistics.current_time;

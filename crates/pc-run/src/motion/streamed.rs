@@ -7,9 +7,9 @@ use pc_solve::{Options, Solution, Solve, SolveError, SolveFailure};
 
 use crate::files::error::FileError;
 use crate::files::stream::Stream;
+use crate::motion::table::Table;
 use crate::observer::Observer;
 use crate::plan::plan::Plan;
-use crate::motion::table::Table;
 use crate::plan::tolerances::note_largest;
 
 /// A record of the rows that were written.
@@ -39,7 +39,15 @@ impl<'s, 'p> Streamed<'s, 'p> {
         let table = Table::streamed(flow);
         stream.begin(table.columns())?;
         let constraints = flow.constraint_names().into_iter().map(|name| (name, 0.0)).collect();
-        Ok(Streamed { flow: flow.clone(), stream, observer, table, constraints, largest: Vec::new(), last: None })
+        Ok(Streamed {
+            flow: flow.clone(),
+            stream,
+            observer,
+            table,
+            constraints,
+            largest: Vec::new(),
+            last: None,
+        })
     }
 
     /// Integrates the motion as far as possible, without its states; the error says why not

@@ -36,7 +36,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
     let reached = match &run.ending {
         Ending::Completed => format!("{rows} rows"),
         Ending::Event { name } => {
-            format!("ended by the event {name} at {}, {rows} rows", short(reached_time(run), 10))
+            format!("ended by the event {name} at {}, {rows} rows", short(run.reached(), 10))
         }
         _ => format!(
             "{} at {}, {rows} of {} rows",
@@ -123,8 +123,8 @@ const AT_START: &str = "   (zero at the start and beyond it from there on, which
 fn events(run: &Run) -> Vec<String> {
     let width = run.events.iter().map(|name| columns(name)).max().unwrap_or(0);
     let line = |(event, name): (usize, &String)| {
-        let times = run.occurrences.iter().filter(|(number, _)| *number == event);
-        let times: Vec<String> = times.map(|(_, t)| short(*t, 10)).collect();
+        let times = run.occurrences.iter().filter(|occurrence| occurrence.event == event);
+        let times: Vec<String> = times.map(|occurrence| short(occurrence.time, 10)).collect();
         let when = match times.as_slice() {
             [] => "does not occur".to_owned(),
             [t] => format!("once: {t}"),
@@ -163,14 +163,6 @@ fn slides(run: &Run) -> Vec<String> {
         format!("along {surface} = 0 {when}")
     };
     surfaces.into_iter().map(line).collect()
-}
-
-/// How far the motion went.
-fn reached_time(run: &Run) -> f64 {
-    match (&run.ending, run.occurrences.last()) {
-        (Ending::Event { .. }, Some(&(_, t))) => t,
-        _ => run.statistics.current_time,
-    }
 }
 
 fn drifts(run: &Run) -> Vec<String> {
@@ -293,7 +285,7 @@ pub fn json(run: &Run) -> Value {
         "max_step": plan.max_step,
         "t_start": plan.t_start,
         "t_end": plan.t_end,
-        "t_reached": reached_time(run),
+        "t_reached": run.reached(),
         "steps": work.steps,
         "evaluations": work.rhs_evaluations,
         "jacobians": work.jacobian_evaluations,

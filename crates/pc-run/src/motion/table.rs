@@ -109,7 +109,8 @@ impl Table {
             streamed.not_finite = vec![None; self.values.len()];
         }
         streamed.rows += 1;
-        for (worst, (value, start)) in streamed.worst.iter_mut().zip(self.values.iter().zip(&streamed.start)) {
+        for (worst, (value, start)) in streamed.worst.iter_mut().zip(self.values.iter().zip(&streamed.start))
+        {
             *worst = raised(*worst, value - start);
         }
         for (known, &value) in streamed.not_finite.iter_mut().zip(&self.values) {

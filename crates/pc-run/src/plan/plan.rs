@@ -24,6 +24,8 @@ pub struct Plan {
     pub t_end: f64,
     /// Number of rows, at least 2.
     pub samples: usize,
+    /// The times of the rows, where they are given.
+    pub at: Option<Vec<f64>>,
     /// Relative tolerance.
     pub rtol: f64,
     /// Absolute tolerances, as far as they are given.
@@ -54,16 +56,21 @@ impl Plan {
         let simulation = &model.document().simulation;
         let t_start = simulation.start_time();
         let no_end = || RunError::NoEnd { model: model.document().source.name().to_owned() };
-        let t_end = wishes.t_end.or(simulation.t_end.as_ref().map(|t| t.value)).ok_or_else(no_end)?;
-        if t_end == t_start {
+        let at = wishes.times.clone().filter(|times| !times.is_empty());
+        let last = at.as_ref().and_then(|times| times.last().copied());
+        let written = simulation.t_end.as_ref().map(|t| t.value);
+        let t_end = last.or(wishes.t_end).or(written).ok_or_else(no_end)?;
+        if t_end == t_start && at.is_none() {
             return Err(RunError::EndIsStart { t: t_end });
         }
+        let rows = at.as_ref().map(Vec::len).or(wishes.samples);
         let written = simulation.method.as_ref().map(|method| method.value);
         Ok(Plan {
             form: Plan::form(model, wishes),
             t_start,
             t_end,
-            samples: wishes.samples.unwrap_or_else(|| simulation.rows()),
+            samples: rows.unwrap_or_else(|| simulation.rows()),
+            at,
             rtol: wishes.rtol.unwrap_or_else(|| simulation.relative_tolerance()),
             atol: model.absolute_tolerance(wishes.atol.clone()).map_err(RunError::Tolerance)?,
             max_step: wishes.max_step.or(simulation.max_step.as_ref().map(|h| h.value)),
@@ -84,8 +91,11 @@ impl Plan {
         wishes.form.or(written).unwrap_or(Variables::QuasiVelocities)
     }
 
-    /// The times of the rows, evenly spaced, start and end included.
+    /// The times of the rows: those given, else evenly spaced, start and end included.
     pub fn times(&self) -> Vec<f64> {
+        if let Some(times) = &self.at {
+            return times.clone();
+        }
         let last = self.samples - 1;
         let span = self.t_end - self.t_start;
         let inner = (0..last).map(|i| self.t_start + span * (i as f64 / last as f64));

@@ -13,6 +13,8 @@ pub struct Wishes {
     pub t_end: Option<f64>,
     /// Number of rows, at least 2.
     pub samples: Option<usize>,
+    /// The times of the rows instead, in order; their last is the end time.
+    pub times: Option<Vec<f64>>,
     /// Relative tolerance.
     pub rtol: Option<f64>,
     /// Absolute tolerances, as far as they are given.

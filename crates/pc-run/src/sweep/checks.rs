@@ -7,13 +7,13 @@ use pc_report::{Check, Finding};
 use pc_solve::{Ending, Ensemble, EnsembleError};
 
 use super::design::Design;
+use super::members::{Members, message};
 use super::record::{Record, Status};
 use super::shard::Shard;
-use crate::table::rows::{Column, Kind};
-use super::members::{Members, message};
 use super::work::{Consume, Work};
 use crate::error::RunError;
 use crate::motion::verification::checked;
+use crate::table::rows::{Column, Kind};
 
 /// Checks each member.
 pub(crate) struct Checks {

@@ -8,10 +8,9 @@ use pc_solve::{Ending, Ensemble, EnsembleError};
 use pc_verify::Outlet;
 
 use super::design::Design;
+use super::members::{Members, message};
 use super::record::{Record, Status};
 use super::shard::Shard;
-use crate::table::rows::{Column, Kind};
-use super::members::{Members, message};
 use super::work::{Consume, Work};
 use crate::category::Category;
 use crate::error::RunError;
@@ -21,6 +20,7 @@ use crate::linear::state::{Cyclic, StateChoice};
 use crate::motion::remarks::say_dropped;
 use crate::motion::verification::compared;
 use crate::observer::Observer;
+use crate::table::rows::{Column, Kind};
 
 /// Linearizes the equations of each member at a state near its start.
 pub(crate) struct Linearizations {

@@ -4,9 +4,9 @@ use pc_model::Model;
 
 use super::design::Design;
 use super::record::{Record, Status};
-use crate::table::rows::{Column, Kind};
 use crate::chain::{chain, line};
 use crate::error::RunError;
+use crate::table::rows::{Column, Kind};
 
 /// The models of a sweep.
 pub(crate) struct Members {

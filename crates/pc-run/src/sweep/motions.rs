@@ -1,6 +1,7 @@
 //! The motion of each member.
 
 use std::ops::{ControlFlow, Range};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use pc_expr::{LaneField, VectorField};
@@ -9,19 +10,20 @@ use pc_model::{Flow, Model, ModelError, Prototype, Variables};
 use pc_solve::{Ending, Ensemble, EnsembleError, Events, Options, Solution, Solve, Stop, Trajectory};
 
 use super::design::Design;
+use super::members::Members;
 use super::record::{Record, Status};
 use super::shard::Shard;
-use crate::table::rows::{Column, Kind};
-use super::members::Members;
 use super::work::{Consume, Work};
 use crate::chain::{chain, line};
 use crate::error::RunError;
+use crate::motion::derived::Derived;
+use crate::motion::table::Table;
+use crate::motion::verification::Verification;
 use crate::plan::memory;
 use crate::plan::plan::Plan;
-use crate::motion::table::Table;
 use crate::plan::tolerances::Tolerances;
+use crate::table::rows::{Column, Kind};
 use pc_print::short;
-use crate::motion::verification::Verification;
 
 /// Integrates each member.
 pub(crate) struct Motions {
@@ -35,7 +37,7 @@ pub(crate) struct Motions {
     all_rows: bool,
     /// How many these are.
     rows: usize,
-    prototype: Option<Prototype>,
+    prototype: Option<Arc<Prototype>>,
     /// How many came to their end beside others.
     beside: AtomicU64,
 }
@@ -44,7 +46,8 @@ pub(crate) struct Motions {
 type Begun = Result<Box<(Flow, Record)>, Option<Record>>;
 
 impl Motions {
-    /// `all_rows`: whether all rows of the plan are wanted instead of the last; so many members are at work at a time.
+    /// `all_rows`: whether all rows of the plan are wanted instead of the last; so many members are at work at a time. The model is
+    /// derived unless it has been.
     ///
     /// # Errors
     /// [`RunError::Rows`] if the rows of these take more memory than they may.
@@ -54,8 +57,12 @@ impl Motions {
         plan: Plan,
         all_rows: bool,
         threads: usize,
+        derived: Option<&Derived>,
     ) -> Result<Motions, RunError> {
-        let Begin { table, tolerances, prototype } = begun(&model, &design, &plan);
+        let Begin { table, tolerances, prototype } = match derived {
+            Some(derived) => Begin::of(derived, &plan),
+            None => begun(&model, &design, &plan),
+        };
         let shown = table.as_ref().map_or_else(|| written(&model), Columns::of);
         // Of each member at work its trajectory, its table, its record and the bytes of that.
         let numbers = (4 * shown.names.len() * threads) as u64;
@@ -248,28 +255,33 @@ struct Begin {
     table: Option<Table>,
     tolerances: Tolerances,
     /// The equations, where the members differ from the model by numbers alone.
-    prototype: Option<Prototype>,
+    prototype: Option<Arc<Prototype>>,
+}
+
+impl Begin {
+    fn of(derived: &Derived, plan: &Plan) -> Begin {
+        let mut flow = derived.flow.clone();
+        let (table, tolerances) = (Some(Table::of(&flow)), plan.tolerances(&mut flow));
+        Begin { table, tolerances, prototype: derived.prototype.clone() }
+    }
 }
 
 /// What is known by the model itself; where it has no motion by the first member that has one. It is the same for each shard.
 fn begun(model: &Model, design: &Design, plan: &Plan) -> Begin {
-    let variables = plan.form;
-    let of = |flow: &mut Flow| (Some(Table::of(flow)), plan.tolerances(flow));
-    let graph = model.graph();
-    let own = model.assemble(&graph).ok().and_then(|assembly| {
-        let mut flow = Flow::new(model, &assembly, variables).ok()?;
-        let (table, tolerances) = of(&mut flow);
-        Some(Begin { table, tolerances, prototype: Prototype::of(model, &assembly, variables, flow) })
-    });
-    if let Some(begin) = own {
-        return begin;
+    let own = || {
+        let graph = model.graph();
+        let assembly = model.assemble(&graph).ok()?;
+        Derived::of(model, &assembly, plan.form).ok()
+    };
+    if let Some(derived) = own() {
+        return Begin::of(&derived, plan);
     }
     let in_time = |_: &u64| model.budget().deadline().passed().is_none();
     let first = (0..design.members()).take_while(in_time).find_map(|member| {
         let mut model = design.model(model, &design.values(member));
         model.within(model.budget().beside());
-        let (table, tolerances) = of(&mut derived(&model, variables).ok()?);
-        Some(Begin { table, tolerances, prototype: None })
+        let mut flow = derived(&model, plan.form).ok()?;
+        Some(Begin { table: Some(Table::of(&flow)), tolerances: plan.tolerances(&mut flow), prototype: None })
     });
     first.unwrap_or_default()
 }

@@ -1,15 +1,41 @@
 //! The table of a sweep as a file, made from its records in memory that does not depend on their number.
 
+use std::io;
+
 use serde_json::json;
 
 use super::journal::Records;
-use super::sheet::{Sheet, SweepTable};
+use super::sheet::Sheet;
 use crate::files::error::FileError;
 use crate::files::kept::Kept;
 use crate::table::file::{Format, TableFile};
 #[cfg(feature = "parquet")]
 use crate::table::parquet;
+use crate::table::rows::{Column, Rows, Take};
 use crate::table::{csv, json, npz};
+
+/// The members of a sweep as a table.
+struct SweepTable<'s> {
+    sheet: &'s Sheet,
+    records: &'s dyn Records,
+}
+
+impl Rows for SweepTable<'_> {
+    fn columns(&self) -> Vec<Column> {
+        self.sheet.columns().to_vec()
+    }
+
+    fn count(&self) -> Option<u64> {
+        None
+    }
+
+    fn each(&self, take: Take<'_>) -> io::Result<()> {
+        for record in self.records.records()? {
+            self.sheet.rows(&record?)?.try_for_each(|row| take(&row))?;
+        }
+        Ok(())
+    }
+}
 
 /// Writes the table of the model with this title.
 ///

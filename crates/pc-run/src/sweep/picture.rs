@@ -6,12 +6,12 @@ use std::io;
 use pc_report::picture::{Content, Curve, Panel, Picture, Scale, by_scale};
 
 use super::of::SweepOf;
-use pc_print::short;
 use crate::sweep::error::SweepError;
 use crate::sweep::journal::Records;
 use crate::sweep::picture_error::{MOST_CELLS, SweepPlotError};
 use crate::sweep::record::Status;
 use crate::sweep::sheet::Sheet;
+use pc_print::short;
 
 /// Most panels unless columns are chosen.
 const MOST_PANELS: usize = 8;

@@ -4,10 +4,9 @@ use std::io;
 
 use serde_json::json;
 
-use super::journal::Records;
 use super::of::SweepOf;
 use super::record::Record;
-use crate::table::rows::{Cell, Column, Kind, Rows, Take};
+use crate::table::rows::{Cell, Column, Kind};
 
 /// A record that is not made of whole rows: names and numbers do not come from one table.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -159,30 +158,5 @@ impl Sheet {
             cells.push(Cell::Text(&record.message));
             Some(cells)
         }))
-    }
-}
-
-/// The members of a sweep as a table.
-pub struct SweepTable<'s> {
-    /// Its columns.
-    pub sheet: &'s Sheet,
-    /// The finished members.
-    pub records: &'s dyn Records,
-}
-
-impl Rows for SweepTable<'_> {
-    fn columns(&self) -> Vec<Column> {
-        self.sheet.columns().to_vec()
-    }
-
-    fn count(&self) -> Option<u64> {
-        None
-    }
-
-    fn each(&self, take: Take<'_>) -> io::Result<()> {
-        for record in self.records.records()? {
-            self.sheet.rows(&record?)?.try_for_each(|row| take(&row))?;
-        }
-        Ok(())
     }
 }

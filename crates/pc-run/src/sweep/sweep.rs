@@ -29,6 +29,7 @@ use super::work::Work;
 use super::{picture, shards};
 use crate::error::RunError;
 use crate::linear::state::StateChoice;
+use crate::motion::derived::Derived;
 use crate::motion::identity::{self, Identity};
 use crate::motion::remarks::say_dropped;
 use crate::observer::Observer;
@@ -107,6 +108,42 @@ impl Sweep {
             counts: variation.vary.iter().map(|vary| vary.values.count()).collect(),
             header: header(depends_on, variation, wishes),
         })
+    }
+
+    /// The motions of members in memory, by equations that have been derived: all rows of the plan,
+    /// or else the last of each.
+    ///
+    /// # Errors
+    /// [`RunError::Rows`] if the rows take more memory than they may.
+    pub fn of_motions(
+        model: Model,
+        design: Design,
+        (plan, all_rows): (Plan, bool),
+        derived: &Derived,
+        threads: Option<NonZeroUsize>,
+    ) -> Result<Sweep, RunError> {
+        let (members, names) = (design.members(), design.names());
+        let (title, deadline) = (model.title().to_owned(), model.budget().deadline().clone());
+        let work = Motions::new(model, design, plan, all_rows, workers(threads), Some(derived))?;
+        let sheet = Sheet::new(SweepOf::Run, &names, work.members().columns());
+        let (counts, header) = (Vec::new(), Identity::new());
+        let work = Box::new(work);
+        Ok(Sweep { title, deadline, work, sheet, threads, members, is_random: false, counts, header })
+    }
+
+    /// The records of all members, in their order, as far as the observer lets them come.
+    ///
+    /// # Errors
+    /// [`SweepError`] if threads cannot be started.
+    pub fn collect(&self, observer: &dyn Observer) -> Result<Vec<Record>, SweepError> {
+        let mut progress = observer.members(0, self.members);
+        let mut all = Vec::new();
+        self.each(Shard::ALL, 0..self.members, observer, &mut |place, record| {
+            all.push(record);
+            progress(place + 1);
+            ControlFlow::Continue(())
+        })?;
+        Ok(all)
     }
 
     /// Compares the first member, one in the middle and the last with a second derivation of each.
@@ -236,7 +273,8 @@ fn begun(
             let plan = Plan::of(&model, &wishes.run)?;
             let identity = identity::of_motion(&model, &plan);
             let all_rows = wishes.run.samples.is_some();
-            (Box::new(Motions::new(model, design, plan, all_rows, threads(wishes))?), identity)
+            let threads = workers(wishes.threads);
+            (Box::new(Motions::new(model, design, plan, all_rows, threads, None)?), identity)
         }
         SweepOf::Linearize => {
             let state = &wishes.state;
@@ -251,9 +289,9 @@ fn begun(
     })
 }
 
-fn threads(wishes: &SweepWishes) -> usize {
+fn workers(threads: Option<NonZeroUsize>) -> usize {
     let available = || thread::available_parallelism().ok();
-    wishes.threads.or_else(available).map_or(1, NonZeroUsize::get)
+    threads.or_else(available).map_or(1, NonZeroUsize::get)
 }
 
 /// An error unless the text of the model is right. A model that is inconsistent only for its

@@ -1,0 +1,76 @@
+//! A model in one form, derived and compiled once for any number of runs.
+
+use std::sync::Arc;
+
+use pc_mech::Expr;
+use pc_model::{Assembly, Flow, Model, ModelError, Prototype, Variables};
+use pc_report::dropped;
+
+/// The equations of a model in one form, compiled, with what to know of them.
+#[derive(Clone)]
+pub struct Derived {
+    /// The equations, with the values that the model has.
+    pub flow: Flow,
+    /// What other values make no difference to; none where they may.
+    pub prototype: Option<Arc<Prototype>>,
+    /// What to know of the equations.
+    pub(crate) facts: Facts,
+}
+
+/// What to know of equations after they are compiled.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Facts {
+    /// The constraints that were dropped, each with the reason.
+    pub(crate) dropped: Vec<(String, String)>,
+    /// Whether forces or the Lagrangian jump where the state changes.
+    pub(crate) jumps: bool,
+    /// Whether an event changes the state.
+    pub(crate) has_resets: bool,
+    /// Whether nothing depends on time and neither forces nor events change the energy.
+    pub(crate) keeps_energy: bool,
+}
+
+impl Facts {
+    pub(crate) fn of(assembly: &Assembly<'_>) -> Facts {
+        let has_resets = assembly.events.iter().any(|event| !event.resets.is_empty());
+        Facts {
+            dropped: dropped(assembly),
+            jumps: jumps(assembly),
+            has_resets,
+            keeps_energy: assembly.keeps_energy() && !has_resets,
+        }
+    }
+}
+
+impl Derived {
+    /// The equations of an assembled model in a form.
+    ///
+    /// # Errors
+    /// [`ModelError`] at the place in the text that causes it.
+    pub fn of(model: &Model, assembly: &Assembly<'_>, form: Variables) -> Result<Derived, ModelError> {
+        let flow = Flow::new(model, assembly, form)?;
+        let prototype = Prototype::of(model, assembly, form, flow.clone()).map(Arc::new);
+        Ok(Derived { prototype, facts: Facts::of(assembly), flow })
+    }
+
+    /// The same for a model with other values.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the model has to be derived anew and cannot be.
+    pub fn renewed(&self, model: &Model, form: Variables, t_start: f64) -> Result<Derived, ModelError> {
+        match self.prototype.as_ref().and_then(|prototype| prototype.flow(model, t_start)) {
+            Some(flow) => Ok(Derived { flow, prototype: self.prototype.clone(), facts: self.facts.clone() }),
+            None => {
+                let graph = model.graph();
+                Derived::of(model, &model.assemble(&graph)?, form)
+            }
+        }
+    }
+}
+
+fn jumps(assembly: &Assembly<'_>) -> bool {
+    let (system, graph) = (&assembly.system, assembly.system.graph());
+    let (state, lagrangian) = (system.state(), system.lagrangian());
+    let jumps = |&f: &Expr<'_>| graph.applies(f, &state, |function| !function.is_continuous());
+    system.forces().iter().chain([&lagrangian]).any(jumps)
+}
