@@ -13,10 +13,10 @@ use pc_model::document::AbsoluteTolerance;
 use pc_model::{Builtin, Model};
 use pc_print::{Form, Layout, Page, columns, page, small};
 use pc_report::picture::Wanted;
+use pc_run::Wishes;
 use pc_run::motion::integrate::Besides;
 use pc_run::motion::run::Run;
 use pc_run::observer::Nobody;
-use pc_run::plan::wishes::Wishes;
 use pc_solve::Method;
 
 const MODEL: &str = "heavy-top-lagrange";

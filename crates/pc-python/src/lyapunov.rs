@@ -1,7 +1,7 @@
 //! Lyapunov exponents of a motion.
 
 use pc_model::deep;
-use pc_run::plan::plan::Plan;
+use pc_run::Plan;
 use pc_solve::{LyapunovOptions, lyapunov_exponents};
 use pyo3::prelude::*;
 

@@ -6,8 +6,8 @@ use std::time::Duration;
 use pc_expr::{Cancel, Deadline, Limits};
 use pc_model::document::AbsoluteTolerance;
 use pc_model::{Flow, Model, Variables};
-use pc_run::plan::plan::Plan;
-use pc_run::plan::wishes::Wishes;
+use pc_run::Plan;
+use pc_run::Wishes;
 use pc_solve::{Method, Options};
 use pyo3::prelude::*;
 

@@ -8,10 +8,10 @@ use numpy::prelude::*;
 use numpy::{PyArray1, PyArray2};
 use pc_model::deep;
 use pc_run::observer::{Observer, Progress};
+use pc_run::sweep::Sweep;
 use pc_run::sweep::design::Design;
 use pc_run::sweep::law::{Law, LawError};
 use pc_run::sweep::record::Record;
-use pc_run::sweep::sweep::Sweep;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

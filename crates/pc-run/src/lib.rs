@@ -11,12 +11,12 @@
 //!
 //! ```
 //! use pc_model::{Builtin, Model};
+//! use pc_run::Wishes;
 //! use pc_run::motion::integrate::Besides;
 //! use pc_run::motion::run::{Ending, Run};
 //! use pc_run::observer::Nobody;
-//! use pc_run::plan::wishes::Wishes;
 //!
-//! let model = Model::new(Builtin::named("double-pendulum").expect("built in").document()?);
+//! let model = Model::new(Builtin::named("heavy-top-lagrange").expect("built in").document()?);
 //! let wishes = Wishes { t_end: Some(2.0), samples: Some(5), ..Wishes::default() };
 //! let besides = Besides { verify: true, ..Besides::default() };
 //! let run = Run::of(&model, &wishes, &besides, None, &Nobody)?;
@@ -40,10 +40,11 @@ pub mod files;
 pub mod linear;
 pub mod motion;
 pub mod observer;
-pub mod plan;
+mod plan;
 pub mod sweep;
 pub mod table;
 
 pub use category::Category;
 pub use chain::chain;
 pub use error::RunError;
+pub use plan::{Plan, Tolerances, Wishes};

@@ -1,9 +1,13 @@
-//! What is to be run: [`Wishes`](wishes::Wishes) and a model become a [`Plan`](plan::Plan).
+//! What is to be run: [`Wishes`] and a model become a [`Plan`].
 //!
 //! `wishes` is what whoever asks says, `plan` all that a run needs, `tolerances` those of the
 //! components of the state, and `memory` whether the rows fit.
 
 pub(crate) mod memory;
-pub mod plan;
-pub mod tolerances;
-pub mod wishes;
+pub(crate) mod plan;
+pub(crate) mod tolerances;
+mod wishes;
+
+pub use plan::Plan;
+pub use tolerances::Tolerances;
+pub use wishes::Wishes;

@@ -3,7 +3,7 @@
 //! Read `design` first, the values of the members, each of a grid of `values` or drawn by a `law`; `of` is what is found of one. `members`
 //! are their models, `work` is what is done for one, which is one of its `motions`, `linearizations` and `checks`; `record` is its
 //! result, kept in a `journal` on disk until the `output` is made, row by row of a `sheet`, and the `picture`, which has a
-//! `picture_error`. `sweep` is the whole, or a `shard` of it; `shards` are all of these. `error` lists the errors.
+//! `picture_error`. All this is the `whole`, or a `shard` of it; `shards` are all of these. `error` lists the errors.
 
 mod checks;
 pub mod design;
@@ -21,6 +21,8 @@ pub mod record;
 pub mod shard;
 pub mod shards;
 pub mod sheet;
-pub mod sweep;
 pub mod values;
+mod whole;
 mod work;
+
+pub use whole::{Sweep, SweepWishes, Swept};

@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use clap::Args;
 use pc_model::Variables;
+use pc_run::Wishes;
 use pc_run::compare::comparison::Question;
 use pc_run::compare::difference::Allowance;
-use pc_run::plan::wishes::Wishes;
 
 use crate::args::forms::run_form;
 use crate::args::options;

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use pc_model::Variables;
 use pc_model::document::{AbsoluteTolerance, MOST_SAMPLES};
 use pc_print::Form;
-use pc_run::plan::wishes::Wishes;
+use pc_run::Wishes;
 use pc_solve::Method;
 
 use crate::args::checkpoint::CheckpointArguments;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use pc_model::Variables;
-use pc_run::plan::wishes::Wishes;
+use pc_run::Wishes;
 
 use crate::args::forms::run_form;
 use crate::args::options;

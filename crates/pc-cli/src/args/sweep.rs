@@ -6,12 +6,12 @@ use std::path::PathBuf;
 use clap::builder::TypedValueParser;
 use clap::{ArgGroup, Args};
 use pc_model::Variables;
-use pc_run::plan::wishes::Wishes;
+use pc_run::Wishes;
+use pc_run::sweep::SweepWishes;
 use pc_run::sweep::design::Variation;
 use pc_run::sweep::law::{Law, LawError, Random};
 use pc_run::sweep::of::SweepOf;
 use pc_run::sweep::shard::Shard;
-use pc_run::sweep::sweep::SweepWishes;
 use pc_run::sweep::values::{Values, Vary};
 
 use crate::args::examples;

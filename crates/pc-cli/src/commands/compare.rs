@@ -2,9 +2,9 @@
 
 use pc_model::{Model, UnknownValue};
 use pc_print::{visible, visible_json};
+use pc_run::Plan;
 use pc_run::compare::compared::Compared;
 use pc_run::compare::error::CompareError;
-use pc_run::plan::plan::Plan;
 
 use crate::args::compare::CompareArguments;
 use crate::args::input;

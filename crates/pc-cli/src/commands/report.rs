@@ -2,11 +2,11 @@
 
 use pc_model::Model;
 use pc_report::{Record, Scene, animation, report};
+use pc_run::Plan;
 use pc_run::RunError;
+use pc_run::Wishes;
 use pc_run::motion::integrate::Besides;
 use pc_run::motion::run::Run;
-use pc_run::plan::plan::Plan;
-use pc_run::plan::wishes::Wishes;
 
 use crate::args::input;
 use crate::args::report::{AnimateArguments, ReportArguments, ShownArguments};

@@ -5,7 +5,7 @@ use pc_run::RunError;
 use pc_run::sweep::error::SweepError;
 use pc_run::sweep::journal::{Records, Tally};
 use pc_run::sweep::sheet::Sheet;
-use pc_run::sweep::sweep::{Sweep, Swept};
+use pc_run::sweep::{Sweep, Swept};
 use pc_run::sweep::{output, picture};
 use pc_run::table::file::{Format, TableFile};
 

@@ -8,8 +8,8 @@ use crate::error::RunError;
 use crate::motion::integrate::Besides;
 use crate::motion::run::Run;
 use crate::observer::Observer;
-use crate::plan::plan::Plan;
-use crate::plan::wishes::Wishes;
+use crate::plan::Plan;
+use crate::plan::Wishes;
 
 /// Two motions, compared.
 #[derive(Debug)]

@@ -20,7 +20,7 @@ use crate::motion::identity;
 use crate::motion::identity::Identity;
 use crate::motion::sensitivities::Derivatives;
 use crate::observer::Observer;
-use crate::plan::plan::Plan;
+use crate::plan::Plan;
 
 /// Internal steps from one checkpoint to the next by default: many more than the few dozen short
 /// steps after a restart.

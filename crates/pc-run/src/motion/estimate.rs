@@ -7,7 +7,7 @@ use pc_solve::{Ending, ErrorEstimate, Events, Method, Options, Solution, error_o
 
 use crate::motion::table::Table;
 use crate::observer::Observer;
-use crate::plan::plan::Plan;
+use crate::plan::Plan;
 use crate::plan::tolerances::Tolerances;
 use pc_print::short;
 

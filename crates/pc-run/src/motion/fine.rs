@@ -7,7 +7,7 @@ use pc_solve::{Method, Options, Segment, Solve};
 
 use crate::motion::table::Table;
 use crate::observer::Observer;
-use crate::plan::plan::Plan;
+use crate::plan::Plan;
 
 /// Most numbers in memory.
 const MOST_NUMBERS: usize = 4_000_000;

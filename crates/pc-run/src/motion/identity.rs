@@ -5,7 +5,7 @@ use pc_model::Model;
 use pc_model::document::AbsoluteTolerance;
 use pc_solve::Accumulation;
 
-use crate::plan::plan::Plan;
+use crate::plan::Plan;
 
 /// Names and values in the order of their importance.
 pub(crate) type Identity = Vec<(String, String)>;

@@ -23,10 +23,10 @@ use crate::motion::streamed::{Streamed, note_residuals};
 use crate::motion::table::Table;
 use crate::motion::verification::Verification;
 use crate::observer::Observer;
+use crate::plan::Plan;
+use crate::plan::Wishes;
 use crate::plan::memory;
-use crate::plan::plan::Plan;
 use crate::plan::tolerances::{Tolerances, note_largest};
-use crate::plan::wishes::Wishes;
 
 /// What a run has besides its rows; nothing by default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -9,7 +9,7 @@ use crate::motion::estimate::Estimate;
 use crate::motion::lost::LostIntegral;
 use crate::motion::table::Table;
 use crate::motion::verification::Verification;
-use crate::plan::plan::Plan;
+use crate::plan::Plan;
 use crate::plan::tolerances::Tolerances;
 
 /// A motion as far as it was computed, with a record of the run.

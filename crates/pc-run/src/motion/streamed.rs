@@ -9,7 +9,7 @@ use crate::files::error::FileError;
 use crate::files::stream::Stream;
 use crate::motion::table::Table;
 use crate::observer::Observer;
-use crate::plan::plan::Plan;
+use crate::plan::Plan;
 use crate::plan::tolerances::note_largest;
 
 /// A record of the rows that were written.

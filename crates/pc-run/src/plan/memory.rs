@@ -5,7 +5,7 @@ use pc_mech::VectorField;
 use pc_model::Flow;
 
 use crate::error::RunError;
-use crate::plan::plan::Plan;
+use crate::plan::Plan;
 
 /// Copies of the states while a checkpoint is written: those of the last checkpoint, the current
 /// ones, and the bytes.

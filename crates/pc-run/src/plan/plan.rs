@@ -5,8 +5,8 @@ use pc_model::{Flow, Model, UnknownParameter, Variables};
 use pc_solve::{Accumulation, Deadline, Method, Options};
 
 use crate::error::RunError;
+use crate::plan::Wishes;
 use crate::plan::tolerances::Tolerances;
-use crate::plan::wishes::Wishes;
 
 /// Tolerances that are much smaller.
 const FINER: f64 = 1e-2;

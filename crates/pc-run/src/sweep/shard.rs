@@ -17,6 +17,9 @@ impl Shard {
     pub(crate) const ALL: Shard = Shard { number: 1, of: 1 };
 
     /// As on the command line: `3/8`.
+    ///
+    /// # Errors
+    /// What would be right.
     pub fn parse(text: &str) -> Result<Shard, String> {
         let parts =
             text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));

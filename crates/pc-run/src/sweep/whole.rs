@@ -33,8 +33,8 @@ use crate::motion::derived::Derived;
 use crate::motion::identity::{self, Identity};
 use crate::motion::remarks::say_dropped;
 use crate::observer::Observer;
-use crate::plan::plan::Plan;
-use crate::plan::wishes::Wishes;
+use crate::plan::Plan;
+use crate::plan::Wishes;
 
 /// Bytes of finished members that may wait for an earlier one.
 const WAITING: usize = 64 << 20;
