@@ -42,13 +42,15 @@ impl DenseCore {
 
 #[pymethods]
 impl SystemCore {
-    /// The motion to `end`, or to a terminal event before.
-    fn dense(&self, py: Python<'_>, end: f64, wished: Wished) -> PyResult<DenseCore> {
+    /// The motion from a state at the start to `end`, or to a terminal event before.
+    fn dense(&self, py: Python<'_>, end: f64, start: Vec<f64>, wished: Wished) -> PyResult<DenseCore> {
         let (mut model, derived) = self.now();
         let cancel = renewed(&mut model);
         let (t_start, dim) = (self.inventory.t_start, self.dim());
         let plan = wished.plan(&model, self.variables, &cancel)?;
-        let mut flow = derived.flow.clone();
+        self.check_length(start.len())?;
+        let mut flow = derived.flow;
+        flow.start = start;
         let options = options(&plan, &mut flow);
         let work = move || {
             deep(|| {

@@ -3,7 +3,8 @@
 //! It converts and delegates; what it returns is shaped by the package in `python/`, which says what users are told. Read
 //! `error`, the exceptions; `task`, work that Ctrl-C ends; `model`, a model and what is printed of it; `system`, its
 //! compiled equations, with `evaluation` of states and of arrays of them, and `quantities` beside the rates, of `mechanics`; then
-//! `motion`, `dense`, `sweep` and `lyapunov`, integrations, all by the settings in `plan`, and `animation`, pages of them.
+//! `motion`, `dense`, `stepper`, `sweep` and `lyapunov`, integrations, all by the settings in `plan`, `linear`, the motions near a state, and
+//! `animation`, pages.
 
 #![expect(clippy::needless_pass_by_value, reason = "what Python gives is converted into values of our own")]
 
@@ -11,12 +12,14 @@ mod animation;
 mod dense;
 mod error;
 mod evaluation;
+mod linear;
 mod lyapunov;
 mod mechanics;
 mod model;
 mod motion;
 mod plan;
 mod quantities;
+mod stepper;
 mod sweep;
 mod system;
 mod task;
@@ -34,6 +37,8 @@ mod _native {
     use crate::model::{ModelCore, builtin_names};
     #[pymodule_export]
     use crate::quantities::Function;
+    #[pymodule_export]
+    use crate::stepper::Stepper;
     #[pymodule_export]
     use crate::sweep::draw;
     #[pymodule_export]

@@ -89,10 +89,15 @@ impl SystemCore {
         &self,
         py: Python<'py>,
         wished: Wished,
+        start: Option<Vec<f64>>,
         estimate: bool,
         verify: Option<bool>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (mut model, derived) = self.now();
+        let (mut model, mut derived) = self.now();
+        if let Some(start) = start {
+            self.check_length(start.len())?;
+            derived.flow.start = start;
+        }
         let cancel = renewed(&mut model);
         let plan = wished.plan(&model, self.variables, &cancel)?;
         let verify =

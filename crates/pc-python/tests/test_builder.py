@@ -148,3 +148,55 @@ def test_expressions_of_sympy_keep_their_values() -> None:
     for i, expression in enumerate(expressions):
         # Rounding of some ten operations.
         assert seen[f"f{i}"] == pytest.approx(float(expression.subs({x: 0.75, y: 1.25})), rel=1e-14)
+
+
+def test_bodies_on_joints_are_those_of_a_text() -> None:
+    crank = chetaev.Revolute(axis=[0, 0, 1])
+    builder = chetaev.Model.builder("parallelogram")
+    for name, start in (("crank", "pi/2"), ("coupler", "-pi/2"), ("rocker", "pi/2")):
+        builder = builder.coordinate(name, start)
+    builder = builder.quasi_velocity("crank'", 2.0)
+    builder = builder.body("crank", joint=crank, mass=1.0, center=[0.5, 0, 0], inertia=[0, 0.08, 0.08])
+    builder = builder.body(
+        "coupler",
+        parent="crank",
+        joint={"kind": "revolute", "axis": [0, 0, 1], "at": [1, 0, 0]},
+        mass=2.0,
+        center=[1, 0, 0],
+        inertia=[0, 0.7, 0.7],
+    )
+    rocker = chetaev.Revolute(axis=[0, 0, 1], at=[2, 0, 0])
+    builder = builder.body("rocker", joint=rocker, mass=1.0, center=[0.5, 0, 0], inertia=[0, 0.08, 0.08])
+    builder = builder.loop(
+        "pin", "revolute", ["coupler", "rocker"], [[2, 0, 0], [1, 0, 0]], axis=[[0, 0, 1], [0, 0, 1]]
+    )
+    builder = builder.point("middle", "coupler", [1, 0, 0]).output("height", "middle_y")
+    builder = builder.draw("line", through=[["middle_x", "middle_y", 0], [1, 0, 0]]).draw("text", at=[0, 1, 0], text="up")
+    system = builder.simulation(t_end=0.5).build().system()
+    motion = system.run()
+    # The coupler of a parallelogram moves without turning, and each crank turns as it likes: both keep their distance.
+    assert motion["height"][0] == pytest.approx(1.0) and motion["crank"] == pytest.approx(motion["rocker"])
+    assert motion.drift["energy"] < 1e-8
+    assert "<canvas" in motion.animate().html
+
+
+def test_every_joint_is_written() -> None:
+    joints = [
+        chetaev.Fixed(),
+        chetaev.Revolute(axis=[0, 0, 1], turns=[("z", 0.1), ("x", "pi/4")]),
+        chetaev.Prismatic(axis=[1, 0, 0], coordinates=["s"]),
+        chetaev.Screw(axis=[0, 0, 1], pitch=0.1),
+        chetaev.Cylindrical(axis=[0, 0, 1]),
+        chetaev.Universal(axes=[[1, 0, 0], [0, 1, 0]]),
+        chetaev.Planar(axis=[0, 0, 1]),
+        chetaev.Spherical(at=[0, 0, 1]),
+        chetaev.Free(),
+    ]
+    degrees = [0, 1, 1, 1, 2, 2, 3, 3, 6]
+    for joint, count in zip(joints, degrees):
+        builder = chetaev.Model.builder("one").gravity([0, 0, -1]).body("last", joint=chetaev.Prismatic(axis=[0, 1, 0]), mass=1)
+        builder = builder.body("b", parent="last", joint=joint, mass=1.0, inertia=[1, 1, 1], center=[0.1, 0, 0])
+        names = builder.build().system().names
+        velocities = [name for name in names if name.endswith("'") or "_ω" in name or "_v" in name]
+        assert len(velocities) == 1 + count, (joint, names)
+    assert "s" in chetaev.Model.builder("two").body("b", joint=joints[2], mass=1.0).build().system().names

@@ -119,12 +119,16 @@ impl Flow {
 
     /// The same equations in quasi-velocities with other values of the parameters, at another start.
     pub fn with_values(&self, parameters: &[f64], start: Vec<f64>) -> Flow {
-        let mut motion = self.motion.clone();
-        motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
-        let (mut events, mut reading) = (self.events.clone(), self.reading.clone());
-        events.set_parameters(parameters);
-        reading.set_parameters(parameters);
-        Flow { motion, start, names: self.names.clone(), events, reading }
+        let mut flow = Flow { start, ..self.clone() };
+        flow.set_parameters(parameters);
+        flow
+    }
+
+    /// Gives the first parameters these values, in motion, events and rows alike.
+    pub fn set_parameters(&mut self, parameters: &[f64]) {
+        self.motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
+        self.events.set_parameters(parameters);
+        self.reading.set_parameters(parameters);
     }
 
     /// Coordinates, all quasi-velocities and first-order states of a state. Quasi-velocities that momenta do

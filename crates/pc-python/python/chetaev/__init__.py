@@ -59,9 +59,22 @@ from chetaev._expressions import (
     tan,
     tanh,
 )
+from chetaev._joints import (
+    Cylindrical,
+    Fixed,
+    Free,
+    Joint,
+    Planar,
+    Prismatic,
+    Revolute,
+    Screw,
+    Spherical,
+    Universal,
+)
+from chetaev._linear import Equilibria, Equilibrium, Linearization, RootLocus
 from chetaev._model import Model
 from chetaev._motion import Motion, Occurrence
-from chetaev._native import __version__
+from chetaev._native import Stepper, __version__
 from chetaev._printed import Check, Equations, Page, Theory
 from chetaev._quantities import Bracket, Lyapunov
 from chetaev._sweep import Sweep
@@ -73,21 +86,36 @@ __all__ = [
     "Builder",
     "Check",
     "ChetaevError",
+    "Cylindrical",
     "DisagreementError",
     "Equations",
+    "Equilibria",
+    "Equilibrium",
     "EvaluationError",
     "Event",
     "Expression",
+    "Fixed",
+    "Free",
     "IntegrationError",
+    "Joint",
+    "Linearization",
     "Lyapunov",
     "Model",
     "ModelError",
     "Motion",
     "Occurrence",
     "Page",
+    "Planar",
+    "Prismatic",
+    "Revolute",
+    "RootLocus",
+    "Screw",
+    "Spherical",
+    "Stepper",
     "Sweep",
     "System",
     "Theory",
+    "Universal",
     "UnknownNameError",
     "__version__",
     "abs_",

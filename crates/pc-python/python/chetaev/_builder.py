@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from chetaev._errors import ChetaevError
 from chetaev._expressions import Expression, expression
+from chetaev._joints import Joint
 
 if TYPE_CHECKING:
     from chetaev._model import Model
@@ -29,6 +30,8 @@ _SECTIONS = (
     "constraints",
     "lagrangian",
     "bodies",
+    "points",
+    "loops",
     "gravity",
     "forces",
     "integrals",
@@ -74,6 +77,25 @@ def formula(value: Any) -> str:
     return quoted(str(expression(value)))
 
 
+#: Entries whose texts are names, not expressions.
+_NAMES = frozenset(("kind", "body", "bodies", "parent", "coordinates", "quasi_velocities", "text"))
+
+
+def entry(key: str, value: Any) -> str:
+    """An entry of a body, a joint, a point, a loop or a drawing: names, expressions, and lists and tables of them."""
+    if isinstance(value, Joint):
+        value = value.entries()
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{quoted(name)} = {entry(name, one)}" for name, one in value.items()) + " }"
+    if key == "turns":
+        return "[" + ", ".join(f"[{quoted(axis)}, {formula(angle)}]" for axis, angle in value) + "]"
+    if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):
+        return "[" + ", ".join(entry(key, one) for one in value) + "]"
+    if isinstance(value, numbers.Rational) and not isinstance(value, bool):
+        return number(float(value)) if value == float(value) else formula(value)
+    return quoted(str(value)) if key in _NAMES else formula(value)
+
+
 class Builder:
     """A model in the making.
 
@@ -116,6 +138,7 @@ class Builder:
     def __init__(self, name: str = "model") -> None:
         self._name = name
         self._entries: dict[str, dict[tuple[str, ...], str]] = {section: {} for section in _SECTIONS}
+        self._drawn: list[dict[str, str]] = []
         self._put("model", ("name",), quoted(name))
 
     def _put(self, section: str, keys: tuple[str, ...], value: str) -> Builder:
@@ -204,16 +227,56 @@ class Builder:
                 self._put("lagrangian", (key,), formula(value))
         return self
 
-    def body(self, name: str, **entries: Any) -> Builder:
-        """A rigid body: ``mass``, ``position``, ``inertia``, ``rotation``, … as in ``[bodies.NAME]`` of a text."""
+    def _table(self, section: str, name: str, entries: Mapping[str, Any]) -> Builder:
         for key, value in entries.items():
-            if isinstance(value, (list, tuple)):
-                text = "[" + ", ".join(formula(entry) for entry in value) + "]"
-            elif key in ("joint", "parent"):
-                text = quoted(str(value))
-            else:
-                text = formula(value)
-            self._put("bodies", (name, key), text)
+            if value is not None:
+                self._put(section, (name, key), entry(key, value))
+        return self
+
+    def body(
+        self,
+        name: str,
+        *,
+        joint: Joint | Mapping[str, Any] | None = None,
+        parent: str | None = None,
+        **entries: Any,
+    ) -> Builder:
+        """A rigid body: ``mass``, ``inertia``, ``position``, ``rotation``, … as in ``[bodies.NAME]`` of a text.
+
+        Parameters
+        ----------
+        joint : Joint or mapping, optional
+            How it moves against the one it hangs on, as ``Revolute(axis=[0, 0, 1])``; without one it has a ``position``.
+        parent : str, optional
+            The body it hangs on, the world unless given.
+        **entries
+            ``mass``, ``center``, ``inertia``, ``force``, ``torque``, …
+        """
+        return self._table("bodies", name, {"parent": parent, "joint": joint, **entries})
+
+    def point(self, name: str, body: str, at: Sequence[Any] | None = None) -> Builder:
+        """A point of a body with a joint: ``NAME_x``, ``NAME_y``, ``NAME_z`` are its place, to be used in expressions."""
+        return self._table("points", name, {"body": body, "at": at})
+
+    def loop(
+        self,
+        name: str,
+        kind: str,
+        bodies: Sequence[str],
+        at: Sequence[Sequence[Any]],
+        *,
+        axis: Sequence[Sequence[Any]] | None = None,
+        length: Any = None,
+    ) -> Builder:
+        """A joint between two bodies that hang already: a ``"point"``, a ``"revolute"`` joint or a ``"rod"``."""
+        entries = {"kind": kind, "bodies": list(bodies), "at": at, "axis": axis, "length": length}
+        return self._table("loops", name, entries)
+
+    def draw(self, kind: str, **entries: Any) -> Builder:
+        """A shape that follows the motion in films: ``"line"``, ``"disc"``, ``"spring"``, … as in ``[[draw]]`` of a text."""
+        # A place from which something goes has the name of a keyword of Python.
+        entries = {key.rstrip("_"): value for key, value in entries.items()}
+        self._drawn.append({key: entry(key, value) for key, value in {"kind": kind, **entries}.items()})
         return self
 
     def gravity(self, acceleration: Sequence[Any]) -> Builder:
@@ -230,7 +293,7 @@ class Builder:
         return self._put("integrals", (name,), formula(value))
 
     def output(self, name: str, value: Any) -> Builder:
-        """A further column of motions."""
+        """An output: one more column of each motion."""
         return self._put("outputs", (name,), formula(value))
 
     def event(
@@ -252,7 +315,7 @@ class Builder:
         return self
 
     def simulation(self, **settings: Any) -> Builder:
-        """What a run takes where nothing else is said: ``t_end``, ``samples``, ``rtol``, ``method``, …"""
+        """Default settings of a run: ``t_end``, ``samples``, ``rtol``, ``method``, …"""
         for key, value in settings.items():
             if isinstance(value, str):
                 text = quoted(value)
@@ -273,6 +336,9 @@ class Builder:
             if entries:
                 lines = [f"{'.'.join(quoted(key) for key in keys)} = {value}" for keys, value in entries.items()]
                 sections.append("\n".join([f"[{section}]", *lines]) + "\n")
+        for shape in self._drawn:
+            lines = [f"{quoted(key)} = {value}" for key, value in shape.items()]
+            sections.append("\n".join(["[[draw]]", *lines]) + "\n")
         return "\n".join(sections)
 
     def build(self) -> Model:

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class ChetaevError(Exception):
-    """Whatever this package refuses."""
+    """Base class of the errors of this package."""
 
 
 class ModelError(ChetaevError, ValueError):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from chetaev import _native
 from chetaev._errors import UnknownNameError
+from chetaev._linear import Equilibria, Linearization, RootLocus
 from chetaev._printed import Check, Equations, Theory
 
 if TYPE_CHECKING:
@@ -48,6 +49,10 @@ def changes(
         "limit_time": limit_time,
         "verify": verify,
     }
+
+
+def _state(at: str, hold: Sequence[str], cyclic: str | None) -> dict[str, Any]:
+    return {"at": at, "hold": list(hold), "cyclic": cyclic}
 
 
 class Model:
@@ -214,6 +219,87 @@ class Model:
             As for :meth:`system`.
         """
         return Theory(self, degree, [str(f) for f in functions], settings)
+
+    def linearize(
+        self,
+        at: str = "steady",
+        *,
+        hold: Sequence[str] = (),
+        cyclic: str | None = None,
+        **settings: Any,
+    ) -> Linearization:
+        """The motions near a state to first order: matrices, eigenvalues and modes, as of ``pc linearize``.
+
+        Parameters
+        ----------
+        at : str
+            The state: ``"steady"``, the equilibrium or steady motion near the start; ``"rest"``, an equilibrium near it with all
+            quasi-velocities 0; or ``"start"``, the start as it is.
+        hold : sequence of str
+            Components of the state that keep their start values while a steady state is looked for.
+        cyclic : str, optional
+            ``"keep"`` cyclic coordinates that rest, or ``"drop"`` all; else they are kept at an equilibrium and dropped of a motion.
+        **settings
+            As for :meth:`system`.
+
+        Raises
+        ------
+        ChetaevError
+            Where there is no such state.
+
+        Examples
+        --------
+        >>> linear = Model.builtin("furuta-pendulum").linearize(start={"θ": 0.1})
+        >>> linear.is_steady
+        True
+        """
+        return Linearization(*self._changed(settings).linearized(_state(at, hold, cyclic)))
+
+    def root_locus(
+        self,
+        name: str,
+        values: Sequence[float],
+        at: str = "steady",
+        *,
+        hold: Sequence[str] = (),
+        cyclic: str | None = None,
+        **settings: Any,
+    ) -> RootLocus:
+        """The eigenvalues of :meth:`linearize` for each value of a parameter or start value, followed from one to the next.
+
+        Examples
+        --------
+        >>> bicycle = Model.builtin("whipple-bicycle")
+        >>> locus = bicycle.root_locus("v0", [0.0, 2.5, 5.0, 7.5], start={"roll": 0.0})
+        >>> locus.branches.shape
+        (5, 4)
+        """
+        listed = [float(value) for value in values]
+        return RootLocus(*self._changed(settings).locus(name, listed, _state(at, hold, cyclic)))
+
+    def equilibria(
+        self, box: Mapping[str, tuple[float, float]] | None = None, *, starts: int = 256, **settings: Any
+    ) -> Equilibria:
+        """The states of rest in a box, by Newton's method from points that fill it evenly; there may be others.
+
+        Parameters
+        ----------
+        box : mapping, optional
+            Lower and upper bounds of coordinates and first-order states; else a turn about the start for angles, and 2 (1 + |start|) to
+            both sides for others.
+        starts : int
+            Number of starts of Newton's method.
+        **settings
+            As for :meth:`system`.
+
+        Examples
+        --------
+        >>> found = Model.builtin("furuta-pendulum").equilibria()
+        >>> sorted(abs(round(one.state["θ"], 6)) for one in found)
+        [0.0, 3.141593]
+        """
+        bounds = [(name, float(low), float(high)) for name, (low, high) in (box or {}).items()]
+        return Equilibria(*self._changed(settings).equilibria(bounds, starts))
 
     def system(self, form: str | None = None, **settings: Any) -> System:
         """The equations of motion, compiled.

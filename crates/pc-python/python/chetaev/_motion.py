@@ -66,11 +66,14 @@ class Motion(Mapping[str, "Floats"]):
     ['t', 'γ1', 'γ2']
     """
 
-    def __init__(self, system: System, wished: dict[str, Any], outcome: _native._Outcome) -> None:
+    def __init__(
+        self, system: System, wished: dict[str, Any], start: list[float] | None, outcome: _native._Outcome
+    ) -> None:
         self._origin = (system.model, system.form, system.settings())
         self._system: System | None = None
         self._kinds_of_columns = system.column_kinds
         self._wished = wished
+        self._start = start
         self.t: Floats = outcome["t"]
         self.y: Floats = outcome["states"].T
         self._values = outcome["values"]
@@ -154,7 +157,8 @@ class Motion(Mapping[str, "Floats"]):
 
         if self._dense is None:
             end = float(self.t[-1])
-            self._dense = self.system.dense(end, {**self._wished, "t_end": end, "times": None})
+            start = self.system.start_state() if self._start is None else self._start
+            self._dense = self.system.dense(end, start, {**self._wished, "t_end": end, "times": None})
         times = np.asarray(t, dtype=float)
         states = self._dense.at(times.ravel().tolist())
         return states[:, 0] if times.ndim == 0 else states.reshape(-1, *times.shape)

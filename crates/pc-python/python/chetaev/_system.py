@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from chetaev._motion import Motion
+    from chetaev._native import Stepper
     from chetaev._sweep import Sweep
 
     Floats = npt.NDArray[np.float64]
@@ -224,6 +225,7 @@ class System(_native.SystemCore):
         *,
         samples: int | None = None,
         times: npt.ArrayLike | None = None,
+        y0: npt.ArrayLike | None = None,
         method: str | None = None,
         rtol: float | None = None,
         atol: float | Mapping[str, float] | None = None,
@@ -249,6 +251,8 @@ class System(_native.SystemCore):
             Number of rows, evenly spaced, start and end included.
         times : array, optional
             The times of the rows instead.
+        y0 : array, optional
+            The state at the start, n numbers in the order of ``names``, instead of that of the system.
         method : str, optional
             ``"auto"`` (the default), ``"adams"``, ``"bdf"``, ``"dop853"`` or ``"taylor"``.
         rtol : float, optional
@@ -304,6 +308,7 @@ class System(_native.SystemCore):
                 t_end,
                 samples=samples,
                 times=times,
+                y0=y0,
                 method=method,
                 rtol=rtol,
                 atol=atol,
@@ -328,11 +333,38 @@ class System(_native.SystemCore):
             sensitivities=sensitivities,
             limit_time=limit_time,
         )
-        outcome = self.integrate(wished, estimate, verify)
-        motion = Motion(self, wished, outcome)
+        if y0 is not None and sensitivities:
+            raise ValueError("sensitivities are those of the motion from the start of the system: set `start` instead of y0")
+        import numpy as np
+
+        state = None if y0 is None else np.asarray(y0, dtype=float).ravel().tolist()
+        outcome = self.integrate(wished, state, estimate, verify)
+        motion = Motion(self, wished, state, outcome)
         if outcome["error"] is not None:
             raise IntegrationError(outcome["error"], motion)
         return motion
+
+    def stepper(self, **settings: Any) -> Stepper:
+        """The motion from the start, step by step under inputs that a controller chooses.
+
+        A step takes some microseconds. Events of the text occur in it, with their resets. The equations are the ones that the
+        system was compared with the second derivation by; steps are not compared again.
+
+        Parameters
+        ----------
+        **settings
+            ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`.
+
+        Examples
+        --------
+        >>> system = Model.builtin("furuta-pendulum").system()
+        >>> stepper = system.stepper(method="dop853")
+        >>> for _ in range(100):
+        ...     y = stepper.step(0.01, [0.1])
+        >>> round(stepper.t, 9)
+        1.0
+        """
+        return self.stepping(self._wished(**{"t_end": self.t0 + 1.0, **settings}))
 
     def sweep(
         self,

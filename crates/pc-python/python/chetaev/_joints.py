@@ -1,0 +1,119 @@
+"""Joints of bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joint:
+    """How a body moves against the one it hangs on: the base of all joints.
+
+    Parameters
+    ----------
+    at : sequence of three expressions, optional
+        Where it is, in the axes of the parent from the origin of the parent; there unless given.
+    turns : sequence of pairs, optional
+        How it is turned there: ``[("z", a), ("x", b)]`` about its z-axis by a, then about its x-axis, as turned, by b.
+    rotation : sequence of nine expressions, optional
+        The same as a matrix from the axes of the joint to those of the parent, row after row.
+    coordinates, quasi_velocities : sequence of str, optional
+        Names in place of those that are made of the name of the body.
+    """
+
+    at: Sequence[Any] | None = None
+    turns: Sequence[tuple[str, Any]] | None = None
+    rotation: Sequence[Any] | None = None
+    coordinates: Sequence[str] | None = None
+    quasi_velocities: Sequence[str] | None = None
+
+    #: Its name in a text.
+    kind: ClassVar[str]
+
+    def entries(self) -> dict[str, Any]:
+        """As ``joint`` of a body in a text has it."""
+        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {"kind": self.kind, **{key: value for key, value in given.items() if value is not None}}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fixed(Joint):
+    """The body stands still."""
+
+    kind = "fixed"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Revolute(Joint):
+    """The body turns about ``axis``: the coordinate ``NAME``.
+
+    Examples
+    --------
+    >>> from chetaev import Model, Revolute
+    >>> arm = Model.builder("arm").coordinate("arm", 0.5).gravity([0, 0, -9.81])
+    >>> arm = arm.body("arm", joint=Revolute(axis=[0, 1, 0]), mass=1.0, center=[0, 0, -0.5])
+    >>> arm.build().system().names
+    ('arm', "arm'")
+    """
+
+    kind = "revolute"
+    #: Three numbers, of which only the ratios count.
+    axis: Sequence[Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prismatic(Joint):
+    """The body slides along ``axis``: the coordinate ``NAME``."""
+
+    kind = "prismatic"
+    axis: Sequence[Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Screw(Joint):
+    """The body turns by ``NAME`` about ``axis`` and slides along it by ``pitch`` times ``NAME``."""
+
+    kind = "screw"
+    axis: Sequence[Any]
+    pitch: Any
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cylindrical(Joint):
+    """The body slides along ``axis`` and turns about it: ``NAME_z``, ``NAME_φ``."""
+
+    kind = "cylindrical"
+    axis: Sequence[Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Universal(Joint):
+    """The body turns about the first of two ``axes``, then about the second, carried along: ``NAME_1``, ``NAME_2``."""
+
+    kind = "universal"
+    axes: Sequence[Sequence[Any]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Planar(Joint):
+    """The body slides along the two axes that follow the normal ``axis``, and turns about it: ``NAME_x``, ``NAME_y``, ``NAME_φ``."""
+
+    kind = "planar"
+    axis: Sequence[Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spherical(Joint):
+    """The body turns about a point: a unit quaternion ``NAME_q0`` to ``NAME_q3``, and ``NAME_ω1`` to ``NAME_ω3`` in body axes."""
+
+    kind = "spherical"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Free(Joint):
+    """The body moves freely: ``NAME_x`` to ``NAME_z`` and a unit quaternion, ``NAME_v1`` to ``NAME_v3`` and ω in body axes."""
+
+    kind = "free"
+
