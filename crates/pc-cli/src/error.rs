@@ -4,8 +4,10 @@ use std::error::Error;
 use std::io;
 
 use pc_fmu::FmuError;
+use pc_model::import::UrdfError;
 use pc_model::{ModelError, UnknownIntegral, UnknownStart, UnknownValue};
-use pc_report::ReportError;
+use pc_report::files::PictureError;
+use pc_report::{ReportError, UnknownColumn};
 use pc_run::RunError;
 use pc_run::compare::error::CompareError;
 use pc_run::files::error::FileError;
@@ -13,8 +15,6 @@ use pc_run::linear::error::LinearError;
 use pc_run::sweep::error::SweepError;
 
 use crate::exit_code;
-use crate::import::UrdfError;
-use crate::plot::error::PlotError;
 
 /// An error of the program.
 #[derive(Debug, thiserror::Error)]
@@ -112,7 +112,15 @@ pub enum CliError {
     NoFrame,
     /// A picture that could not be drawn.
     #[error(transparent)]
-    Plot(#[from] PlotError),
+    Picture(#[from] PictureError),
+    /// A column to be drawn does not exist.
+    #[error("--{option}: {source}")]
+    Column {
+        /// The option that names it.
+        option: &'static str,
+        /// The column, and the existing ones.
+        source: UnknownColumn,
+    },
     /// Something wrong with a run, or with the file of its result.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -212,7 +220,8 @@ impl CliError {
             | CliError::NothingToDraw { .. }
             | CliError::NoFrame
             | CliError::Idle { .. }
-            | CliError::Plot(_) => CliError::USAGE,
+            | CliError::Column { .. }
+            | CliError::Picture(_) => CliError::USAGE,
         }
     }
 

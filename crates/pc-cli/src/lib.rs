@@ -27,9 +27,7 @@ mod exit_code;
 pub mod args;
 pub(crate) mod bench;
 pub mod commands;
-pub mod import;
 pub mod output;
-pub mod plot;
 pub mod terminal;
 
 pub use error::CliError;

@@ -36,6 +36,8 @@ mod deep;
 mod diagnostics;
 pub mod document;
 mod flow;
+#[cfg(feature = "urdf")]
+pub mod import;
 mod model;
 mod names;
 mod variables;

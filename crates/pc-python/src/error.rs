@@ -2,14 +2,17 @@
 
 use std::error::Error as _;
 
+use pc_fmu::FmuError;
 use pc_mech::{Failure, MechError};
+use pc_model::import::UrdfError;
 use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_report::ReportError;
+use pc_run::files::error::FileError;
 use pc_run::sweep::error::SweepError;
 use pc_run::{RunError, chain};
 use pc_solve::{InputError, SolveError};
 use pc_verify::VerifyError;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
@@ -36,6 +39,12 @@ pub(crate) enum Error {
     #[error(transparent)]
     Run(#[from] RunError),
     #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Urdf(#[from] UrdfError),
+    #[error(transparent)]
+    Fmu(FmuError),
+    #[error(transparent)]
     Solve(#[from] SolveError),
     #[error(transparent)]
     Input(#[from] InputError),
@@ -55,6 +64,15 @@ pub(crate) enum Error {
     Law { name: String, first: f64, second: f64 },
     #[error("internal error; please report it: {message}")]
     Panic { message: String },
+}
+
+impl From<FmuError> for Error {
+    fn from(error: FmuError) -> Error {
+        match error {
+            FmuError::Model(error) => Error::Model(error),
+            other => Error::Fmu(other),
+        }
+    }
 }
 
 /// A class of `chetaev._errors`.
@@ -134,6 +152,8 @@ impl From<Error> for PyErr {
                 raised(py, "UnknownNameError", unknown.to_string())
             }
             Error::Run(error) => of_run(py, error),
+            Error::File(error) => PyOSError::new_err(chain(error)),
+            Error::Urdf(_) | Error::Fmu(_) => raised(py, "ChetaevError", chain(&error)),
             Error::Sweep(_) | Error::Panic { .. } => PyRuntimeError::new_err(chain(&error)),
             Error::Solve(_) => raised(py, "IntegrationError", chain(&error)),
         })

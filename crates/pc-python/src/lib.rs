@@ -3,8 +3,8 @@
 //! It converts and delegates; what it returns is shaped by the package in `python/`, which says what users are told. Read
 //! `error`, the exceptions; `task`, work that Ctrl-C ends; `model`, a model and what is printed of it; `system`, its
 //! compiled equations, with `evaluation` of states and of arrays of them, and `quantities` beside the rates, of `mechanics`; then
-//! `motion`, `dense`, `stepper`, `sweep` and `lyapunov`, integrations, all by the settings in `plan`, `linear`, the motions near a state, and
-//! `animation`, pages.
+//! `motion`, `dense`, `stepper`, `sweep` and `lyapunov`, integrations, all by the settings in `plan`, `linear`, the motions near a state,
+//! `animation`, pages, and `exchange`, robots in URDF and FMUs.
 
 #![expect(clippy::needless_pass_by_value, reason = "what Python gives is converted into values of our own")]
 
@@ -12,6 +12,7 @@ mod animation;
 mod dense;
 mod error;
 mod evaluation;
+mod exchange;
 mod linear;
 mod lyapunov;
 mod mechanics;
@@ -33,6 +34,8 @@ mod _native {
 
     #[pymodule_export]
     use crate::dense::DenseCore;
+    #[pymodule_export]
+    use crate::exchange::text_of_urdf;
     #[pymodule_export]
     use crate::model::{ModelCore, builtin_names};
     #[pymodule_export]

@@ -26,6 +26,8 @@
 
 mod check;
 mod error;
+#[cfg(feature = "files")]
+pub mod files;
 mod frame;
 mod page;
 pub mod picture;

@@ -4,14 +4,14 @@ use std::io::{self, Write};
 
 use pc_model::Source;
 use pc_model::document::{read_bounded, read_file_bounded};
+use pc_model::import::model_of_urdf;
+use pc_run::files::error::FileError;
+use pc_run::files::place::{Place, file};
 
 use crate::args::options::ImportArguments;
 use crate::error::CliError;
-use crate::import::model_of_urdf;
 use crate::output::standard_output::print;
 use crate::terminal::text::say;
-use pc_run::files::error::FileError;
-use pc_run::files::place::{Place, file};
 
 /// Writes the text model of a robot in URDF.
 ///

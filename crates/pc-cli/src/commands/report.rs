@@ -1,6 +1,7 @@
 //! `pc report`: all that is known of a model on one page; `pc animate`: its motion alone, as a page or in pictures.
 
 use pc_model::Model;
+use pc_report::files::{frames, nearest};
 use pc_report::{Record, Scene, animation, report};
 use pc_run::Plan;
 use pc_run::RunError;
@@ -12,7 +13,6 @@ use crate::args::input;
 use crate::args::report::{AnimateArguments, ReportArguments, ShownArguments};
 use crate::error::CliError;
 use crate::output::destination::{Destination, Encoding};
-use crate::plot::gif::{frames, nearest};
 use crate::terminal::observer::Terminal;
 
 /// Points with which a curve looks smooth.

@@ -13,7 +13,6 @@ use crate::args::options::{Outputs, RunArguments};
 use crate::error::CliError;
 use crate::output::destination::{Destination, table};
 use crate::output::standard_output::print_or_keep;
-use crate::plot::error::PlotError;
 use crate::terminal::observer::Terminal;
 use crate::terminal::text;
 
@@ -77,8 +76,8 @@ fn write(
 /// The wanted columns of a motion, drawn.
 ///
 /// # Errors
-/// [`CliError::Plot`] where it has no such column.
+/// [`CliError::Column`] where it has no such column.
 pub fn drawn(run: &Run, wanted: &Wanted) -> Result<Drawing, CliError> {
     let picture = Picture::of(&run.title, &run.record(), wanted);
-    Ok(picture.map_err(|source| PlotError::Column { option: "plot", source })?.drawing())
+    Ok(picture.map_err(|source| CliError::Column { option: "plot", source })?.drawing())
 }

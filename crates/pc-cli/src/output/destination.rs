@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
+use pc_report::files::{gif, pdf, png};
 use pc_report::picture::Drawing;
 use pc_run::files::error::FileError;
 use pc_run::files::place;
@@ -11,9 +12,6 @@ use pc_run::table::file::{Format, TableFile};
 
 use crate::error::CliError;
 use crate::output::standard_output;
-use crate::plot::gif::gif;
-use crate::plot::pdf::pdf;
-use crate::plot::png::png;
 
 /// The file of the table of a motion; none for standard output, also as `-`.
 ///
@@ -119,7 +117,7 @@ impl Destination {
     /// Writes a picture.
     ///
     /// # Errors
-    /// [`CliError::Plot`], and as for [`write_page`](Destination::write_page).
+    /// [`CliError::Picture`], and as for [`write_page`](Destination::write_page).
     pub fn write_plot(&self, drawing: &Drawing) -> Result<(), CliError> {
         self.write_bytes(&match self.encoding {
             Encoding::Png => png(drawing)?,

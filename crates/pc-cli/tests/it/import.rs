@@ -3,8 +3,8 @@
 
 use std::process::Command;
 
-use pc_cli::import::model_of_urdf;
 use pc_mech::{Graph, VectorField};
+use pc_model::import::model_of_urdf;
 use pc_model::{Document, Flow, Model, Source, Variables};
 
 fn robot(name: &str) -> String {

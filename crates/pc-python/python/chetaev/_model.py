@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -89,6 +90,30 @@ class Model:
         """The model in a file."""
         with open(path, "rb") as file:
             return cls(file.read(), os.fspath(path))
+
+    @classmethod
+    def from_urdf(cls, path: str | os.PathLike[str], *, floating: bool = False) -> Model:
+        """The model of a robot in URDF, macros expanded: links are bodies on joints.
+
+        Its text, which names what was left out in warnings, can be written to a file and gone on with.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+        floating : bool
+            Whether the root link moves freely; it stands still otherwise.
+
+        Raises
+        ------
+        ChetaevError
+            With the place in the file, if something in it is wrong.
+        """
+        with open(path, encoding="utf-8") as file:
+            text, left_out = _native.text_of_urdf(os.fspath(path), file.read(), floating)
+        for remark in left_out:
+            warnings.warn(remark, stacklevel=2)
+        return cls(text, os.fspath(path))
 
     @classmethod
     def builtin(cls, name: str) -> Model:
@@ -219,6 +244,40 @@ class Model:
             As for :meth:`system`.
         """
         return Theory(self, degree, [str(f) for f in functions], settings)
+
+    def fmu(
+        self,
+        path: str | os.PathLike[str],
+        form: str | None = None,
+        *,
+        version: int = 3,
+        solver: str | None = None,
+        step: float | None = None,
+        compiled: bool = True,
+        **settings: Any,
+    ) -> None:
+        """Writes a Functional Mock-up Unit for Model Exchange and Co-Simulation, as ``pc emit --fmu`` does.
+
+        Parameters
+        ----------
+        path : path
+            The file to write, whose name is that of the model.
+        form : str, optional
+            ``"poincare"``, ``"reduced"``, ``"orthonormal"`` or ``"hamel"``.
+        version : int
+            2 or 3, of FMI.
+        solver : str, optional
+            How it integrates by itself: ``"dop853"``, ``"radau5"`` (stiff), or ``"rk4"`` with fixed steps of the length ``step``.
+        compiled : bool
+            Whether it has a binary for this machine, which takes a C compiler, beside the sources.
+        **settings
+            As for :meth:`system`.
+        """
+        solves = None if solver is None else (solver, step)
+        name = os.path.splitext(os.path.basename(os.fspath(path)))[0]
+        core = self._changed(settings)
+        for remark in core.write_fmu(os.fspath(path), name, version, form or "poincare", solves, compiled):
+            warnings.warn(remark, stacklevel=2)
 
     def linearize(
         self,

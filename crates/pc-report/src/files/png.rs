@@ -1,13 +1,13 @@
 //! Drawings as bitmaps.
 
-use pc_report::picture::{Drawing, Ink, Shape};
+use crate::picture::{Drawing, Ink, Shape};
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform,
 };
 use ttf_parser::OutlineBuilder;
 
-use crate::plot::error::PlotError;
-use crate::plot::glyphs::Glyphs;
+use crate::files::error::PictureError;
+use crate::files::glyphs::Glyphs;
 
 /// Pixels per point.
 const SCALE: f32 = 2.0;
@@ -15,19 +15,23 @@ const SCALE: f32 = 2.0;
 /// The bitmap, on white.
 ///
 /// # Errors
-/// [`PlotError`]
-pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, PlotError> {
+/// [`PictureError`]
+pub fn png(drawing: &Drawing) -> Result<Vec<u8>, PictureError> {
     encoded(&painted(drawing, SCALE, &Glyphs::new()?)?)
 }
 
 /// The pixels, `magnification` of them per point.
 ///
 /// # Errors
-/// [`PlotError`]
-pub(super) fn painted(drawing: &Drawing, magnification: f32, glyphs: &Glyphs) -> Result<Pixmap, PlotError> {
+/// [`PictureError`]
+pub(super) fn painted(
+    drawing: &Drawing,
+    magnification: f32,
+    glyphs: &Glyphs,
+) -> Result<Pixmap, PictureError> {
     let size = |length: f64| (length * f64::from(magnification)).ceil() as u32;
     let (width, height) = (size(drawing.width), size(drawing.height));
-    let mut pixels = Pixmap::new(width, height).ok_or(PlotError::Size { width, height })?;
+    let mut pixels = Pixmap::new(width, height).ok_or(PictureError::Size { width, height })?;
     pixels.fill(tiny_skia::Color::WHITE);
     let scale = Transform::from_scale(magnification, magnification);
     for shape in &drawing.shapes {
@@ -106,8 +110,8 @@ pub(super) fn opaque(pixels: &Pixmap) -> Vec<u8> {
     pixels.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
 }
 
-fn encoded(pixels: &Pixmap) -> Result<Vec<u8>, PlotError> {
-    let encoding = |error: png::EncodingError| PlotError::Encode { message: error.to_string() };
+fn encoded(pixels: &Pixmap) -> Result<Vec<u8>, PictureError> {
+    let encoding = |error: png::EncodingError| PictureError::Encode { message: error.to_string() };
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, pixels.width(), pixels.height());
     encoder.set_color(png::ColorType::Rgb);

@@ -3,11 +3,11 @@
 //! In goes a robot in URDF, out comes the text of a model. Read `robot` first, the contents of such
 //! a file; `urdf` reads it, with an `error` that shows the place, and `text` writes the model, with `names` of its own.
 
-pub(crate) mod error;
-pub(crate) mod names;
-pub(crate) mod robot;
-pub(crate) mod text;
-pub(crate) mod urdf;
+mod error;
+mod names;
+mod robot;
+mod text;
+mod urdf;
 
 pub use error::UrdfError;
 pub use text::model_of_urdf;

@@ -4,8 +4,7 @@ use std::collections::HashSet;
 use std::fmt::Write;
 use std::path::Path;
 
-use pc_model::Source;
-
+use crate::diagnostics::source::Source;
 use crate::import::error::UrdfError;
 use crate::import::names::Names;
 use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Pose, Robot};
@@ -369,5 +368,5 @@ fn quoted(text: &str) -> String {
 }
 
 fn one_line(text: &str) -> String {
-    text.replace(|c: char| c.is_control() || pc_model::document::is_hidden(c), "\u{fffd}")
+    text.replace(|c: char| c.is_control() || crate::document::is_hidden(c), "\u{fffd}")
 }

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use pc_model::Source;
 use roxmltree::{Document, Node};
 
+use crate::diagnostics::source::Source;
 use crate::import::error::UrdfError;
 use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Pose, Robot};
 

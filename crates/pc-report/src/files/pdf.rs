@@ -8,13 +8,13 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write as _;
 
+use crate::picture::{Drawing, Ink, Shape};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use pc_report::picture::{Drawing, Ink, Shape};
 use ttf_parser::{GlyphId, OutlineBuilder};
 
-use crate::plot::error::PlotError;
-use crate::plot::glyphs::Glyphs;
+use crate::files::error::PictureError;
+use crate::files::glyphs::Glyphs;
 
 /// Most characters of a font: their codes are one byte, without 0.
 const CODES: usize = 255;
@@ -22,8 +22,8 @@ const CODES: usize = 255;
 /// The page.
 ///
 /// # Errors
-/// [`PlotError`]
-pub(crate) fn pdf(drawing: &Drawing) -> Result<Vec<u8>, PlotError> {
+/// [`PictureError`]
+pub fn pdf(drawing: &Drawing) -> Result<Vec<u8>, PictureError> {
     let glyphs = Glyphs::new()?;
     let mut fonts = Fonts { glyphs: &glyphs, known: BTreeMap::new(), characters: Vec::new() };
     let content = content(drawing, &mut fonts);
@@ -118,7 +118,7 @@ impl Fonts<'_> {
     }
 
     /// Writes the fonts, and returns the resources of the page.
-    fn write(&self, file: &mut File) -> Result<String, PlotError> {
+    fn write(&self, file: &mut File) -> Result<String, PictureError> {
         let mut resources = "/Font <<".to_owned();
         for (number, characters) in self.characters.chunks(CODES).enumerate() {
             let (mut procedures, mut names, mut widths) = (String::new(), String::new(), String::new());
@@ -224,8 +224,8 @@ impl File {
         self.bytes.extend(b"\nendobj\n");
     }
 
-    fn stream(&mut self, body: &[u8]) -> Result<usize, PlotError> {
-        let encoding = |error: std::io::Error| PlotError::Encode { message: error.to_string() };
+    fn stream(&mut self, body: &[u8]) -> Result<usize, PictureError> {
+        let encoding = |error: std::io::Error| PictureError::Encode { message: error.to_string() };
         let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
         encoder.write_all(body).map_err(encoding)?;
         let packed = encoder.finish().map_err(encoding)?;

@@ -1,9 +1,9 @@
 //! Outlines of the built-in font: pictures depend on no font of the system.
 
-use pc_report::picture::Anchor;
+use crate::picture::Anchor;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
-use crate::plot::error::PlotError;
+use crate::files::error::PictureError;
 
 /// The built-in font.
 pub(super) struct Glyphs {
@@ -18,8 +18,8 @@ pub(super) struct Placed {
 }
 
 impl Glyphs {
-    pub(super) fn new() -> Result<Glyphs, PlotError> {
-        Face::parse(dejavu::sans::regular(), 0).map(|face| Glyphs { face }).map_err(|_| PlotError::Font)
+    pub(super) fn new() -> Result<Glyphs, PictureError> {
+        Face::parse(dejavu::sans::regular(), 0).map(|face| Glyphs { face }).map_err(|_| PictureError::Font)
     }
 
     /// Units of the font per height of a text.

@@ -1,10 +1,8 @@
-//! Errors of drawing a picture.
+//! Errors of pictures as files.
 
-use pc_report::UnknownColumn;
-
-/// A picture that could not be drawn.
+/// A picture that cannot be a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PlotError {
+pub enum PictureError {
     /// The built-in font cannot be read.
     #[error("the built-in font cannot be read")]
     Font,
@@ -21,13 +19,5 @@ pub enum PlotError {
     Encode {
         /// What the encoder says.
         message: String,
-    },
-    /// A column to be drawn does not exist.
-    #[error("--{option}: {source}")]
-    Column {
-        /// The option that names it.
-        option: &'static str,
-        /// The column, and the existing ones.
-        source: UnknownColumn,
     },
 }

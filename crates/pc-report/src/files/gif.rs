@@ -1,11 +1,11 @@
 //! A sequence of drawings as GIF.
 
+use crate::picture::Drawing;
 use gif::{Encoder, Frame, Repeat};
-use pc_report::picture::Drawing;
 
-use crate::plot::error::PlotError;
-use crate::plot::glyphs::Glyphs;
-use crate::plot::png::{opaque, painted};
+use crate::files::error::PictureError;
+use crate::files::glyphs::Glyphs;
+use crate::files::png::{opaque, painted};
 
 /// Pixels per point.
 const SCALE: f32 = 1.0;
@@ -20,7 +20,7 @@ const MOST: usize = 250;
 const SPEED: i32 = 10;
 
 /// The numbers of those frames at `times` that show the motion at its true speed.
-pub(crate) fn frames(times: &[f64]) -> Vec<usize> {
+pub fn frames(times: &[f64]) -> Vec<usize> {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
     let span = last - first;
     let intervals = (span.abs() * RATE).round().clamp(1.0, MOST as f64) as usize;
@@ -29,7 +29,7 @@ pub(crate) fn frames(times: &[f64]) -> Vec<usize> {
 }
 
 /// The number of the time that is nearest.
-pub(crate) fn nearest(times: &[f64], time: f64) -> usize {
+pub fn nearest(times: &[f64], time: f64) -> usize {
     let distance = |&i: &usize| (times[i] - time).abs();
     (0..times.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
@@ -37,16 +37,16 @@ pub(crate) fn nearest(times: &[f64], time: f64) -> usize {
 /// The film, which repeats.
 ///
 /// # Errors
-/// [`PlotError`]
-pub(crate) fn gif(drawings: impl Iterator<Item = Drawing>) -> Result<Vec<u8>, PlotError> {
-    let encoding = |error: gif::EncodingError| PlotError::Encode { message: error.to_string() };
+/// [`PictureError`]
+pub fn gif(drawings: impl Iterator<Item = Drawing>) -> Result<Vec<u8>, PictureError> {
+    let encoding = |error: gif::EncodingError| PictureError::Encode { message: error.to_string() };
     let glyphs = Glyphs::new()?;
     let mut encoder = None;
     for drawing in drawings {
         let pixels = painted(&drawing, SCALE, &glyphs)?;
         let (width, height) = (pixels.width(), pixels.height());
         let sides = u16::try_from(width).ok().zip(u16::try_from(height).ok());
-        let (wide, high) = sides.ok_or(PlotError::Size { width, height })?;
+        let (wide, high) = sides.ok_or(PictureError::Size { width, height })?;
         let encoder = match &mut encoder {
             Some(encoder) => encoder,
             None => {
@@ -61,7 +61,7 @@ pub(crate) fn gif(drawings: impl Iterator<Item = Drawing>) -> Result<Vec<u8>, Pl
     }
     match encoder {
         Some(encoder) => {
-            encoder.into_inner().map_err(|error| PlotError::Encode { message: error.to_string() })
+            encoder.into_inner().map_err(|error| PictureError::Encode { message: error.to_string() })
         }
         None => Ok(Vec::new()),
     }

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use pc_model::{Diagnostic, Place, Source};
+use crate::diagnostics::error::Diagnostic;
+use crate::diagnostics::source::{Place, Source};
 
 /// Something in a URDF file that is wrong, or cannot be part of a model.
 #[derive(Clone, Debug, thiserror::Error)]

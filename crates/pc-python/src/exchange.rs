@@ -1,0 +1,94 @@
+//! Models from other formats, and for other programs.
+
+use std::io::Cursor;
+use std::io::Write;
+use std::path::PathBuf;
+
+use pc_fmu::{FmiVersion, Fmu, FmuOptions, FmuSolver};
+use pc_model::import::model_of_urdf;
+use pc_model::{Source, deep};
+use pc_run::files::error::FileError;
+use pc_run::files::place::Place;
+use pc_verify::Outlet;
+use pyo3::prelude::*;
+
+use crate::error::Error;
+use crate::model::{ModelCore, renewed, variables, vouched};
+use crate::task::attended;
+
+/// The text of the model of a robot in URDF, and what was left out of it.
+#[pyfunction]
+pub(crate) fn text_of_urdf(
+    name: String,
+    urdf: String,
+    floating: bool,
+) -> Result<(String, Vec<String>), Error> {
+    Ok(model_of_urdf(&Source::new(name, urdf), floating)?)
+}
+
+/// How an FMU integrates by itself, by its name and, for fixed steps, their length.
+fn solver(name: &str, step: Option<f64>) -> Result<FmuSolver, Error> {
+    match name {
+        "dop853" => Ok(FmuSolver::Dop853),
+        "radau5" => Ok(FmuSolver::Radau5),
+        "rk4" => Ok(FmuSolver::RungeKutta4 { step: step.unwrap_or(f64::NAN) }),
+        _ => Err(Error::Choice {
+            what: "the solver",
+            given: name.to_owned(),
+            known: vec!["dop853", "radau5", "rk4"],
+        }),
+    }
+}
+
+#[pymethods]
+impl ModelCore {
+    /// Writes the model as an FMU, whole or not at all, and says what to know of it.
+    #[expect(clippy::too_many_arguments, reason = "those of Python")]
+    fn write_fmu(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        name: String,
+        version: u8,
+        form: &str,
+        solves: Option<(String, Option<f64>)>,
+        compiled: bool,
+    ) -> PyResult<Vec<String>> {
+        let form = variables(form)?;
+        let version = match version {
+            2 => FmiVersion::V2,
+            3 => FmiVersion::V3,
+            other => {
+                let known = vec!["2", "3"];
+                return Err(Error::Choice { what: "the version", given: other.to_string(), known }.into());
+            }
+        };
+        let mut options = FmuOptions::new(version, name);
+        if let Some((name, step)) = solves {
+            options = options.solver(solver(&name, step)?);
+        }
+        let (mut model, verify) = (self.model.clone(), self.verify);
+        let cancel = renewed(&mut model);
+        let work = move || {
+            deep(|| {
+                let place = Place::regular(&path).map_err(|source| FileError::no_place(&path, source))?;
+                let graph = model.graph();
+                let assembly = model.assemble(&graph)?;
+                if verify {
+                    vouched(&model, &assembly, Outlet::Source(form))?;
+                }
+                let mut fmu = Fmu::new(&model, &assembly, form, &options)?;
+                let notes = fmu.notes().to_vec();
+                if compiled {
+                    fmu = fmu.compiled()?;
+                }
+                let mut archive = Cursor::new(Vec::new());
+                let unwritten = |source| FileError::cannot_write(&path, source);
+                fmu.write(&mut archive).map_err(unwritten)?;
+                place.write(|out| out.write_all(archive.get_ref())).map_err(unwritten)?;
+                Ok(notes)
+            })
+        };
+        attended(py, &cancel, |_| Ok(()), work)
+    }
+}

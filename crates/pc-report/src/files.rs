@@ -1,0 +1,15 @@
+//! Pictures as files.
+//!
+//! A [`Drawing`](crate::picture::Drawing) becomes a bitmap or a page: `glyphs` are the outlines of the built-in
+//! font, `png`, `gif` and `pdf` write, and `error` lists the errors. SVG needs nothing of this.
+
+mod error;
+mod gif;
+mod glyphs;
+mod pdf;
+mod png;
+
+pub use error::PictureError;
+pub use gif::{frames, gif, nearest};
+pub use pdf::pdf;
+pub use png::png;
