@@ -2,6 +2,7 @@
 
 mod imports;
 mod interface;
+mod layers;
 #[path = "source/modules.rs"]
 mod modules;
 mod pages;
