@@ -30,42 +30,31 @@
 //! Below: [`pc_model`], whose equations it prints, and [`pc_analysis`], what it says of motions. Above:
 //! [pc-report](../pc_report/index.html), all of it on one page, and [pc-cli](../pc_cli/index.html).
 
-mod bodies;
-mod constraints;
-mod derived;
-mod displayed;
-mod form;
-mod json;
-mod latex;
+mod equations;
+mod language;
 mod layout;
-mod lines;
-mod mathml;
-mod operations;
 mod page;
-mod part;
-mod sheet;
-mod text;
 mod theory;
-mod visible;
 mod words;
 
-pub use constraints::kind_in_words;
-pub use derived::{Derived, energy_remark};
-pub use displayed::{
+pub use equations::constraints::kind_in_words;
+pub use equations::derived::{Derived, energy_remark};
+pub use equations::form::Form;
+pub use equations::operations::{Operations, counted};
+pub use equations::sheet::{Balance, Bracket, Brackets, Sheet, recognised};
+pub use layout::format::Page;
+pub use layout::layout::Layout;
+pub use page::displayed::{
     Display, DisplayedEntry, DisplayedEquations, DisplayedPart, DisplayedTheory, displayed_equations,
     displayed_system, displayed_theory,
 };
-pub use form::Form;
-pub use layout::Layout;
-pub use lines::{columns, combination};
-pub use operations::{Operations, counted};
-pub use page::{Page, page};
-pub use sheet::{Balance, Bracket, Brackets, Sheet, recognised};
+pub use page::page::page;
 pub use theory::bracket_of::bracket_of;
 pub use theory::description::Theory;
 pub use theory::integrals::integrals_of;
 pub use theory::measure::reducing_multiplier;
 pub use theory::options::TheoryOptions;
 pub use theory::steady::{eigenvalues_in_words, stability_in_words};
-pub use visible::{one_line, visible, visible_json};
-pub use words::{assignments, labelled, short, small, wrapped};
+pub use words::lines::{columns, combination};
+pub use words::visible::{one_line, visible, visible_json};
+pub use words::words::{assignments, labelled, short, small, wrapped};

@@ -26,56 +26,19 @@
 //! Below: [`pc_model`], the text and the first derivation. Above: [pc-report](../pc_report/index.html) and
 //! [pc-cli](../pc_cli/index.html), which refuses a motion on which the two disagree.
 
-mod agreement;
-mod balance;
-mod body;
-mod brackets;
-mod compare;
-mod constants;
-mod couplings;
+mod comparison;
 mod derivation;
-mod equations;
 mod error;
-mod first;
-mod force_function;
-mod forces;
-mod here;
-mod linear;
-mod natural;
-mod number;
-mod outlet;
-mod place;
-mod point;
-mod printed;
-mod projected;
-mod quantities;
-mod quantity;
-mod resets;
-mod resultant;
-mod resultants;
-mod rounding;
-mod second;
-mod sized;
-mod slopes;
-mod solved;
-mod states;
-mod structure;
-mod summands;
-mod term;
+mod numbers;
 #[cfg(test)]
 mod tests;
 mod text;
-mod tolerance;
-mod tree;
-mod units;
-mod unsteady;
-mod velocities;
 
-pub use agreement::Agreement;
-pub use compare::{Options, verify};
+pub use comparison::agreement::Agreement;
+pub use comparison::compare::{Options, verify};
+pub use comparison::outlet::{Outlet, vouch};
+pub use comparison::resets::Jump;
+pub use comparison::second::Second;
+pub use comparison::slopes::Slope;
+pub use comparison::tolerance::TOLERANCE;
 pub use error::{Disagreement, Unable, VerifyError};
-pub use outlet::{Outlet, vouch};
-pub use resets::Jump;
-pub use second::Second;
-pub use slopes::Slope;
-pub use tolerance::TOLERANCE;

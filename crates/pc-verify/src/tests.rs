@@ -4,15 +4,15 @@ use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, Source, Variables};
 use pc_print::Form;
 
-use crate::compare::{Options, verify};
-use crate::equations::Derived;
+use crate::comparison::compare::{Options, verify};
+use crate::comparison::outlet::{Outlet, vouch};
+use crate::comparison::resets::Jump;
+use crate::comparison::second::Second;
+use crate::comparison::slopes::Slope;
+use crate::derivation::equations::Derived;
+use crate::derivation::place::Place;
 use crate::error::VerifyError;
-use crate::outlet::{Outlet, vouch};
-use crate::place::Place;
-use crate::resets::Jump;
-use crate::rounding::Rounding;
-use crate::second::Second;
-use crate::slopes::Slope;
+use crate::numbers::rounding::Rounding;
 
 fn model(text: &str) -> Model {
     Model::new(Document::parse(Source::new("model.toml", text)).unwrap())

@@ -5,7 +5,7 @@ use pc_mech::{Expr, Identity};
 
 use crate::theory::description::{Entry, Section, Side, Verdict};
 use crate::theory::ground::Ground;
-use crate::words::{short, small};
+use crate::words::words::{short, small};
 
 /// X_0 S + H(t, x, X_s S) = 0, and the action of the model.
 pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {

@@ -3,7 +3,7 @@
 use pc_analysis::{AnalysisError, Ansatz, PoissonBracket, Rates};
 use pc_mech::{Canonical, Expr, Identity, Style, System};
 
-use crate::mathml;
+use crate::language::mathml;
 use crate::theory::description::{Entry, Section, Side, Verdict};
 use crate::theory::ground::Ground;
 

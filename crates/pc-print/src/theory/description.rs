@@ -2,7 +2,8 @@
 
 use pc_mech::{Expr, Identity, Style};
 
-use crate::mathml;
+use crate::language::latex::in_text;
+use crate::language::mathml;
 
 /// What can be said of the motions of a model without integrating them: momenta and their brackets, Casimirs, integrals and
 /// the displacements to which they belong, invariant measure, Chaplygin's multiplier, Hamilton–Jacobi's equation, steady
@@ -153,24 +154,6 @@ impl<'g> Side<'g> {
             text: plain,
         }
     }
-}
-
-/// Words within a formula of LaTeX.
-pub(crate) fn in_text(words: &str) -> String {
-    let mut text = String::with_capacity(words.len());
-    for c in words.chars() {
-        match c {
-            '\\' => text += "\\textbackslash{}",
-            '^' => text += "\\textasciicircum{}",
-            '~' => text += "\\textasciitilde{}",
-            '{' | '}' | '_' | '#' | '$' | '%' | '&' => {
-                text.push('\\');
-                text.push(c);
-            }
-            _ => text.push(c),
-        }
-    }
-    text
 }
 
 impl<'g> Entry<'g> {

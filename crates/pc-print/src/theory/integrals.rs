@@ -6,13 +6,13 @@ use pc_analysis::{
 use pc_mech::{Constraint, Equations, Expr, Identity, Multipliers, Neighbourhood, Number, Style, System};
 use pc_model::{Assembly, ConstraintFormulation, Model, ModelError};
 
-use crate::derived::energy_remark;
-use crate::lines::combination;
-use crate::mathml;
+use crate::equations::derived::energy_remark;
+use crate::language::mathml;
 use crate::theory::description::{Entry, Section, Side, Verdict};
 use crate::theory::ground::Ground;
 use crate::theory::options::TheoryOptions;
-use crate::words::short;
+use crate::words::lines::combination;
+use crate::words::words::short;
 
 /// The integrals of a model's motion, known or found by an ansatz, with names for readers.
 pub fn integrals_of<'g>(

@@ -2,11 +2,12 @@
 
 use std::fmt::Write as _;
 
-use crate::latex::aligned;
-use crate::theory::description::{Entry, Section, Theory, in_text};
+use crate::language::latex::aligned;
+use crate::language::latex::in_text;
+use crate::theory::description::{Entry, Section, Theory};
 use crate::theory::folded::folded_outside;
-use crate::visible::one_line;
-use crate::words::short;
+use crate::words::visible::one_line;
+use crate::words::words::short;
 
 /// The most characters of a line of source, about the width of a page.
 const WIDTH: usize = 140;

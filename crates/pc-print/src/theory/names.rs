@@ -6,8 +6,8 @@ use pc_expr::{Folding, Given, Names, Style, Written};
 use pc_mech::Expr;
 use pc_model::Assembly;
 
-use crate::latex::whole;
-use crate::layout::Layout;
+use crate::language::latex::whole;
+use crate::layout::layout::Layout;
 use crate::theory::description::{Section, Side, Theory};
 
 /// Writes all expressions of a page in their order, with the definitions of the model for expressions of

@@ -2,12 +2,12 @@
 
 use pc_model::{Assembly, Model, ModelError};
 
-use crate::page::Page;
+use crate::layout::format::Page;
 use crate::theory::description::{Section, Theory};
 use crate::theory::ground::Ground;
 use crate::theory::options::TheoryOptions;
 use crate::theory::{action, brackets, integrals, json, latex, measure, names, routh, steady, text};
-use crate::visible::{visible, visible_json};
+use crate::words::visible::{visible, visible_json};
 
 impl<'g> Theory<'g> {
     /// What can be said of the motions of a model.

@@ -7,7 +7,7 @@ use pc_model::ModelError;
 
 use crate::theory::description::{Entry, Section, Verdict};
 use crate::theory::ground::Ground;
-use crate::words::short;
+use crate::words::words::short;
 
 /// The remainder that Newton's method leaves of a zero.
 const ZERO: f64 = 1e-9;

@@ -1,11 +1,11 @@
 //! The theory as text.
 
-use crate::lines::columns;
-use crate::text::underlined;
+use crate::language::text::underlined;
 use crate::theory::description::{Entry, Section, Theory};
 use crate::theory::folded::folded;
-use crate::visible::one_line;
-use crate::words::{short, wrapped};
+use crate::words::lines::columns;
+use crate::words::visible::one_line;
+use crate::words::words::{short, wrapped};
 
 /// The most columns of a line.
 const WIDTH: usize = 100;

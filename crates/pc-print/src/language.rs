@@ -1,0 +1,7 @@
+//! Equations in a language: `text`, `latex`, `mathml` and `json`; `bodies` are the page of bodies on joints in the first two.
+
+pub(crate) mod bodies;
+pub(crate) mod json;
+pub(crate) mod latex;
+pub(crate) mod mathml;
+pub(crate) mod text;

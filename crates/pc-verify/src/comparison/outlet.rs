@@ -1,0 +1,87 @@
+//! What leaves a model other than a motion, compared before it does.
+
+use pc_mech::Folding;
+use pc_model::{Assembly, Flow, Model, Variables};
+use pc_print::Form;
+
+use crate::comparison::agreement::Agreement;
+use crate::comparison::compare::{Compared, Projection};
+use crate::comparison::first::First;
+use crate::comparison::printed::printed_name;
+use crate::comparison::second::{LONG, Second};
+use crate::error::VerifyError;
+
+/// Equations on their way to a reader, a compiler or an integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outlet {
+    /// Those that are integrated or linearized, in these variables.
+    Equations(Variables),
+    /// Those that are written as source, in these variables.
+    Source(Variables),
+    /// Those that are printed, in this form.
+    Page(Form),
+}
+
+/// The random states at which equations that leave are compared, besides the start.
+const NEAR: usize = 3;
+
+/// Compares equations that leave in one form with the second derivation: at the start, and at three random states near it.
+///
+/// Those of a large model are compared along random virtual velocities, as [`Second::agrees`] does, in the form that is
+/// integrated; others of its forms are left out, and the agreement says so.
+///
+/// # Errors
+/// As for [`verify`](crate::verify).
+pub fn vouch(model: &Model, assembly: &Assembly<'_>, outlet: Outlet) -> Result<Agreement, VerifyError> {
+    assembly.stage("the second derivation", || Second::new(model, assembly)?.vouches(model, assembly, outlet))
+}
+
+impl Second {
+    pub(crate) fn vouches(
+        &self,
+        model: &Model,
+        assembly: &Assembly<'_>,
+        outlet: Outlet,
+    ) -> Result<Agreement, VerifyError> {
+        let mut agreement = self.nothing_yet();
+        let graph = model.graph();
+        let is_large = self.cost() > LONG;
+        // A page of expressions belongs to a graph of its own.
+        let printed = match outlet {
+            Outlet::Page(form) if !is_large => Some((form, model.assemble(&graph)?)),
+            _ => None,
+        };
+        let page = graph.page(Folding::Structural);
+        let flow = |variables| Flow::new(model, assembly, variables);
+        let first = match outlet {
+            _ if is_large => None,
+            Outlet::Source(Variables::QuasiVelocities) => {
+                let first = First::emitted(assembly, self, &mut agreement);
+                first.map_err(|reason| agreement.leave_out("emit", &reason)).ok()
+            }
+            // Source in other variables is written of the expressions that are integrated.
+            Outlet::Equations(variables) | Outlet::Source(variables) => {
+                Some(First::flow(variables.name(), flow(variables)?, self, assembly, &mut agreement))
+            }
+            Outlet::Page(_) => printed.as_ref().and_then(|(form, printed)| {
+                if let Some(reason) = self.too_large_for(*form, printed) {
+                    agreement.leave_out(&printed_name(*form), reason);
+                    return None;
+                }
+                First::printed(*form, printed, self, &page, &mut agreement)
+            }),
+        };
+        // What has no numbers of its own is made of the equations in quasi-velocities.
+        let compared = match first {
+            Some(first) => Compared::Wholly(vec![first]),
+            None if is_large => {
+                Compared::Along(Box::new(Projection::new(flow(Variables::QuasiVelocities)?, self)))
+            }
+            None => {
+                let flow = flow(Variables::QuasiVelocities)?;
+                Compared::Wholly(vec![First::flow("poincare", flow, self, assembly, &mut agreement)])
+            }
+        };
+        self.compare_near_start(compared, NEAR, assembly, agreement)
+    }
+}

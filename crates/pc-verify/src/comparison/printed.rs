@@ -1,0 +1,346 @@
+//! The printed equations in numbers: exactly the expressions that `pc derive` prints.
+
+use nalgebra::DMatrix;
+use pc_expr::ExprError;
+use pc_mech::{Canonical, Expr, Graph};
+use pc_model::{Assembly, FreeForm, Variables};
+use pc_print::{Balance, Derived, Form, Sheet};
+
+use crate::comparison::second::Second;
+use crate::derivation::derivation::Derivation;
+use crate::derivation::here::Here;
+use crate::derivation::quantity::{Free, Quantity};
+use crate::error::Irregular;
+use crate::numbers::linear::solve;
+use crate::numbers::rounding::Rounding;
+
+/// The forms that are printed.
+pub(crate) const FORMS: [Form; 8] = [
+    Form::Poincare,
+    Form::Canonical,
+    Form::Lagrange,
+    Form::Voronets,
+    Form::Reduced,
+    Form::LiePoisson,
+    Form::Orthonormal,
+    Form::Hamel,
+];
+
+/// The name of a printed form.
+pub(crate) fn printed_name(form: Form) -> String {
+    format!("{} as printed", form.name())
+}
+
+/// The quantities to compare, with their names.
+pub(crate) type Candidates = Vec<(String, Option<Quantity>)>;
+
+/// The expressions of one form.
+pub(crate) struct Printed<'g> {
+    form: Form,
+    page: &'g Graph,
+    sheet: Sheet<'g>,
+    /// Names of the free quasi-velocities.
+    quasi_velocities: Vec<String>,
+    /// The left sides of equations and the expressions they equal, without reactions.
+    direct: Vec<(Side, Expr<'g>)>,
+    /// The symbols with their meanings.
+    inputs: Vec<(Expr<'g>, Input)>,
+    /// The change of quasi-velocities, if they are not those of the model.
+    change: Option<Change<'g>>,
+}
+
+/// Quasi-velocities other than those of the model, on the page.
+struct Change<'g> {
+    /// Their symbols and those of their rates.
+    symbols: Vec<Expr<'g>>,
+    accelerations: Vec<Expr<'g>>,
+    /// Their definitions in terms of the independent ones of the model.
+    definitions: Vec<Expr<'g>>,
+    /// The rates of these in terms of them.
+    rates: Vec<Expr<'g>>,
+}
+
+/// A left side.
+#[derive(Clone, Debug)]
+enum Side {
+    /// The rate of a coordinate or first-order state, by its name.
+    Rate(String),
+    /// A quasi-velocity, by its name.
+    QuasiVelocity(String),
+    /// Momentum number s, as a function of the quasi-velocities.
+    Momentum(usize),
+    Energy,
+}
+
+impl Second {
+    /// The meaning of a name of the model.
+    fn input(&self, name: &str) -> Option<Input> {
+        let names = &self.derivation.text.names;
+        let place = |list: &[String], name: &str| list.iter().position(|known| known == name);
+        let reaction = || place(&names.constraints, name.strip_prefix("λ_")?).map(Input::Reaction);
+        let time = (name == "t").then_some(Input::Time);
+        time.or_else(|| place(&names.coordinates, name).map(Input::Coordinate))
+            .or_else(|| place(&names.parameters, name).map(Input::Parameter))
+            .or_else(|| place(&names.states, name).map(Input::State))
+            .or_else(|| self.free(name).map(Input::Velocity))
+            .or_else(reaction)
+    }
+
+    /// Whether these are as many as the velocities, or as the velocities that the constraints leave.
+    fn are_free(&self, free: &[Free]) -> bool {
+        let k = self.start.w.len();
+        free.len() == k || free.len() + self.derivation.kept.len() == k
+    }
+}
+
+/// The meaning of a symbol.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Input {
+    Time,
+    Coordinate(usize),
+    State(usize),
+    Parameter(usize),
+    Velocity(Free),
+    Momentum(usize),
+    Reaction(usize),
+    /// A force computed outside.
+    External,
+}
+
+impl<'g> Printed<'g> {
+    /// The printed equations of a form; `None` if there is no such form.
+    pub(crate) fn new(form: Form, assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
+        if assembly.system.large_tree().is_some() {
+            return None; // bodies are printed instead of equations
+        }
+        let (_, derived) = Derived::new(form, assembly).ok()?;
+        let sheet = match form {
+            // They equal Lagrange's equations.
+            Form::Voronets if assembly.constraints.multipliers().is_none() => return None,
+            Form::Hamel if assembly.given.is_empty() => return None,
+            Form::Reduced | Form::LiePoisson if !is_reduced(assembly) => return None,
+            _ if form.variables().is_some_and(Variables::has_momenta) => {
+                let free = assembly.free_form(form.variables()?).ok()?;
+                let equations: Canonical<'g> = free.system.canonical().ok()?;
+                Sheet::of_momenta(assembly, &derived, &equations, page)
+            }
+            _ => Sheet::of_velocities(assembly, &derived, page),
+        };
+        let change = match form {
+            Form::Orthonormal | Form::Hamel => Some(assembly.free_form(form.variables()?).ok()?),
+            _ => None,
+        };
+        let quasi_velocities: Vec<String> = match &change {
+            Some(change) => change.independent.iter().map(Expr::to_string).collect(),
+            None => sheet.quasi_velocities.iter().map(Expr::to_string).collect(),
+        };
+        let change = change.map(|change| Change::of(&change, page));
+        let rate = |&(rate, value): &(Expr<'g>, Expr<'g>)| {
+            (Side::Rate(rate.to_string().trim_end_matches('\'').to_owned()), value)
+        };
+        let mut direct: Vec<_> = sheet.rates.iter().chain(&sheet.states).map(rate).collect();
+        direct.push((Side::Energy, sheet.energy));
+        if let Balance::Momenta { of_velocities, velocities, .. } = &sheet.balance {
+            direct.extend((0..).zip(of_velocities).map(|(s, &y)| (Side::Momentum(s), y)));
+            // If the equations are not closed, quasi-velocities are their own values.
+            let solved = velocities.as_ref().unwrap_or(&sheet.quasi_velocities);
+            let solved = quasi_velocities.iter().zip(solved);
+            direct.extend(solved.map(|(eta, &value)| (Side::QuasiVelocity(eta.clone()), value)));
+        }
+        Some(Printed { form, page, sheet, quasi_velocities, direct, inputs: Vec::new(), change })
+    }
+
+    /// The name of the form.
+    pub(crate) fn name(&self) -> String {
+        printed_name(self.form)
+    }
+
+    /// The compared quantities, in the order of the [values](Printed::values), with the free
+    /// quasi-velocities.
+    pub(crate) fn prepare(
+        &mut self,
+        second: &Second,
+        external: &[String],
+    ) -> Result<(Candidates, Vec<Free>), String> {
+        let unknown = |name: &String| format!("`{name}` is unknown to the second derivation");
+        let free = |name: &String| second.free(name).ok_or_else(|| unknown(name));
+        let free: Vec<Free> = self.quasi_velocities.iter().map(free).collect::<Result<_, String>>()?;
+        if !second.are_free(&free) {
+            return Err("its velocities are not the independent ones".to_owned());
+        }
+        let momenta = self.momenta();
+        for symbol in self.page.symbols_of(&self.all()) {
+            let name = symbol.symbol_name().unwrap_or_default();
+            if name
+                .strip_suffix('\'')
+                .is_some_and(|eta| self.quasi_velocities.iter().any(|known| known == eta))
+            {
+                continue; // an acceleration, which the equations give
+            }
+            if self.change.as_ref().is_some_and(|change| change.has(symbol)) {
+                continue; // it follows from the definitions
+            }
+            let momentum = momenta.iter().position(|y| *y == name).map(Input::Momentum);
+            let outside = || external.contains(&name).then_some(Input::External);
+            let input = momentum.or_else(|| second.input(&name)).or_else(outside);
+            self.inputs.push((symbol, input.ok_or_else(|| unknown(&name))?));
+        }
+        let direct = self.direct.iter().map(|(side, _)| match side {
+            Side::Rate(name) => (format!("the rate of {name}"), second.rate(name)),
+            Side::QuasiVelocity(name) => (name.clone(), second.velocity(name)),
+            Side::Momentum(s) => (momenta[*s].clone(), Some(Quantity::Momentum(*s))),
+            Side::Energy => ("energy".to_owned(), Some(Quantity::FreeEnergy)),
+        });
+        let mut candidates: Candidates = direct.collect();
+        for way in ["", ", multiplied out"] {
+            if self.has_momenta() {
+                let rates = (0..).zip(&momenta);
+                candidates.extend(
+                    rates.map(|(s, y)| (format!("the rate of {y}{way}"), Some(Quantity::MomentumRate(s)))),
+                );
+            } else {
+                let rates = self.quasi_velocities.iter();
+                candidates.extend(rates.map(|eta| (format!("the rate of {eta}{way}"), second.rate(eta))));
+            }
+        }
+        let reactions = self.sheet.reactions.iter().map(|(name, _)| name.to_string());
+        candidates.extend(reactions.map(|name| {
+            let observable = second.observable(&name);
+            (name, observable)
+        }));
+        Ok((candidates, free))
+    }
+
+    /// The symbols of the momenta.
+    fn momenta(&self) -> Vec<String> {
+        match &self.sheet.balance {
+            Balance::Momenta { momenta, .. } => momenta.iter().map(Expr::to_string).collect(),
+            Balance::Velocities { .. } => Vec::new(),
+        }
+    }
+
+    /// M by rows, empty if rates of momenta are printed, and the right sides, both as they are and expanded.
+    fn balance(&self) -> (Vec<Expr<'g>>, [&[Expr<'g>]; 2]) {
+        match &self.sheet.balance {
+            Balance::Velocities { mass, right, written, .. } => {
+                (mass.entries().into_owned(), [right, written])
+            }
+            Balance::Momenta { right, written, .. } => (Vec::new(), [right, written]),
+        }
+    }
+
+    /// All expressions.
+    fn all(&self) -> Vec<Expr<'g>> {
+        let (mass, [right, written]) = self.balance();
+        let direct = self.direct.iter().map(|&(_, value)| value);
+        let reactions = self.sheet.reactions.iter().map(|&(_, value)| value);
+        let change = self.change.iter().flat_map(|change| change.definitions.iter().chain(&change.rates));
+        let own = direct.chain(mass).chain(right.to_vec()).chain(written.to_vec()).chain(reactions);
+        own.chain(change.copied()).collect()
+    }
+
+    fn has_momenta(&self) -> bool {
+        self.form.variables().is_some_and(Variables::has_momenta)
+    }
+
+    /// The right sides of the printed equations, with M η̇ = r solved, with the momenta of the second
+    /// derivation if these are the variables, and its multipliers if the equations contain them.
+    pub(crate) fn values(
+        &self,
+        second: &Derivation,
+        here: &Here,
+        free: &[Free],
+        rounding: &Rounding,
+    ) -> Result<Vec<f64>, Irregular> {
+        let exact = Rounding::none();
+        let wanted: Vec<Quantity> = (0..self.momenta().len()).map(Quantity::Momentum).collect();
+        let momenta = second.quantities(&here.derived, &wanted, Some(free), &exact)?;
+        let still = second.still(&here.derived.place, &exact);
+        let value = |input: &Input| match *input {
+            Input::Time => here.derived.place.t,
+            Input::Coordinate(i) => here.derived.place.x[i],
+            Input::State(j) => here.derived.place.z[j],
+            Input::Parameter(j) => still.parameter(j),
+            Input::Velocity(free) => here.velocity(free),
+            // Momenta are rounded as well, which may change many digits of the velocities.
+            Input::Momentum(s) => rounding.of(momenta[s].value),
+            Input::Reaction(a) => {
+                let place = second.kept.iter().position(|&kept| kept == a);
+                place.map_or(0.0, |place| here.derived.reactions[place])
+            }
+            Input::External => 0.0,
+        };
+        let mut at: Vec<_> = self.inputs.iter().map(|(symbol, input)| (*symbol, value(input))).collect();
+        let refused = |error: ExprError| Irregular::Refused { form: self.name(), message: error.to_string() };
+        let evaluate =
+            |list: &[Expr<'g>], at: &[(Expr<'g>, f64)]| self.page.evaluate(list, at).map_err(refused);
+        if let Some(change) = &self.change {
+            let values = evaluate(&change.definitions, &at)?;
+            at.extend(change.symbols.iter().copied().zip(values));
+        }
+        let direct: Vec<Expr<'g>> = self.direct.iter().map(|&(_, value)| value).collect();
+        let mut values = evaluate(&direct, &at)?;
+        let (mass, ways) = self.balance();
+        let mass = evaluate(&mass, &at)?;
+        let mut rates = Vec::new();
+        for right in ways {
+            let right = evaluate(right, &at)?;
+            rates = if self.has_momenta() {
+                right
+            } else {
+                let k = right.len();
+                let mass = DMatrix::from_fn(k, k, |r, s| mass[r * k + s]);
+                solve(&mass, &right, &right)?.values
+            };
+            match &self.change {
+                None => values.extend(&rates),
+                Some(change) => {
+                    let moving = change.accelerations.iter().copied().zip(rates.iter().copied());
+                    values.extend(evaluate(
+                        &change.rates,
+                        &at.iter().copied().chain(moving).collect::<Vec<_>>(),
+                    )?);
+                }
+            }
+        }
+        let accelerations = self.sheet.quasi_velocities.iter();
+        let accelerations = accelerations.map(|eta| self.page.symbol(&format!("{eta}'")));
+        at.extend(accelerations.zip(rates));
+        let reactions: Vec<Expr<'g>> = self.sheet.reactions.iter().map(|&(_, value)| value).collect();
+        values.extend(evaluate(&reactions, &at)?);
+        match values.iter().all(|value| value.is_finite()) {
+            true => Ok(values),
+            false => Err(Irregular::NotFinite { what: "what is printed" }),
+        }
+    }
+}
+
+impl<'g> Change<'g> {
+    fn of(form: &FreeForm<'g>, page: &'g Graph) -> Change<'g> {
+        let (system, graph) = (&form.system, form.system.graph());
+        let (eta, frame, accelerations) = (system.quasi_velocities(), system.frame(), system.accelerations());
+        let along: Vec<_> = (frame.coordinates().iter().copied().zip(frame.velocities(eta)))
+            .chain(eta.iter().copied().zip(accelerations.iter().copied()))
+            .chain([(frame.time(), 1.into())])
+            .collect();
+        Change {
+            symbols: graph.transcribe(eta, page),
+            rates: graph.transcribe(&graph.directional(&form.values, &along), page),
+            definitions: graph.transcribe(&form.definitions, page),
+            accelerations: graph.transcribe(&accelerations, page),
+        }
+    }
+
+    /// Whether a symbol is one of these quasi-velocities and foreign to the model, or the rate of one.
+    fn has(&self, symbol: Expr<'g>) -> bool {
+        let place = self.symbols.iter().position(|&eta| eta == symbol);
+        place.is_some_and(|place| self.definitions[place] != symbol) || self.accelerations.contains(&symbol)
+    }
+}
+
+/// Whether there are ignorable coordinates.
+pub(crate) fn is_reduced(assembly: &Assembly<'_>) -> bool {
+    let left = assembly.free_form(Variables::Reduced);
+    let all = assembly.system.frame().coordinates().len();
+    left.is_ok_and(|left| left.system.frame().coordinates().len() < all)
+}

@@ -1,0 +1,287 @@
+//! The equations of large models, along a few virtual velocities drawn at random.
+//!
+//! All equations at a state need all second derivatives of L by the velocities, n² of them. Along one virtual
+//! velocity v that the constraints allow they are one equation without multipliers,
+//!
+//!   v_s (D_t p_s − p·δw_s − X_s L − Q_s) = 0,
+//!
+//! which takes some five evaluations of L along the motion of the first derivation. An error in any equation
+//! shows in it, except for special v; the rates of the constraints along the motion, to which v is
+//! insensitive, are checked in addition.
+
+use nalgebra::DMatrix;
+use pc_mech::VectorField;
+use pc_model::Flow;
+
+use crate::comparison::quantities::REPETITIONS;
+use crate::comparison::second::Second;
+use crate::comparison::tolerance::ORDINARY;
+use crate::derivation::derivation::Derivation;
+use crate::derivation::place::{Direction, Place, Virtual};
+use crate::error::Irregular;
+use crate::numbers::linear::{fitting_inverse, matrix, solving_inverse};
+use crate::numbers::rounding::{Random, Rounding, UNIT};
+use crate::numbers::sized::Sized;
+use crate::text::text::Velocities;
+
+/// The number of virtual velocities.
+pub(crate) const DIRECTIONS: usize = 3;
+
+/// The motion of the first derivation from a state.
+struct Moving {
+    place: Place,
+    velocities: Vec<f64>,
+    accelerations: Vec<f64>,
+    state_rates: Vec<f64>,
+    energy: Option<f64>,
+}
+
+/// A value that should vanish, with the largest of its terms.
+type Residual = Sized;
+
+/// The indices of quantities in the state and observables of the first derivation.
+pub(crate) struct Layout {
+    /// The indices of the columns among the rates.
+    columns: Vec<Option<usize>>,
+    energy: Option<usize>,
+}
+
+impl Layout {
+    /// The layout of a flow in quasi-velocities.
+    pub(crate) fn of(flow: &Flow, second: &Second) -> Layout {
+        let place = |list: &[String], name: &String| list.iter().position(|known| known == name);
+        let observables = flow.motion.observable_names();
+        Layout {
+            columns: second.columns.iter().map(|column| place(flow.motion.names(), column)).collect(),
+            energy: observables.iter().position(|name| name == "energy" && !second.has_free_energy),
+        }
+    }
+}
+
+impl Derivation {
+    /// The values that should vanish at a state of the first derivation, with their names: the equations
+    /// along random virtual velocities, the rates of constraints, ẋ and ż, and the energy.
+    pub(crate) fn projected(
+        &self,
+        flow: &mut Flow,
+        layout: &Layout,
+        at: &Place,
+        columns: &dyn Fn(&Place) -> Result<Vec<f64>, Irregular>,
+    ) -> Result<Vec<(String, Residual)>, Irregular> {
+        let exact = Rounding::none();
+        let here = self.moving(flow, layout, at, columns)?;
+        let allowed = self.allowed(at)?;
+        let names = self.residual_names(&here);
+        let mut all = self.residuals(&here, &allowed, &exact)?;
+        if all.iter().all(|residual| residual.value.abs() <= ORDINARY * residual.size) {
+            return Ok(names.into_iter().zip(all).collect());
+        }
+        // The change by rounding in either derivation.
+        let sizes: Vec<f64> = at.w.iter().map(|w| w.abs()).collect();
+        for seed in 1..=REPETITIONS {
+            let rounding = Rounding::made(seed);
+            let near = self.near(at, &sizes, &rounding);
+            let moved = self.moving(flow, layout, &near, columns)?;
+            for (residual, moved) in all.iter_mut().zip(self.residuals(&moved, &allowed, &rounding)?) {
+                residual.size = residual.size.max((moved.value - residual.value).abs() / UNIT);
+            }
+        }
+        match all.iter().all(|residual| residual.value.is_finite() && residual.size.is_finite()) {
+            true => Ok(names.into_iter().zip(all).collect()),
+            false => Err(Irregular::NotFinite { what: "an equation" }),
+        }
+    }
+
+    /// The motion of the first derivation at a place: ẇ solved for if η̇ and constraints determine it.
+    fn moving(
+        &self,
+        flow: &mut Flow,
+        layout: &Layout,
+        at: &Place,
+        columns: &dyn Fn(&Place) -> Result<Vec<f64>, Irregular>,
+    ) -> Result<Moving, Irregular> {
+        let refused = |message: String| Irregular::Refused { form: "poincare".to_owned(), message };
+        let (n, k) = (at.x.len(), at.w.len());
+        let mut all = at.x.clone();
+        all.extend(columns(at)?);
+        all.extend(&at.z);
+        let state = flow.state_of(at.t, &all).map_err(|error| refused(error.to_string()))?;
+        let mut rates = vec![f64::NAN; state.len()];
+        flow.motion.rhs(at.t, &state, &mut rates).map_err(|failure| refused(failure.to_string()))?;
+        let energy = layout.energy.map(|place| flow.motion.observe(at.t, &state)[place]);
+        let velocities = rates[..n].to_vec();
+        let state_rates = rates[rates.len() - at.z.len()..].to_vec();
+        let known: Vec<(usize, f64)> =
+            layout.columns.iter().enumerate().filter_map(|(s, place)| Some((s, rates[(*place)?]))).collect();
+        let accelerations = if known.len() == k && !self.has_definitions() {
+            known.iter().map(|&(_, rate)| rate).collect()
+        } else {
+            self.accelerations(at, &velocities, &state_rates, &known)?
+        };
+        Ok(Moving { place: at.clone(), velocities, accelerations, state_rates, energy })
+    }
+
+    /// ẇ from η̇ and from constraints that stay satisfied.
+    fn accelerations(
+        &self,
+        at: &Place,
+        velocities: &[f64],
+        state_rates: &[f64],
+        known: &[(usize, f64)],
+    ) -> Result<Vec<f64>, Irregular> {
+        let exact = Rounding::none();
+        let in_time = Direction { z: state_rates.to_vec(), ..at.in_time(velocities) };
+        let matrix_of_columns = self.quasi_velocity_matrix(at, &exact)?;
+        let drift = self.columns(&self.once(at, &in_time, &exact))?;
+        let mut rows: Vec<Vec<f64>> = known.iter().map(|&(s, _)| matrix_of_columns[s].clone()).collect();
+        let mut right: Vec<f64> = known.iter().map(|&(s, rate)| rate - drift[s].eps).collect();
+        rows.extend(self.constraint_matrix(&self.kept, at, &exact)?);
+        right.extend(self.constraint_rates(&self.kept, at, &in_time, &exact)?.iter().map(|rate| -rate));
+        let (inverse, rank) = solving_inverse(&matrix(&rows, at.w.len())).ok_or(Irregular::Singular)?;
+        if rank < at.w.len() {
+            return Err(Irregular::IllConditioned);
+        }
+        Ok((inverse * DMatrix::from_column_slice(right.len(), 1, &right)).iter().copied().collect())
+    }
+
+    /// Whether η are functions of w other than w itself.
+    pub(crate) fn has_definitions(&self) -> bool {
+        matches!(&self.text.velocities, Velocities::Ordinary(definitions) if !definitions.is_empty())
+    }
+
+    /// Random virtual velocities that the constraints allow at a place.
+    fn allowed(&self, at: &Place) -> Result<Vec<Vec<f64>>, Irregular> {
+        let k = at.w.len();
+        let rows = self.constraint_matrix(&self.kept, at, &Rounding::none())?;
+        let constraints = matrix(&rows, k);
+        let (inverse, _) =
+            solving_inverse(&constraints).ok_or(Irregular::NotFinite { what: "a constraint" })?;
+        let mut random = Random::new(k as u64);
+        let allowed = |_| {
+            let mut v = DMatrix::from_fn(k, 1, |_, _| random.signed());
+            // Twice, as the first pass leaves rounding of the removed part.
+            for _ in 0..2 {
+                v -= &inverse * (&constraints * &v);
+            }
+            v.iter().copied().collect()
+        };
+        Ok((0..DIRECTIONS).map(allowed).collect())
+    }
+
+    fn residual_names(&self, here: &Moving) -> Vec<String> {
+        let names = &self.text.names;
+        let mut all: Vec<String> =
+            (1..=DIRECTIONS).map(|i| format!("the equation along random virtual velocity {i}")).collect();
+        all.extend(self.kept.iter().map(|&a| format!("the rate of constraint {}", names.constraints[a])));
+        all.extend(names.coordinates.iter().chain(&names.states).map(|x| format!("the rate of {x}")));
+        all.extend(here.energy.filter(|_| !self.has_definitions()).map(|_| "energy".to_owned()));
+        all
+    }
+
+    fn residuals(
+        &self,
+        here: &Moving,
+        allowed: &[Vec<f64>],
+        rounding: &Rounding,
+    ) -> Result<Vec<Residual>, Irregular> {
+        let at = &here.place;
+        let in_time = Direction {
+            w: here.accelerations.clone(),
+            z: here.state_rates.clone(),
+            ..at.in_time(&here.velocities)
+        };
+        let mut all = Vec::new();
+        for v in allowed {
+            all.push(self.along(here, &in_time, v, rounding)?);
+        }
+        let rates = self.constraint_rates(&self.kept, at, &in_time, rounding)?;
+        let largest = |list: &[f64]| list.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        // A value that vanishes has the size of its terms, or that of its scatter.
+        let rows = match rates.iter().all(|&rate| rate == 0.0) {
+            true => vec![Vec::new(); rates.len()],
+            false => self.constraint_matrix(&self.kept, at, rounding)?,
+        };
+        let terms = |row: &[f64]| row.iter().zip(&in_time.w).map(|(a, w)| a * w).collect::<Vec<f64>>();
+        all.extend(rates.iter().zip(&rows).map(|(&value, row)| Sized { value, size: largest(&terms(row)) }));
+        let point = self.still(at, rounding);
+        let size = largest(&here.velocities);
+        let both = here.velocities.iter().zip(point.velocities()?);
+        all.extend(both.map(|(one, two)| Sized { value: one - two, size }));
+        let two = point.all(&self.text.state_rates)?;
+        let both = here.state_rates.iter().zip(&two);
+        all.extend(both.map(|(one, two)| Sized { value: one - two, size: two.abs() }));
+        if let Some(energy) = here.energy.filter(|_| !self.has_definitions()) {
+            let w = Direction { w: at.w.clone(), ..at.along(vec![0.0; at.x.len()]) };
+            let lagrangian = self.once(at, &w, rounding).lagrangian()?;
+            let size = lagrangian.eps.abs().max(lagrangian.re.abs());
+            all.push(Sized { value: energy - (lagrangian.eps - lagrangian.re), size });
+        }
+        Ok(all)
+    }
+
+    /// The equation along a virtual velocity.
+    fn along(
+        &self,
+        here: &Moving,
+        in_time: &Direction,
+        v: &[f64],
+        rounding: &Rounding,
+    ) -> Result<Residual, Irregular> {
+        let at = &here.place;
+        let still = at.along(vec![0.0; at.x.len()]);
+        let varied = Direction { w: v.to_vec(), ..still.clone() };
+        let displacement: Vec<f64> =
+            self.once(at, &varied, rounding).velocities()?.iter().map(|u| u.eps).collect();
+        let inertia = self.twice(at, &varied, in_time, rounding).lagrangian()?.eps.eps;
+        let work = self.once(at, &at.along(displacement.clone()), rounding).lagrangian()?.eps;
+        let variation = self.variation(here, in_time, v, &displacement, rounding)?;
+        let transposed = match variation {
+            Some(w) => self.once(at, &Direction { w, ..still }, rounding).lagrangian()?.eps,
+            None => 0.0,
+        };
+        let forces = self.forces(at, &[Virtual { w: varied, x: displacement }], rounding)?;
+        let force = forces.first().map_or(0.0, |balance| balance.sum);
+        let terms = [inertia, -transposed, -work, -force];
+        let largest = forces.first().map_or(0.0, |balance| balance.largest);
+        Ok(Sized {
+            value: terms.iter().sum(),
+            size: terms.iter().fold(largest, |size, term| size.max(term.abs())),
+        })
+    }
+
+    /// δw, with b δw = D_t (b v) − (∂u/∂x) b v, or by the brackets; `None` if w = ẋ, where it vanishes.
+    fn variation(
+        &self,
+        here: &Moving,
+        in_time: &Direction,
+        v: &[f64],
+        displacement: &[f64],
+        rounding: &Rounding,
+    ) -> Result<Option<Vec<f64>>, Irregular> {
+        let (at, k) = (&here.place, v.len());
+        if let Velocities::Ordinary(_) = self.text.velocities {
+            return Ok(None);
+        }
+        if let Some(c) = self.structure.constants(self, at)? {
+            let rate = |r: usize| if r == 0 { 1.0 } else { at.w[r - 1] };
+            let of = |m: usize| {
+                let terms = (0..=k).flat_map(|r| (0..k).map(move |s| (r, s)));
+                terms.map(|(r, s)| c.get(r, s + 1, m) * rate(r) * v[s]).sum()
+            };
+            return Ok(Some((0..k).map(of).collect()));
+        }
+        let varied = Direction { w: v.to_vec(), ..at.along(vec![0.0; at.x.len()]) };
+        let moved = self.twice(at, &varied, in_time, rounding);
+        let transported: Vec<f64> = moved.velocities()?.iter().map(|u| u.eps.eps).collect();
+        let displaced = self.once(at, &at.along(displacement.to_vec()), rounding);
+        let displaced: Vec<f64> = displaced.velocities()?.iter().map(|u| u.eps).collect();
+        let frame = self.frame(at, rounding)?;
+        let b = DMatrix::from_fn(at.x.len(), k, |i, s| frame[s][i]);
+        let (inverse, rank) = fitting_inverse(&b).ok_or(Irregular::NotFinite { what: "the frame" })?;
+        if rank < k {
+            return Err(Irregular::Frame);
+        }
+        let difference = DMatrix::from_fn(at.x.len(), 1, |i, _| transported[i] - displaced[i]);
+        Ok(Some((inverse * difference).iter().copied().collect()))
+    }
+}

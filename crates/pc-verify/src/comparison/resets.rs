@@ -1,0 +1,155 @@
+//! States after resets, against the definitions of the text.
+
+use pc_mech::VectorField;
+use pc_model::{Flow, Model};
+
+use crate::comparison::agreement::Agreement;
+use crate::comparison::second::Second;
+use crate::derivation::place::Place;
+use crate::error::{Disagreement, Irregular, VerifyError};
+use crate::numbers::rounding::{Rounding, within};
+
+/// A reset is evaluated in some operations, and its state projected where quaternions have length 1.
+const APART: f64 = 1e-12;
+/// Velocities are projected onto constraints to this part of their terms: positions that are off by rounding turn them.
+const OFF: f64 = 1e-9;
+
+/// What an event does to a state.
+#[derive(Clone, Copy, Debug)]
+pub struct Jump<'a> {
+    /// The name of the event.
+    pub event: &'a str,
+    /// When.
+    pub t: f64,
+    /// y⁻, a state of a flow.
+    pub before: &'a [f64],
+    /// y⁺
+    pub after: &'a [f64],
+}
+
+impl Second {
+    /// Compares the state after an event with the definitions of its reset, evaluated at the state before: names have their new values,
+    /// coordinates and first-order states that are not reset the old ones. Under constraints new values may give way to them, and
+    /// it is the constraints that are compared instead.
+    ///
+    /// # Errors
+    /// As for [`verify`](crate::verify).
+    pub fn reset_agrees(
+        &self,
+        model: &Model,
+        flow: &Flow,
+        jump: &Jump<'_>,
+    ) -> Result<Agreement, VerifyError> {
+        let mut agreement = self.nothing_yet();
+        if flow.motion.breaks().contains(&jump.t) {
+            return Err(VerifyError::NothingCompared {
+                tried: 1,
+                reason: "a table has a break there".to_owned(),
+            });
+        }
+        match self.pairs(model, flow, jump) {
+            Ok(pairs) => {
+                for (label, first, second, size) in pairs {
+                    let error = (first - second).abs() / if size > 0.0 { size } else { 1.0 };
+                    if !within(error, APART) {
+                        return Err(self.other(jump, flow, label, (first, second, size)));
+                    }
+                    agreement.note(error, &label);
+                }
+                agreement.states = 1;
+                Ok(agreement)
+            }
+            Err(Irregular::Unable(unable)) => Err(unable.into()),
+            Err(irregular) => Err(VerifyError::NothingCompared { tried: 1, reason: irregular.to_string() }),
+        }
+    }
+
+    fn other(
+        &self,
+        jump: &Jump<'_>,
+        flow: &Flow,
+        label: String,
+        (first, second, size): (f64, f64, f64),
+    ) -> VerifyError {
+        let row = self.row(&mut flow.clone(), jump.t, jump.before);
+        let names = self.derivation.text.names.coordinates.iter().chain(&self.columns);
+        VerifyError::Disagreement(Box::new(Disagreement {
+            form: format!("after the event {}", jump.event),
+            quantity: label,
+            first,
+            second,
+            size,
+            t: jump.t,
+            state: names.cloned().zip(row).collect(),
+        }))
+    }
+
+    /// Labels with the value of the first, that by the text, and their size.
+    fn pairs(
+        &self,
+        model: &Model,
+        flow: &Flow,
+        jump: &Jump<'_>,
+    ) -> Result<Vec<(String, f64, f64, f64)>, Irregular> {
+        let place = |state: &[f64]| self.place(jump.t, &self.row(&mut flow.clone(), jump.t, state));
+        let (before, after) = (place(jump.before)?, place(jump.after)?);
+        let names = &self.derivation.text.names;
+        if !names.constraints.is_empty() {
+            let all: Vec<usize> = (0..names.constraints.len()).collect();
+            let residuals = self.derivation.constraints(&all, &after, &Rounding::none())?;
+            let rows = self.derivation.constraint_matrix(&all, &after, &Rounding::none())?;
+            // After a stop velocities are the rounding of those before.
+            let fastest = largest(&before.w).max(largest(&after.w)) * OFF / APART;
+            let pair = |(name, (residual, row)): (&String, (f64, Vec<f64>))| {
+                let size = fastest * row.iter().map(|entry| entry.abs()).sum::<f64>();
+                (format!("the constraint {name}"), residual, 0.0, size)
+            };
+            return Ok(names.constraints.iter().zip(residuals.into_iter().zip(rows)).map(pair).collect());
+        }
+        let events = &model.document().events;
+        let resets =
+            events.iter().filter(|event| event.name.text == jump.event).flat_map(|event| &event.reset);
+        let exact = Rounding::none();
+        let at = self.derivation.still(&before, &exact);
+        let mut pairs = Vec::new();
+        for reset in resets.clone() {
+            let value = at.value(&names.resolve(&reset.expression.ast)?)?;
+            let name = &reset.name.text;
+            if let Some(found) = self.named_value(&after, name)? {
+                pairs.push((name.clone(), found, value, value.abs().max(found.abs())));
+            }
+        }
+        let is_reset = |name: &String| resets.clone().any(|reset| reset.name.text == *name);
+        let kept = |names: &[String], old: &[f64], new: &[f64]| -> Vec<(String, f64, f64, f64)> {
+            let all = names.iter().zip(old.iter().zip(new)).filter(|(name, _)| !is_reset(name));
+            all.map(|(name, (&old, &new))| (name.clone(), new, old, old.abs().max(largest(&before.x))))
+                .collect()
+        };
+        pairs.extend(kept(&names.coordinates, &before.x, &after.x));
+        pairs.extend(kept(&names.states, &before.z, &after.z));
+        Ok(pairs)
+    }
+
+    /// The value of a coordinate, velocity, quasi-velocity or first-order state at a place.
+    fn named_value(&self, at: &Place, name: &str) -> Result<Option<f64>, Irregular> {
+        let exact = Rounding::none();
+        let point = self.derivation.still(at, &exact);
+        let names = &self.derivation.text.names;
+        let place = |names: &[String], name: &str| names.iter().position(|known| known == name);
+        if let Some(i) = place(&names.coordinates, name) {
+            return Ok(Some(at.x[i]));
+        }
+        if let Some(j) = place(&names.states, name) {
+            return Ok(Some(at.z[j]));
+        }
+        if let Some(s) = place(&self.columns, name) {
+            return Ok(Some(self.derivation.columns(&point)?[s]));
+        }
+        let velocity = name.strip_suffix('\'').and_then(|x| place(&names.coordinates, x));
+        velocity.map(|i| Ok(point.velocities()?[i])).transpose()
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| value.abs().max(largest))
+}

@@ -1,0 +1,218 @@
+//! Syntax trees with their names resolved.
+
+use pc_expr::parse::{Ast, AstKind, Factor, Sign};
+
+use crate::error::Unable;
+use crate::text::resultant::Resultant;
+
+/// An expression with names replaced by indices.
+#[derive(Clone, Debug)]
+pub(crate) enum Term {
+    Number(f64),
+    Time,
+    Coordinate(usize),
+    /// ẋ_i
+    Velocity(usize),
+    /// η_s
+    QuasiVelocity(usize),
+    Parameter(usize),
+    /// z_j, a first-order state.
+    State(usize),
+    Definition(usize),
+    /// λ_α
+    Reaction(usize),
+    /// A reaction on a body.
+    Resultant(Resultant),
+    /// The total time derivative.
+    Rate(Box<Term>),
+    /// Terms; those with `true` are subtracted.
+    Sum(Vec<(bool, Term)>),
+    /// Factors; those with `true` are divided by.
+    Product(Vec<(bool, Term)>),
+    Negative(Box<Term>),
+    Power(Box<Term>, Box<Term>),
+    Call(Function, Vec<Term>),
+}
+
+/// The functions of expressions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Cot,
+    Asin,
+    Acos,
+    Atan,
+    Atan2,
+    Sinh,
+    Cosh,
+    Tanh,
+    Exp,
+    Log,
+    Sqrt,
+    Abs,
+    Sign,
+    Min,
+    Max,
+    Step,
+}
+
+const FUNCTIONS: [(&str, Function); 19] = [
+    ("sin", Function::Sin),
+    ("cos", Function::Cos),
+    ("tan", Function::Tan),
+    ("cot", Function::Cot),
+    ("asin", Function::Asin),
+    ("acos", Function::Acos),
+    ("atan", Function::Atan),
+    ("atan2", Function::Atan2),
+    ("sinh", Function::Sinh),
+    ("cosh", Function::Cosh),
+    ("tanh", Function::Tanh),
+    ("exp", Function::Exp),
+    ("log", Function::Log),
+    ("sqrt", Function::Sqrt),
+    ("abs", Function::Abs),
+    ("sign", Function::Sign),
+    ("min", Function::Min),
+    ("max", Function::Max),
+    ("step", Function::Step),
+];
+
+impl Term {
+    /// The number of terms in it, itself included.
+    pub(crate) fn size(&self) -> usize {
+        1 + match self {
+            Term::Sum(parts) | Term::Product(parts) => parts.iter().map(|(_, part)| part.size()).sum(),
+            Term::Negative(inner) | Term::Rate(inner) => inner.size(),
+            Term::Power(base, exponent) => base.size() + exponent.size(),
+            Term::Call(_, arguments) => arguments.iter().map(Term::size).sum(),
+            _ => 0,
+        }
+    }
+
+    /// Whether it contains a reaction on a body.
+    pub(crate) fn has_resultants(&self) -> bool {
+        match self {
+            Term::Resultant(_) => true,
+            Term::Sum(parts) | Term::Product(parts) => parts.iter().any(|(_, part)| part.has_resultants()),
+            Term::Negative(inner) | Term::Rate(inner) => inner.has_resultants(),
+            Term::Power(base, exponent) => base.has_resultants() || exponent.has_resultants(),
+            Term::Call(_, arguments) => arguments.iter().any(Term::has_resultants),
+            _ => false,
+        }
+    }
+
+    /// Whether it contains velocities; `definitions` tells this of the definitions before it, and `None` is
+    /// returned if it uses a later one.
+    pub(crate) fn has_velocities(&self, definitions: &[bool]) -> Option<bool> {
+        let any = |terms: &mut dyn Iterator<Item = &Term>| -> Option<bool> {
+            let has: Option<Vec<bool>> = terms.map(|term| term.has_velocities(definitions)).collect();
+            Some(has?.contains(&true))
+        };
+        match self {
+            Term::Velocity(_) | Term::QuasiVelocity(_) | Term::Rate(_) => Some(true),
+            Term::Number(_)
+            | Term::Time
+            | Term::Coordinate(_)
+            | Term::Parameter(_)
+            | Term::State(_)
+            | Term::Reaction(_)
+            | Term::Resultant(_) => Some(false),
+            Term::Definition(j) => definitions.get(*j).copied(),
+            Term::Sum(parts) | Term::Product(parts) => any(&mut parts.iter().map(|(_, part)| part)),
+            Term::Negative(inner) => inner.has_velocities(definitions),
+            Term::Power(base, exponent) => any(&mut [&**base, &**exponent].into_iter()),
+            Term::Call(_, arguments) => any(&mut arguments.iter()),
+        }
+    }
+}
+
+/// The meanings of names.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Names {
+    pub(crate) coordinates: Vec<String>,
+    pub(crate) quasi_velocities: Vec<String>,
+    /// Parameters, then inputs.
+    pub(crate) parameters: Vec<String>,
+    pub(crate) states: Vec<String>,
+    pub(crate) definitions: Vec<String>,
+    pub(crate) constraints: Vec<String>,
+    pub(crate) bodies: Vec<String>,
+    /// Components of points with their meanings.
+    pub(crate) points: Vec<(String, Term)>,
+}
+
+impl Names {
+    /// The tree with its names resolved.
+    pub(crate) fn resolve(&self, tree: &Ast) -> Result<Term, Unable> {
+        let boxed = |tree: &Ast| self.resolve(tree).map(Box::new);
+        let all = |trees: &[Ast]| trees.iter().map(|tree| self.resolve(tree)).collect::<Result<Vec<_>, _>>();
+        Ok(match &tree.kind {
+            AstKind::Number(value) => Term::Number(*value),
+            AstKind::Name(name) => self.name(name)?,
+            AstKind::Velocity(name) => {
+                let point = || self.point(name).map(|component| Term::Rate(Box::new(component)));
+                let velocity = place(&self.coordinates, name).map(Term::Velocity);
+                velocity.or_else(point).ok_or_else(|| unknown(name))?
+            }
+            AstKind::TotalDerivative(inner) => Term::Rate(boxed(inner)?),
+            AstKind::Sum(terms) => {
+                let signed = |(sign, tree): &(Sign, Ast)| Ok((*sign == Sign::Minus, self.resolve(tree)?));
+                Term::Sum(terms.iter().map(signed).collect::<Result<_, Unable>>()?)
+            }
+            AstKind::Product(factors) => {
+                let sided = |(side, tree): &(Factor, Ast)| Ok((*side == Factor::Over, self.resolve(tree)?));
+                Term::Product(factors.iter().map(sided).collect::<Result<_, Unable>>()?)
+            }
+            AstKind::Negate(inner) => Term::Negative(boxed(inner)?),
+            AstKind::Power(base, exponent) => Term::Power(boxed(base)?, boxed(exponent)?),
+            AstKind::Call(name, _, arguments) => {
+                let known = FUNCTIONS.iter().find(|(known, _)| known == name);
+                let (_, function) = known.ok_or_else(|| unknown(name))?;
+                Term::Call(*function, all(arguments)?)
+            }
+        })
+    }
+
+    /// The coordinate of that name.
+    pub(crate) fn coordinate(&self, name: &str) -> Result<Term, Unable> {
+        place(&self.coordinates, name).map(Term::Coordinate).ok_or_else(|| unknown(name))
+    }
+
+    /// The quasi-velocity of that name.
+    pub(crate) fn quasi_velocity(&self, name: &str) -> Result<Term, Unable> {
+        place(&self.quasi_velocities, name).map(Term::QuasiVelocity).ok_or_else(|| unknown(name))
+    }
+
+    fn point(&self, name: &str) -> Option<Term> {
+        self.points.iter().find(|(known, _)| known == name).map(|(_, component)| component.clone())
+    }
+
+    fn name(&self, name: &str) -> Result<Term, Unable> {
+        let reaction = || place(&self.constraints, name.strip_prefix("λ_")?).map(Term::Reaction);
+        match name {
+            "t" => Ok(Term::Time),
+            "pi" => Ok(Term::Number(std::f64::consts::PI)),
+            _ => None
+                .or_else(|| place(&self.parameters, name).map(Term::Parameter))
+                .or_else(|| place(&self.states, name).map(Term::State))
+                .or_else(|| place(&self.coordinates, name).map(Term::Coordinate))
+                .or_else(|| place(&self.quasi_velocities, name).map(Term::QuasiVelocity))
+                .or_else(|| place(&self.definitions, name).map(Term::Definition))
+                .or_else(|| self.point(name))
+                .or_else(reaction)
+                .or_else(|| Resultant::named(name, &self.constraints, &self.bodies).map(Term::Resultant))
+                .ok_or_else(|| unknown(name)),
+        }
+    }
+}
+
+fn place(names: &[String], name: &str) -> Option<usize> {
+    names.iter().position(|known| known == name)
+}
+
+fn unknown(name: &str) -> Unable {
+    Unable::UnknownName { name: name.to_owned() }
+}

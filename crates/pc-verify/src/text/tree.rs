@@ -1,0 +1,406 @@
+//! Bodies on joints, as terms: their places, their rotations, and the rates of the joints' coordinates.
+//!
+//! A body has thirty definitions of its own: the constant rotation of its joint, the rotation by the joint,
+//! its own, and its place; a point has three. They follow the constant definitions of the text, which joints
+//! may contain, and precede the others, which may contain points.
+
+use std::collections::HashSet;
+
+use pc_expr::parse::{Ast, AstKind};
+use pc_model::document::{
+    Document, Expression, Joint, JointKind, JointRotation, NamedExpression, Point, TreeBody,
+};
+
+use crate::error::Unable;
+use crate::text::body::{Body, Turning, matrix};
+use crate::text::term::{Function, Names, Term};
+
+/// The number of definitions of a body: J_0, J, R and r.
+const OF_BODY: usize = 9 + 9 + 9 + 3;
+/// The number of definitions of a point.
+const OF_POINT: usize = 3;
+
+/// The order of the definitions of bodies and points.
+pub(crate) struct Tree<'a> {
+    document: &'a Document,
+    /// The definitions of the text, the constant ones first, and the number of these.
+    written: Vec<&'a NamedExpression>,
+    constant: usize,
+    /// The bodies, parents first.
+    order: Vec<usize>,
+}
+
+impl<'a> Tree<'a> {
+    pub(crate) fn of(document: &'a Document) -> Tree<'a> {
+        let mut order: Vec<usize> = Vec::new();
+        let mut is_placed = vec![false; document.tree.len()];
+        for start in 0..document.tree.len() {
+            let mut chain = Vec::new();
+            let mut next = Some(start);
+            while let Some(body) = next.filter(|&body| !is_placed[body]) {
+                is_placed[body] = true;
+                chain.push(body);
+                next = place_of(document, document.tree[body].parent());
+            }
+            order.extend(chain.into_iter().rev());
+        }
+        let mut known: HashSet<&str> = document.parameters.iter().map(|p| p.name.text.as_str()).collect();
+        let (mut written, mut moving) = (Vec::new(), Vec::new());
+        for definition in &document.definitions {
+            if is_constant(&definition.expression.ast, &known) {
+                known.insert(&definition.name.text);
+                written.push(definition);
+            } else {
+                moving.push(definition);
+            }
+        }
+        let constant = written.len();
+        written.extend(moving);
+        Tree { document, written, constant, order }
+    }
+
+    /// The names of all definitions, those of bodies and points for error messages only.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let bodies = self.order.iter().map(|&body| &self.document.tree[body].name.text);
+        let bodies = bodies.flat_map(|name| std::iter::repeat_n(name, OF_BODY));
+        let points = self.document.points.iter().map(|point| &point.name.text);
+        let points = points.flat_map(|name| std::iter::repeat_n(name, OF_POINT));
+        let own = bodies.map(|name| format!("the body {name}"));
+        let own = own.chain(points.map(|name| format!("the point {name}")));
+        let (constant, moving) = self.written.split_at(self.constant);
+        let named = |list: &[&NamedExpression]| list.iter().map(|d| d.name.text.clone()).collect::<Vec<_>>();
+        named(constant).into_iter().chain(own).chain(named(moving)).collect()
+    }
+
+    fn first(&self, body: usize) -> usize {
+        self.constant + OF_BODY * self.order.iter().position(|&known| known == body).unwrap_or(0)
+    }
+
+    /// The rotation of a body, row by row, and its place.
+    fn placement(&self, body: Option<usize>) -> (Vec<Term>, Vec<Term>) {
+        let Some(body) = body else {
+            return (unit(), vec![Term::Number(0.0); 3]);
+        };
+        let first = self.first(body) + 18;
+        let all: Vec<Term> = (first..first + 12).map(Term::Definition).collect();
+        (all[..9].to_vec(), all[9..].to_vec())
+    }
+
+    /// The names of the components of points, with their terms.
+    pub(crate) fn points(&self) -> Vec<(String, Term)> {
+        let first = self.constant + OF_BODY * self.document.tree.len();
+        let components = |(number, point): (usize, &Point)| {
+            let (rotation, _) = self.placement(place_of(self.document, point.body()));
+            let place = (0..3).map(move |i| Term::Definition(first + OF_POINT * number + i));
+            let names: Vec<String> = point.components.iter().map(|name| name.text.clone()).collect();
+            names.into_iter().zip(place.chain(rotation)).collect::<Vec<_>>()
+        };
+        self.document.points.iter().enumerate().flat_map(components).collect()
+    }
+
+    /// The definitions, in their order.
+    pub(crate) fn definitions(&self, names: &Names) -> Result<Vec<Term>, Unable> {
+        let written = |list: &[&NamedExpression]| -> Result<Vec<Term>, Unable> {
+            list.iter().map(|definition| names.resolve(&definition.expression.ast)).collect()
+        };
+        let mut all = written(&self.written[..self.constant])?;
+        for &number in &self.order {
+            let body = &self.document.tree[number];
+            let first = all.len();
+            let defined =
+                |from: usize| (first + from..first + from + 9).map(Term::Definition).collect::<Vec<_>>();
+            let motion = Motion::of(&body.joint, names)?;
+            all.extend(constant_rotation(&body.joint, names)?);
+            all.extend(match motion.turn {
+                Some(turn) => product(&defined(0), &turn),
+                None => defined(0),
+            });
+            let (parent, origin) = self.placement(place_of(self.document, body.parent()));
+            all.extend(product(&parent, &defined(9)));
+            let at = vector(body.joint.at.as_ref(), names)?;
+            let arm = match motion.slide {
+                Some(slide) => added(&at, &turned(&defined(0), &slide)),
+                None => at,
+            };
+            all.extend(added(&origin, &turned(&parent, &arm)));
+        }
+        for point in &self.document.points {
+            let (rotation, origin) = self.placement(place_of(self.document, point.body()));
+            all.extend(added(&origin, &turned(&rotation, &vector(point.at.as_ref(), names)?)));
+        }
+        all.extend(written(&self.written[self.constant..])?);
+        Ok(all)
+    }
+
+    /// The rates of the coordinates of joints, by their names.
+    pub(crate) fn rates(&self, names: &Names) -> Result<Vec<(String, Term)>, Unable> {
+        let mut all = Vec::new();
+        for body in &self.document.tree {
+            let joint = &body.joint;
+            let x = joint.coordinates.iter().map(|name| name.text.clone());
+            let eta: Vec<Term> = joint
+                .quasi_velocities
+                .iter()
+                .map(|name| names.quasi_velocity(&name.text))
+                .collect::<Result<_, _>>()?;
+            let rates = match joint.kind {
+                JointKind::Spherical => quaternion_rates(&coordinates(joint, names)?, &eta),
+                JointKind::Free => {
+                    let x = coordinates(joint, names)?;
+                    let slide = turned(&by_quaternion(&x[3..]), &eta[..3]);
+                    [slide, quaternion_rates(&x[3..], &eta[3..])].concat()
+                }
+                _ => eta,
+            };
+            all.extend(x.zip(rates));
+        }
+        Ok(all)
+    }
+
+    /// The bodies themselves, in the order of the text.
+    pub(crate) fn bodies(&self, names: &Names) -> Result<Vec<Body>, Unable> {
+        self.document.tree.iter().enumerate().map(|(number, body)| self.body(number, body, names)).collect()
+    }
+
+    fn body(&self, number: usize, body: &TreeBody, names: &Names) -> Result<Body, Unable> {
+        let term = |expression: &Expression| names.resolve(&expression.ast);
+        let terms = |list: &Option<[Expression; 3]>| -> Result<Vec<Term>, Unable> {
+            list.iter().flatten().map(term).collect()
+        };
+        let (rotation, origin) = self.placement(Some(number));
+        let arm = turned(&rotation, &vector(body.center.as_ref(), names)?);
+        let force = terms(&body.force)?;
+        Ok(Body {
+            mass: body.mass.as_ref().map_or(Ok(Term::Number(0.0)), term)?,
+            position: added(&origin, &arm),
+            inertia: body.inertia.as_ref().map(|inertia| matrix(inertia, term)).transpose()?,
+            turning: Some(Turning::Rotation(rotation)),
+            force_functions: vec![0.0; force.len()],
+            may_have_force_functions: false,
+            force,
+            torque: terms(&body.torque)?,
+        })
+    }
+}
+
+/// Whether an expression contains only numbers and known names.
+fn is_constant(ast: &Ast, known: &HashSet<&str>) -> bool {
+    let all = |parts: Vec<&Ast>| parts.into_iter().all(|part| is_constant(part, known));
+    match &ast.kind {
+        AstKind::Number(_) => true,
+        AstKind::Name(name) => name == "pi" || known.contains(name.as_str()),
+        AstKind::Velocity(_) | AstKind::TotalDerivative(_) => false,
+        AstKind::Negate(inner) => is_constant(inner, known),
+        AstKind::Sum(terms) => all(terms.iter().map(|(_, term)| term).collect()),
+        AstKind::Product(factors) => all(factors.iter().map(|(_, factor)| factor).collect()),
+        AstKind::Power(base, exponent) => all(vec![base, exponent]),
+        AstKind::Call(_, _, arguments) => all(arguments.iter().collect()),
+    }
+}
+
+fn place_of(document: &Document, body: Option<&str>) -> Option<usize> {
+    body.and_then(|name| document.tree.iter().position(|body| body.name.text == name))
+}
+
+/// The movement of a joint, in its own axes: first the slide, then the rotation.
+struct Motion {
+    slide: Option<Vec<Term>>,
+    turn: Option<Vec<Term>>,
+}
+
+impl Motion {
+    fn of(joint: &Joint, names: &Names) -> Result<Motion, Unable> {
+        let x = coordinates(joint, names)?;
+        let axis = |number: usize| -> Vec<Term> {
+            let axis = joint.axes.get(number).copied().unwrap_or_default();
+            let length = axis.iter().map(|part| part * part).sum::<f64>().sqrt();
+            axis.iter().map(|part| Term::Number(part / length)).collect()
+        };
+        let along = |axis: &[Term], by: &Term| -> Vec<Term> { axis.iter().map(|u| times([u, by])).collect() };
+        let (slide, turn) = match joint.kind {
+            JointKind::Fixed => (None, None),
+            JointKind::Revolute => (None, Some(about(&axis(0), &x[0]))),
+            JointKind::Prismatic => (Some(along(&axis(0), &x[0])), None),
+            JointKind::Screw => {
+                let (axis, pitch) = (axis(0), joint.pitch.as_ref());
+                let pitch = pitch.map_or(Ok(Term::Number(0.0)), |pitch| names.resolve(&pitch.ast))?;
+                (Some(along(&axis, &times([&pitch, &x[0]]))), Some(about(&axis, &x[0])))
+            }
+            JointKind::Cylindrical => (Some(along(&axis(0), &x[0])), Some(about(&axis(0), &x[1]))),
+            JointKind::Universal => (None, Some(product(&about(&axis(0), &x[0]), &about(&axis(1), &x[1])))),
+            JointKind::Planar => {
+                let normal = axis(0);
+                // The normal is a coordinate axis, and the slides are along the two that follow it.
+                let [first, second] = [0, 1]
+                    .map(|turns| (0..3).map(|i| normal[(i + 2 - turns) % 3].clone()).collect::<Vec<_>>());
+                let slide = added(&along(&first, &x[0]), &along(&second, &x[1]));
+                (Some(slide), Some(about(&normal, &x[2])))
+            }
+            JointKind::Spherical => (None, Some(by_quaternion(&x))),
+            JointKind::Free => (Some(x[..3].to_vec()), Some(by_quaternion(&x[3..]))),
+        };
+        Ok(Motion { slide, turn })
+    }
+}
+
+fn coordinates(joint: &Joint, names: &Names) -> Result<Vec<Term>, Unable> {
+    joint.coordinates.iter().map(|name| names.coordinate(&name.text)).collect()
+}
+
+fn vector(list: Option<&[Expression; 3]>, names: &Names) -> Result<Vec<Term>, Unable> {
+    match list {
+        Some(list) => list.iter().map(|part| names.resolve(&part.ast)).collect(),
+        None => Ok(vec![Term::Number(0.0); 3]),
+    }
+}
+
+/// The constant rotation of a joint. Entries that are 0 or ±1 up to rounding are exact, as cos(π/2) is not: of
+/// parallel axes a loop must not restrict what they leave free.
+fn constant_rotation(joint: &Joint, names: &Names) -> Result<Vec<Term>, Unable> {
+    let entries = match &joint.rotation {
+        None => unit(),
+        Some(JointRotation::Matrix(entries)) => {
+            entries.iter().map(|entry| names.resolve(&entry.ast)).collect::<Result<_, _>>()?
+        }
+        Some(JointRotation::Turns(turns)) => {
+            let mut all = unit();
+            for (axis, angle) in turns {
+                let axis: Vec<Term> = (0..3).map(|i| Term::Number(f64::from(u8::from(i == *axis)))).collect();
+                all = product(&all, &about(&axis, &names.resolve(&angle.ast)?));
+            }
+            all
+        }
+    };
+    let exact = |entry: Term| {
+        let is_near = |unit: &f64| number(&entry).is_some_and(|value| (value - unit).abs() <= ROUNDING);
+        [0.0, 1.0, -1.0].into_iter().find(is_near).map_or(entry, Term::Number)
+    };
+    Ok(entries.into_iter().map(exact).collect())
+}
+
+/// Some roundings of a number near 1.
+const ROUNDING: f64 = 1e-15;
+
+fn times<const N: usize>(factors: [&Term; N]) -> Term {
+    Term::Product(factors.map(|factor| (false, factor.clone())).to_vec())
+}
+
+fn sum(terms: impl IntoIterator<Item = Term>) -> Term {
+    Term::Sum(terms.into_iter().map(|term| (false, term)).collect())
+}
+
+fn added(a: &[Term], b: &[Term]) -> Vec<Term> {
+    a.iter().zip(b).map(|(a, b)| sum([a.clone(), b.clone()])).collect()
+}
+
+fn scalar(a: &[Term], b: &[Term]) -> Term {
+    sum(a.iter().zip(b).map(|(a, b)| times([a, b])))
+}
+
+fn cross(a: &[Term], b: &[Term]) -> Vec<Term> {
+    let part =
+        |i: usize, j: usize| Term::Sum(vec![(false, times([&a[i], &b[j]])), (true, times([&a[j], &b[i]]))]);
+    vec![part(1, 2), part(2, 0), part(0, 1)]
+}
+
+/// The unit matrix.
+fn unit() -> Vec<Term> {
+    (0..9).map(|i| Term::Number(if i % 4 == 0 { 1.0 } else { 0.0 })).collect()
+}
+
+/// A v
+fn turned(matrix: &[Term], vector: &[Term]) -> Vec<Term> {
+    (0..3).map(|i| scalar(&matrix[3 * i..3 * i + 3], vector)).collect()
+}
+
+/// A B
+fn product(a: &[Term], b: &[Term]) -> Vec<Term> {
+    let column = |j: usize| [b[j].clone(), b[3 + j].clone(), b[6 + j].clone()];
+    (0..9).map(|ij| scalar(&a[3 * (ij / 3)..3 * (ij / 3) + 3], &column(ij % 3))).collect()
+}
+
+/// The matrix S of S v = u × v.
+fn skew(u: &[Term]) -> Vec<Term> {
+    let (zero, minus) = (Term::Number(0.0), |i: usize| Term::Negative(Box::new(u[i].clone())));
+    vec![
+        zero.clone(),
+        minus(2),
+        u[1].clone(), //
+        u[2].clone(),
+        zero.clone(),
+        minus(0), //
+        minus(1),
+        u[0].clone(),
+        zero,
+    ]
+}
+
+/// Rodrigues' 1 + sin φ S + (1 − cos φ) S² for the S of a unit vector.
+fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
+    let (s, one) = (skew(axis), Term::Number(1.0));
+    let square = product(&s, &s);
+    let [sine, cosine] = sine_and_cosine(angle);
+    let rest = Term::Sum(vec![(false, one), (true, cosine)]);
+    let entry =
+        |((unit, s), square): ((Term, Term), Term)| sum([unit, times([&sine, &s]), times([&rest, &square])]);
+    unit().into_iter().zip(s).zip(square).map(entry).collect()
+}
+
+/// The sine and cosine of an angle, exact for a number that is a multiple of π/2 up to rounding: the cosine
+/// of the double next to π/2 could remain alone where other terms vanish, and would be taken for their size.
+fn sine_and_cosine(angle: &Term) -> [Term; 2] {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    if let Some(value) = number(angle) {
+        let count = (value / quarter).round();
+        if (value - count * quarter).abs() <= 4.0 * f64::EPSILON * value.abs() {
+            let values = match count.rem_euclid(4.0) {
+                0.0 => [0.0, 1.0],
+                1.0 => [1.0, 0.0],
+                2.0 => [0.0, -1.0],
+                _ => [-1.0, 0.0],
+            };
+            return values.map(Term::Number);
+        }
+    }
+    [Function::Sin, Function::Cos].map(|function| Term::Call(function, vec![angle.clone()]))
+}
+
+/// The value of a term that consists of sums and products of numbers, of sines and cosines.
+fn number(term: &Term) -> Option<f64> {
+    match term {
+        Term::Number(value) => Some(*value),
+        Term::Negative(inner) => Some(-number(inner)?),
+        Term::Sum(terms) => terms.iter().try_fold(0.0, |sum, (minus, term)| {
+            let value = number(term)?;
+            Some(if *minus { sum - value } else { sum + value })
+        }),
+        Term::Product(factors) => factors.iter().try_fold(1.0, |product, (over, factor)| {
+            let value = number(factor)?;
+            Some(if *over { product / value } else { product * value })
+        }),
+        Term::Call(Function::Sin, arguments) => Some(number(arguments.first()?)?.sin()),
+        Term::Call(Function::Cos, arguments) => Some(number(arguments.first()?)?.cos()),
+        _ => None,
+    }
+}
+
+/// |q|² + 2 q_0 S + 2 S² for the S of the vector of a quaternion: |q|² times a rotation, so that energies
+/// agree also where a motion has left |q| = 1 by its tolerance.
+fn by_quaternion(q: &[Term]) -> Vec<Term> {
+    let (s, two) = (skew(&q[1..]), Term::Number(2.0));
+    let square = product(&s, &s);
+    let norm = scalar(q, q);
+    let entry = |((unit, s), square): ((Term, Term), Term)| {
+        sum([times([&norm, &unit]), times([&two, &q[0], &s]), times([&two, &square])])
+    };
+    unit().into_iter().zip(s).zip(square).map(entry).collect()
+}
+
+/// Half the product of the quaternion with (0, ω).
+fn quaternion_rates(q: &[Term], omega: &[Term]) -> Vec<Term> {
+    let half = Term::Number(0.5);
+    let scalar_part = times([&Term::Number(-0.5), &scalar(&q[1..], omega)]);
+    let turned = cross(&q[1..], omega);
+    let vector = (0..3).map(|i| times([&half, &sum([times([&q[0], &omega[i]]), turned[i].clone()])]));
+    std::iter::once(scalar_part).chain(vector).collect()
+}
