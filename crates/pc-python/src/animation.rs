@@ -1,5 +1,6 @@
-//! Pages for a browser: all that is known of a model, and its motion alone.
+//! Pages for a browser: all that is known of a model, and its motion alone; and the panels of a picture.
 
+use pc_report::picture::{Content, Panel, Picture, Scale, Wanted};
 use pc_report::{Columns, Kind, Record, Samples, Scene, animation, report};
 use pyo3::prelude::*;
 
@@ -15,8 +16,10 @@ pub(crate) struct Recorded {
     states: Vec<(String, Vec<f64>)>,
     conserved: Vec<(String, Vec<f64>)>,
     outputs: Vec<(String, Vec<f64>)>,
+    derivatives: Vec<(String, Vec<f64>)>,
     errors: Vec<(String, Vec<f64>)>,
     events: Vec<f64>,
+    keeps_energy: bool,
     remark: Option<String>,
 }
 
@@ -32,14 +35,44 @@ impl From<Recorded> for Record {
                     columns(Kind::States, recorded.states),
                     columns(Kind::Conserved, recorded.conserved),
                     columns(Kind::Outputs, recorded.outputs),
+                    columns(Kind::Derivatives, recorded.derivatives),
                     columns(Kind::Errors, recorded.errors),
                 ],
             },
             events: recorded.events,
+            keeps_energy: recorded.keeps_energy,
             remark: recorded.remark,
             ..Record::default()
         }
     }
+}
+
+/// Curves on common axes, as Python draws them: title, scale of the axis up, times of events, and the curves with their names.
+type Drawn = (String, &'static str, Vec<f64>, Vec<(String, Vec<f64>, Vec<f64>)>);
+
+/// The panels of a motion, whose curves are grouped by kind and scale.
+#[pyfunction]
+pub(crate) fn panels_of(title: &str, recorded: Recorded) -> Vec<Drawn> {
+    // Without a choice no column is unknown.
+    let picture = Picture::of(title, &recorded.into(), &Wanted::default());
+    picture.map_or_else(|_| Vec::new(), |picture| picture.panels.into_iter().map(drawn).collect())
+}
+
+fn drawn(panel: Panel) -> Drawn {
+    let scale = match panel.up.1 {
+        Scale::Linear => "linear",
+        Scale::Decades => "decades",
+        Scale::Angles => "angles",
+    };
+    let curves = match panel.content {
+        Content::Curves(curves) => curves,
+        Content::Bars(_) | Content::Cells { .. } => Vec::new(),
+    };
+    let curve = |curve: pc_report::picture::Curve| {
+        let (across, up) = curve.points.into_iter().unzip();
+        (curve.name, across, up)
+    };
+    (panel.title, scale, panel.events, curves.into_iter().map(curve).collect())
 }
 
 #[pymethods]

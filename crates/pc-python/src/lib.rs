@@ -33,6 +33,8 @@ mod _native {
     use pyo3::prelude::*;
 
     #[pymodule_export]
+    use crate::animation::panels_of;
+    #[pymodule_export]
     use crate::dense::DenseCore;
     #[pymodule_export]
     use crate::exchange::text_of_urdf;

@@ -8,6 +8,7 @@ use numpy::prelude::*;
 use pc_model::deep;
 use pc_run::motion::integrate::Besides;
 use pc_run::motion::run::{Ending, Run};
+use pc_run::motion::table::Table;
 use pc_run::observer::Nobody;
 use pc_run::{RunError, chain};
 use pc_solve::{Occurrence, SolveError, Statistics};
@@ -57,6 +58,23 @@ fn error(run: &Run) -> Option<String> {
     }
 }
 
+/// The names of the columns, by what they are.
+fn kinds<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
+    let kinds = PyDict::new(py);
+    for (kind, places) in [
+        ("coordinates", table.coordinates()),
+        ("quasi_velocities", table.quasi_velocities()),
+        ("states", table.states()),
+        ("conserved", table.conserved()),
+        ("outputs", table.outputs()),
+        ("derivatives", table.derivatives()),
+        ("errors", table.errors()),
+    ] {
+        kinds.set_item(kind, &table.columns()[places])?;
+    }
+    Ok(kinds)
+}
+
 fn into_dict(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     let (rows, width) = (run.table.len(), run.table.columns().len() - 1);
     let result = PyDict::new(py);
@@ -70,6 +88,8 @@ fn into_dict(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     let values: Vec<f64> = run.table.rows().flat_map(|row| &row[1..]).copied().collect();
     result.set_item("values", PyArray1::from_vec(py, values).reshape([rows, width])?)?;
     result.set_item("columns", &run.table.columns()[1..])?;
+    result.set_item("kinds", kinds(py, &run.table)?)?;
+    result.set_item("keeps_energy", run.keeps_energy)?;
     let occurrences = run.occurrences.into_iter().map(|occurrence| {
         let Occurrence { event, time, state_before, state_after } = occurrence;
         let name = run.events.get(event).cloned().unwrap_or_default();

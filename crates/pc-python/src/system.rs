@@ -33,8 +33,6 @@ pub(crate) struct SystemCore {
 pub(crate) struct Inventory {
     pub(crate) names: Vec<String>,
     pub(crate) t_start: f64,
-    pub(crate) coordinates: usize,
-    pub(crate) states: usize,
     pub(crate) conserved: usize,
     /// Of a row of a motion: coordinates, quasi-velocities, first-order states, then observables.
     pub(crate) columns: Vec<String>,
@@ -119,8 +117,6 @@ impl SystemCore {
         let inventory = Inventory {
             names: motion.names().to_vec(),
             t_start,
-            coordinates: motion.coordinates(),
-            states: motion.states(),
             conserved: motion.conserved_len(),
             columns: flow.columns(),
             shown: flow.names.len(),
@@ -148,13 +144,6 @@ impl SystemCore {
     #[getter]
     fn column_names(&self) -> Vec<String> {
         self.inventory.columns.clone()
-    }
-
-    /// Numbers of coordinates, quasi-velocities, first-order states and conserved quantities among the columns.
-    #[getter]
-    fn column_kinds(&self) -> (usize, usize, usize, usize) {
-        let Inventory { coordinates, states, shown, conserved, .. } = self.inventory;
-        (coordinates, shown - coordinates - states, states, conserved)
     }
 
     /// Names of the constraints that are kept by projection.

@@ -91,7 +91,8 @@ def test_tables_and_plots() -> None:
     assert (frame["ω1"].to_numpy() == motion["ω1"]).all()
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
-    assert len(motion.plot().axes) == 3
+    titles = [axis.get_title(loc="left") for axis in motion.plot().axes]
+    assert titles == ["Coordinates", "Quasi-velocities", "Quasi-velocities", "Relative drift of integrals"]
     figure = motion.plot(["γ3"])
     assert [line.get_label() for line in figure.axes[0].get_lines()] == ["γ3"]
     matplotlib.pyplot.close("all")

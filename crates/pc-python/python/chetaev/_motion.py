@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from chetaev import _native
 from chetaev._errors import ChetaevError, UnknownNameError
 from chetaev._printed import Page
 
@@ -12,7 +13,6 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from chetaev import _native
     from chetaev._system import System
 
     Floats = npt.NDArray[np.float64]
@@ -71,7 +71,8 @@ class Motion(Mapping[str, "Floats"]):
     ) -> None:
         self._origin = (system.model, system.form, system.settings())
         self._system: System | None = None
-        self._kinds_of_columns = system.column_kinds
+        self._kinds = {kind: tuple(names) for kind, names in outcome["kinds"].items()}
+        self._keeps_energy = outcome["keeps_energy"]
         self._wished = wished
         self._start = start
         self.t: Floats = outcome["t"]
@@ -117,29 +118,12 @@ class Motion(Mapping[str, "Floats"]):
         # What is dense is integrated again where it is wanted.
         return {**self.__dict__, "_dense": None, "_system": None}
 
-    def _kinds(self) -> dict[str, tuple[str, ...]]:
-        """The names of the columns, by what they are."""
-        coordinates, velocities, states, conserved = self._kinds_of_columns
-        names = list(self.columns[1:])
-        found = {}
-        for kind, count in (
-            ("coordinates", coordinates),
-            ("quasi_velocities", velocities),
-            ("states", states),
-            ("conserved", conserved),
-        ):
-            found[kind] = tuple(names[:count])
-            del names[:count]
-        found["outputs"] = tuple(name for name in names if not name.startswith("error("))
-        found["errors"] = tuple(name for name in names if name.startswith("error("))
-        return found
-
     @property
     def drift(self) -> dict[str, float]:
         """How far each integral, the energy among them, went from its value at the start."""
         if len(self.t) == 0:
             return {}
-        return {name: float(abs(self[name] - self[name][0]).max()) for name in self._kinds()["conserved"]}
+        return {name: float(abs(self[name] - self[name][0]).max()) for name in self._kinds["conserved"]}
 
     def dense(self, t: npt.ArrayLike) -> Floats:
         """The state at any time of the motion: n numbers, or n × N for N times.
@@ -180,7 +164,8 @@ class Motion(Mapping[str, "Floats"]):
         Parameters
         ----------
         names : sequence of str, optional
-            The columns; coordinates and quasi-velocities, each in a picture of its own, and the drift of the integrals unless given.
+            The columns, on common axes; all unless given, grouped by kind and scale as ``pc run --plot`` does, with events and the drift of
+            integrals.
         ax : optional
             The axes to draw into; only with names.
 
@@ -199,21 +184,19 @@ class Motion(Mapping[str, "Floats"]):
             ax.set_xlabel("t")
             ax.legend(loc="best")
             return ax.figure
-        kinds = self._kinds()
-        drawn = [(kind, kinds[kind]) for kind in ("coordinates", "quasi_velocities", "states", "outputs")]
-        drawn = [(kind, columns) for kind, columns in drawn if columns]
-        figure, axes = plt.subplots(
-            len(drawn) + 1, 1, sharex=True, squeeze=False, figsize=(7.0, 2.2 * (len(drawn) + 1))
-        )
-        for axis, (kind, columns) in zip(axes[:, 0], drawn):
-            for name in columns:
-                axis.plot(self.t, self[name], label=name, linewidth=1.0)
-            axis.set_ylabel(kind.replace("_", "-"))
+        panels = _native.panels_of(self._origin[0].title, self._recorded())
+        figure, axes = plt.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(7.0, 2.2 * len(panels)))
+        for axis, (title, scale, events, curves) in zip(axes[:, 0], panels):
+            for name, times, values in curves:
+                # Of what is small and of different size there are decimal logarithms.
+                shown = [10.0**value for value in values] if scale == "decades" else values
+                axis.plot(times, shown, label=name, linewidth=1.0)
+            if scale == "decades":
+                axis.set_yscale("log")
+            for time in events:
+                axis.axvline(time, color="0.8", linewidth=0.8, zorder=0)
+            axis.set_title(title, fontsize="medium", loc="left")
             axis.legend(loc="upper right", fontsize="small")
-        for name in kinds["conserved"]:
-            axes[-1, 0].plot(self.t, self[name] - self[name][0], label=name, linewidth=1.0)
-        axes[-1, 0].set_ylabel("drift")
-        axes[-1, 0].legend(loc="upper right", fontsize="small")
         axes[-1, 0].set_xlabel("t")
         figure.tight_layout()
         return figure
@@ -221,7 +204,8 @@ class Motion(Mapping[str, "Floats"]):
     def _recorded(self) -> dict[str, Any]:
         """As the native part takes a motion."""
         recorded: dict[str, Any] = {"t": self.t.tolist(), "events": [event.t for event in self.events]}
-        for kind, names in self._kinds().items():
+        recorded["keeps_energy"] = self._keeps_energy
+        for kind, names in self._kinds.items():
             recorded[kind] = [(name, self[name].tolist()) for name in names]
         remark = None
         if self.ending == "event":

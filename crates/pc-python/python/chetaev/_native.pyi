@@ -16,6 +16,7 @@ __all__ = [
     "__version__",
     "builtin_names",
     "draw",
+    "panels_of",
     "text_of_urdf",
 ]
 
@@ -28,6 +29,8 @@ class _Outcome(TypedDict):
     states: _Floats
     values: _Floats
     columns: list[str]
+    kinds: dict[str, list[str]]
+    keeps_energy: bool
     events: list[tuple[str, float, _Floats, _Floats]]
     ending: str
     event: str | None
@@ -85,8 +88,6 @@ class SystemCore:
     def state_names(self) -> list[str]: ...
     @property
     def column_names(self) -> list[str]: ...
-    @property
-    def column_kinds(self) -> tuple[int, int, int, int]: ...
     @property
     def constraint_names(self) -> list[str]: ...
     @property
@@ -146,6 +147,9 @@ class Stepper:
 class Function:
     def at(self, t: float, y: Sequence[float]) -> float: ...
 
+def panels_of(
+    title: str, recorded: dict[str, Any]
+) -> list[tuple[str, str, list[float], list[tuple[str, list[float], list[float]]]]]: ...
 def text_of_urdf(name: str, urdf: str, floating: bool) -> tuple[str, list[str]]: ...
 def builtin_names() -> list[str]: ...
 def draw(laws: Sequence[tuple[str, float, float]], seed: int, members: int) -> _Floats: ...

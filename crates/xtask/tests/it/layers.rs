@@ -47,7 +47,8 @@ fn no_crate_uses_what_it_is_said_never_to_use() {
         let [_, crate_name, _, never, _] = cells[..] else { panic!("three cells: {row}") };
         for name in names(crate_name) {
             let uses = reached(&all, &name);
-            broken.extend(names(never).into_iter().filter(|it| uses.contains(it)).map(|it| (name.clone(), it)));
+            broken
+                .extend(names(never).into_iter().filter(|it| uses.contains(it)).map(|it| (name.clone(), it)));
             listed.insert(name);
         }
     }
