@@ -21,7 +21,7 @@ use pc_run::motion::remarks::say_moved;
 /// Prints the times of derivations and evaluations.
 ///
 /// # Errors
-/// [`CliError`] of the model; [`CliError::Write`].
+/// [`CliError`] of the model; `FileError::Write`.
 pub fn command(arguments: &BenchArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
     // Each derivation has the full memory limit; the time limit holds for all of them together.

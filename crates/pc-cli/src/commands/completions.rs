@@ -11,7 +11,7 @@ use crate::output::standard_output::print;
 /// Prints the completions for a shell.
 ///
 /// # Errors
-/// [`CliError::Write`]
+/// `FileError::Write`
 pub fn command(arguments: &CompletionsArguments) -> Result<(), CliError> {
     // The generator panics where it cannot write, so it writes to memory.
     let mut script = Vec::new();

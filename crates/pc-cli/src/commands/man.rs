@@ -18,7 +18,7 @@ use pc_run::files::place::{Place, file};
 /// Prints a page, or writes all of them into a directory.
 ///
 /// # Errors
-/// [`CliError::NoSuchCommand`]; [`CliError::Write`].
+/// [`CliError::NoSuchCommand`]; `FileError::Write`.
 pub fn command(arguments: &ManArguments) -> Result<(), CliError> {
     let pages = pages().map_err(standard_output::error)?;
     let Some(directory) = file(arguments.output.as_deref()) else {

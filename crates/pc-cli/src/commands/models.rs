@@ -18,7 +18,7 @@ use crate::output::standard_output::print;
 /// Prints the list of the built-in models, the text of one, their tags, or the named algebras.
 ///
 /// # Errors
-/// [`CliError::NoSuchModel`]; [`CliError::NoSuchTag`]; [`CliError::Write`].
+/// [`CliError::NoSuchModel`]; [`CliError::NoSuchTag`]; `FileError::Write`.
 pub fn command(arguments: &ModelsArguments) -> Result<(), CliError> {
     if let Some(name) = &arguments.name {
         let model = Builtin::named(name).ok_or_else(|| no_such_model(name))?;

@@ -19,7 +19,7 @@ const SCHEMA_FILE: &str = "pc-model.schema.json";
 /// Writes a model that runs, whose comments explain the format.
 ///
 /// # Errors
-/// [`CliError::Place`] where the file exists already; [`CliError::Write`].
+/// [`FileError::Place`] where the file exists already; [`FileError::Write`].
 pub fn command(arguments: &NewArguments) -> Result<(), CliError> {
     let directive = if arguments.schema { format!("#:schema ./{SCHEMA_FILE}\n") } else { String::new() };
     let text = directive + arguments.kind.text();

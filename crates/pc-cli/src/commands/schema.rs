@@ -13,7 +13,7 @@ use pc_run::files::place::{Place, file};
 /// Writes the schema.
 ///
 /// # Errors
-/// [`CliError::Place`]; [`CliError::Write`].
+/// [`FileError::Place`]; [`FileError::Write`].
 pub fn command(arguments: &SchemaArguments) -> Result<(), CliError> {
     let text = SCHEMA.as_bytes();
     match file(arguments.output.as_deref()) {

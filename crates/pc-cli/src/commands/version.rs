@@ -9,7 +9,7 @@ use crate::terminal::text::labelled;
 /// Prints the version; where `verbose`, also what was built in, for which system, and what the processor offers.
 ///
 /// # Errors
-/// [`CliError::Write`]
+/// `FileError::Write`
 pub fn command(verbose: bool) -> Result<(), CliError> {
     print(|out| write(verbose, out))
 }
