@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 
 use numpy::PyArray1;
 use numpy::prelude::*;
-use pc_model::deep;
+use pc_model::{Flow, deep};
 use pc_run::motion::integrate::Besides;
 use pc_run::motion::run::{Ending, Run};
 use pc_run::motion::table::Table;
@@ -20,6 +20,23 @@ use crate::model::renewed;
 use crate::plan::Wished;
 use crate::system::SystemCore;
 use crate::task::attended;
+
+/// The part of the size of a state by which it may be off constraints: what is less, the first step takes away.
+const OFF: f64 = 1e-6;
+
+/// An error unless a state satisfies the constraints that motions keep.
+///
+/// # Errors
+/// [`Error::OffConstraint`]
+pub(crate) fn on_constraints(flow: &mut Flow, t: f64, state: &[f64]) -> Result<(), Error> {
+    let size = state.iter().fold(1.0f64, |size, value| size.max(value.abs()));
+    let residuals = flow.constraint_residuals(t, state);
+    let mut all = flow.constraint_names().into_iter().zip(residuals);
+    match all.find(|(_, residual)| residual.is_nan() || residual.abs() > OFF * size) {
+        Some((name, residual)) => Err(Error::OffConstraint { name, residual }),
+        None => Ok(()),
+    }
+}
 
 fn statistics<'py>(py: Python<'py>, done: &Statistics) -> PyResult<Bound<'py, PyDict>> {
     let entries = PyDict::new(py);
@@ -116,6 +133,7 @@ impl SystemCore {
         let (mut model, mut derived) = self.now();
         if let Some(start) = start {
             self.check_length(start.len())?;
+            on_constraints(&mut derived.flow, self.inventory.t_start, &start)?;
             derived.flow.start = start;
         }
         let cancel = renewed(&mut model);

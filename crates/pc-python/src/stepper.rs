@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 
 use crate::error::Error;
 use crate::model::renewed;
+use crate::motion::on_constraints;
 use crate::plan::{Wished, options};
 use crate::system::SystemCore;
 
@@ -88,7 +89,9 @@ impl Stepper {
             let (given, expected) = (y.len(), walk.y.len());
             return Err(Error::Length { what: "the state", given, expected }.into());
         }
-        (walk.t, walk.y, walk.terminal) = (t.unwrap_or(walk.t_start), y, None);
+        let t = t.unwrap_or(walk.t_start);
+        on_constraints(&mut walk.flow, t, &y)?;
+        (walk.t, walk.y, walk.terminal) = (t, y, None);
         Ok(())
     }
 

@@ -79,3 +79,31 @@ def test_a_run_from_another_state_is_that_of_another_start() -> None:
     assert (system.run(2.0, samples=11).y == motion.y).all()
     with pytest.raises(ValueError, match="numbers instead of"):
         system.run(2.0, y0=[1.0])
+
+
+ROD = """
+[coordinates]
+x = 0.0
+y = -1.0
+[constraints]
+rod = "x^2 + y^2 - 1"
+[lagrangian]
+kinetic = "(x'^2 + y'^2)/2"
+potential = "9.81*y"
+[simulation]
+t_end = 1.0
+"""
+
+
+def test_a_state_off_the_constraints_is_refused() -> None:
+    system = chetaev.Model.from_text(ROD).system()
+    aside = [np.sin(0.3), -np.cos(0.3), 0.0, 0.0]
+    assert system.run(y0=aside).drift["energy"] < 1e-8
+    stepper = system.stepper()
+    stepper.restart(aside)
+    assert stepper.step(0.5)[1] < 0.0
+    for wrong in ([0.1, -1.0, 0.0, 0.0], [0.0, -1.0, 1.0, 0.5], [float("nan"), -1.0, 0.0, 0.0]):
+        with pytest.raises(ValueError, match="off the constraint `"):
+            system.run(y0=wrong)
+        with pytest.raises(ValueError, match="off the constraint `"):
+            stepper.restart(wrong)

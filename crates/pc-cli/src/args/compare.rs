@@ -21,17 +21,17 @@ pub struct CompareArguments {
     /// Another model; A again if it is left out
     #[arg(value_name = "B")]
     pub second: Option<String>,
-    /// Form of the equations, one for both, or that of A and that of B; else that of each file, else poincare
+    /// Form of the equations: one for both, or one for A and one for B [default: that of each file, or poincare]
     #[arg(long, value_name = "FORM[,FORM]", value_delimiter = ',', value_parser = run_form)]
     pub form: Vec<Variables>,
     /// Give a parameter, or the start of a coordinate, velocity or first-order state, another value in each model that has it
     /// (repeatable)
     #[arg(long, value_name = "NAME=VALUE", value_parser = options::setting)]
     pub set: Vec<Setting>,
-    /// End time; else that of A, else that of B
+    /// End time [default: that of A, or that of B]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
-    /// Number of times that are compared, evenly spaced, start and end included; else as for `pc run` of A
+    /// Number of evenly spaced times that are compared, start and end included [default: as for `pc run` of A]
     #[arg(long, value_name = "N", value_parser = options::samples)]
     pub samples: Option<usize>,
     /// Tolerances and method.
@@ -43,7 +43,7 @@ pub struct CompareArguments {
     /// The difference that is allowed besides, whatever the size of the values
     #[arg(long, value_name = "D", default_value = "1e-9", allow_hyphen_values = true, value_parser = options::not_negative)]
     pub absolute: f64,
-    /// Compare these columns only, separated by commas; else all that both have
+    /// Compare only these columns, separated by commas [default: all that both have]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub columns: Vec<String>,
     /// Compare an expression in columns and parameters of A with one in those of B, too (repeatable)

@@ -39,7 +39,7 @@ pub struct LinearizeArguments {
     /// The state.
     #[command(flatten)]
     pub state: StateArguments,
-    /// Give a parameter or start value N values evenly spaced, both ends included, and follow the eigenvalues: the root locus
+    /// Follow the eigenvalues over N evenly spaced values of a parameter or start value, both ends included: the root locus
     #[arg(long, value_name = "NAME=FROM:TO:N", value_parser = sweep::vary)]
     pub vary: Option<Vary>,
     /// How to print

@@ -44,8 +44,8 @@ pub struct VelocityArguments {
     #[arg(value_name = "NAME=EXPR", value_parser = definition)]
     pub definitions: Vec<Setting>,
     /// Independent velocities of equations in which multipliers are eliminated, separated by commas: as many
-    /// quasi-velocities as the constraints leave free, velocities x' with --form voronets; else those whose equations
-    /// are shortest
+    /// quasi-velocities as the constraints leave free, velocities x' with --form voronets [default: those whose
+    /// equations are shortest]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub independent: Vec<String>,
 }
@@ -161,12 +161,12 @@ pub struct TheoryArguments {
 #[derive(Clone, Debug, Default, Args)]
 pub struct EventArguments {
     /// Split each step into N equal parts to search for events whose functions are known only as numbers (through
-    /// constraints, momenta or tables), and more finely where in doubt; else as in the file, else 4. An even number of
-    /// zeros within one part may be missed
+    /// constraints, momenta or tables), and more finely where in doubt; an even number of zeros within one part may be
+    /// missed [default: the file's, or 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub samples_per_step: Option<u32>,
     /// Events that follow each other ever faster are an error once the time left until they accumulate is this
-    /// fraction of their first interval; else as in the file, else 1e-5; 0 for never
+    /// fraction of their first interval; 0 means never [default: the file's, or 1e-5]
     #[arg(long, value_name = "P", value_parser = part)]
     pub accumulation: Option<f64>,
 }
@@ -174,24 +174,24 @@ pub struct EventArguments {
 /// How a motion is integrated.
 #[derive(Clone, Debug, Default, Args)]
 pub struct IntegrationArguments {
-    /// Relative tolerance; else that of the file, else 1e-9
+    /// Relative tolerance [default: the file's, or 1e-9]
     #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = positive)]
     pub rtol: Option<f64>,
-    /// Absolute tolerance of all components of the state, or of one by its name (repeatable, or separated by commas); else that
-    /// of the file, else min(1e-12, rtol times the scale of the component at the start)
+    /// Absolute tolerance of all components of the state, or of one by its name (repeatable, or separated by commas)
+    /// [default: the file's, or min(1e-12, rtol times the scale of the component at the start)]
     #[arg(long, value_name = "A|NAME=A", allow_hyphen_values = true, value_delimiter = ',', value_parser = tolerance)]
     pub atol: Vec<ToleranceSetting>,
-    /// Largest step; else that of the file, else unlimited
+    /// Largest step [default: the file's, or none]
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = positive)]
     pub max_step: Option<f64>,
-    /// The most steps from one row to the next; else 500000. Events are no steps
+    /// The most steps from one row to the next; events are not counted [default: 500000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub max_steps: Option<u64>,
     /// Events.
     #[command(flatten)]
     pub events: EventArguments,
-    /// Method: auto (dop853, and bdf where stiffness is seen), adams, dop853 or taylor (not stiff) or bdf (stiff); else that of the file,
-    /// else auto
+    /// Method: auto (dop853, and bdf where stiffness is seen); adams, dop853 or taylor (not stiff); or bdf (stiff) [default: the file's, or
+    /// auto]
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
 }
@@ -232,18 +232,18 @@ pub struct RunArguments {
     /// Velocities.
     #[command(flatten)]
     pub velocities: VelocityArguments,
-    /// End time; else that of the file
+    /// End time [default: the file's]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = finite)]
     pub t_end: Option<f64>,
-    /// Number of rows, evenly spaced, start and end included; else that of the file, else 201
+    /// Number of evenly spaced rows, start and end included [default: the file's, or 201]
     #[arg(long, value_name = "N", value_parser = samples)]
     pub samples: Option<usize>,
     /// Tolerances and method.
     #[command(flatten)]
     pub integration: IntegrationArguments,
-    /// Form of the equations: poincare, canonical, reduced, lie-poisson, orthonormal or hamel (see `pc derive --help`); else that
-    /// of the file, else poincare. Columns stay the same, except that reduced and lie-poisson lack some coordinates,
-    /// and hamel adds each NAME after the outputs
+    /// Form of the equations: poincare, canonical, reduced, lie-poisson, orthonormal or hamel (see `pc derive --help`).
+    /// Columns stay the same, except that reduced and lie-poisson lack some coordinates, and hamel adds each NAME after the
+    /// outputs [default: the file's, or poincare]
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<Variables>,
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
@@ -270,8 +270,8 @@ pub struct RunArguments {
     /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Draw the motion into FILE.svg, FILE.png or FILE.pdf: in groups of like scale, with events and the drift of integrals,
-    /// between the rows too
+    /// Draw the motion into FILE.svg, FILE.png or FILE.pdf: curves of similar scale share axes, with events and the drift of
+    /// integrals; the curves are drawn between the rows as well
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
     /// What is drawn.

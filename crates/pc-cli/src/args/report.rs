@@ -16,11 +16,10 @@ pub struct ShownArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// End time; else that of the file
+    /// End time [default: the file's]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
-    /// Number of points of a curve and of frames, evenly spaced, start and end included; else that of the file, or 601 if that
-    /// is more
+    /// Number of points of a curve and of frames, evenly spaced, start and end included [default: the file's, but at least 601]
     #[arg(long, value_name = "N", value_parser = options::samples)]
     pub samples: Option<usize>,
     /// Tolerances and method.
@@ -72,7 +71,7 @@ pub struct AnimateArguments {
     /// Write the page to FILE.html instead of standard output, a film to FILE.gif, or one frame to FILE.svg, FILE.png or FILE.pdf
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// With one frame: the one nearest to this time, else the last
+    /// With a single frame: the one nearest to this time [default: the last]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub at: Option<f64>,
 }

@@ -10,7 +10,7 @@ use crate::args::forms::by_word;
 #[derive(Clone, Debug, Default, Args)]
 pub struct StateArguments {
     /// Linearize at this state: the equilibrium or steady motion near the start (steady), an equilibrium at rest near it (rest),
-    /// or the start as it is (start); else steady
+    /// or the start as it is (start) [default: steady]
     #[arg(long, value_name = "STATE", value_parser = at())]
     pub at: Option<At>,
     /// Components of the state, separated by commas, that keep their start values while a steady state is looked for

@@ -41,11 +41,11 @@ pub struct SweepArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Of each member its motion (run), its eigenvalues (linearize), or its properties (check)
+    /// What to compute for each member: its motion (run), its eigenvalues (linearize) or its properties (check)
     #[arg(long, value_name = "WHAT", default_value = "run", value_parser = sweep_of())]
     pub of: SweepOf,
-    /// Vary a parameter or start value over N evenly spaced values from FROM to TO, both included; NAME=FROM:TO:N:log
-    /// spaces them in a constant ratio, NAME=A,B,… lists them (repeatable)
+    /// Vary a parameter or start value: FROM:TO:N evenly spaced values, both ends included; FROM:TO:N:log with a constant ratio; or
+    /// a list A,B,… (repeatable)
     #[arg(long, value_name = "NAME=FROM:TO:N", value_parser = vary, conflicts_with = "random")]
     pub vary: Vec<Vary>,
     /// Draw a parameter or start value: normal(m,s), uniform(a,b) or lognormal(m,s) (repeatable)
@@ -57,10 +57,10 @@ pub struct SweepArguments {
     /// Seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
-    /// Number of threads; else one for each core. The result is the same for any
+    /// Number of threads, which does not change the result [default: one per core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
-    /// End time; else that of the file
+    /// End time [default: the file's]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
     /// Write N rows of each member, evenly spaced, start and end included, instead of the last one and the drifts
@@ -70,7 +70,7 @@ pub struct SweepArguments {
     #[command(flatten)]
     pub integration: IntegrationArguments,
     /// Form of the equations, as for `pc run`: poincare, canonical, reduced, lie-poisson, orthonormal, or hamel where the file gives the
-    /// quasi-velocities; else that of the file, else poincare. Columns are those of `pc run` in this form
+    /// quasi-velocities; columns are those of `pc run` in this form [default: the file's, or poincare]
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<Variables>,
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)

@@ -199,7 +199,7 @@ class Builder:
         return self._put("states", (name, "rate"), formula(rate))
 
     def kinematics(self, coordinate: str, velocity: Any) -> Builder:
-        """The velocity of a coordinate by quasi-velocities, ẋ = b η + b_0 (3)."""
+        """The velocity of a coordinate in terms of quasi-velocities, ẋ = b η + b_0 (3)."""
         return self._put("kinematics", (coordinate,), formula(velocity))
 
     def algebra(self, name: str | None = None, brackets: Mapping[tuple[str, str], Any] | None = None) -> Builder:

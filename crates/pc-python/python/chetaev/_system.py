@@ -252,7 +252,8 @@ class System(_native.SystemCore):
         times : array, optional
             The times of the rows instead.
         y0 : array, optional
-            The state at the start, n numbers in the order of ``names``, instead of that of the system.
+            The state at the start, n numbers in the order of ``names``, instead of that of the system; it has to satisfy the
+            constraints.
         method : str, optional
             ``"auto"`` (the default), ``"adams"``, ``"bdf"``, ``"dop853"`` or ``"taylor"``.
         rtol : float, optional
