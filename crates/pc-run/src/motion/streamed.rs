@@ -7,7 +7,7 @@ use pc_solve::{Options, Solution, Solve, SolveError, SolveFailure};
 
 use crate::files::error::FileError;
 use crate::files::stream::Stream;
-use crate::motion::table::Table;
+use crate::motion::table::{Table, raised};
 use crate::observer::Observer;
 use crate::plan::Plan;
 use crate::plan::tolerances::note_largest;
@@ -87,9 +87,6 @@ impl<'s, 'p> Streamed<'s, 'p> {
 /// Raises the largest residuals to those at (t, y).
 pub(crate) fn note_residuals(worst: &mut [(String, f64)], flow: &mut Flow, t: f64, y: &[f64]) {
     for ((_, worst), residual) in worst.iter_mut().zip(flow.constraint_residuals(t, y)) {
-        // f64::max would lose a NaN
-        if residual.abs() > *worst || residual.is_nan() {
-            *worst = residual.abs();
-        }
+        *worst = raised(*worst, residual);
     }
 }

@@ -253,7 +253,7 @@ impl Table {
 }
 
 /// The larger of the worst change so far and another one (f64::max would lose a NaN).
-fn raised(worst: f64, change: f64) -> f64 {
+pub(crate) fn raised(worst: f64, change: f64) -> f64 {
     let change = change.abs();
     if change > worst || change.is_nan() { change } else { worst }
 }

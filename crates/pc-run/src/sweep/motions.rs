@@ -17,7 +17,7 @@ use super::work::{Consume, Work};
 use crate::chain::{chain, line};
 use crate::error::RunError;
 use crate::motion::derived::Derived;
-use crate::motion::table::Table;
+use crate::motion::table::{Table, raised};
 use crate::motion::verification::Verification;
 use crate::plan::Plan;
 use crate::plan::memory;
@@ -296,10 +296,7 @@ fn derived(model: &Model, variables: Variables) -> Result<Flow, ModelError> {
 fn drift(table: &Table, more: Option<&[f64]>, j: usize) -> f64 {
     let drift = table.drift(j).absolute;
     match (table.rows().next(), more) {
-        (Some(first), Some(more)) => {
-            let change = (more[j] - first[j]).abs();
-            if change > drift || change.is_nan() { change } else { drift } // f64::max would lose a NaN
-        }
+        (Some(first), Some(more)) => raised(drift, more[j] - first[j]),
         _ => drift,
     }
 }
