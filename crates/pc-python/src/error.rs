@@ -77,10 +77,10 @@ impl From<FmuError> for Error {
     }
 }
 
-/// A class of `chetaev._errors`.
+/// A class of `chetaev._language.errors`.
 fn class<'py>(py: Python<'py>, name: &'static str) -> PyResult<Bound<'py, PyType>> {
     static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
-    let module = MODULE.get_or_try_init(py, || py.import("chetaev._errors").map(Bound::unbind))?;
+    let module = MODULE.get_or_try_init(py, || py.import("chetaev._language.errors").map(Bound::unbind))?;
     Ok(module.bind(py).getattr(name)?.cast_into::<PyType>()?)
 }
 

@@ -3,6 +3,7 @@
 import doctest
 import importlib
 import pathlib
+import pkgutil
 
 import pytest
 from quick_start import README, programs
@@ -10,7 +11,8 @@ from quick_start import README, programs
 import chetaev
 
 BOOK = pathlib.Path(__file__).parents[3] / "docs/python.md"
-MODULES = [f"chetaev{name}" for name in ("", *(f"._{m}" for m in "builder errors events expressions model motion printed quantities sweep system values".split()))]
+PACKAGES = pkgutil.walk_packages(chetaev.__path__, "chetaev.")
+MODULES = ["chetaev", *(module.name for module in PACKAGES if module.name != "chetaev._native")]
 
 
 @pytest.mark.parametrize("name", MODULES)

@@ -132,12 +132,15 @@ fn package() -> PathBuf {
     workspace_root().join("crates/pc-python")
 }
 
-/// The files of a directory without directories in it.
+/// The files of a directory and of those in it, without what Python has compiled.
 fn copy(from: &Path, to: &Path) -> Result<(), Error> {
     fs::create_dir_all(to).map_err(|source| Error::of_file(to, source))?;
     for entry in fs::read_dir(from).map_err(|source| Error::of_file(from, source))? {
         let path = entry.map_err(|source| Error::of_file(from, source))?.path();
-        if let Some(name) = path.file_name().filter(|_| path.is_file()) {
+        let Some(name) = path.file_name().filter(|name| *name != "__pycache__") else { continue };
+        if path.is_dir() {
+            copy(&path, &to.join(name))?;
+        } else {
             fs::copy(&path, to.join(name)).map_err(|source| Error::of_file(&path, source))?;
         }
     }

@@ -23,8 +23,8 @@ A model is a text with a frame, a Lagrangian and forces. Its Poincaré–Chetaev
 True
 """
 
-from chetaev._builder import Builder
-from chetaev._errors import (
+from chetaev._language.builder import Builder
+from chetaev._language.errors import (
     ChetaevError,
     DisagreementError,
     EvaluationError,
@@ -32,8 +32,8 @@ from chetaev._errors import (
     ModelError,
     UnknownNameError,
 )
-from chetaev._events import Event
-from chetaev._expressions import (
+from chetaev._language.events import Event
+from chetaev._language.expressions import (
     Expression,
     abs_,
     acos,
@@ -59,7 +59,7 @@ from chetaev._expressions import (
     tan,
     tanh,
 )
-from chetaev._joints import (
+from chetaev._language.joints import (
     Cylindrical,
     Fixed,
     Free,
@@ -71,13 +71,13 @@ from chetaev._joints import (
     Spherical,
     Universal,
 )
-from chetaev._linear import Equilibria, Equilibrium, Linearization, RootLocus
+from chetaev._results.linear import Equilibria, Equilibrium, Linearization, RootLocus
 from chetaev._model import Model
-from chetaev._motion import Motion, Occurrence
+from chetaev._results.motion import Motion, Occurrence
 from chetaev._native import Stepper, __version__
-from chetaev._printed import Check, Equations, Page, Theory
-from chetaev._quantities import Bracket, Lyapunov
-from chetaev._sweep import Sweep
+from chetaev._results.printed import Check, Equations, Page, Theory
+from chetaev._results.quantities import Bracket, Lyapunov
+from chetaev._results.sweep import Sweep
 from chetaev._system import System
 
 

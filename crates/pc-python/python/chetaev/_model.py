@@ -7,16 +7,15 @@ import os
 import warnings
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from chetaev import _native
-from chetaev._errors import UnknownNameError
-from chetaev._linear import Equilibria, Linearization, RootLocus
-from chetaev._printed import Check, Equations, Theory
+from chetaev._language.builder import Builder
+from chetaev._language.errors import UnknownNameError
+from chetaev._results.linear import Equilibria, Linearization, RootLocus
+from chetaev._results.printed import Check, Equations, Theory
+from chetaev._system import System
 
-if TYPE_CHECKING:
-    from chetaev._builder import Builder
-    from chetaev._system import System
 
 #: The forms of equations, as ``pc derive --form`` names them.
 FORMS = ("poincare", "canonical", "lagrange", "voronets", "reduced", "lie-poisson", "orthonormal", "hamel")
@@ -134,12 +133,10 @@ class Model:
         """The names of the models that come with the package."""
         return tuple(_native.builtin_names())
 
-    @staticmethod
-    def builder(name: str = "model") -> Builder:
+    @classmethod
+    def builder(cls, name: str = "model") -> Builder[Model]:
         """A model to be put together call by call."""
-        from chetaev._builder import Builder
-
-        return Builder(name)
+        return Builder(name, cls.from_text)
 
     @property
     def name(self) -> str:
@@ -224,6 +221,10 @@ class Model:
         ...
         """
         return Equations(self, self._form(form), width, inline, settings)
+
+    def _rewritten(self, text: str) -> Model:
+        """The model of another text, whose tables stand beside the same file."""
+        return Model(text, self.name)
 
     def _changed(self, settings: Mapping[str, Any]) -> _native.ModelCore:
         return self._core.changed(changes(**settings))
@@ -392,8 +393,6 @@ class Model:
         >>> system.parameters["mg"]
         2.0
         """
-        from chetaev._system import System
-
         return System(self, self._form(form), **settings)
 
     def __reduce__(self) -> tuple[type[Model], tuple[bytes, str]]:

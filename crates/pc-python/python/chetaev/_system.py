@@ -6,20 +6,20 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from chetaev import _native
-from chetaev._errors import IntegrationError
-from chetaev._events import Event
-from chetaev._model import Model
-from chetaev._printed import Page
-from chetaev._quantities import Bracket, Lyapunov
-from chetaev._values import Values
+from chetaev._language.errors import IntegrationError
+from chetaev._language.events import Event
+from chetaev._results.motion import Motion
+from chetaev._results.printed import Page
+from chetaev._results.quantities import Bracket, Lyapunov
+from chetaev._results.sweep import Sweep, swept
+from chetaev._results.values import Values
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from chetaev._motion import Motion
     from chetaev._native import Stepper
-    from chetaev._sweep import Sweep
+    from chetaev._protocols import ModelLike
 
     Floats = npt.NDArray[np.float64]
 
@@ -45,12 +45,12 @@ class System(_native.SystemCore):
     True
     """
 
-    _model: Model
+    _model: ModelLike
     _form: str
     _settings: dict[str, Any]
     _companion: System | None
 
-    def __new__(cls, model: Model, form: str = "poincare", **settings: Any) -> System:
+    def __new__(cls, model: ModelLike, form: str = "poincare", **settings: Any) -> System:
         settings = {**settings}
         settings["parameters"] = dict(settings.get("parameters") or {})
         settings["start"] = dict(settings.get("start") or {})
@@ -62,15 +62,15 @@ class System(_native.SystemCore):
         self._companion = None
         return self
 
-    def __reduce__(self) -> tuple[Callable[..., System], tuple[Model, str, dict[str, Any]]]:
+    def __reduce__(self) -> tuple[Callable[..., System], tuple[ModelLike, str, dict[str, Any]]]:
         return _restored, (self._model, self._form, self.settings())
 
     def __repr__(self) -> str:
         return f"<System {self._model.title!r}, {self._form}: {', '.join(self.names)}>"
 
     @property
-    def model(self) -> Model:
-        """The model, with the values of its text."""
+    def model(self) -> Any:
+        """The :class:`Model`, with the values of its text."""
         return self._model
 
     @property
@@ -298,13 +298,11 @@ class System(_native.SystemCore):
         >>> motion["ω3"].shape
         (11,)
         """
-        from chetaev._motion import Motion
-
         if events:
             text = self._model.text.rstrip("\n") + "\n\n"
             for name, event in events.items():
                 text += (event if isinstance(event, Event) else Event(event)).text(name) + "\n"
-            watched = System(Model(text, self._model.name), self._form, **self.settings())
+            watched = System(self._model._rewritten(text), self._form, **self.settings())
             return watched.run(
                 t_end,
                 samples=samples,
@@ -414,8 +412,6 @@ class System(_native.SystemCore):
         >>> sweep["ω3"].shape
         (3,)
         """
-        from chetaev._sweep import swept
-
         return swept(self, vary, random, members, seed, t_end, rows, threads, progress, settings)
 
     def lyapunov(
@@ -446,5 +442,5 @@ class System(_native.SystemCore):
         return Page(self.report_page(None if motion is None else motion._recorded()), height=800)
 
 
-def _restored(model: Model, form: str, settings: dict[str, Any]) -> System:
+def _restored(model: ModelLike, form: str, settings: dict[str, Any]) -> System:
     return System(model, form, **settings)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from chetaev._builder import formula, quoted
+from chetaev._language.toml import formula, quoted
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numbers
 import re
 from typing import Any, Union
 
-from chetaev._errors import ChetaevError
+from chetaev._language.errors import ChetaevError
 
 #: How tightly an expression holds together: a sum, a product, a sign, a power, a name.
 _SUM, _PRODUCT, _SIGN, _POWER, _ATOM = range(5)
@@ -116,7 +116,7 @@ def expression(value: object) -> Expression:
     if isinstance(value, str):
         return Expression(value)
     if hasattr(value, "free_symbols"):
-        from chetaev._sympy import text_of
+        from chetaev._language.sympy import text_of
 
         return Expression(text_of(value))
     if isinstance(value, numbers.Real) and not isinstance(value, bool):

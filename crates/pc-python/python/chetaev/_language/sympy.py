@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from chetaev._errors import ChetaevError
+from chetaev._language.errors import ChetaevError
 
 #: Functions of SymPy that models have too, by their names there.
 _FUNCTIONS = {

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, MutableMapping
 from typing import TYPE_CHECKING, Any, Literal
 
-from chetaev._errors import UnknownNameError
+from chetaev._language.errors import UnknownNameError
 
 if TYPE_CHECKING:
-    from chetaev._system import System
+    from chetaev._protocols import SystemLike
 
 
 class Values(MutableMapping[str, float]):
@@ -19,7 +19,7 @@ class Values(MutableMapping[str, float]):
 
     __slots__ = ("_kind", "_system")
 
-    def __init__(self, system: System, kind: Literal["parameters", "start"]) -> None:
+    def __init__(self, system: SystemLike, kind: Literal["parameters", "start"]) -> None:
         self._system = system
         self._kind = kind
 

@@ -6,14 +6,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from chetaev import _native
-from chetaev._errors import ChetaevError, UnknownNameError
-from chetaev._printed import Page
+from chetaev._language.errors import ChetaevError, UnknownNameError
+from chetaev._results.printed import Page
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from chetaev._system import System
+    from chetaev._protocols import SystemLike
 
     Floats = npt.NDArray[np.float64]
 
@@ -67,10 +67,10 @@ class Motion(Mapping[str, "Floats"]):
     """
 
     def __init__(
-        self, system: System, wished: dict[str, Any], start: list[float] | None, outcome: _native._Outcome
+        self, system: SystemLike, wished: dict[str, Any], start: list[float] | None, outcome: _native._Outcome
     ) -> None:
         self._origin = (system.model, system.form, system.settings())
-        self._system: System | None = None
+        self._system: Any = None
         self._kinds = {kind: tuple(names) for kind, names in outcome["kinds"].items()}
         self._keeps_energy = outcome["keeps_energy"]
         self._wished = wished
@@ -87,8 +87,8 @@ class Motion(Mapping[str, "Floats"]):
         self._dense: _native.DenseCore | None = None
 
     @property
-    def system(self) -> System:
-        """The system with the values that it had, derived once more when this is first asked for."""
+    def system(self) -> Any:
+        """The :class:`System` with the values that it had, derived once more when this is first asked for."""
         if self._system is None:
             model, form, settings = self._origin
             self._system = model.system(form, **settings)
@@ -231,4 +231,5 @@ class Motion(Mapping[str, "Floats"]):
 
     def report(self) -> Page:
         """One page with all that is known of the model and this motion."""
-        return self.system.report(self)
+        page: Page = self.system.report(self)
+        return page

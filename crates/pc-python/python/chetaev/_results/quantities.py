@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from chetaev._system import System
+    from chetaev._protocols import SystemLike
 
     Floats = npt.NDArray[np.float64]
 
@@ -27,7 +27,7 @@ class Bracket:
 
     __slots__ = ("_function", "_arguments")
 
-    def __init__(self, system: System, f: str, g: str) -> None:
+    def __init__(self, system: SystemLike, f: str, g: str) -> None:
         self._arguments = (system, f, g)
         self._function = system.poisson_bracket(f, g)
 
@@ -36,7 +36,7 @@ class Bracket:
 
         return self._function.at(float(t), np.asarray(y, dtype=float).tolist())
 
-    def __reduce__(self) -> tuple[type[Bracket], tuple[System, str, str]]:
+    def __reduce__(self) -> tuple[type[Bracket], tuple[SystemLike, str, str]]:
         return Bracket, self._arguments
 
     def __repr__(self) -> str:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import inspect
-import math
-import numbers
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Generic, TypeVar
 
-from chetaev._errors import ChetaevError
-from chetaev._expressions import Expression, expression
-from chetaev._joints import Joint
+from chetaev._language.errors import ChetaevError
+from chetaev._language.joints import Joint
+from chetaev._language.toml import entry, formula, number, quoted
 
-if TYPE_CHECKING:
-    from chetaev._model import Model
+M = TypeVar("M")
 
 #: The sections, in the order in which they stand in the text.
 _SECTIONS = (
@@ -41,62 +37,7 @@ _SECTIONS = (
 )
 
 
-def quoted(text: str) -> str:
-    """A string of TOML on one line."""
-    shown = []
-    for c in text:
-        if c in '"\\':
-            shown.append("\\" + c)
-        elif ord(c) < 32 or 127 <= ord(c) < 160:
-            shown.append(f"\\u{ord(c):04X}")
-        else:
-            shown.append(c)
-    return '"' + "".join(shown) + '"'
-
-
-def number(value: float) -> str:
-    """A finite number of TOML that reads back as the same."""
-    if not math.isfinite(value):
-        raise ChetaevError(f"{value} is not a finite number")
-    return repr(float(value))
-
-
-def formula(value: Any) -> str:
-    """An expression of TOML: of a number, a text, an expression of this package or of SymPy, or a function of names.
-
-    A function is called with its parameters as names of the model.
-    """
-    # Numbers of SymPy are real numbers of Python too, but may have more digits.
-    if hasattr(value, "free_symbols"):
-        return quoted(str(expression(value)))
-    if isinstance(value, numbers.Real) and not isinstance(value, (bool, numbers.Rational)):
-        return number(float(value))
-    if callable(value) and not isinstance(value, Expression):
-        names = list(inspect.signature(value).parameters)
-        value = value(*(Expression(name) for name in names))
-    return quoted(str(expression(value)))
-
-
-#: Entries whose texts are names, not expressions.
-_NAMES = frozenset(("kind", "body", "bodies", "parent", "coordinates", "quasi_velocities", "text"))
-
-
-def entry(key: str, value: Any) -> str:
-    """An entry of a body, a joint, a point, a loop or a drawing: names, expressions, and lists and tables of them."""
-    if isinstance(value, Joint):
-        value = value.entries()
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{quoted(name)} = {entry(name, one)}" for name, one in value.items()) + " }"
-    if key == "turns":
-        return "[" + ", ".join(f"[{quoted(axis)}, {formula(angle)}]" for axis, angle in value) + "]"
-    if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):
-        return "[" + ", ".join(entry(key, one) for one in value) + "]"
-    if isinstance(value, numbers.Rational) and not isinstance(value, bool):
-        return number(float(value)) if value == float(value) else formula(value)
-    return quoted(str(value)) if key in _NAMES else formula(value)
-
-
-class Builder:
+class Builder(Generic[M]):
     """A model in the making.
 
     Expressions are texts in the language of models, numbers, expressions of this package, expressions of SymPy, or Python functions
@@ -106,6 +47,8 @@ class Builder:
     ----------
     name : str
         The name of the model.
+    model_of : callable
+        Makes the model of a text and a name: :meth:`Model.builder` says it.
 
     Examples
     --------
@@ -135,27 +78,28 @@ class Builder:
     ('θ', "θ'")
     """
 
-    def __init__(self, name: str = "model") -> None:
+    def __init__(self, name: str, model_of: Callable[[str, str], M]) -> None:
         self._name = name
+        self._model_of = model_of
         self._entries: dict[str, dict[tuple[str, ...], str]] = {section: {} for section in _SECTIONS}
         self._drawn: list[dict[str, str]] = []
         self._put("model", ("name",), quoted(name))
 
-    def _put(self, section: str, keys: tuple[str, ...], value: str) -> Builder:
+    def _put(self, section: str, keys: tuple[str, ...], value: str) -> Builder[M]:
         entries = self._entries[section]
         if keys in entries:
             raise ChetaevError(f"[{section}] {'.'.join(keys)} has been given already")
         entries[keys] = value
         return self
 
-    def describe(self, *, description: str | None = None, reference: str | None = None) -> Builder:
+    def describe(self, *, description: str | None = None, reference: str | None = None) -> Builder[M]:
         """Says what the model is and where it comes from."""
         for key, value in (("description", description), ("reference", reference)):
             if value is not None:
                 self._put("model", (key,), quoted(value))
         return self
 
-    def parameter(self, name: str, value: Any) -> Builder:
+    def parameter(self, name: str, value: Any) -> Builder[M]:
         """A parameter: a number, or an expression in parameters before it."""
         return self._put("parameters", (name,), formula(value))
 
@@ -167,7 +111,7 @@ class Builder:
         times: Sequence[float] | None = None,
         values: Sequence[float] | None = None,
         interpolation: str = "linear",
-    ) -> Builder:
+    ) -> Builder[M]:
         """An input: a number that is constant until it is set, or a table of times and values."""
         if times is None and values is None:
             return self._put("inputs", (name,), number(0.0 if value is None else value))
@@ -178,31 +122,31 @@ class Builder:
         self._put("inputs", (name, "values"), f"[{lists[1]}]")
         return self._put("inputs", (name, "interpolation"), quoted(interpolation))
 
-    def define(self, name: str, value: Any) -> Builder:
+    def define(self, name: str, value: Any) -> Builder[M]:
         """A name for an expression, to be used below."""
         return self._put("definitions", (name,), formula(value))
 
-    def coordinate(self, name: str, start: Any = 0.0) -> Builder:
+    def coordinate(self, name: str, start: Any = 0.0) -> Builder[M]:
         """A coordinate with its start value."""
         return self._put("coordinates", (name,), formula(start))
 
-    def quasi_velocity(self, name: str, start: Any = 0.0, definition: Any = None) -> Builder:
+    def quasi_velocity(self, name: str, start: Any = 0.0, definition: Any = None) -> Builder[M]:
         """A quasi-velocity with its start value, and its definition by velocities (2) if it has one."""
         if definition is None:
             return self._put("quasi_velocities", (name,), formula(start))
         self._put("quasi_velocities", (name, "is"), formula(definition))
         return self._put("quasi_velocities", (name, "start"), formula(start))
 
-    def state(self, name: str, start: Any, rate: Any) -> Builder:
+    def state(self, name: str, start: Any, rate: Any) -> Builder[M]:
         """A first-order state with its rate, such as that of a controller."""
         self._put("states", (name, "start"), formula(start))
         return self._put("states", (name, "rate"), formula(rate))
 
-    def kinematics(self, coordinate: str, velocity: Any) -> Builder:
+    def kinematics(self, coordinate: str, velocity: Any) -> Builder[M]:
         """The velocity of a coordinate in terms of quasi-velocities, ẋ = b η + b_0 (3)."""
         return self._put("kinematics", (coordinate,), formula(velocity))
 
-    def algebra(self, name: str | None = None, brackets: Mapping[tuple[str, str], Any] | None = None) -> Builder:
+    def algebra(self, name: str | None = None, brackets: Mapping[tuple[str, str], Any] | None = None) -> Builder[M]:
         """The brackets of the operators: those of a Lie algebra by its name, or each by itself."""
         if name is not None:
             self._put("algebra", ("name",), quoted(name))
@@ -210,7 +154,7 @@ class Builder:
             self._put("algebra.brackets", (f"{r},{s}",), formula(value))
         return self
 
-    def constraint(self, name: str, value: Any, kind: str | None = None) -> Builder:
+    def constraint(self, name: str, value: Any, kind: str | None = None) -> Builder[M]:
         """A constraint: an expression that vanishes."""
         if kind is None:
             return self._put("constraints", (name,), formula(value))
@@ -219,7 +163,7 @@ class Builder:
 
     def lagrangian(
         self, lagrangian: Any = None, *, kinetic: Any = None, potential: Any = None, dissipation: Any = None
-    ) -> Builder:
+    ) -> Builder[M]:
         """The Lagrangian, or kinetic and potential energy; and Rayleigh's function of dissipation."""
         given = {"lagrangian": lagrangian, "kinetic": kinetic, "potential": potential, "dissipation": dissipation}
         for key, value in given.items():
@@ -227,7 +171,7 @@ class Builder:
                 self._put("lagrangian", (key,), formula(value))
         return self
 
-    def _table(self, section: str, name: str, entries: Mapping[str, Any]) -> Builder:
+    def _table(self, section: str, name: str, entries: Mapping[str, Any]) -> Builder[M]:
         for key, value in entries.items():
             if value is not None:
                 self._put(section, (name, key), entry(key, value))
@@ -240,7 +184,7 @@ class Builder:
         joint: Joint | Mapping[str, Any] | None = None,
         parent: str | None = None,
         **entries: Any,
-    ) -> Builder:
+    ) -> Builder[M]:
         """A rigid body: ``mass``, ``inertia``, ``position``, ``rotation``, … as in ``[bodies.NAME]`` of a text.
 
         Parameters
@@ -254,7 +198,7 @@ class Builder:
         """
         return self._table("bodies", name, {"parent": parent, "joint": joint, **entries})
 
-    def point(self, name: str, body: str, at: Sequence[Any] | None = None) -> Builder:
+    def point(self, name: str, body: str, at: Sequence[Any] | None = None) -> Builder[M]:
         """A point of a body with a joint: ``NAME_x``, ``NAME_y``, ``NAME_z`` are its place, to be used in expressions."""
         return self._table("points", name, {"body": body, "at": at})
 
@@ -267,32 +211,32 @@ class Builder:
         *,
         axis: Sequence[Sequence[Any]] | None = None,
         length: Any = None,
-    ) -> Builder:
+    ) -> Builder[M]:
         """A joint between two bodies that hang already: a ``"point"``, a ``"revolute"`` joint or a ``"rod"``."""
         entries = {"kind": kind, "bodies": list(bodies), "at": at, "axis": axis, "length": length}
         return self._table("loops", name, entries)
 
-    def draw(self, kind: str, **entries: Any) -> Builder:
+    def draw(self, kind: str, **entries: Any) -> Builder[M]:
         """A shape that follows the motion in films: ``"line"``, ``"disc"``, ``"spring"``, … as in ``[[draw]]`` of a text."""
         # A place from which something goes has the name of a keyword of Python.
         entries = {key.rstrip("_"): value for key, value in entries.items()}
         self._drawn.append({key: entry(key, value) for key, value in {"kind": kind, **entries}.items()})
         return self
 
-    def gravity(self, acceleration: Sequence[Any]) -> Builder:
+    def gravity(self, acceleration: Sequence[Any]) -> Builder[M]:
         """The acceleration of gravity, for all bodies."""
         text = "[" + ", ".join(formula(entry) for entry in acceleration) + "]"
         return self._put("gravity", ("acceleration",), text)
 
-    def force(self, on: str, value: Any) -> Builder:
+    def force(self, on: str, value: Any) -> Builder[M]:
         """A generalised force on a quasi-velocity or on a coordinate."""
         return self._put("forces", (on,), formula(value))
 
-    def integral(self, name: str, value: Any) -> Builder:
+    def integral(self, name: str, value: Any) -> Builder[M]:
         """An expression that should stay constant, watched along each motion."""
         return self._put("integrals", (name,), formula(value))
 
-    def output(self, name: str, value: Any) -> Builder:
+    def output(self, name: str, value: Any) -> Builder[M]:
         """An output: one more column of each motion."""
         return self._put("outputs", (name,), formula(value))
 
@@ -304,7 +248,7 @@ class Builder:
         direction: str = "both",
         terminal: bool = False,
         reset: Mapping[str, Any] | None = None,
-    ) -> Builder:
+    ) -> Builder[M]:
         """An event: the zero of an expression, which may end the motion or reset the state."""
         self._put("events", (name, "when"), formula(when))
         self._put("events", (name, "direction"), quoted(direction))
@@ -314,7 +258,7 @@ class Builder:
             self._put("events", (name, "reset", variable), formula(value))
         return self
 
-    def simulation(self, **settings: Any) -> Builder:
+    def simulation(self, **settings: Any) -> Builder[M]:
         """Default settings of a run: ``t_end``, ``samples``, ``rtol``, ``method``, …"""
         for key, value in settings.items():
             if isinstance(value, str):
@@ -341,7 +285,7 @@ class Builder:
             sections.append("\n".join(["[[draw]]", *lines]) + "\n")
         return "\n".join(sections)
 
-    def build(self) -> Model:
+    def build(self) -> M:
         """The model.
 
         Raises
@@ -349,6 +293,4 @@ class Builder:
         ModelError
             With the place in :attr:`text`.
         """
-        from chetaev._model import Model
-
-        return Model.from_text(self.text, name=self._name)
+        return self._model_of(self.text, self._name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from chetaev._motion import Motion
+    from chetaev._protocols import MotionLike
 
 
 class ChetaevError(Exception):
@@ -77,6 +77,6 @@ class IntegrationError(ChetaevError, RuntimeError):
         What was reached before.
     """
 
-    def __init__(self, text: str, motion: Motion | None = None) -> None:
+    def __init__(self, text: str, motion: MotionLike | None = None) -> None:
         super().__init__(text)
         self.motion = motion

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from chetaev import _native
-from chetaev._errors import ChetaevError, UnknownNameError
+from chetaev._language.errors import ChetaevError, UnknownNameError
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from chetaev._system import System
+    from chetaev._protocols import SystemLike
 
     Floats = npt.NDArray[np.float64]
 
@@ -81,7 +81,7 @@ class Sweep(Mapping[str, "Floats"]):
 
 
 def swept(
-    system: System,
+    system: SystemLike,
     vary: Mapping[str, npt.ArrayLike] | None,
     random: Mapping[str, tuple[str, float, float]] | None,
     members: int | None,

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from chetaev._model import Model
+    from chetaev._protocols import ModelLike
 
 
 class Check:
@@ -47,7 +47,7 @@ class Equations:
 
     __slots__ = ("_arguments", "_core", "form", "text")
 
-    def __init__(self, model: Model, form: str, width: int, inline: bool, settings: dict[str, Any]) -> None:
+    def __init__(self, model: ModelLike, form: str, width: int, inline: bool, settings: dict[str, Any]) -> None:
         self._arguments = (model, form, width, inline, settings)
         self._core = model._changed(settings)
         self.form = form
@@ -57,7 +57,7 @@ class Equations:
         _, form, width, inline, _ = self._arguments
         return self._core.printed(form, language, width, inline)
 
-    def __reduce__(self) -> tuple[type[Equations], tuple[Model, str, int, bool, dict[str, Any]]]:
+    def __reduce__(self) -> tuple[type[Equations], tuple[ModelLike, str, int, bool, dict[str, Any]]]:
         return Equations, self._arguments
 
     def __str__(self) -> str:
@@ -118,7 +118,7 @@ class Equations:
         >>> equations["mass_matrix"].shape
         (3, 3)
         """
-        from chetaev._sympy import equations
+        from chetaev._language.sympy import equations
 
         return equations(self.data())
 
@@ -137,7 +137,7 @@ class Theory:
     __slots__ = ("_arguments", "_core", "text")
 
     def __init__(
-        self, model: Model, degree: int, functions: Sequence[str], settings: dict[str, Any]
+        self, model: ModelLike, degree: int, functions: Sequence[str], settings: dict[str, Any]
     ) -> None:
         self._arguments = (model, degree, functions, settings)
         self._core = model._changed(settings)
@@ -147,7 +147,7 @@ class Theory:
         _, degree, functions, _ = self._arguments
         return self._core.theory(language, degree, functions)
 
-    def __reduce__(self) -> tuple[type[Theory], tuple[Model, int, Sequence[str], dict[str, Any]]]:
+    def __reduce__(self) -> tuple[type[Theory], tuple[ModelLike, int, Sequence[str], dict[str, Any]]]:
         return Theory, self._arguments
 
     def __str__(self) -> str:

@@ -1,0 +1,1 @@
+"""What models are written in: expressions, joints, events, and texts made of them."""

@@ -1,0 +1,1 @@
+"""What comes of models and systems."""
