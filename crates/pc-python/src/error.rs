@@ -58,8 +58,8 @@ pub(crate) enum Error {
     NotFinite { what: String, value: f64 },
     #[error("{what} cannot be had: {why}")]
     Unsupported { what: &'static str, why: &'static str },
-    #[error("the state is off the constraint `{name}` by {residual:e}")]
-    OffConstraint { name: String, residual: f64 },
+    #[error("the state is off the constraints: the nearest one on them differs by {moved:e}")]
+    OffConstraints { moved: f64 },
     #[error("another thread is setting values of this system")]
     Busy,
     #[error("`{name}({first}, {second})` is not a valid distribution")]
@@ -148,7 +148,7 @@ impl From<Error> for PyErr {
             | Error::Length { .. }
             | Error::NotFinite { .. }
             | Error::Law { .. }
-            | Error::OffConstraint { .. }
+            | Error::OffConstraints { .. }
             | Error::Solve(SolveError::Input(_))
             | Error::Input(_) => PyValueError::new_err(chain(&error)),
             Error::Sweep(SweepError::UnknownValue(unknown)) => {

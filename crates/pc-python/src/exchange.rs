@@ -55,6 +55,10 @@ impl ModelCore {
         compiled: bool,
     ) -> PyResult<Vec<String>> {
         let form = variables(form)?;
+        if form.has_momenta() {
+            let why = "FMUs are in velocities; use poincare, reduced, orthonormal or hamel";
+            return Err(Error::Unsupported { what: "an FMU in this form", why }.into());
+        }
         let version = match version {
             2 => FmiVersion::V2,
             3 => FmiVersion::V3,

@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 
 use numpy::PyArray1;
 use numpy::prelude::*;
+use pc_expr::VectorField;
 use pc_model::{Flow, deep};
 use pc_run::motion::integrate::Besides;
 use pc_run::motion::run::{Ending, Run};
@@ -24,18 +25,23 @@ use crate::task::attended;
 /// The part of the size of a state by which it may be off constraints: what is less, the first step takes away.
 const OFF: f64 = 1e-6;
 
-/// An error unless a state satisfies the constraints that motions keep.
+/// An error unless a state satisfies the constraints on which the steps of motions are kept, those on velocities and the lengths of
+/// quaternions too.
 ///
 /// # Errors
-/// [`Error::OffConstraint`]
+/// [`Error::OffConstraints`]
 pub(crate) fn on_constraints(flow: &mut Flow, t: f64, state: &[f64]) -> Result<(), Error> {
     let size = state.iter().fold(1.0f64, |size, value| size.max(value.abs()));
-    let residuals = flow.constraint_residuals(t, state);
-    let mut all = flow.constraint_names().into_iter().zip(residuals);
-    match all.find(|(_, residual)| residual.is_nan() || residual.abs() > OFF * size) {
-        Some((name, residual)) => Err(Error::OffConstraint { name, residual }),
-        None => Ok(()),
+    if let Some(value) = state.iter().copied().find(|value| !value.is_finite()) {
+        return Err(Error::NotFinite { what: "a component of the state".to_owned(), value });
     }
+    if !flow.motion.has_projection() {
+        return Ok(());
+    }
+    let mut nearest = state.to_vec();
+    flow.motion.project(t, &mut nearest)?;
+    let moved = state.iter().zip(&nearest).fold(0.0f64, |moved, (a, b)| moved.max((a - b).abs()));
+    if moved > OFF * size { Err(Error::OffConstraints { moved }) } else { Ok(()) }
 }
 
 fn statistics<'py>(py: Python<'py>, done: &Statistics) -> PyResult<Bound<'py, PyDict>> {

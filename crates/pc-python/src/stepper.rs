@@ -74,7 +74,10 @@ impl Stepper {
         if let Some(inputs) = inputs {
             walk.set(&inputs)?;
         }
-        if walk.terminal.is_none() {
+        if !dt.is_finite() {
+            return Err(Error::NotFinite { what: "the length of the step".to_owned(), value: dt }.into());
+        }
+        if walk.terminal.is_none() && dt != 0.0 {
             walk.go_on(dt)?;
         }
         Ok(PyArray1::from_slice(py, &walk.y))

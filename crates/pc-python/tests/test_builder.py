@@ -192,6 +192,7 @@ def test_every_joint_is_written() -> None:
         chetaev.Spherical(at=[0, 0, 1]),
         chetaev.Free(),
     ]
+    assert "1.0, 0.0" in chetaev.Model.builder("n").body("b", joint=chetaev.Revolute(axis=np.array([0, 1, 0])), mass=1).text
     degrees = [0, 1, 1, 1, 2, 2, 3, 3, 6]
     for joint, count in zip(joints, degrees):
         builder = chetaev.Model.builder("one").gravity([0, 0, -1]).body("last", joint=chetaev.Prismatic(axis=[0, 1, 0]), mass=1)

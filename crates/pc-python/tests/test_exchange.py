@@ -50,5 +50,7 @@ def test_an_fmu_is_written_whole(tmp_path: pathlib.Path) -> None:
         model.fmu(path, version=1)
     with pytest.raises(ValueError, match="choose one of dop853"):
         model.fmu(path, solver="euler", compiled=False)
+    with pytest.raises(chetaev.ChetaevError, match="in velocities"):
+        model.fmu(path, "canonical", compiled=False)
     with pytest.raises(OSError, match="nowhere"):
         model.fmu(tmp_path / "nowhere" / "a.fmu", compiled=False)

@@ -62,6 +62,9 @@ def test_wrong_sweeps_are_refused() -> None:
     ):
         with pytest.raises(chetaev.ChetaevError, match=message):
             system.sweep(**arguments)
+    for nothing in ({"vary": {"g": []}}, {"random": {"g": ("normal", 1, 1)}, "members": 0}):
+        with pytest.raises(chetaev.ChetaevError, match="no members"):
+            system.sweep(**nothing)
     with pytest.raises(ValueError, match="choose one of normal"):
         system.sweep(random={"g": ("cauchy", 0, 1)}, members=2)
     with pytest.raises(ValueError, match="not a valid distribution"):

@@ -203,6 +203,8 @@ class System(_native.SystemCore):
 
         if times is not None and (t_end is not None or samples is not None):
             raise ValueError("give either times, or t_end and samples")
+        if times is not None and np.size(times) == 0:
+            raise ValueError("there are no times")
         if samples is not None and samples < 2:
             raise ValueError("a motion has at least 2 samples, its start and its end")
         return {
@@ -388,7 +390,7 @@ class System(_native.SystemCore):
             Names with the values that they take, in all combinations, the last name changing fastest.
         random : mapping, optional
             Names with distributions instead: ``("normal", mean, deviation)``, ``("uniform", from, to)`` or
-            ``("lognormal", mean, deviation)``, the numbers of ``pc sweep --random`` with the same seed.
+            ``("lognormal", mean, deviation)`` of the logarithm, the numbers of ``pc sweep --random`` with the same seed.
         members : int, optional
             How many are drawn.
         seed : int

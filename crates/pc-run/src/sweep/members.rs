@@ -50,7 +50,7 @@ impl Members {
 
     /// The models of the first member, of one in the middle and of the last.
     pub(crate) fn samples(&self) -> Vec<Model> {
-        let last = self.design.members().saturating_sub(1);
+        let Some(last) = self.design.members().checked_sub(1) else { return Vec::new() };
         let mut members = vec![0, last / 2, last];
         members.dedup();
         members.into_iter().map(|member| self.model(&self.blank(member))).collect()

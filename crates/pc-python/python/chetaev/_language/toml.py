@@ -61,7 +61,7 @@ def entry(key: str, value: Any) -> str:
         return "{ " + ", ".join(f"{quoted(name)} = {entry(name, one)}" for name, one in value.items()) + " }"
     if key == "turns":
         return "[" + ", ".join(f"[{quoted(axis)}, {formula(angle)}]" for axis, angle in value) + "]"
-    if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):
+    if isinstance(value, (list, tuple)) or getattr(value, "ndim", 0) > 0:
         return "[" + ", ".join(entry(key, one) for one in value) + "]"
     if isinstance(value, numbers.Rational) and not isinstance(value, bool):
         return number(float(value)) if value == float(value) else formula(value)

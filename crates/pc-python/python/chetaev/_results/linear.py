@@ -56,9 +56,9 @@ class Linearization:
 
     Examples
     --------
-    >>> linear = Model.builtin("quarter-car").linearize()
-    >>> linear.A.shape
-    (4, 4)
+    >>> linear = Model.builtin("cart-pole").linearize()
+    >>> linear.A.shape, linear.B.shape
+    ((4, 4), (4, 1))
     >>> bool(linear.eigenvalues.real.max() < 0)
     True
     """

@@ -110,6 +110,8 @@ def swept(
         names = tuple(random)
         laws = [(law, float(first), float(second)) for law, first, second in random.values()]
         values = _native.draw(laws, seed, members)
+    if len(values) == 0:
+        raise ChetaevError("there are no members: give at least one value of each name")
     verify = settings.pop("verify", None)
     wished = system._wished(t_end=t_end, samples=rows or 2, **settings)
     called, bar = None, None
