@@ -157,6 +157,9 @@ impl From<Error> for PyErr {
             Error::Run(error) => of_run(py, error),
             Error::File(error) => PyOSError::new_err(chain(error)),
             Error::Urdf(_) | Error::Fmu(_) => raised(py, "ChetaevError", chain(&error)),
+            Error::Sweep(SweepError::Ended { done, members, limit }) => {
+                raised(py, "IntegrationError", format!("ended after {done} of {members} members: {limit}"))
+            }
             Error::Sweep(_) | Error::Panic { .. } => PyRuntimeError::new_err(chain(&error)),
             Error::Solve(_) => raised(py, "IntegrationError", chain(&error)),
         })

@@ -69,3 +69,9 @@ def test_wrong_sweeps_are_refused() -> None:
         system.sweep(random={"g": ("cauchy", 0, 1)}, members=2)
     with pytest.raises(ValueError, match="not a valid distribution"):
         system.sweep(random={"g": ("uniform", 2, 1)}, members=2)
+
+
+def test_a_sweep_that_runs_out_of_time_says_so() -> None:
+    system = chetaev.Model.builtin("heavy-top-lagrange").system()
+    with pytest.raises(chetaev.IntegrationError, match="of 3 members"):
+        system.sweep({"mg": [1.0, 2.0, 3.0]}, t_end=1e6, limit_time=0.05, verify=False)

@@ -123,7 +123,7 @@ impl Sweep {
         threads: Option<NonZeroUsize>,
     ) -> Result<Sweep, RunError> {
         let (members, names) = (design.members(), design.names());
-        let (title, deadline) = (model.title().to_owned(), model.budget().deadline().clone());
+        let (title, deadline) = (model.title().to_owned(), plan.deadline.clone());
         let work = Motions::new(model, design, plan, all_rows, workers(threads), Some(derived))?;
         let sheet = Sheet::new(SweepOf::Run, &names, work.members().columns());
         let (counts, header) = (Vec::new(), Identity::new());
@@ -131,10 +131,10 @@ impl Sweep {
         Ok(Sweep { title, deadline, work, sheet, threads, members, is_random: false, counts, header })
     }
 
-    /// The records of all members, in their order, as far as the observer lets them come.
+    /// The records of all members, in their order.
     ///
     /// # Errors
-    /// [`SweepError`] if threads cannot be started.
+    /// [`SweepError::Ended`] and [`SweepError::Interrupted`] where there are fewer, and if threads cannot be started.
     pub fn collect(&self, observer: &dyn Observer) -> Result<Vec<Record>, SweepError> {
         let mut progress = observer.members(0, self.members);
         let mut all = Vec::new();
@@ -143,7 +143,12 @@ impl Sweep {
             progress(place + 1);
             ControlFlow::Continue(())
         })?;
-        Ok(all)
+        let (done, members) = (all.len() as u64, self.members);
+        match self.deadline.passed() {
+            _ if done == members => Ok(all),
+            Some(limit) if !observer.is_stopped() => Err(SweepError::Ended { done, members, limit }),
+            _ => Err(SweepError::Interrupted { done, members }),
+        }
     }
 
     /// Compares the first member, one in the middle and the last with a second derivation of each.
