@@ -2191,7 +2191,7 @@ pc_status pc_solver_terminal_event(const pc_solver *solver, size_t *event, pc_er
 
 /**
  * Writes the derivative of the start of the model by parameter number `parameter`, from 0:
- * start values may be expressions in parameters. It derives the equations twice.
+ * start values may be expressions in parameters. It derives the equations.
  * PC_INCONSISTENT_MODEL where nearby parameters have no start, for an input with a table, and
  * for a parameter that is an expression in others.
  */

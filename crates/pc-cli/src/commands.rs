@@ -29,3 +29,37 @@ pub mod schema;
 pub mod sweep;
 pub mod theory;
 pub mod version;
+
+use crate::args::command_line::Command;
+use crate::error::CliError;
+
+/// Does what a command says.
+///
+/// # Errors
+/// [`CliError`]
+pub fn command(command: &Command) -> Result<(), CliError> {
+    match command {
+        Command::New(arguments) => new::command(arguments),
+        Command::Check(arguments) => check::command(arguments),
+        Command::Derive(arguments) => derive::command(arguments),
+        Command::Theory(arguments) => theory::command(arguments),
+        Command::Linearize(arguments) => linearize::command(arguments),
+        Command::Equilibria(arguments) => equilibria::command(arguments),
+        Command::Run(arguments) => run::command(arguments),
+        Command::Report(arguments) => report::command(arguments),
+        Command::Animate(arguments) => report::animate(arguments),
+        Command::Sweep(arguments) => sweep::command(arguments),
+        Command::Merge(arguments) => merge::command(arguments),
+        Command::Compare(arguments) => compare::command(arguments),
+        Command::Bench(arguments) => bench::command(arguments),
+        Command::Emit(arguments) => match arguments.fmu {
+            Some(version) => fmu::command(arguments, version),
+            None => emit::command(arguments),
+        },
+        Command::Import(arguments) => import::command(arguments),
+        Command::Models(arguments) => models::command(arguments),
+        Command::Schema(arguments) => schema::command(arguments),
+        Command::Completions(arguments) => completions::command(arguments),
+        Command::Man(arguments) => man::command(arguments),
+    }
+}

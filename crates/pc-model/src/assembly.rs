@@ -26,6 +26,8 @@ pub(crate) mod frame;
 pub(crate) mod function;
 pub(crate) mod given;
 mod inertia;
+mod kept;
+mod moved_start;
 pub(crate) mod orientations;
 pub(crate) mod parameters;
 pub(crate) mod resultant;

@@ -43,6 +43,7 @@ mod names;
 mod variables;
 
 pub use assembly::action::Action;
+pub use assembly::assemble::derivations;
 pub use assembly::assembly::Assembly;
 pub use assembly::constraint_treatment::{
     ClassifiedConstraint, ConstraintFormulation, ConstraintTreatment, MultiplierFormulation,

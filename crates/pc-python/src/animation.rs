@@ -81,15 +81,16 @@ impl SystemCore {
     fn animation_page(&self, py: Python<'_>, recorded: Recorded) -> PyResult<Option<String>> {
         let record = Record::from(recorded);
         self.derive(py, move |model| {
-            let graph = model.graph();
-            let scene = Scene::of(model, &model.assemble(&graph)?, &record)?;
-            Ok(scene.map(|scene| animation(model.title(), &scene)))
+            model.derived(|assembly| {
+                let scene = Scene::of(model, assembly, &record)?;
+                Ok(scene.map(|scene| animation(model.title(), &scene)))
+            })
         })
     }
 
     /// The page of the model, with a motion where there is one.
     fn report_page(&self, py: Python<'_>, recorded: Option<Recorded>) -> PyResult<String> {
         let record = recorded.map(Record::from);
-        self.derive(py, move |model| Ok(report(model, record.as_ref())?))
+        self.derive(py, move |model| model.derived(|assembly| Ok(report(model, assembly, record.as_ref())?)))
     }
 }

@@ -19,15 +19,15 @@ pub(crate) struct MassMatrix {
 
 impl MassMatrix {
     pub(crate) fn of(model: &Model, variables: Variables) -> Result<MassMatrix, Error> {
-        let graph = model.graph();
-        let assembly = model.assemble(&graph)?;
-        let equations = assembly.equations_in(variables)?;
-        let entries = assembly.placed(equations.functions(&equations.mass_matrix().entries(), &[]))?;
-        let transform = match variables.has_momenta() {
-            true => Some(assembly.legendre_transform(variables)?),
-            false => None,
-        };
-        Ok(MassMatrix { entries, transform, size: equations.mass_matrix().rows() })
+        model.derived(|assembly| {
+            let equations = assembly.equations_in(variables)?;
+            let entries = assembly.placed(equations.functions(&equations.mass_matrix().entries(), &[]))?;
+            let transform = match variables.has_momenta() {
+                true => Some(assembly.legendre_transform(variables)?),
+                false => None,
+            };
+            Ok(MassMatrix { entries, transform, size: equations.mass_matrix().rows() })
+        })
     }
 }
 
@@ -64,9 +64,9 @@ pub(crate) fn bracket(model: &Model, variables: Variables, f: &str, g: &str) -> 
         let why = "the state has other variables than the model; use the form poincare or canonical";
         return Err(Error::Unsupported { what: "a bracket", why });
     }
-    let graph = model.graph();
-    let assembly = model.assemble(&graph)?;
-    let value = bracket_of(model, &assembly, f, g)?;
-    let equations = assembly.equations_in(Variables::QuasiVelocities)?;
-    Ok(assembly.placed(equations.functions(&[value], &[]))?)
+    model.derived(|assembly| {
+        let value = bracket_of(model, assembly, f, g)?;
+        let equations = assembly.equations_in(Variables::QuasiVelocities)?;
+        Ok(assembly.placed(equations.functions(&[value], &[]))?)
+    })
 }

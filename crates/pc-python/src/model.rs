@@ -8,8 +8,8 @@ use pc_mech::{EmitOptions, Language};
 use pc_model::document::AbsoluteTolerance;
 use pc_model::{Assembly, Builtin, Document, Model, Variables, deep};
 use pc_print::{Form, Layout, Page, Theory, TheoryOptions, displayed_equations, page};
-use pc_report::Check;
-use pc_verify::{Options, Outlet, VerifyError, verify, vouch};
+use pc_run::motion::verification::checked;
+use pc_verify::{Outlet, VerifyError, vouch};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -237,12 +237,7 @@ impl ModelCore {
     fn check(&self, py: Python<'_>) -> PyResult<(String, String)> {
         self.assembled(py, None, |model, assembly| {
             let equations = assembly.equations()?;
-            let second = match verify(model, &Options::default()) {
-                Err(error @ VerifyError::Disagreement(_)) => return Err(error.into()),
-                outcome => outcome,
-            };
-            assembly.within_limits()?;
-            let check = Check::new(model, assembly, &equations)?.compared(second);
+            let check = checked(model, assembly, &equations)?;
             Ok((check.text(), check.json().to_string()))
         })
     }

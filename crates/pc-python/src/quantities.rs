@@ -85,10 +85,8 @@ impl SystemCore {
         let variables = system.variables;
         let (value, transform) = system.derive(slf.py(), move |model| {
             let value = bracket(model, variables, &f, &g)?;
-            let graph = model.graph();
-            let assembly = model.assemble(&graph)?;
             let transform = match variables.has_momenta() {
-                true => Some(assembly.legendre_transform(variables)?),
+                true => Some(model.derived(|assembly| assembly.legendre_transform(variables))?),
                 false => None,
             };
             Ok((value, transform))

@@ -14,7 +14,7 @@
 //! use pc_model::{Builtin, Model};
 //!
 //! let model = Model::new(Builtin::named("chaplygin-sleigh").unwrap().document()?);
-//! let page = pc_report::report(&model, None)?;
+//! let page = model.derived(|assembly| pc_report::report(&model, assembly, None))?;
 //! assert!(page.starts_with("<!DOCTYPE html>") && page.contains("<math"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -6,7 +6,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use pc_model::{Builtin, Document, Model, Source};
-use pc_report::{Columns, Kind, Record, Samples, report};
+use pc_report::{Columns, Kind, Record, ReportError, Samples, report};
 use roxmltree::{Document as Xml, Node, ParsingOptions};
 
 /// The page as XML.
@@ -23,6 +23,10 @@ fn parsed(page: &str) -> Xml<'_> {
 
 fn model(text: &str) -> Model {
     Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
+}
+
+fn paged(model: &Model, record: Option<&Record>) -> Result<String, ReportError> {
+    model.derived(|assembly| report(model, assembly, record))
 }
 
 fn builtin(name: &str) -> Model {
@@ -68,7 +72,7 @@ potential = \"k*x^2/2\"
 
 #[test]
 fn an_oscillator_from_its_text_to_its_curves() {
-    let page = report(&model(OSCILLATOR), Some(&record())).unwrap();
+    let page = paged(&model(OSCILLATOR), Some(&record())).unwrap();
     let style = page.find("<style>").unwrap()..page.find("</style>").unwrap();
     let page = page.replace(&page[style], "<style>");
     insta::assert_snapshot!(page);
@@ -126,9 +130,9 @@ fn pages_of_models_are_whole_small_and_the_same_each_time() {
     for name in
         ["tilted-disk", "heavy-top-euler", "chaplygin-sleigh", "double-pendulum-cartesian", "turning-hoop"]
     {
-        let page = report(&builtin(name), Some(&record())).unwrap();
+        let page = paged(&builtin(name), Some(&record())).unwrap();
         check(name, &page);
-        assert_eq!(page, report(&builtin(name), Some(&record())).unwrap(), "{name}");
+        assert_eq!(page, paged(&builtin(name), Some(&record())).unwrap(), "{name}");
     }
 }
 
@@ -139,7 +143,7 @@ fn pages_of_all_models() {
     let work = || {
         while let Some(builtin) = models.get(next.fetch_add(1, Ordering::Relaxed)) {
             let model = Model::new(builtin.document().unwrap());
-            check(builtin.name, &report(&model, None).unwrap());
+            check(builtin.name, &paged(&model, None).unwrap());
         }
     };
     std::thread::scope(|scope| {
@@ -166,7 +170,7 @@ fn hostile_text_stays_text() {
     motion.rows.columns[0].list[0].0 = hostile.to_owned();
     motion.summary.push((hostile.to_owned(), vec![hostile.to_owned()]));
     motion.remark = Some(hostile.to_owned());
-    let page = report(&model(&text), Some(&motion)).unwrap();
+    let page = paged(&model(&text), Some(&motion)).unwrap();
     check("hostile", &page);
     let xml = parsed(&page);
     let heading = xml.descendants().find(|node| node.has_tag_name("h1")).unwrap();
@@ -176,7 +180,7 @@ fn hostile_text_stays_text() {
 
 #[test]
 fn the_eigenvalues_of_a_steady_motion_are_drawn() {
-    let page = report(&model(OSCILLATOR), None).unwrap();
+    let page = paged(&model(OSCILLATOR), None).unwrap();
     // ±2i about x = 0
     assert!(page.contains("0 of 2 have positive real parts: 0 + 2i, 0 − 2i"), "{page}");
 }

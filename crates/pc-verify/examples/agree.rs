@@ -11,7 +11,9 @@ fn main() -> ExitCode {
     for path in env::args().skip(1) {
         let outcome = fs::read(&path).map_err(|error| error.to_string()).and_then(|bytes| {
             let document = Document::from_bytes(path.as_str(), &bytes).map_err(|error| error.to_string())?;
-            verify(&Model::new(document), &Options::default()).map_err(|error| match error {
+            let model = Model::new(document);
+            let options = Options::default();
+            model.derived(|assembly| verify(&model, assembly, &options)).map_err(|error| match error {
                 VerifyError::Model(error) => format!("refused: {}", error.diagnostic().message),
                 error => error.to_string(),
             })

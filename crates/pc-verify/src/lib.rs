@@ -15,7 +15,7 @@
 //! use pc_verify::{Options, verify};
 //!
 //! let model = Model::new(Builtin::named("chaplygin-sleigh").unwrap().document()?);
-//! let agreement = verify(&model, &Options::default())?;
+//! let agreement = model.derived(|assembly| verify(&model, assembly, &Options::default()))?;
 //! assert_eq!(agreement.states, 100);
 //! assert!(agreement.error < 1e-13);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -4,6 +4,7 @@ use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, Source, Variables};
 use pc_print::Form;
 
+use crate::comparison::agreement::Agreement;
 use crate::comparison::compare::{Options, verify};
 use crate::comparison::outlet::{Outlet, vouch};
 use crate::comparison::resets::Jump;
@@ -16,6 +17,10 @@ use crate::numbers::rounding::Rounding;
 
 fn model(text: &str) -> Model {
     Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
+}
+
+pub(crate) fn verified(model: &Model, options: &Options) -> Result<Agreement, VerifyError> {
+    model.derived(|assembly| verify(model, assembly, options))
 }
 
 /// The second derivation at the start.
@@ -313,7 +318,7 @@ x = 0.0
 kinetic = "x'^4/4 - x'^2/2"
 potential = "x^2/2"
 "#;
-    let agreement = verify(&model(text), &Options::default()).unwrap();
+    let agreement = verified(&model(text), &Options::default()).unwrap();
     assert!(agreement.states == 100 && agreement.error < 1e-12, "{agreement}");
     let said = "canonical: at some states the momenta are those of other velocities, too";
     assert!(agreement.not_compared.iter().any(|line| line == said), "{:?}", agreement.not_compared);
@@ -323,7 +328,7 @@ potential = "x^2/2"
 /// 1/q³.
 #[test]
 fn quantities_that_a_drift_cancels_have_the_rounding_of_the_drift() {
-    let agreement = verify(
+    let agreement = verified(
         &model(
             r#"
 [coordinates]
@@ -346,7 +351,7 @@ kinetic = "q'^2"
 /// slower.
 #[test]
 fn quantities_that_reactions_balance_have_the_rounding_of_the_forces() {
-    let agreement = verify(
+    let agreement = verified(
         &model(
             r#"
 [coordinates]
@@ -376,7 +381,7 @@ x = "(-0.33)*exp(-((t - 0.13769)/0.02769)^2)"
 /// states near there give no information on the derivation, others do.
 #[test]
 fn states_at_which_rounding_hides_everything_are_skipped() {
-    let agreement = verify(
+    let agreement = verified(
         &model(
             r#"
 [coordinates]
@@ -416,7 +421,7 @@ fn fully_cancelling_sums_have_the_size_of_their_terms() {
         list(60, &|i| format!("x{i}'"), " + "),
         list(59, &|i| format!("k{i} = \"x{i}^2 + x{}^2 - 0.5\"", i + 1), "\n"),
     );
-    let agreement = verify(&model(&text), &Options { states: 10, seed: 0 }).unwrap();
+    let agreement = verified(&model(&text), &Options { states: 10, seed: 0 }).unwrap();
     assert!(agreement.projected > 0, "{agreement:?}");
 }
 
@@ -425,7 +430,7 @@ fn fully_cancelling_sums_have_the_size_of_their_terms() {
 fn values_without_significant_digits_are_not_compared() {
     let text = "[coordinates]\nx = 0.7\ny = 0.3\n[lagrangian]\nkinetic = \"3*x'^2 + x'*y'*cos(x) + y'^2\"\n\
                 potential = \"7e-323*sin(x + y)\"\n";
-    assert_eq!(verify(&model(text), &Options::default()).unwrap().states, 100);
+    assert_eq!(verified(&model(text), &Options::default()).unwrap().states, 100);
 }
 
 /// A pendulum with damping beside an angle that nothing depends on; gravity is so many times as strong.
@@ -493,7 +498,7 @@ fn wrong_equations_leave_in_no_form() {
 }
 
 /// ẍ = −k sin x + u: along (δx, δu) its rate changes by −k cos x δx + δu, and the output x² + u by 2x δx + δu.
-fn slope_of_a_pendulum(by_x: f64, by_u: f64) -> Result<crate::Agreement, VerifyError> {
+fn slope_of_a_pendulum(by_x: f64, by_u: f64) -> Result<Agreement, VerifyError> {
     let model = model(
         "[parameters]\nk = 2.5\n[coordinates]\nx = 0.7\n[quasi_velocities]\n\"x'\" = -0.4\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
          potential = \"-k*cos(x)\"\n[inputs]\nu = 0.3\n[forces]\nx = \"u\"\n[outputs]\no = \"x^2 + u\"\n",
@@ -530,7 +535,7 @@ fn a_right_derivative_agrees_and_a_wrong_one_does_not() {
 }
 
 /// A ball on a table with a counter: v⁺ = −e v⁻ − n, n⁺ = n + 1.
-fn bounce(after: [f64; 3]) -> Result<crate::Agreement, VerifyError> {
+fn bounce(after: [f64; 3]) -> Result<Agreement, VerifyError> {
     let model = model(
         "[parameters]\ne = 0.8\n[coordinates]\nz = 1\n[lagrangian]\nkinetic = \"z'^2/2\"\npotential = \"z\"\n[states]\n\
          n = { start = 2, rate = \"0\" }\n[events.bounce]\nwhen = \"z\"\ndirection = \"falling\"\nreset = { \"z'\" = \"-e*z' - n\", n = \
@@ -561,7 +566,7 @@ fn a_reset_is_that_of_the_text() {
 }
 
 /// A bead on a circle that turns back, with its constraint in any units: (x, y)·(u, v) = 0 after the reset.
-fn turn(factor: f64, after: [f64; 4]) -> Result<crate::Agreement, VerifyError> {
+fn turn(factor: f64, after: [f64; 4]) -> Result<Agreement, VerifyError> {
     let model = model(&format!(
         "[coordinates]\nx = 0.6\ny = -0.8\n[quasi_velocities]\n\"x'\" = 0.8\n\"y'\" = 0.6\n[constraints]\nrod = \"{factor:e}*(x^2 + y^2 - \
          1)\"\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\n[events.wall]\nwhen = \"x - 0.6\"\nreset = {{ \"x'\" = \"-x'/2\" }}\n"

@@ -203,7 +203,9 @@ pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusa
     };
     let emitted = forms.emitted.then(|| emission(name, &assembly, &equations?));
     model.observe_reactions(false);
-    let second = forms.second.then(|| verify(&model, &pc_verify::Options { states: STATES, seed: 0 }));
+    let second = forms.second.then(|| {
+        model.derived(|assembly| verify(&model, assembly, &pc_verify::Options { states: STATES, seed: 0 }))
+    });
     Ok(Execution { motion, canonical, projected, keeps_energy, conserved, emitted, second })
 }
 

@@ -116,7 +116,8 @@ fn derivatives_over_events_are_those_of_whole_motions() {
             let Some(mut differentiated) = flow(&model, variables) else { continue };
             let columns: Vec<Vec<f64>> = (0..values.len())
                 .map(|j| {
-                    let column = Flow::start_by_parameter(&model, variables, j);
+                    let column =
+                        model.derived(|assembly| differentiated.start_by_parameter(&model, assembly, j));
                     column.unwrap_or_else(|error| panic!("{error}\n{text}"))
                 })
                 .collect();

@@ -48,7 +48,8 @@ fn the_time_of_a_table_does_not_move_with_parameters() {
         model.differentiate_by_parameters(true);
         let mut flow = flow(&model);
         let start = flow.start.clone();
-        let column = Flow::start_by_parameter(&model, Variables::QuasiVelocities, 0).expect("a column");
+        let column = model.derived(|assembly| flow.start_by_parameter(&model, assembly, 0));
+        let column = column.expect("a column");
         let solved = solve_with_sensitivities_and_events(
             &mut flow.motion,
             (0.0, &start),

@@ -54,13 +54,13 @@ fn derived(inventory: &Inventory, model: &Model, f: &str, g: &str) -> Result<Eva
         let why = "the system is in other coordinates and quasi-velocities than those of the model";
         return Err(CallError::Unsupported { what: "a bracket", why });
     }
-    let graph = model.graph();
-    let assembly = model.assemble(&graph)?;
-    if assembly.constraints.nonlinear().is_some() {
-        let why = "a constraint is not affine in the velocities";
-        return Err(CallError::Unsupported { what: "a bracket", why });
-    }
-    let value = bracket_of(model, &assembly, f, g)?;
-    let equations = assembly.equations_in(Variables::QuasiVelocities)?;
-    Ok(assembly.placed(equations.functions(&[value], &[]))?)
+    model.derived(|assembly| {
+        if assembly.constraints.nonlinear().is_some() {
+            let why = "a constraint is not affine in the velocities";
+            return Err(CallError::Unsupported { what: "a bracket", why });
+        }
+        let value = bracket_of(model, assembly, f, g)?;
+        let equations = assembly.equations_in(Variables::QuasiVelocities)?;
+        Ok(assembly.placed(equations.functions(&[value], &[]))?)
+    })
 }

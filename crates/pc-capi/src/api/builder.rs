@@ -40,8 +40,7 @@ pub unsafe extern "C" fn pc_model_new(
 pub unsafe extern "C" fn pc_model_check(model: *const pc_model, error: *mut *mut pc_error) -> pc_status {
     let check = |contents: &mut Contents| {
         let model = contents.model()?;
-        model.assemble(&model.graph())?;
-        Ok(())
+        model.derived(|_| Ok(()))
     };
     // SAFETY: as the preamble demands; the contents are not changed.
     unsafe { change(model.cast_mut(), error, check) }

@@ -13,8 +13,7 @@ impl Inner {
     pub(crate) fn derive_legendre(&mut self, inventory: &Inventory) -> Result<(), CallError> {
         if self.legendre.is_none() {
             let mut transform = inventory.derive(|model| {
-                let graph = model.graph();
-                Ok(model.assemble(&graph)?.legendre_transform(inventory.variables)?)
+                model.derived(|assembly| Ok(assembly.legendre_transform(inventory.variables)?))
             })?;
             transform.parameters_mut().copy_from_slice(self.field.parameters());
             self.legendre = Some(transform);

@@ -11,7 +11,7 @@ use crate::machinery::engine::Integration;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes the derivative of the start of the model by parameter number `parameter`, from 0:
-/// start values may be expressions in parameters. It derives the equations twice.
+/// start values may be expressions in parameters. It derives the equations.
 /// PC_INCONSISTENT_MODEL where nearby parameters have no start, for an input with a table, and
 /// for a parameter that is an expression in others.
 #[unsafe(no_mangle)]
@@ -40,7 +40,10 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
                     _ => {}
                 }
             }
-            Ok(Flow::start_by_parameter(&model, inventory.variables, parameter)?)
+            model.derived(|assembly| {
+                let flow = Flow::new(&model, assembly, inventory.variables)?;
+                Ok(flow.start_by_parameter(&model, assembly, parameter)?)
+            })
         })?;
         column.copy_from_slice(&derived);
         Ok(())

@@ -62,10 +62,8 @@ pub(crate) fn page(format: c_int) -> Result<Page, CallError> {
 }
 
 fn printed(inventory: &Inventory, model: &Model, page: Page) -> Result<String, CallError> {
-    let graph = model.graph();
-    let assembly = model.assemble(&graph)?;
     let form = Form::from(inventory.variables);
-    Ok(pc_print::page(form, page, &Layout::default(), model.title(), &assembly)?)
+    model.derived(|assembly| Ok(pc_print::page(form, page, &Layout::default(), model.title(), assembly)?))
 }
 
 /// Writes the equations as C source that depends on nothing of this library: the text of NAME.h

@@ -57,7 +57,5 @@ pub unsafe extern "C" fn pc_system_theory(
 }
 
 fn printed(model: &Model, page: pc_print::Page, options: &TheoryOptions) -> Result<String, CallError> {
-    let graph = model.graph();
-    let assembly = model.assemble(&graph)?;
-    Ok(pc_print::Theory::of(model, &assembly, options)?.printed(page))
+    model.derived(|assembly| Ok(pc_print::Theory::of(model, assembly, options)?.printed(page)))
 }

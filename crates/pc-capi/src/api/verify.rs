@@ -49,10 +49,11 @@ fn report(mut model: Model, parameters: &[f64], states: usize) -> Result<String,
     model.project_start(true);
     let usual = Options::default();
     let options = Options { states: if states == 0 { usual.states } else { states }, ..usual };
-    let agreement = verify(&model, &options).map_err(|error| match error {
-        VerifyError::Model(error) => CallError::Model(error),
-        other => CallError::Verify(other),
-    })?;
+    let agreement =
+        model.derived(|assembly| verify(&model, assembly, &options)).map_err(|error| match error {
+            VerifyError::Model(error) => CallError::Model(error),
+            other => CallError::Verify(other),
+        })?;
     let more = agreement.not_compared.iter().map(|what| format!("not compared: {what}\n"));
     Ok(format!("{agreement}\n{}", more.collect::<String>()))
 }

@@ -228,9 +228,9 @@ impl Inner {
                 TimeDependence::Known(_) | TimeDependence::Unknown => {
                     Some(inventory.derive(|mut model| {
                         model.differentiate_by_time(true);
-                        let graph = model.graph();
-                        let assembly = model.assemble(&graph)?;
-                        Ok(Box::new(Flow::new(&model, &assembly, inventory.variables)?.motion))
+                        model.derived(|assembly| {
+                            Ok(Box::new(Flow::new(&model, assembly, inventory.variables)?.motion))
+                        })
                     })?)
                 }
             });

@@ -1,6 +1,6 @@
 //! `pc report`: all that is known of a model on one page; `pc animate`: its motion alone, as a page or in pictures.
 
-use pc_model::Model;
+use pc_model::{Assembly, Model};
 use pc_report::files::{frames, nearest};
 use pc_report::{Record, Scene, animation, report};
 use pc_run::Plan;
@@ -26,18 +26,22 @@ const PAPER: [f64; 2] = [480.0, 360.0];
 /// [`CliError`]; a motion that failed has been written as far as it was reached.
 pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
     let destination = Destination::page(arguments.output.as_deref())?;
-    let mut model = input::open(&arguments.shown.model)?;
+    let model = input::open(&arguments.shown.model)?;
     if arguments.no_run {
-        return destination.write_page(&report(&model, None)?);
+        let page = model.derived(|assembly| report(&model, assembly, None))?;
+        return destination.write_page(&page);
     }
+    let mut model = kept(model, &arguments.shown)?;
     model.observe_reactions(!model.document().constraints.is_empty());
-    let run = match integrated(&mut model, &arguments.shown) {
+    let graph = model.graph();
+    let assembly = model.assemble(&graph)?;
+    let run = match integrated(&model, &assembly, &arguments.shown) {
         Err(CliError::Run(RunError::NoEnd { .. })) => None,
         run => Some(run?),
     };
     let none = || Record { remark: Some(NO_END.to_owned()), ..Record::default() };
     let record = run.as_ref().map_or_else(none, Run::record);
-    destination.write_page(&report(&model, Some(&record))?)?;
+    destination.write_page(&report(&model, &assembly, Some(&record))?)?;
     Ok(run.map_or(Ok(()), Run::outcome)?)
 }
 
@@ -54,10 +58,11 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
     if arguments.at.is_some() && !is_frame {
         return Err(CliError::NoFrame);
     }
-    let mut model = input::open(&arguments.shown.model)?;
-    let run = integrated(&mut model, &arguments.shown)?;
+    let model = kept(input::open(&arguments.shown.model)?, &arguments.shown)?;
     let graph = model.graph();
-    let scene = Scene::of(&model, &model.assemble(&graph)?, &run.record())?;
+    let assembly = model.assemble(&graph)?;
+    let run = integrated(&model, &assembly, &arguments.shown)?;
+    let scene = Scene::of(&model, &assembly, &run.record())?;
     let scene = scene.ok_or_else(|| CliError::NothingToDraw { model: model.title().to_owned() })?;
     let (title, times) = (model.title(), &scene.times);
     let drawing = |frame| scene.drawing(title, frame, PAPER);
@@ -77,16 +82,21 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
 /// # Errors
 /// [`CliError`] for a model that cannot be derived.
 pub fn page(model: &Model, run: &Run) -> Result<String, CliError> {
-    Ok(report(model, Some(&run.record()))?)
+    Ok(model.derived(|assembly| report(model, assembly, Some(&run.record())))?)
 }
 
-/// The motion, with enough rows for smooth curves.
-fn integrated(model: &mut Model, shown: &ShownArguments) -> Result<Run, CliError> {
+/// The model with the integrals to be kept.
+fn kept(mut model: Model, shown: &ShownArguments) -> Result<Model, CliError> {
     for name in &shown.project {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
+    Ok(model)
+}
+
+/// The motion, with enough rows for smooth curves.
+fn integrated(model: &Model, assembly: &Assembly<'_>, shown: &ShownArguments) -> Result<Run, CliError> {
     let wishes = shown.wishes();
     let rows = Plan::of(model, &wishes)?.samples;
     let wishes = Wishes { samples: Some(shown.samples.unwrap_or(rows.max(SMOOTH))), ..wishes };
-    Ok(Run::of(model, &wishes, &Besides::shown(), None, &Terminal)?)
+    Ok(Run::of_assembly(model, assembly, &wishes, &Besides::shown(), None, &Terminal)?)
 }

@@ -261,6 +261,17 @@ impl<'g> System<'g> {
         }
     }
 
+    /// The same system with other values of its parameters, in the order of declaration.
+    ///
+    /// # Panics
+    /// If these are not as many as its parameters.
+    #[must_use]
+    pub fn with_parameter_values(&self, values: &[f64]) -> System<'g> {
+        assert_eq!(values.len(), self.parameters.len(), "values of the parameters");
+        let symbols = self.parameters.iter().map(|&(symbol, _)| symbol);
+        System { parameters: symbols.zip(values.iter().copied()).collect(), ..self.clone() }
+    }
+
     /// The same system without integrals and outputs.
     #[must_use]
     pub fn without_observed(&self) -> System<'g> {

@@ -1,11 +1,14 @@
 //! From a document to a mechanical system.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use pc_expr::SymbolPlaces;
 use pc_mech::{Expr, Frame, Graph, LagrangianError, Neighbourhood, System};
 
 use crate::assembly::assembler::Assembler;
 use crate::assembly::assembly::Assembly;
 use crate::assembly::bodies::SystemBody;
+use crate::assembly::constraints::Written;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::document::NamedExpression;
@@ -13,12 +16,21 @@ use crate::model::model::Model;
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
+static DERIVATIONS: AtomicUsize = AtomicUsize::new(0);
+
+/// The number of times that models were [assembled](Model::assemble) by this process: what it spends on derivations,
+/// whatever the machine.
+pub fn derivations() -> usize {
+    DERIVATIONS.load(Ordering::Relaxed)
+}
+
 impl Model {
     /// The mechanical system, its expressions in `graph`, and its start state.
     ///
     /// # Errors
     /// [`ModelError`] at the place in the file that is to blame.
     pub fn assemble<'g>(&self, graph: &'g Graph) -> Result<Assembly<'g>, ModelError> {
+        DERIVATIONS.fetch_add(1, Ordering::Relaxed);
         self.parameter_values().check(self.document())?;
         let assembler =
             || Assembler { model: self, graph, scope: Scope::new(graph, self.document()) }.assemble();
@@ -27,9 +39,58 @@ impl Model {
         self.drawn(&assembly)?; // an error in a drawing is an error of the text
         Ok(assembly)
     }
+
+    /// Does some work on the mechanical system, whose expressions last as long as the work.
+    ///
+    /// # Errors
+    /// As [`assemble`](Model::assemble), those of the work, and [`ErrorKind::Spent`](crate::ErrorKind::Spent) if it reached the
+    /// [limits](Model::limit).
+    pub fn derived<T, E: From<ModelError>>(
+        &self,
+        work: impl FnOnce(&Assembly<'_>) -> Result<T, E>,
+    ) -> Result<T, E> {
+        let graph = self.graph();
+        let assembly = self.assemble(&graph)?;
+        let outcome = work(&assembly)?;
+        assembly.within_limits()?;
+        Ok(outcome)
+    }
+}
+
+/// What a mechanical system begins with: its frame, the constraints as written, and where it starts.
+pub(super) struct Begun<'g> {
+    pub(super) t_start: f64,
+    pub(super) frame: Frame<'g>,
+    pub(super) constraints: Vec<Written<'g>>,
+    /// All quasi-velocities, the declared ones first.
+    pub(super) eta: Vec<Expr<'g>>,
+    declared: usize,
+    /// The number of quasi-velocities, the first ones, that determine the others.
+    pub(super) prescribed: usize,
+    /// The velocities x' with their values b η + b_0.
+    pub(super) x_dot: Vec<(Expr<'g>, Expr<'g>)>,
+    /// Coordinates, quasi-velocities and first-order states as they are written.
+    pub(super) start: Vec<f64>,
 }
 
 impl<'g> Assembler<'g, '_> {
+    fn parameters(&self) -> Vec<(Expr<'g>, f64)> {
+        self.model.parameters().map(|(name, value)| (self.graph.symbol(name), value)).collect()
+    }
+
+    /// The values of parameters, time and the symbols of the state.
+    pub(super) fn values_at(
+        &self,
+        (frame, t): (&Frame<'g>, f64),
+        symbols: &[Expr<'g>],
+        state: &[f64],
+    ) -> Vec<(Expr<'g>, f64)> {
+        let mut values = self.parameters();
+        values.push((frame.time(), t));
+        values.extend(symbols.iter().copied().zip(state.iter().copied()));
+        values
+    }
+
     /// Checks that the quasi-velocities determine ẋ at the start as elsewhere: where q = 0 the rate of a
     /// quaternion is zero for any ω.
     fn check_frame_at_start(&self, frame: &Frame<'g>, values: &[(Expr<'g>, f64)]) -> Result<(), ModelError> {
@@ -50,16 +111,16 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    fn assemble(&mut self) -> Result<Assembly<'g>, ModelError> {
+    /// The frame, the constraints as written, and the start before it is moved onto these.
+    pub(super) fn begin(&mut self) -> Result<Begun<'g>, ModelError> {
         let document = self.model.document();
-        let parameters: Vec<(Expr<'g>, f64)> =
-            self.model.parameters().map(|(name, value)| (self.graph.symbol(name), value)).collect();
+        let parameters = self.parameters();
         let mut given = self.given_start(&parameters)?;
         self.check_rotations(&parameters)?;
         self.normalise_quaternions(&mut given.values)?;
         let t_start = document.simulation.start_time();
         let mut constraints = self.constraints()?;
-        let mut at = parameters.clone();
+        let mut at = parameters;
         at.push((self.graph.symbol("t"), t_start));
         at.extend(self.scope.coordinates().into_iter().zip(given.values.iter().copied()));
         let (frame, completing) = self.frame(&mut constraints, &at)?;
@@ -78,6 +139,14 @@ impl<'g> Assembler<'g, '_> {
             .zip(velocities)
             .filter(|(symbol, value)| symbol != value)
             .collect();
+        let prescribed = if completing.is_empty() { 0 } else { declared };
+        Ok(Begun { t_start, frame, constraints, eta, declared, prescribed, x_dot, start })
+    }
+
+    fn assemble(&mut self) -> Result<Assembly<'g>, ModelError> {
+        let Begun { t_start, frame, constraints, eta, declared, prescribed, x_dot, mut start } =
+            self.begin()?;
+        let document = self.model.document();
         let lagrangian = self.lagrangian(&x_dot)?;
         let bodies = self.bodies(&eta, &x_dot)?;
         let changing_masses = self.changing_masses()?;
@@ -98,9 +167,8 @@ impl<'g> Assembler<'g, '_> {
 
         let states = self.scope.states();
         let state = [frame.coordinates(), &eta, &states].concat();
-        let mut values = parameters.clone();
-        values.push((frame.time(), t_start));
-        values.extend(state.iter().copied().zip(start.iter().copied()));
+        let parameters = self.parameters();
+        let values = self.values_at((&frame, t_start), &state, &start);
         self.check_finite(&values, &x_dot, &state)?;
         self.check_frame_at_start(&frame, &values)?;
         self.check_orientations(&frame, &values)?;
@@ -152,7 +220,6 @@ impl<'g> Assembler<'g, '_> {
             builder.frame(frame).build().map_err(|error| self.model.document().derivation_error(error))?;
         self.check_inputs(&system)?;
         let written_start = self.model.projects_start().then(|| start.clone());
-        let prescribed = if completing.is_empty() { 0 } else { declared };
         let constraints =
             self.treatment(&system, &constraints, &x_dot, &values, (t_start, &mut start), prescribed)?;
         let independent = self.model.independent().iter().map(|name| self.graph.symbol(name)).collect();

@@ -93,14 +93,37 @@ impl<'g> Assembler<'g, '_> {
         if written.is_empty() {
             return Ok(ConstraintTreatment::free());
         }
-        let constraints: Vec<Constraint<'g>> = written.iter().map(|w| self.constraint(w, x_dot)).collect();
+        let constraints = self.in_quasi_velocities(written, x_dot);
+        let (classification, classified) =
+            self.on_constraints((system, &constraints), at, (t_start, start), prescribed)?;
         let trial = Trial { model: self.model, system, constraints: &constraints, t: t_start };
-        let (classification, classified) = self.classify(&trial, start, at)?;
-        self.project_start(&trial, &classification, start, prescribed)?;
         match self.attach_reactions(&trial, &classification)? {
             None => Ok(ConstraintTreatment::nothing(classification.redundant().to_vec())),
             Some(reacting) => self.choose(reacting, &classification, classified, at),
         }
+    }
+
+    /// The constraints, in quasi-velocities.
+    pub(super) fn in_quasi_velocities(
+        &self,
+        written: &[Written<'g>],
+        x_dot: &[(Expr<'g>, Expr<'g>)],
+    ) -> Vec<Constraint<'g>> {
+        written.iter().map(|w| self.constraint(w, x_dot)).collect()
+    }
+
+    /// The kinds of the constraints at the start, which is moved onto them if the model requests it.
+    pub(super) fn on_constraints(
+        &self,
+        (system, constraints): (&System<'g>, &[Constraint<'g>]),
+        at: &[(Expr<'g>, f64)],
+        (t, start): (f64, &mut Vec<f64>),
+        prescribed: usize,
+    ) -> Result<(ConstraintClassification<'g>, Vec<ClassifiedConstraint>), ModelError> {
+        let trial = Trial { model: self.model, system, constraints, t };
+        let (classification, classified) = self.classify(&trial, start, at)?;
+        self.project_start(&trial, &classification, start, prescribed)?;
+        Ok((classification, classified))
     }
 
     /// The kinds of the constraints at the start.

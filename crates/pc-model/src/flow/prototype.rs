@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use pc_mech::VectorField;
 
 use crate::assembly::assembly::Assembly;
+use crate::diagnostics::error::ModelError;
 use crate::flow::flow::Flow;
 use crate::model::model::Model;
 use crate::variables::Variables;
@@ -28,10 +29,10 @@ pub struct Prototype {
 impl Prototype {
     /// As [`of`](Prototype::of); none too where the model has no equations of motion.
     pub fn new(model: &Model, variables: Variables) -> Option<Prototype> {
-        let graph = model.graph();
-        let assembly = model.assemble(&graph).ok()?;
-        let flow = Flow::new(model, &assembly, variables).ok()?;
-        Prototype::of(model, &assembly, variables, flow)
+        let prototype = |assembly: &Assembly<'_>| {
+            Ok(Prototype::of(model, assembly, variables, Flow::new(model, assembly, variables)?))
+        };
+        model.derived(prototype).unwrap_or_else(|_: ModelError| None)
     }
 
     /// The prototype of a flow of the model in these variables. None where the equations may depend on the start or on

@@ -1,10 +1,10 @@
 //! Derivatives by parameters of a start, and of the columns of a table.
 
+use crate::assembly::assembly::Assembly;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::flow::flow::Flow;
 use crate::model::model::Model;
-use crate::variables::Variables;
 
 /// The step of a central difference, as a part of the size of a parameter, that is accurate to ten digits:
 /// truncation and rounding errors are equal.
@@ -14,9 +14,9 @@ fn step(value: f64) -> f64 {
 }
 
 impl Flow {
-    /// ∂y₀/∂pⱼ for number j of the [parameters](Model::parameters), the start of a column of sensitivities,
-    /// by central differences of starts: these may be expressions in parameters, or moved to constraints that
-    /// have parameters.
+    /// ∂y₀/∂pⱼ of this flow of a model for number j of the [parameters](Model::parameters), the start of a column of
+    /// sensitivities, by central differences of starts: these may be expressions in parameters, or moved to constraints that
+    /// have parameters. No equation is derived for it.
     ///
     /// # Errors
     /// [`ModelError`] where the model has no start for nearby values of the parameter, for example because the start
@@ -25,7 +25,12 @@ impl Flow {
     ///
     /// # Panics
     /// If there is no such parameter.
-    pub fn start_by_parameter(model: &Model, variables: Variables, j: usize) -> Result<Vec<f64>, ModelError> {
+    pub fn start_by_parameter(
+        &self,
+        model: &Model,
+        assembly: &Assembly<'_>,
+        j: usize,
+    ) -> Result<Vec<f64>, ModelError> {
         let values = model.parameter_values();
         let refused = |why: &str, help| {
             let name = model.parameters().nth(j).map_or("", |(name, _)| name);
@@ -47,12 +52,25 @@ impl Flow {
                     "set those to numbers, for example with --set, or write their expressions out in the model",
                 ));
             }
-            let graph = moved.graph();
-            moved.differentiate_by_parameters(false);
-            ends.push(Flow::new(&moved, &moved.assemble(&graph)?, variables)?.start);
+            ends.push(self.start_with(&moved, assembly)?);
         }
         let length = (value + step(value)) - (value - step(value));
         Ok(ends[0].iter().zip(&ends[1]).map(|(ahead, behind)| (ahead - behind) / length).collect())
+    }
+
+    /// The start of a model of the same text with other values of its parameters.
+    fn start_with(&self, model: &Model, assembly: &Assembly<'_>) -> Result<Vec<f64>, ModelError> {
+        let start = assembly.start_with(model)?;
+        let mut flow = self.clone();
+        flow.set_parameters(model.parameter_values().values());
+        // A reduced form has fewer coordinates.
+        let coordinates: Vec<String> =
+            assembly.system.frame().coordinates().iter().map(ToString::to_string).collect();
+        let (x, rest) = start.split_at(coordinates.len());
+        let of_form = flow.motion.names()[..flow.motion.coordinates()].iter();
+        let places = of_form.filter_map(|name| coordinates.iter().position(|known| known == name));
+        let all: Vec<f64> = places.map(|place| x[place]).chain(rest.iter().copied()).collect();
+        assembly.placed(flow.state_of(assembly.t_start, &all))
     }
 
     /// The derivatives of the columns [`names`](Flow::names), coordinates, quasi-velocities and first-order states, of

@@ -220,7 +220,8 @@ impl Model {
         self.by_parameters
     }
 
-    pub(crate) fn observes_reactions(&self) -> bool {
+    /// Whether they are.
+    pub fn observes_reactions(&self) -> bool {
         self.observes_reactions
     }
 

@@ -32,7 +32,9 @@ fn on_small_stack(text: String, again: bool) {
         })
         .unwrap();
         if again {
-            verify(&model, &Options { states: 3, ..Options::default() }).unwrap();
+            model
+                .derived(|assembly| verify(&model, assembly, &Options { states: 3, ..Options::default() }))
+                .unwrap();
         }
     };
     thread::Builder::new().stack_size(STACK).spawn(derive).unwrap().join().unwrap();

@@ -1,6 +1,6 @@
 //! The page of a model.
 
-use pc_model::Model;
+use pc_model::{Assembly, Model};
 use pc_print::{Layout, TheoryOptions, displayed_system, displayed_theory, short};
 use pc_verify::{Options, VerifyError, verify};
 
@@ -18,44 +18,46 @@ const WIDTH: usize = 92;
 /// Texts of more lines are folded until opened.
 const LONG_TEXT: usize = 40;
 
-/// All that is known of a model, and of its motion if there is one, as one page for a browser. The same model
-/// gives the same bytes.
+/// All that is known of an assembled model, and of its motion if there is one, as one page for a browser. The same
+/// model gives the same bytes.
 ///
 /// # Errors
 /// [`ReportError`] if the equations cannot be derived, or a second derivation disagrees with the first.
-pub fn report(model: &Model, motion: Option<&Record>) -> Result<String, ReportError> {
-    let graph = model.graph();
-    let assembly = model.assemble(&graph)?;
+pub fn report(
+    model: &Model,
+    assembly: &Assembly<'_>,
+    motion: Option<&Record>,
+) -> Result<String, ReportError> {
     let equations = assembly.equations()?;
-    let second = match verify(model, &Options::default()) {
-        Err(error @ VerifyError::Disagreement(_)) => return Err(ReportError::Verify(Box::new(error))),
-        outcome => outcome,
-    };
-    let check = Check::new(model, &assembly, &equations)?.compared(second);
-    assembly.within_limits()?;
-    let found = displayed_theory(model, &assembly, &TheoryOptions::default())?;
+    let check = Check::new(model, assembly, &equations)?;
+    let found = displayed_theory(model, assembly, &TheoryOptions::default())?;
     let layout = Layout { width: WIDTH, ..Layout::default() };
     let mut parts = vec![
-        Part::new("verdicts", "Verdicts", described(&check.entries())),
         Part::new(
             "system",
             "Frame and Lagrangian",
-            formulas::parts(&displayed_system(&assembly, &layout)?, 3),
+            formulas::parts(&displayed_system(assembly, &layout)?, 3),
         ),
         Part::new(
             "equations",
             "Equations of motion",
-            equations::equations(model.title(), &assembly, &layout)?,
+            equations::equations(model.title(), assembly, &layout)?,
         ),
         Part::new("theory", "Theory of the motions", theory::theory(&found)),
     ];
     if let Some(record) = motion {
-        let scene = Scene::of(model, &assembly, record)?;
+        let scene = Scene::of(model, assembly, record)?;
         let watched = scene.as_ref().map_or_else(String::new, player);
-        let shown = motion::motion(record, &pairs(&assembly, record));
+        let shown = motion::motion(record, &pairs(assembly, record));
         parts.push(Part::new("motion", "Motion", watched + &shown));
     }
     parts.push(Part::new("text", "Text of the model", written(model)));
+    let second = match verify(model, assembly, &Options::default()) {
+        Err(error @ VerifyError::Disagreement(_)) => return Err(ReportError::Verify(Box::new(error))),
+        outcome => outcome,
+    };
+    assembly.within_limits()?;
+    parts.insert(0, Part::new("verdicts", "Verdicts", described(&check.compared(second).entries())));
     Ok(page(model.title(), &(head(model, &parts) + &body(&parts))))
 }
 

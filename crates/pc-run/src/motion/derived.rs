@@ -60,10 +60,7 @@ impl Derived {
     pub fn renewed(&self, model: &Model, form: Variables, t_start: f64) -> Result<Derived, ModelError> {
         match self.prototype.as_ref().and_then(|prototype| prototype.flow(model, t_start)) {
             Some(flow) => Ok(Derived { flow, prototype: self.prototype.clone(), facts: self.facts.clone() }),
-            None => {
-                let graph = model.graph();
-                Derived::of(model, &model.assemble(&graph)?, form)
-            }
+            None => model.derived(|assembly| Derived::of(model, assembly, form)),
         }
     }
 }

@@ -65,8 +65,24 @@ impl Run {
         stream: Option<&mut Stream<'_>>,
         observer: &dyn Observer,
     ) -> Result<Run, RunError> {
+        let graph = model.graph();
+        Run::of_assembly(model, &model.assemble(&graph)?, wishes, besides, stream, observer)
+    }
+
+    /// The same of a model that has been assembled.
+    ///
+    /// # Errors
+    /// As for [`of`](Run::of).
+    pub fn of_assembly(
+        model: &Model,
+        assembly: &Assembly<'_>,
+        wishes: &Wishes,
+        besides: &Besides,
+        stream: Option<&mut Stream<'_>>,
+        observer: &dyn Observer,
+    ) -> Result<Run, RunError> {
         let plan = || Plan::of(model, wishes);
-        integrated(model, Plan::form(model, wishes), plan, besides, stream, observer)
+        integrated((model, assembly), Plan::form(model, wishes), plan, besides, stream, observer)
     }
 
     /// The same by a plan.
@@ -79,7 +95,8 @@ impl Run {
         besides: &Besides,
         observer: &dyn Observer,
     ) -> Result<Run, RunError> {
-        integrated(model, plan.form, || Ok(plan), besides, None, observer)
+        let graph = model.graph();
+        integrated((model, &model.assemble(&graph)?), plan.form, || Ok(plan), besides, None, observer)
     }
 
     /// The same of equations that have been derived, with the values that the model has. They are
@@ -103,22 +120,20 @@ impl Run {
 
 /// The plan comes once the model is known to be sound.
 fn integrated(
-    model: &Model,
+    (model, assembly): (&Model, &Assembly<'_>),
     form: Variables,
     plan: impl FnOnce() -> Result<Plan, RunError>,
     besides: &Besides,
     stream: Option<&mut Stream<'_>>,
     observer: &dyn Observer,
 ) -> Result<Run, RunError> {
-    let graph = model.graph();
-    let assembly = model.assemble(&graph)?;
     if besides.remarks {
-        remarks::say(&assembly, observer)?;
+        remarks::say(assembly, observer)?;
     }
-    let flow = Flow::new(model, &assembly, form)?;
+    let flow = Flow::new(model, assembly, form)?;
     let plan = plan()?;
-    let facts = Facts::of(&assembly);
-    Integration { model, assembly: Some(&assembly), facts, flow, plan, besides, observer }.run(stream)
+    let facts = Facts::of(assembly);
+    Integration { model, assembly: Some(assembly), facts, flow, plan, besides, observer }.run(stream)
 }
 
 /// A motion that is about to be integrated.
@@ -149,7 +164,11 @@ impl Integration<'_, '_> {
         let mut checkpoints = Checkpoints::new(&self.besides.checkpoints, self.model, &self.plan)?;
         let mut derivatives = match self.plan.sensitivities.as_slice() {
             [] => None,
-            by => Some(Derivatives::new(self.model, self.plan.form, by)?),
+            by => {
+                let derivatives =
+                    |assembly: &Assembly<'_>| Derivatives::new(self.model, assembly, &self.flow, by);
+                Some(self.assembled(derivatives)??)
+            }
         };
         let verified = self.assembly.filter(|_| self.besides.verify);
         let mut verification = match verified {

@@ -3,7 +3,7 @@
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 
-use pc_model::{Flow, Model, Variables};
+use pc_model::{Assembly, Flow, Model};
 use pc_solve::{
     Checkpoint, Options, Sensitivities, SensitivitySolution, Solution, SolveError, SolveFailure,
     solve_checkpointed_with_sensitivities, solve_with_sensitivities_and_events,
@@ -28,10 +28,15 @@ impl Derivatives {
     ///
     /// # Errors
     /// [`RunError::Model`] where the start has no derivative.
-    pub(crate) fn new(model: &Model, form: Variables, parameters: &[usize]) -> Result<Derivatives, RunError> {
+    pub(crate) fn new(
+        model: &Model,
+        assembly: &Assembly<'_>,
+        flow: &Flow,
+        parameters: &[usize],
+    ) -> Result<Derivatives, RunError> {
         let mut wanted = Sensitivities::new();
         for &j in parameters {
-            wanted = wanted.by_parameter_from(j, Flow::start_by_parameter(model, form, j)?);
+            wanted = wanted.by_parameter_from(j, flow.start_by_parameter(model, assembly, j)?);
         }
         let names: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
         let names = parameters.iter().map(|&j| names[j].clone()).collect();

@@ -18,14 +18,13 @@ pub fn checked<'g>(
     assembly: &Assembly<'g>,
     equations: &Equations<'g>,
 ) -> Result<Check<'g>, RunError> {
-    let second = match verify(model, &Options::default()) {
+    let check = Check::new(model, assembly, equations)?;
+    let second = match verify(model, assembly, &Options::default()) {
         Err(error @ VerifyError::Disagreement(_)) => return Err(RunError::Verify(Box::new(error))),
         outcome => outcome,
     };
     assembly.within_limits()?;
-    let check = Check::new(model, assembly, equations)?.compared(second);
-    assembly.within_limits()?;
-    Ok(check)
+    Ok(check.compared(second))
 }
 
 /// Compares equations that are about to leave in some form with a second derivation, and says where it could not be done.

@@ -50,10 +50,7 @@ impl Checks {
 }
 
 fn findings(model: &Model) -> Result<[Finding; Check::FINDINGS.len()], RunError> {
-    let graph = model.graph();
-    let assembly = model.assemble(&graph)?;
-    let equations = assembly.equations()?;
-    Ok(checked(model, &assembly, &equations)?.findings())
+    model.derived(|assembly| Ok(checked(model, assembly, &assembly.equations()?)?.findings()))
 }
 
 impl Work for Checks {

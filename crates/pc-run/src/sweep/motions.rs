@@ -268,12 +268,7 @@ impl Begin {
 
 /// What is known by the model itself; where it has no motion by the first member that has one. It is the same for each shard.
 fn begun(model: &Model, design: &Design, plan: &Plan) -> Begin {
-    let own = || {
-        let graph = model.graph();
-        let assembly = model.assemble(&graph).ok()?;
-        Derived::of(model, &assembly, plan.form).ok()
-    };
-    if let Some(derived) = own() {
+    if let Ok(derived) = model.derived(|assembly| Derived::of(model, assembly, plan.form)) {
         return Begin::of(&derived, plan);
     }
     let in_time = |_: &u64| model.budget().deadline().passed().is_none();

@@ -43,7 +43,7 @@ impl Default for Options {
     }
 }
 
-/// Derives a model a second time and compares, at random states on the constraints: ẋ, η̇ or ẏ, λ, the energy
+/// Derives an assembled model a second time and compares, at random states on the constraints: ẋ, η̇ or ẏ, λ, the energy
 /// and its rate, integrals and outputs, of the equations that are integrated, in quasi-velocities and in
 /// momenta, and of those that are emitted as source.
 ///
@@ -51,18 +51,25 @@ impl Default for Options {
 /// [`VerifyError::Disagreement`] with the quantity, its two values and the state; [`VerifyError::Model`] if the first
 /// derivation refuses the model; [`VerifyError::Unable`] if the second cannot be made;
 /// [`VerifyError::NothingCompared`] if no state is regular.
-pub fn verify(model: &Model, options: &Options) -> Result<Agreement, VerifyError> {
-    let mut observed = model.clone();
-    observed.observe_reactions(true);
-    let graph = model.graph();
-    let assembly = observed.assemble(&graph)?;
-    assembly.stage("the second derivation", || compared(&observed, &assembly, model, options))
+pub fn verify(model: &Model, assembly: &Assembly<'_>, options: &Options) -> Result<Agreement, VerifyError> {
+    assembly.stage("the second derivation", || {
+        if model.document().constraints.is_empty() {
+            return compared((model, assembly), assembly, options);
+        }
+        // Reactions are compared as outputs of what is integrated, and are not among the outputs of what is printed.
+        let mut other = model.clone();
+        other.observe_reactions(!model.observes_reactions());
+        other.derived(|beside| match model.observes_reactions() {
+            true => compared((model, assembly), beside, options),
+            false => compared((&other, beside), assembly, options),
+        })
+    })
 }
 
+/// Compares equations that are integrated, in which reactions are observed, and those that are printed, in which they are not.
 fn compared(
-    observed: &Model,
-    assembly: &Assembly<'_>,
-    model: &Model,
+    (observed, assembly): (&Model, &Assembly<'_>),
+    plain: &Assembly<'_>,
     options: &Options,
 ) -> Result<Agreement, VerifyError> {
     let second = Second::new(observed, assembly)?;
@@ -70,9 +77,7 @@ fn compared(
     let flow = Flow::new(observed, assembly, Variables::QuasiVelocities)?;
     let mut large = Projection::new(flow.clone(), &second);
     let (wholly, states) = (second.wholly(options.states), second.affordable(options.states));
-    let plain_graph = model.graph();
-    let plain = model.assemble(&plain_graph)?;
-    let page = assembly.system.graph().page(Folding::Structural);
+    let page = plain.system.graph().page(Folding::Structural);
     let mut firsts = match wholly {
         0 => {
             agreement.leave_out("other forms, multipliers, integrals and outputs", "the model is large");
@@ -82,7 +87,7 @@ fn compared(
         _ => {
             let first = First::flow("poincare", flow, &second, assembly, &mut agreement);
             let mut firsts = vec![first];
-            firsts.extend(others(observed, assembly, (&plain, &page), &second, &mut agreement));
+            firsts.extend(others(observed, assembly, (plain, &page), &second, &mut agreement));
             firsts
         }
     };
@@ -108,7 +113,7 @@ fn compared(
 fn others<'g>(
     observed: &Model,
     assembly: &Assembly<'_>,
-    (plain, page): (&Assembly<'g>, &'g Graph),
+    (plain, page): (&Assembly<'_>, &'g Graph),
     second: &Second,
     agreement: &mut Agreement,
 ) -> Vec<First<'g>> {
@@ -130,7 +135,7 @@ fn others<'g>(
             Err(error) => agreement.leave_out(variables.name(), &error.diagnostic().message),
         }
     }
-    match First::emitted(plain, second, agreement) {
+    match First::emitted(plain, second, page, agreement) {
         Ok(first) => firsts.push(first),
         Err(reason) => agreement.leave_out("emit", &reason),
     }

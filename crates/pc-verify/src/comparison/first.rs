@@ -50,7 +50,7 @@ enum Values<'g> {
 
 /// dH/dt as a function of time, coordinates, quasi-velocities and parameters.
 struct EnergyRate<'g> {
-    graph: &'g Graph,
+    page: &'g Graph,
     rate: Expr<'g>,
     inputs: Vec<Expr<'g>>,
     parameters: Vec<(Expr<'g>, f64)>,
@@ -61,7 +61,7 @@ impl EnergyRate<'_> {
         let values = std::iter::once(t).chain(state.iter().copied());
         let mut place: Vec<_> = self.inputs.iter().copied().zip(values).collect();
         place.extend(&self.parameters);
-        self.graph.evaluate(&[self.rate], &place).map_or(f64::NAN, |values| values[0])
+        self.page.evaluate(&[self.rate], &place).map_or(f64::NAN, |values| values[0])
     }
 }
 
@@ -133,8 +133,9 @@ impl<'g> First<'g> {
 
     /// The emitted source.
     pub(crate) fn emitted(
-        assembly: &Assembly<'g>,
+        assembly: &Assembly<'_>,
         second: &Second,
+        page: &'g Graph,
         agreement: &mut Agreement,
     ) -> Result<First<'g>, String> {
         let equations = assembly.equations().map_err(|error| error.diagnostic().message.clone())?;
@@ -162,13 +163,16 @@ impl<'g> First<'g> {
             return Err("its quasi-velocities are not those of the free system".to_owned());
         }
         let frame = system.frame();
+        let on_page = |list: &[Expr<'_>]| system.graph().transcribe(list, page);
+        // Forces computed outside are 0 in either derivation.
         let external = assembly.system.external_forces().iter().map(|&(_, force)| (force, 0.0));
+        let (parameters, values): (Vec<_>, Vec<_>) =
+            system.parameters().iter().copied().chain(external).unzip();
         let energy_rate = EnergyRate {
-            graph: system.graph(),
-            rate: system.energy_rate(),
-            inputs: std::iter::once(frame.time()).chain(system.state()).collect(),
-            // Forces computed outside are 0 in either derivation.
-            parameters: system.parameters().iter().copied().chain(external).collect(),
+            page,
+            rate: on_page(&[system.energy_rate()])[0],
+            inputs: on_page(&[&[frame.time()], system.state().as_slice()].concat()),
+            parameters: on_page(&parameters).into_iter().zip(values).collect(),
         };
         let tables = second.derivation.text.tables.clone();
         let source = Values::Emitted { motion: Box::new(motion), free: free.clone(), energy_rate, tables };
@@ -178,7 +182,7 @@ impl<'g> First<'g> {
     /// The printed equations of a form.
     pub(crate) fn printed(
         form: pc_print::Form,
-        assembly: &Assembly<'g>,
+        assembly: &Assembly<'_>,
         second: &Second,
         page: &'g Graph,
         agreement: &mut Agreement,

@@ -44,32 +44,26 @@ impl Second {
         outlet: Outlet,
     ) -> Result<Agreement, VerifyError> {
         let mut agreement = self.nothing_yet();
-        let graph = model.graph();
         let is_large = self.cost() > LONG;
-        // A page of expressions belongs to a graph of its own.
-        let printed = match outlet {
-            Outlet::Page(form) if !is_large => Some((form, model.assemble(&graph)?)),
-            _ => None,
-        };
-        let page = graph.page(Folding::Structural);
+        let page = assembly.system.graph().page(Folding::Structural);
         let flow = |variables| Flow::new(model, assembly, variables);
         let first = match outlet {
             _ if is_large => None,
             Outlet::Source(Variables::QuasiVelocities) => {
-                let first = First::emitted(assembly, self, &mut agreement);
+                let first = First::emitted(assembly, self, &page, &mut agreement);
                 first.map_err(|reason| agreement.leave_out("emit", &reason)).ok()
             }
             // Source in other variables is written of the expressions that are integrated.
             Outlet::Equations(variables) | Outlet::Source(variables) => {
                 Some(First::flow(variables.name(), flow(variables)?, self, assembly, &mut agreement))
             }
-            Outlet::Page(_) => printed.as_ref().and_then(|(form, printed)| {
-                if let Some(reason) = self.too_large_for(*form, printed) {
-                    agreement.leave_out(&printed_name(*form), reason);
-                    return None;
+            Outlet::Page(form) => match self.too_large_for(form, assembly) {
+                Some(reason) => {
+                    agreement.leave_out(&printed_name(form), reason);
+                    None
                 }
-                First::printed(*form, printed, self, &page, &mut agreement)
-            }),
+                None => First::printed(form, assembly, self, &page, &mut agreement),
+            },
         };
         // What has no numbers of its own is made of the equations in quasi-velocities.
         let compared = match first {

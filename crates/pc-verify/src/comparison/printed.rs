@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 use pc_expr::ExprError;
-use pc_mech::{Canonical, Expr, Graph};
+use pc_mech::{Expr, Graph};
 use pc_model::{Assembly, FreeForm, Variables};
 use pc_print::{Balance, Derived, Form, Sheet};
 
@@ -109,7 +109,7 @@ pub(crate) enum Input {
 
 impl<'g> Printed<'g> {
     /// The printed equations of a form; `None` if there is no such form.
-    pub(crate) fn new(form: Form, assembly: &Assembly<'g>, page: &'g Graph) -> Option<Printed<'g>> {
+    pub(crate) fn new(form: Form, assembly: &Assembly<'_>, page: &'g Graph) -> Option<Printed<'g>> {
         if assembly.system.large_tree().is_some() {
             return None; // bodies are printed instead of equations
         }
@@ -121,7 +121,7 @@ impl<'g> Printed<'g> {
             Form::Reduced | Form::LiePoisson if !is_reduced(assembly) => return None,
             _ if form.variables().is_some_and(Variables::has_momenta) => {
                 let free = assembly.free_form(form.variables()?).ok()?;
-                let equations: Canonical<'g> = free.system.canonical().ok()?;
+                let equations = free.system.canonical().ok()?;
                 Sheet::of_momenta(assembly, &derived, &equations, page)
             }
             _ => Sheet::of_velocities(assembly, &derived, page),
@@ -316,7 +316,7 @@ impl<'g> Printed<'g> {
 }
 
 impl<'g> Change<'g> {
-    fn of(form: &FreeForm<'g>, page: &'g Graph) -> Change<'g> {
+    fn of(form: &FreeForm<'_>, page: &'g Graph) -> Change<'g> {
         let (system, graph) = (&form.system, form.system.graph());
         let (eta, frame, accelerations) = (system.quasi_velocities(), system.frame(), system.accelerations());
         let along: Vec<_> = (frame.coordinates().iter().copied().zip(frame.velocities(eta)))

@@ -172,9 +172,10 @@ mod tests {
     use pc_model::{Document, Flow, Model, Source, Variables};
 
     use super::*;
-    use crate::comparison::compare::{Options, verify};
+    use crate::comparison::compare::Options;
     use crate::comparison::second::Second;
     use crate::error::VerifyError;
+    use crate::tests::verified;
 
     fn model(text: &str) -> Model {
         Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
@@ -278,7 +279,7 @@ potential = "1.14*x"
 out = "λ_k0^2"
 "#;
         for text in [frames, brackets] {
-            assert_eq!(verify(&model(text), &Options::default()).unwrap().states, 100);
+            assert_eq!(verified(&model(text), &Options::default()).unwrap().states, 100);
         }
     }
 
@@ -306,7 +307,7 @@ t_end = -0.5
 
     #[test]
     fn reactions_are_as_uncertain_as_the_contributions_of_the_frame() {
-        let agreement = verify(&model(LEVER), &Options::default()).unwrap();
+        let agreement = verified(&model(LEVER), &Options::default()).unwrap();
         assert_eq!(agreement.states, 100);
     }
 

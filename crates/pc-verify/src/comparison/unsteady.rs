@@ -73,8 +73,9 @@ mod tests {
     use pc_model::{Document, Flow, Model, Source, Variables};
 
     use super::*;
-    use crate::comparison::compare::{Options, verify};
+    use crate::comparison::compare::Options;
     use crate::comparison::second::Second;
+    use crate::tests::verified;
 
     fn model(text: &str) -> Model {
         Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
@@ -108,7 +109,7 @@ mod tests {
     /// it, others do.
     #[test]
     fn absorbed_terms_are_ignored() {
-        let agreement = verify(
+        let agreement = verified(
             &model(
                 r#"
 [coordinates]

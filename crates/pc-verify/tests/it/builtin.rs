@@ -8,7 +8,9 @@ fn built_in_models_agree_by_both_routes() {
     let mut failures = Vec::new();
     for builtin in BUILTIN {
         let model = Model::new(builtin.document().unwrap());
-        match verify(&model, &Options { states: 20, ..Options::default() }) {
+        match model
+            .derived(|assembly| verify(&model, assembly, &Options { states: 20, ..Options::default() }))
+        {
             Ok(agreement) => {
                 println!("{}: {agreement}, {:?}", builtin.name, agreement);
                 if agreement.states < 20 || agreement.error > TOLERANCE || !agreement.not_compared.is_empty()

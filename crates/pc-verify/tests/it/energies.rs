@@ -10,7 +10,8 @@ fn energy(text: &str) -> f64 {
         (Graph::new(), Model::new(Document::parse(Source::new("model.toml", text)).unwrap()));
     let assembly = model.assemble(&graph).unwrap_or_else(|error| panic!("{text}: {error}"));
     let second = Second::new(&model, &assembly).unwrap();
-    let agreement = verify(&model, &Options { states: 20, ..Options::default() });
+    let agreement =
+        model.derived(|assembly| verify(&model, assembly, &Options { states: 20, ..Options::default() }));
     assert_eq!(agreement.unwrap_or_else(|error| panic!("{text}: {error}")).states, 20);
     let in_form = |variables: Variables| {
         let mut flow = Flow::new(&model, &assembly, variables).unwrap();

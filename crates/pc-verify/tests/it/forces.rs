@@ -32,7 +32,7 @@ w = "x*u"
 #[test]
 fn forces_of_every_kind_agree_by_both_routes() {
     let model = Model::new(Document::parse(Source::new("forces.toml", MODEL)).unwrap());
-    let agreement = verify(&model, &Options::default()).unwrap();
+    let agreement = model.derived(|assembly| verify(&model, assembly, &Options::default())).unwrap();
     let printed =
         ["poincare as printed", "canonical as printed", "lagrange as printed", "orthonormal as printed"];
     let forms = [&["poincare", "canonical", "orthonormal", "emit"][..], &printed].concat();
@@ -70,7 +70,8 @@ fn the_text_decides_whether_a_force_counts_in_the_energy() {
         let start = flow.start.clone();
         let energy = flow.motion.observe(0.0, &start)[place];
         assert!((energy - (0.25 - expected)).abs() < 1e-15, "{force}: {energy}");
-        let agreement = verify(&model, &Options { states: 20, ..Options::default() });
+        let agreement =
+            model.derived(|assembly| verify(&model, assembly, &Options { states: 20, ..Options::default() }));
         assert_eq!(agreement.map_or_else(|error| panic!("{force}: {error}"), |found| found.states), 20);
     }
 }

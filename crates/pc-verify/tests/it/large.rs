@@ -26,7 +26,9 @@ fn chain(links: usize, more: &str) -> Model {
 #[test]
 fn equations_of_large_models_are_compared_along_random_virtual_velocities() {
     for more in ["", "[forces]\nq3 = \"-0.2*q3'\"\n", "[constraints]\ncoupled = \"q1' - q4' + 0.06\"\n"] {
-        let agreement = verify(&chain(24, more), &Options { states: 30, ..Options::default() }).unwrap();
+        let model = chain(24, more);
+        let options = Options { states: 30, ..Options::default() };
+        let agreement = model.derived(|assembly| verify(&model, assembly, &options)).unwrap();
         assert_eq!((agreement.states, agreement.skipped), (30, 0), "{agreement:?}");
         assert!((1..30).contains(&agreement.projected), "{agreement:?}");
         assert!(agreement.to_string().contains("of them along 3 random virtual velocities"), "{agreement}");

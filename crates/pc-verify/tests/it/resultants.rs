@@ -5,7 +5,7 @@ use pc_verify::{Agreement, Options, verify};
 
 fn agreement(text: &str) -> Agreement {
     let model = Model::new(Document::parse(Source::new("bodies.toml", text)).unwrap());
-    verify(&model, &Options { states: 30, ..Options::default() }).unwrap()
+    model.derived(|assembly| verify(&model, assembly, &Options { states: 30, ..Options::default() })).unwrap()
 }
 
 /// A door on a hinge with forces and torques, a weight on a thread from its edge, and kinetic energy that

@@ -18,7 +18,8 @@ fn rates(text: &str) -> Vec<f64> {
     flow.motion.rhs(0.0, &start, &mut rates).unwrap();
     let second = Second::new(&model, &assembly).unwrap();
     second.agrees("poincare", &flow, &assembly, 0.0, &start).unwrap_or_else(|error| panic!("{error}"));
-    let agreement = verify(&model, &Options { states: 20, ..Options::default() });
+    let agreement =
+        model.derived(|assembly| verify(&model, assembly, &Options { states: 20, ..Options::default() }));
     assert_eq!(agreement.unwrap_or_else(|error| panic!("{error}")).states, 20);
     rates
 }

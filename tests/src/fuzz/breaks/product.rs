@@ -74,7 +74,8 @@ impl<'a> Product<'a> {
         let asked = &self.specimen.asked;
         let mut wanted = Sensitivities::new();
         for &j in asked {
-            let start = Flow::start_by_parameter(&model, variables, j).map_err(|error| error.to_string())?;
+            let start = model.derived(|assembly| flow.start_by_parameter(&model, assembly, j));
+            let start = start.map_err(|error| error.to_string())?;
             wanted = wanted.by_parameter_from(j, start);
         }
         let (motion, start) = (&mut flow.motion, flow.start.clone());
