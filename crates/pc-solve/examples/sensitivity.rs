@@ -7,8 +7,7 @@
 use std::error::Error;
 
 use pc_solve::{
-    AdjointOptions, Failure, Functional, Options, Sensitivities, VectorField, adjoint_gradient,
-    solve_with_sensitivities,
+    AdjointOptions, Failure, Functional, Options, Sensitivities, Solve, VectorField, adjoint_gradient,
 };
 
 /// φ̈ = −(g/l) sin φ − c φ̇, of parameters l and c.
@@ -73,9 +72,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let times: Vec<f64> = (0..=100).map(|i| end * f64::from(i) / 100.0).collect();
 
     let wanted = Sensitivities::new().by_parameters(0..2).by_start(0);
-    let motion = solve_with_sensitivities(pendulum, 0.0, &start, &times, &Options::default(), &wanted)?;
+    let motion =
+        Solve::new(pendulum, 0.0, &start).method(&Options::default()).sensitivities(&wanted).run(&times)?;
     println!("t,phi,by_length,by_drag,by_start");
-    for (t, y, by) in motion.iter() {
+    for (t, y, by) in motion.trajectory.iter() {
         println!("{t},{},{},{},{}", y[0], by[0], by[2], by[4]);
     }
 

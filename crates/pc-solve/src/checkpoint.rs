@@ -2,11 +2,12 @@
 //!
 //! `checkpoint` holds the data, `encoding` their bytes; `resume` makes a checkpoint and continues
 //! from it, `resume_cvode` by CVODES, `resume_chosen` by the method of options; `legs` goes from
-//! checkpoint to checkpoint.
+//! checkpoint to checkpoint, for a motion that is `resumable`.
 
 pub(crate) mod checkpoint;
 pub(crate) mod encoding;
 pub(crate) mod legs;
+pub(crate) mod resumable;
 pub(crate) mod resume;
 #[cfg(feature = "cvode")]
 pub(crate) mod resume_chosen;

@@ -88,17 +88,17 @@
 //!
 //! # Checkpoints
 //!
-//! [`solve_checkpointed`] gives a [`Checkpoint`] every so many steps. A motion resumed from one
+//! A [`Resumable`] motion gives a [`Checkpoint`] every so many steps. A motion resumed from one
 //! equals the uninterrupted motion to the last bit; a checkpoint [converts to
 //! bytes](Checkpoint::to_bytes) that another process can read. A [`Deadline`] in the options ends a
 //! motion that takes too long.
 //!
 //! # Derivatives
 //!
-//! S = ∂y/∂(p, y₀) is integrated with the motion by [`solve_with_sensitivities`], and jumps where
-//! an event resets the state by [`solve_with_sensitivities_and_events`]. For many parameters and a
+//! S = ∂y/∂(p, y₀) is integrated with the motion by [`Solve::sensitivities`], and jumps where an event
+//! resets the state. For many parameters and a
 //! single quantity g of the motion, [`adjoint_gradient`] integrates backwards instead; g is a
-//! [`Functional`]. [`solve_with_integrals`] integrates quantities along the motion, and
+//! [`Functional`]. [`Solve::integrals`] integrates quantities along the motion, and
 //! [`lyapunov_exponents`] measures the growth of its tangent vectors.
 //!
 //! # Many motions
@@ -169,7 +169,7 @@ mod taylor;
 pub use auto::switch::Auto;
 pub use checkpoint::checkpoint::Checkpoint;
 pub use checkpoint::encoding::CheckpointError;
-pub use checkpoint::legs::solve_checkpointed;
+pub use checkpoint::resumable::Resumable;
 pub use chosen::Chosen;
 #[cfg(feature = "cvode")]
 pub use cvode::cvode::Cvode;
@@ -220,17 +220,16 @@ pub use sensitivity::adjoint_options::AdjointOptions;
 #[cfg(feature = "cvode")]
 pub use sensitivity::functional::{Functional, Gradient};
 #[cfg(feature = "cvode")]
-pub use sensitivity::trajectory::{
-    SensitivitySolution, SensitivityTrajectory, solve_checkpointed_with_sensitivities,
-    solve_dense_with_sensitivities, solve_with_sensitivities, solve_with_sensitivities_and_events,
-};
+pub use sensitivity::solve::{ResumableSensitivities, SolveSensitivities};
+#[cfg(feature = "cvode")]
+pub use sensitivity::trajectory::{SensitivitySolution, SensitivityTrajectory};
 pub use settings::inequality::Inequality;
 pub use settings::nonlinear_solver::NonlinearSolver;
 pub use settings::options::Options;
 pub use settings::tolerance::Tolerance;
 pub use solve::failure::SolveFailure;
 #[cfg(feature = "cvode")]
-pub use solve::integrals::solve_with_integrals;
+pub use solve::integrals::SolveIntegrals;
 pub use solve::solution::Solution;
 pub use solve::solve::{Solve, solve};
 pub use taylor::stepper::Taylor;

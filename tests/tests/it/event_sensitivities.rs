@@ -4,9 +4,7 @@ use std::ops::ControlFlow;
 
 use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, Source, Variables};
-use pc_solve::{
-    Method, Options, Sensitivities, SensitivitySolution, Solve, solve_with_sensitivities_and_events,
-};
+use pc_solve::{Method, Options, Sensitivities, SensitivitySolution, Solve};
 use pc_tests::fuzz::random::Random;
 
 const T_END: f64 = 4.0;
@@ -125,15 +123,11 @@ fn derivatives_over_events_are_those_of_whole_motions() {
             let wanted = wanted.fold(Sensitivities::new(), |s, (j, start)| s.by_parameter_from(j, start));
             model.differentiate_by_parameters(false);
             let (motion, start) = (&mut differentiated.motion, differentiated.start.clone());
-            let run = solve_with_sensitivities_and_events(
-                motion,
-                (0.0, &start),
-                &[T_END],
-                &options(),
-                &wanted,
-                &mut differentiated.events,
-                |_, _| ControlFlow::Continue(()),
-            );
+            let run = Solve::new(motion, 0.0, &start)
+                .method(&options())
+                .events(&mut differentiated.events)
+                .sensitivities(&wanted)
+                .run(&[T_END]);
             // One that grazes, or whose events accumulate, has no derivatives.
             let Ok(SensitivitySolution { trajectory, occurrences, .. }) = run else { continue };
             let events: Vec<usize> = occurrences.iter().map(|occurrence| occurrence.event).collect();

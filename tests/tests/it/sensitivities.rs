@@ -3,8 +3,8 @@
 use pc_mech::{CompileOptions, Graph, Motion};
 use pc_model::{Builtin, ConstraintFormulation, Document, Model};
 use pc_solve::{
-    AdjointOptions, Failure, Functional, Method, Options, Sensitivities, VectorField, adjoint_gradient,
-    solve, solve_with_sensitivities,
+    AdjointOptions, Failure, Functional, Method, Options, Sensitivities, Solve, VectorField,
+    adjoint_gradient, solve,
 };
 use pc_tests::verified::derived_twice;
 
@@ -87,13 +87,16 @@ fn derivatives_of_built_in_models() {
                     Sensitivities::new().by_parameters(0..motion.parameters_len()).by_starts(0..start.len());
                 // What quotients leave of accuracy, 1e-10, is no use of steps for 1e-12.
                 let options = options(method).relative_tolerance(1e-11).absolute_tolerance(1e-13);
-                let found =
-                    solve_with_sensitivities(&mut motion, 0.0, &start, &[t], &options, &wanted).unwrap();
-                let error = error(found.matrix(0), &expected);
+                let found = Solve::new(&mut motion, 0.0, &start)
+                    .method(&options)
+                    .sensitivities(&wanted)
+                    .run(&[t])
+                    .unwrap();
+                let error = error(found.trajectory.matrix(0), &expected);
                 assert!(error < 3e-8, "{name} {compiled:?} {method}: {error:e}");
                 // Among each other they are better than the differences: 1e-11 of some hundred steps.
-                let first = first.get_or_insert_with(|| found.matrix(0).to_vec());
-                let apart = self::error(found.matrix(0), std::slice::from_ref(first));
+                let first = first.get_or_insert_with(|| found.trajectory.matrix(0).to_vec());
+                let apart = self::error(found.trajectory.matrix(0), std::slice::from_ref(first));
                 assert!(apart < 1e-9, "{name} {compiled:?} {method}: {apart:e}");
             }
         }
@@ -153,9 +156,12 @@ fn derivatives_on_a_surface() {
         let start = on_surface(&mut motion, j, p);
         for method in [Method::Adams, Method::Bdf] {
             let wanted = Sensitivities::new().by_parameter_from(j, by_parameter.clone());
-            let found =
-                solve_with_sensitivities(&mut motion, 0.0, &start, &[t], &options(method), &wanted).unwrap();
-            let error = error(found.matrix(0), std::slice::from_ref(&expected));
+            let found = Solve::new(&mut motion, 0.0, &start)
+                .method(&options(method))
+                .sensitivities(&wanted)
+                .run(&[t])
+                .unwrap();
+            let error = error(found.trajectory.matrix(0), std::slice::from_ref(&expected));
             assert!(error < 1e-8, "parameter {j}, {method}: {error:e}");
         }
     }

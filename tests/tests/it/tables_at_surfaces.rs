@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, Source, Variables};
-use pc_solve::{Method, Options, Sensitivities, Solve, solve_with_sensitivities_and_events};
+use pc_solve::{Method, Options, Sensitivities, Solve};
 
 const METHODS: [Method; 4] = [Method::Auto, Method::Dop853, Method::Adams, Method::Bdf];
 
@@ -50,15 +50,11 @@ fn the_time_of_a_table_does_not_move_with_parameters() {
         let start = flow.start.clone();
         let column = model.derived(|assembly| flow.start_by_parameter(&model, assembly, 0));
         let column = column.expect("a column");
-        let solved = solve_with_sensitivities_and_events(
-            &mut flow.motion,
-            (0.0, &start),
-            &[3.0],
-            &Options::new(method),
-            &Sensitivities::new().by_parameter_from(0, column),
-            &mut flow.events,
-            |_, _| ControlFlow::Continue(()),
-        );
+        let solved = Solve::new(&mut flow.motion, 0.0, &start)
+            .method(&Options::new(method))
+            .events(&mut flow.events)
+            .sensitivities(&Sensitivities::new().by_parameter_from(0, column))
+            .run(&[3.0]);
         let solved = solved.unwrap_or_else(|failure| panic!("{method}: {}", failure.error));
         let slope = solved.trajectory.column(0, 0)[0];
         assert!((slope - 0.125).abs() < 1e-7, "{method}: {slope}");

@@ -8,9 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use pc_model::{Flow, Model};
-use pc_solve::{
-    Checkpoint, CheckpointError, Ending, Options, Solution, SolveError, SolveFailure, solve_checkpointed,
-};
+use pc_solve::{Checkpoint, CheckpointError, Ending, Options, Resumable, Solution, SolveError, SolveFailure};
 
 use crate::error::RunError;
 use crate::files::error::FileError;
@@ -21,10 +19,6 @@ use crate::motion::identity::Identity;
 use crate::motion::sensitivities::Derivatives;
 use crate::observer::Observer;
 use crate::plan::Plan;
-
-/// Internal steps from one checkpoint to the next by default: many more than the few dozen short
-/// steps after a restart.
-const EVERY: NonZeroU64 = NonZeroU64::new(1000).expect("not 0");
 
 /// The least time between two writes of the file, in multiples of the time of the last write. It
 /// does not affect the numbers.
@@ -80,7 +74,7 @@ impl Checkpoints {
         let mut identity = identity::of_motion(model, plan);
         identity.insert(1, ("--samples".to_owned(), plan.samples.to_string()));
         let mut checkpoints =
-            Checkpoints { place, every: files.every.unwrap_or(EVERY), identity, from: None };
+            Checkpoints { place, every: files.every.unwrap_or(Checkpoint::EVERY), identity, from: None };
         if let Some(path) = &files.resume {
             checkpoints.take_up(path, files.every)?;
         }
@@ -96,7 +90,7 @@ impl Checkpoints {
         let (checkpoint, label) = Checkpoint::from_bytes(&bytes).map_err(unusable)?;
         let then: Identity = serde_json::from_str(&label).map_err(|_| unusable(CheckpointError::Foreign))?;
         let known = then.iter().find(|(name, _)| name == INTERVAL).and_then(|(_, every)| every.parse().ok());
-        self.every = every.or(known).unwrap_or(EVERY);
+        self.every = every.or(known).unwrap_or(Checkpoint::EVERY);
         let mut now = self.identity.clone();
         now.push((INTERVAL.to_owned(), self.every.to_string()));
         if let Some(what) = identity::difference(&then, &now) {
@@ -148,7 +142,8 @@ impl Checkpoints {
             }
             None => {
                 let parts = || (flow.motion.clone(), flow.events.clone());
-                let solved = solve_checkpointed(options, parts, from, &times, self.every, save, step);
+                let solved =
+                    Resumable::new(parts, from).method(options).every(self.every).run(&times, save, step);
                 SolveFailure::split(solved)
             }
         };

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 
 use pc_model::{Assembly, Flow, Model};
 use pc_solve::{
-    Checkpoint, Options, Sensitivities, SensitivitySolution, Solution, SolveError, SolveFailure,
-    solve_checkpointed_with_sensitivities, solve_with_sensitivities_and_events,
+    Checkpoint, Options, Resumable, Sensitivities, SensitivitySolution, Solution, Solve, SolveError,
+    SolveFailure,
 };
 
 use pc_expr::VectorField;
@@ -54,15 +54,11 @@ impl Derivatives {
         output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
     ) -> (Solution, Option<SolveError>) {
         let (motion, start, events) = (&mut flow.motion, &flow.start, &mut flow.events);
-        let solved = solve_with_sensitivities_and_events(
-            motion,
-            (t_start, start),
-            times,
-            options,
-            &self.wanted,
-            events,
-            output,
-        );
+        let solved = Solve::new(motion, t_start, start)
+            .method(options)
+            .events(events)
+            .sensitivities(&self.wanted)
+            .run_observed(times, output);
         self.take(solved)
     }
 
@@ -76,8 +72,12 @@ impl Derivatives {
         step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
     ) -> (Solution, Option<SolveError>) {
         let parts = || (flow.motion.clone(), flow.events.clone());
-        let method = (options, &self.wanted);
-        self.take(solve_checkpointed_with_sensitivities(method, parts, from, times, every, save, step))
+        let solved = Resumable::new(parts, from)
+            .method(options)
+            .every(every)
+            .sensitivities(&self.wanted)
+            .run(times, save, step);
+        self.take(solved)
     }
 
     /// Takes the derivatives of what was reached.

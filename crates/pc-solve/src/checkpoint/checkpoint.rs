@@ -23,6 +23,8 @@
 //! [restart](crate::Integration::restart), for example by a reset, the value at the state of the
 //! checkpoint.
 
+use std::num::NonZeroU64;
+
 use crate::events::events::{History, Occurrence};
 use crate::integration::statistics::Statistics;
 use crate::integration::trajectory::Trajectory;
@@ -73,6 +75,9 @@ pub(crate) struct EventPast {
 }
 
 impl Checkpoint {
+    /// Steps from one checkpoint to the next by default: many more than the few dozen short steps after a restart.
+    pub const EVERY: NonZeroU64 = NonZeroU64::new(1000).expect("not 0");
+
     /// The start of a motion.
     pub fn start(t0: f64, y0: &[f64]) -> Checkpoint {
         Checkpoint {

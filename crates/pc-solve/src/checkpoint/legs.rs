@@ -17,60 +17,6 @@ use crate::integration::stepper::Stepper;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 
-/// As [`Solve::run_observed`](crate::Solve::run_observed), with a checkpoint every `every` steps.
-///
-/// The motion continues from the checkpoint `from`, whose outputs are the first of `times`, and
-/// restarts at each checkpoint with the vector field and the events that `parts` makes; in the legs
-/// after a reset, a field that conserves an integral [keeps](VectorField::restart) its value at the
-/// checkpoint. The part of a step before an event counts as a step; a checkpoint at its end follows
-/// all events there. So a motion resumed from any of its checkpoints gives the same outputs, the
-/// same occurrences and the same ending, bit for bit, as one that was never interrupted.
-///
-/// Each checkpoint, including `from`, is passed to `save`, and the last one again with `true` if
-/// the motion fails or `step` stops it. The outputs beyond it are returned, but the motion resumes
-/// from the checkpoint.
-///
-/// ```
-/// use std::{num::NonZeroU64, ops::ControlFlow};
-/// use pc_solve::{Checkpoint, Event, FnEvents, Options, from_fn, solve_checkpointed};
-///
-/// // A bouncing ball.
-/// let parts = || {
-///     let fall = from_fn(2, |_t, y, ydot| { ydot[0] = y[1]; ydot[1] = -9.81; Ok(()) });
-///     let bounce = FnEvents::new().with_reset(
-///         Event::new("bounce").falling(), |_t, y| Ok(y[0]), |_t, y| { y[1] *= -0.8; Ok(()) });
-///     (fall, bounce)
-/// };
-/// let (times, options, every) = ([1.0, 2.0, 3.0], Options::default(), NonZeroU64::new(7).unwrap());
-/// let mut kept = Vec::new();
-/// let start = Checkpoint::start(0.0, &[1.0, 0.0]);
-/// let whole = solve_checkpointed(&options, parts, start, &times, every,
-///     |checkpoint, _| kept.push(checkpoint.clone()), |_, _| ControlFlow::Continue(()))?;
-/// let later = kept.swap_remove(kept.len() / 2);
-/// let part = solve_checkpointed(&options, parts, later, &times, every,
-///     |_, _| (), |_, _| ControlFlow::Continue(()))?;
-/// assert_eq!(part, whole);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// As for [`Solve::run`](crate::Solve::run), and [`InputError::EventCount`];
-/// [`InputError::Sensitivities`] if the checkpoint has sensitivities.
-pub fn solve_checkpointed<F: VectorField, E: Events>(
-    method: &impl IntegrationMethod<F>,
-    parts: impl FnMut() -> (F, E),
-    from: Checkpoint,
-    times: &[f64],
-    every: NonZeroU64,
-    save: impl FnMut(&Checkpoint, bool),
-    step: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
-) -> Result<Solution, Box<SolveFailure<Solution>>> {
-    match follow(method, parts, from, (times, every), save, step) {
-        Ok((solution, _)) => Ok(solution),
-        Err(failure) => Err(Box::new(failure.map(|(solution, _)| solution))),
-    }
-}
-
 /// A motion, and its sensitivities at the outputs, one matrix after the other.
 pub(crate) type Reached = (Solution, Vec<f64>);
 

@@ -56,11 +56,11 @@ pub fn solve<F: VectorField>(
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Solve<'a, F, M = Options, E = NoEvents> {
-    field: F,
-    t0: f64,
-    y0: &'a [f64],
-    method: M,
-    events: E,
+    pub(crate) field: F,
+    pub(crate) t0: f64,
+    pub(crate) y0: &'a [f64],
+    pub(crate) method: M,
+    pub(crate) events: E,
 }
 
 impl<'a, F: VectorField> Solve<'a, F> {

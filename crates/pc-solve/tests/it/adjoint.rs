@@ -8,7 +8,7 @@ use crate::boxed::erased;
 use crate::offers::{Circle, Formulas, OFFERS, Offer, Offering, Oscillator, Pendulum, precise};
 use pc_solve::{
     AdjointOptions, Code, Failure, Functional, Gradient, Method, NonFinite, NonlinearSolver, Options, Reason,
-    Sensitivities, SolveError, VectorField, adjoint_gradient, solve_with_sensitivities,
+    Sensitivities, Solve, SolveError, VectorField, adjoint_gradient,
 };
 
 /// G = ∫ (φ̇² + p₀ cos(t) φ) dt + φ(T)² φ̇(T) + p₁ φ̇(T) of the pendulum.
@@ -61,12 +61,13 @@ fn forward(p: [f64; 3], t0: f64, t1: f64) -> (f64, Vec<f64>) {
     let wanted = Sensitivities::new().by_starts(0..2).by_parameters(0..3);
     let options = Options::default().relative_tolerance(1e-12).absolute_tolerance(1e-14);
     let start = [START[0], START[1], 0.0];
-    let found = solve_with_sensitivities(erased(field), t0, &start, &[t1], &options, &wanted).unwrap();
-    let y = found.motion().state(0);
+    let found =
+        Solve::new(erased(field), t0, &start).method(&options).sensitivities(&wanted).run(&[t1]).unwrap();
+    let y = found.trajectory.motion().state(0);
     let (mut by_y, mut by_p) = ([0.0; 2], [0.0; 3]);
     let value = y[2] + Mixed(p).end(t1, y, &mut by_y, &mut by_p).unwrap();
     let gradient = (0..5).map(|j| {
-        let s = found.column(0, j);
+        let s = found.trajectory.column(0, j);
         s[2] + by_y[0] * s[0] + by_y[1] * s[1] + if j >= 2 { by_p[j - 2] } else { 0.0 }
     });
     (value, gradient.collect())
@@ -220,21 +221,17 @@ fn fields_with_a_projection() {
         let found = adjoint_gradient(circle, Area, 0.0, &start, end, &adjoint).unwrap();
         let exact = Options::default().relative_tolerance(1e-12).absolute_tolerance(1e-13);
         let wanted = Sensitivities::new().by_starts(0..2);
-        let forward = solve_with_sensitivities(
-            erased(by_angle.clone()),
-            0.0,
-            &[0.0, speed, 0.0],
-            &[end],
-            &exact,
-            &wanted,
-        )
-        .unwrap();
-        let y = forward.motion().state(0);
+        let forward = Solve::new(erased(by_angle.clone()), 0.0, &[0.0, speed, 0.0])
+            .method(&exact)
+            .sensitivities(&wanted)
+            .run(&[end])
+            .unwrap();
+        let y = forward.trajectory.motion().state(0);
         assert!((found.value - y[2] - y[0].sin()).abs() < 1e-6, "{} {}", found.value, y[2] + y[0].sin());
         // By φ₀, (x, z, ẋ, ż) = (0, 1, −φ̇, 0), and by φ̇₀, (0, 0, 0, 1).
         let along = [found.by_start[1] - speed * found.by_start[2], found.by_start[3]];
         for (j, along) in along.into_iter().enumerate() {
-            let s = forward.column(0, j);
+            let s = forward.trajectory.column(0, j);
             let expected = s[2] + y[0].cos() * s[0];
             // Across the circle λ is some thousand times larger, and its errors are relative to
             // that: 1e-12 times some thousand steps times this factor.

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use crate::boxed::{erased, from_fn};
 use pc_solve::{
-    Checkpoint, CheckpointError, Code, Failure, Integration, Method, NoEvents, Options, SolveError,
-    Trajectory, VectorField, solve, solve_checkpointed,
+    Checkpoint, CheckpointError, Code, Failure, Integration, Method, NoEvents, Options, Resumable,
+    SolveError, Trajectory, VectorField, solve,
 };
 
 /// Van der Pol's equation with μ = 20, and its Jacobian.
@@ -65,8 +65,11 @@ fn undisturbed<F: VectorField>(
         checkpoints.push(checkpoint.to_bytes("a label"));
     };
     let from = Checkpoint::start(0.0, &[2.0_f64.sqrt().recip(), 2.0_f64.sqrt().recip()]);
-    let motion =
-        solve_checkpointed(options, || (field(), NoEvents), from, times, every(steps), keep, GO_ON).unwrap();
+    let motion = Resumable::new(|| (field(), NoEvents), from)
+        .method(options)
+        .every(every(steps))
+        .run(times, keep, GO_ON)
+        .unwrap();
     (motion.trajectory, checkpoints)
 }
 
@@ -80,16 +83,11 @@ fn goes_on<F: VectorField>(field: impl Fn() -> F, options: &Options) {
             for bytes in checkpoints.iter().step_by(stride).chain(checkpoints.last()) {
                 let (from, label) = Checkpoint::from_bytes(bytes).unwrap();
                 assert_eq!(label, "a label");
-                let resumed = solve_checkpointed(
-                    options,
-                    || (field(), NoEvents),
-                    from,
-                    times,
-                    every(steps),
-                    |_, _| (),
-                    GO_ON,
-                )
-                .unwrap();
+                let resumed = Resumable::new(|| (field(), NoEvents), from)
+                    .method(options)
+                    .every(every(steps))
+                    .run(times, |_, _| (), GO_ON)
+                    .unwrap();
                 // Outputs, times and work: nonzero numbers that are equal have the same bits.
                 assert_eq!(resumed.trajectory, motion);
             }
@@ -138,15 +136,20 @@ fn a_stopped_motion_leaves_its_last_checkpoint() {
         steps += 1;
         if steps == 100 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let part = solve_checkpointed(&options, || (Turning, NoEvents), from, &times, every(30), keep, stop)
+    let part = Resumable::new(|| (Turning, NoEvents), from)
+        .method(&options)
+        .every(every(30))
+        .run(&times, keep, stop)
         .unwrap()
         .trajectory;
     let last = last.unwrap();
     assert!(!part.is_complete() && part.states() == &motion.states()[..part.states().len()]);
     assert!(last.outputs().len() <= part.len() && last.statistics().steps == 90);
-    let resumed =
-        solve_checkpointed(&options, || (Turning, NoEvents), last, &times, every(30), |_, _| (), GO_ON)
-            .unwrap();
+    let resumed = Resumable::new(|| (Turning, NoEvents), last)
+        .method(&options)
+        .every(every(30))
+        .run(&times, |_, _| (), GO_ON)
+        .unwrap();
     assert_eq!(resumed.trajectory, motion);
 }
 
@@ -162,16 +165,11 @@ fn a_failure_ends_a_motion_with_checkpoints_as_it_ends_one_without() {
     for steps in [20, 100] {
         let from = Checkpoint::start(0.0, &[1.0]);
         let options = Options::new(Method::Adams).max_steps(1_000_000);
-        let failure = solve_checkpointed(
-            &options,
-            || (field(), NoEvents),
-            from,
-            &[0.5, 2.0],
-            every(steps),
-            |_, _| (),
-            GO_ON,
-        )
-        .unwrap_err();
+        let failure = Resumable::new(|| (field(), NoEvents), from)
+            .method(&options)
+            .every(every(steps))
+            .run(&[0.5, 2.0], |_, _| (), GO_ON)
+            .unwrap_err();
         assert_eq!(failure.reached.trajectory.len(), 1);
         let (t, _) = failure.error.reached().unwrap();
         assert!((t - 1.0).abs() < 1e-6, "{t}");
@@ -179,24 +177,21 @@ fn a_failure_ends_a_motion_with_checkpoints_as_it_ends_one_without() {
     let from = Checkpoint::start(0.0, &[1.0]);
     let options = Options::new(Method::Adams).max_steps(35);
     let times = [0.01, 0.9];
-    let failure =
-        solve_checkpointed(&options, || (field(), NoEvents), from, &times, every(10), |_, _| (), GO_ON)
-            .unwrap_err();
+    let failure = Resumable::new(|| (field(), NoEvents), from)
+        .method(&options)
+        .every(every(10))
+        .run(&times, |_, _| (), GO_ON)
+        .unwrap_err();
     assert_eq!(failure.error.code(), Some(Code::TooMuchWork));
     assert!(
         failure.error.to_string().contains("35 steps were not enough to reach the output at t = 0.9"),
         "{failure}"
     );
     let wrong = Checkpoint::start(0.0, &[1.0, 2.0]);
-    let failure = solve_checkpointed(
-        &Options::new(Method::Adams),
-        || (field(), NoEvents),
-        wrong,
-        &[1.0],
-        every(1),
-        |_, _| (),
-        GO_ON,
-    );
+    let failure = Resumable::new(|| (field(), NoEvents), wrong)
+        .method(&Options::new(Method::Adams))
+        .every(every(1))
+        .run(&[1.0], |_, _| (), GO_ON);
     assert!(matches!(failure.unwrap_err().error, SolveError::Input(_)), "two numbers for one component");
 }
 
@@ -250,12 +245,8 @@ fn the_step_limit_is_that_of_a_run_without_checkpoints() {
     for steps in [50, 60, 70, 79] {
         let run = |most| {
             let from = Checkpoint::start(0.0, &[1.0, 0.0]);
-            solve_checkpointed(
-                &options(most),
-                || (circle(), NoEvents),
-                from,
+            Resumable::new(|| (circle(), NoEvents), from).method(&options(most)).every(every(steps)).run(
                 &times,
-                every(steps),
                 |_, _| (),
                 GO_ON,
             )

@@ -8,8 +8,7 @@ use std::ops::ControlFlow::Continue;
 use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Checkpoint, Dop853, Event, Failure, FnEvents, Inequality, InputError, Integration, LinearSolver, Method,
-    NonlinearSolver, Options, Reason, Sensitivities, Solve, SolveError, VectorField, solve,
-    solve_checkpointed, solve_with_sensitivities,
+    NonlinearSolver, Options, Reason, Resumable, Sensitivities, Solve, SolveError, VectorField, solve,
 };
 
 fn options(rtol: f64) -> Options {
@@ -216,14 +215,19 @@ fn a_resumed_integration_is_the_same_to_the_last_bit() {
         let mut kept = Vec::new();
         let start = Checkpoint::start(0.0, &[1.0, 0.0]);
         let save = |checkpoint: &Checkpoint, _| kept.push(checkpoint.to_bytes("ball"));
-        let whole =
-            solve_checkpointed(&options, ball, start, &times, every, save, |_, _| Continue(())).unwrap();
+        let whole = Resumable::new(ball, start)
+            .method(&options)
+            .every(every)
+            .run(&times, save, |_, _| Continue(()))
+            .unwrap();
         assert!(kept.len() > 5 && whole.occurrences.len() == 3, "{} {whole:?}", kept.len());
         for bytes in kept {
             let (from, _) = Checkpoint::from_bytes(&bytes).unwrap();
-            let later =
-                solve_checkpointed(&options, ball, from, &times, every, |_, _| (), |_, _| Continue(()))
-                    .unwrap();
+            let later = Resumable::new(ball, from)
+                .method(&options)
+                .every(every)
+                .run(&times, |_, _| (), |_, _| Continue(()))
+                .unwrap();
             assert_eq!(later, whole, "{method}");
         }
     }
@@ -524,7 +528,11 @@ fn options_that_a_method_lacks_are_refused_by_name() {
     let with = |method: Method| {
         let options = Options::new(method);
         let (y, times) = ([1.0, 0.0], [1.0]);
-        solve_with_sensitivities(erased(oscillator()), 0.0, &y, &times, &options, &sensitivities).map(|_| ())
+        Solve::new(erased(oscillator()), 0.0, &y)
+            .method(&options)
+            .sensitivities(&sensitivities)
+            .run(&times)
+            .map(|_| ())
     };
     let refused = std::error::Error::source(&with(Method::Taylor).unwrap_err()).unwrap().to_string();
     assert!(refused.contains("needs a vector field that is a program"), "{refused}");

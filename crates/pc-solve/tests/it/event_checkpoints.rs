@@ -5,8 +5,8 @@ use std::ops::ControlFlow::{self, Break, Continue};
 use crate::boxed::from_fn;
 use pc_solve::{
     Checkpoint, CheckpointError, Code, Cvode, Ending, Event, Failure, FnEvents, InputError, Integration,
-    Method, NoEvents, Observed, Occurrence, Options, Reason, Sensitivities, Solution, Solve, SolveError,
-    SolveFailure, VectorField, solve_checkpointed, solve_checkpointed_with_sensitivities,
+    Method, NoEvents, Observed, Occurrence, Options, Reason, Resumable, Sensitivities, Solution, Solve,
+    SolveError, SolveFailure, VectorField,
 };
 
 type Rates = fn(f64, &[f64], &mut [f64]);
@@ -91,7 +91,7 @@ fn solve(
 ) -> Result<Solution, Box<SolveFailure<Solution>>> {
     let dim = from.state().len();
     let parts = || (field(rates, dim), events());
-    solve_checkpointed(options, parts, from, times, every(steps), save, GO_ON)
+    Resumable::new(parts, from).method(options).every(every(steps)).run(times, save, GO_ON)
 }
 
 /// Checks that up to 16 checkpoints of a motion, encoded and decoded, lead to the same motion;
@@ -315,7 +315,7 @@ fn a_stopped_or_failed_motion_leaves_its_last_checkpoint() {
         };
         let parts = || (field(BALL.0, 2), (BALL.1)());
         let from = Checkpoint::start(0.0, &[1.0, 0.0]);
-        let part = solve_checkpointed(&options, parts, from, &times, every(10), keep, step);
+        let part = Resumable::new(parts, from).method(&options).every(every(10)).run(&times, keep, step);
         let (part, last) = (part.unwrap(), last.unwrap());
         assert_eq!(part.ending, Some(Ending::Stopped));
         assert_eq!(part.occurrences[..], whole.occurrences[..part.occurrences.len()]);
@@ -375,7 +375,10 @@ fn a_step_of_length_zero_is_not_a_leg() {
     let decay = || field(|_, y, ydot| ydot[0] = -1e4 * y[0], 1);
     let keep = |checkpoint: &Checkpoint, _| kept.push(checkpoint.time());
     let times = [1e6 + 1e-4];
-    let motion = solve_checkpointed(&options, || (decay(), NoEvents), from, &times, every(1), keep, step)
+    let motion = Resumable::new(|| (decay(), NoEvents), from)
+        .method(&options)
+        .every(every(1))
+        .run(&times, keep, step)
         .unwrap()
         .trajectory;
     assert!(idle > 100 && motion.is_complete(), "{idle}");
@@ -450,16 +453,12 @@ fn sensitivities_go_on_from_checkpoints() {
         let often = every(if method == Method::Dop853 { 4 } else { 20 });
         let parts = || (field(BALL.0, 2), (BALL.1)());
         let run = |from: Checkpoint, save: &mut dyn FnMut(&Checkpoint, bool)| {
-            solve_checkpointed_with_sensitivities(
-                (&options, &wanted),
-                parts,
-                from,
-                &times,
-                often,
-                save,
-                GO_ON,
-            )
-            .unwrap()
+            Resumable::new(parts, from)
+                .method(&options)
+                .every(often)
+                .sensitivities(&wanted)
+                .run(&times, save, GO_ON)
+                .unwrap()
         };
         let mut kept = Vec::new();
         let whole = run(Checkpoint::start(0.0, &[1.0, 0.3]), &mut |checkpoint, _| {
@@ -480,12 +479,8 @@ fn sensitivities_go_on_from_checkpoints() {
         assert!((found[0] - by_h).abs() < 1e-6 && (found[1] - by_v).abs() < 1e-6, "{found:?} {by_h} {by_v}");
         let begun = Checkpoint::from_bytes(&kept[kept.len() / 2]).unwrap().0;
         let fewer = Sensitivities::new().by_start(0);
-        let refused = solve_checkpointed_with_sensitivities(
-            (&options, &fewer),
-            parts,
-            begun,
+        let refused = Resumable::new(parts, begun).method(&options).every(often).sensitivities(&fewer).run(
             &times,
-            often,
             |_, _| (),
             GO_ON,
         );

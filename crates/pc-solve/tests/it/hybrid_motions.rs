@@ -6,7 +6,7 @@ use std::ops::ControlFlow::Continue;
 use crate::boxed::erased;
 use crate::fields::{ProgramEvents, field, program};
 use pc_expr::{Event, ProgramField};
-use pc_solve::{Checkpoint, Method, Options, Solution, Solve, solve_checkpointed};
+use pc_solve::{Checkpoint, Method, Options, Resumable, Solution, Solve};
 
 /// Field and events.
 type Parts = fn() -> (ProgramField, ProgramEvents);
@@ -92,14 +92,20 @@ fn checkpoints_change_no_bit() {
             let mut kept = Vec::new();
             let save = |checkpoint: &Checkpoint, _| kept.push(checkpoint.to_bytes("a label"));
             let start = Checkpoint::start(0.0, y0);
-            let whole =
-                solve_checkpointed(&options, parts, start, times, every, save, |_, _| Continue(())).unwrap();
+            let whole = Resumable::new(parts, start)
+                .method(&options)
+                .every(every)
+                .run(times, save, |_, _| Continue(()))
+                .unwrap();
             assert!(kept.len() > 3 && whole.occurrences.len() >= 3, "{method}: {}", kept.len());
             let stride = kept.len().div_ceil(15);
             for bytes in kept.iter().step_by(stride) {
                 let (from, _) = Checkpoint::from_bytes(bytes).unwrap();
-                let later =
-                    solve_checkpointed(&options, parts, from, times, every, |_, _| (), |_, _| Continue(()));
+                let later = Resumable::new(parts, from).method(&options).every(every).run(
+                    times,
+                    |_, _| (),
+                    |_, _| Continue(()),
+                );
                 assert_eq!(later.unwrap(), whole, "{method}");
             }
         }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow::Continue;
 use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Event, Failure, FnEvents, InputError, Integrals, Integration, Method, NonFinite, Options, Sensitivities,
-    SolveError, VectorField, solve, solve_with_integrals,
+    Solve, SolveError, VectorField, solve,
 };
 
 fn decay() -> impl VectorField {
@@ -32,8 +32,11 @@ fn closed_forms() {
             let options = Options::new(method).relative_tolerance(rtol).absolute_tolerance(rtol);
             for sign in [1.0, -1.0] {
                 let times: Vec<f64> = (0..=30).map(|i| sign * f64::from(i) / 10.0).collect();
-                let (motion, values) =
-                    solve_with_integrals(erased(decay()), 0.0, &[1.0], &times, &options, moments()).unwrap();
+                let (motion, values) = Solve::new(erased(decay()), 0.0, &[1.0])
+                    .method(&options)
+                    .integrals(moments())
+                    .run(&times)
+                    .unwrap();
                 assert!(motion.is_complete() && values.len() == 31);
                 for (t, values) in times.iter().zip(&values) {
                     let exact = [1.0 - (-t).exp(), (1.0 - (-2.0 * t).exp()) / 2.0];

@@ -3,8 +3,7 @@ use std::num::NonZeroU64;
 use std::ops::ControlFlow::Continue;
 
 use pc_solve::{
-    Checkpoint, Event, Failure, FnEvents, Integration, Method, Options, Solution, VectorField,
-    solve_checkpointed,
+    Checkpoint, Event, Failure, FnEvents, Integration, Method, Options, Resumable, Solution, VectorField,
 };
 
 /// A ball under gravity 1, y = (h, v), whose energy v²/2 + h is projected to a level.
@@ -70,7 +69,7 @@ fn solve(
 ) -> Solution {
     let parts = || (Ball { level }, bounce());
     let every = NonZeroU64::new(steps).unwrap();
-    solve_checkpointed(options, parts, from, times, every, save, |_, _| Continue(())).unwrap()
+    Resumable::new(parts, from).method(options).every(every).run(times, save, |_, _| Continue(())).unwrap()
 }
 
 /// Each bounce multiplies the energy by 0.81; before the first it is that of the field, which may

@@ -7,8 +7,8 @@ use std::ops::ControlFlow::Continue;
 use crate::boxed::{erased, from_fn};
 use pc_expr::Failure;
 use pc_solve::{
-    Checkpoint, Ending, Event, FixedStep, FnEvents, InputError, Integration, Reason, RungeKutta4, Solve,
-    SolveError, VectorField, solve_checkpointed,
+    Checkpoint, Ending, Event, FixedStep, FnEvents, InputError, Integration, Reason, Resumable, RungeKutta4,
+    Solve, SolveError, VectorField,
 };
 
 /// y = (cos t, −sin t).
@@ -124,21 +124,19 @@ fn a_resumed_integration_is_the_same_to_the_last_bit() {
     let (method, every) = (FixedStep::new(0.013), NonZeroU64::new(9).unwrap());
     let times = [0.3, 0.9, 1.15];
     let mut kept = Vec::new();
-    let whole = solve_checkpointed(
-        &method,
-        ball,
-        Checkpoint::start(0.0, &[1.0, 0.0]),
-        &times,
-        every,
-        |checkpoint, _| kept.push(checkpoint.to_bytes("ball")),
-        |_, _| Continue(()),
-    )
-    .unwrap();
+    let whole = Resumable::new(ball, Checkpoint::start(0.0, &[1.0, 0.0]))
+        .method(&method)
+        .every(every)
+        .run(&times, |checkpoint, _| kept.push(checkpoint.to_bytes("ball")), |_, _| Continue(()))
+        .unwrap();
     assert!(kept.len() > 5 && whole.occurrences.len() == 3);
     for bytes in kept {
         let (from, _) = Checkpoint::from_bytes(&bytes).unwrap();
-        let later =
-            solve_checkpointed(&method, ball, from, &times, every, |_, _| (), |_, _| Continue(())).unwrap();
+        let later = Resumable::new(ball, from)
+            .method(&method)
+            .every(every)
+            .run(&times, |_, _| (), |_, _| Continue(()))
+            .unwrap();
         assert_eq!(later, whole);
     }
     // A one-step method loses no history at a checkpoint: its steps are those without.

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use crate::boxed::{erased, from_fn};
 use crate::offers::{Circle, Formulas, OFFERS, Offer, Offering, Oscillator, Pendulum, derivative, precise};
 use pc_solve::{
-    Correction, Integration, Method, NonlinearSolver, Options, Sensitivities, SensitivityStatistics, solve,
-    solve_with_sensitivities,
+    Correction, Integration, Method, NonlinearSolver, Options, Sensitivities, SensitivityStatistics, Solve,
+    solve,
 };
 
 const OSCILLATOR: Oscillator = Oscillator { damping: 0.15, frequency: 1.3 };
@@ -30,10 +30,13 @@ fn damped_oscillator() {
                 let wanted =
                     Sensitivities::new().by_parameters([1, 0]).by_starts(0..2).correction(correction);
                 let field = Offering(OSCILLATOR, offer);
-                let found =
-                    solve_with_sensitivities(erased(field), 0.0, &[a, b], &TIMES, &options, &wanted).unwrap();
-                assert_eq!((found.columns(), found.motion().times()), (4, &TIMES[..]));
-                for (t, y, s) in found.iter() {
+                let found = Solve::new(erased(field), 0.0, &[a, b])
+                    .method(&options)
+                    .sensitivities(&wanted)
+                    .run(&TIMES)
+                    .unwrap();
+                assert_eq!((found.trajectory.columns(), found.trajectory.motion().times()), (4, &TIMES[..]));
+                for (t, y, s) in found.trajectory.iter() {
                     for i in 0..2 {
                         let expected = [
                             derivative(|w| motion(c, w, t, a, b, i), w),
@@ -60,9 +63,12 @@ fn harmonic_oscillator_by_its_frequency() {
         for offer in OFFERS {
             let field = Offering(Oscillator { damping: 0.0, frequency: w }, offer);
             let wanted = Sensitivities::new().by_parameter(1);
-            let found =
-                solve_with_sensitivities(erased(field), 0.0, &[a, 0.0], &TIMES, &options, &wanted).unwrap();
-            for (t, _, s) in found.iter() {
+            let found = Solve::new(erased(field), 0.0, &[a, 0.0])
+                .method(&options)
+                .sensitivities(&wanted)
+                .run(&TIMES)
+                .unwrap();
+            for (t, _, s) in found.trajectory.iter() {
                 let (sin, cos) = (w * t).sin_cos();
                 // The derivative grows as t, and the error with it.
                 assert_near(s[0] / (1.0 + t), -a * t * sin / (1.0 + t), 1e-8, (offer, t));
@@ -95,9 +101,11 @@ fn a_start_that_depends_on_a_parameter() {
         for offer in OFFERS {
             let wanted = Sensitivities::new().by_parameter_from(0, [0.25]).by_parameter(0).along([2.0]);
             let field = Offering(Logistic(p), offer);
-            let found =
-                solve_with_sensitivities(erased(field), 0.0, &[p / 4.0], &[1.0, 3.0], &options, &wanted)
-                    .unwrap();
+            let found = Solve::new(erased(field), 0.0, &[p / 4.0])
+                .method(&options)
+                .sensitivities(&wanted)
+                .run(&[1.0, 3.0])
+                .unwrap();
             for (i, t) in [1.0, 3.0].into_iter().enumerate() {
                 let expected = [
                     derivative(|p| exact(t, p, p / 4.0), p),
@@ -105,7 +113,7 @@ fn a_start_that_depends_on_a_parameter() {
                     2.0 * derivative(|start| exact(t, p, start), p / 4.0),
                 ];
                 for (j, expected) in expected.into_iter().enumerate() {
-                    assert_near(found.column(i, j)[0], expected, 1e-8, (offer, t, j));
+                    assert_near(found.trajectory.column(i, j)[0], expected, 1e-8, (offer, t, j));
                 }
             }
         }
@@ -144,11 +152,14 @@ fn linear_systems() {
         for t in [2.0, -2.0] {
             let wanted = Sensitivities::new().by_starts(0..N);
             let start = [1.0, -1.0, 0.5, 2.0];
-            let found =
-                solve_with_sensitivities(erased(field()), 0.0, &start, &[t], &options, &wanted).unwrap();
+            let found = Solve::new(erased(field()), 0.0, &start)
+                .method(&options)
+                .sensitivities(&wanted)
+                .run(&[t])
+                .unwrap();
             let expected = exponential(t);
             let size = expected.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
-            for (found, expected) in found.matrix(0).iter().zip(&expected) {
+            for (found, expected) in found.trajectory.matrix(0).iter().zip(&expected) {
                 assert_near(*found, *expected, 1e-8 * size, t);
             }
         }
@@ -214,11 +225,13 @@ fn tolerances_of_the_columns() {
     let error = |tolerance: f64| {
         let wanted = Sensitivities::new().by_start(0).tolerances(tolerance, tolerance);
         let field = Offering(Growing, Offer::Jacobian);
-        let found =
-            solve_with_sensitivities(erased(field), 0.0, &[0.0], &[3.0], &Options::default(), &wanted)
-                .unwrap();
-        assert_eq!(found.motion().state(0), [0.0]);
-        (found.matrix(0)[0] / 3.0_f64.exp() - 1.0).abs()
+        let found = Solve::new(erased(field), 0.0, &[0.0])
+            .method(&Options::default())
+            .sensitivities(&wanted)
+            .run(&[3.0])
+            .unwrap();
+        assert_eq!(found.trajectory.motion().state(0), [0.0]);
+        (found.trajectory.matrix(0)[0] / 3.0_f64.exp() - 1.0).abs()
     };
     assert!(error(1e-11) < 1e-9); // the local errors of about 100 steps
     assert!(error(1e-3) > 1e-6);
@@ -282,9 +295,12 @@ fn difference_quotients_in_other_units() {
         });
         let options = options.clone().absolute_tolerance(1e-13 * scale);
         let wanted = Sensitivities::new().by_start(0).tolerances(1e-11, 1e-13);
-        let found =
-            solve_with_sensitivities(erased(field), 0.0, &[scale], &[1.0], &options, &wanted).unwrap();
-        assert_near(found.matrix(0)[0], 0.25, 1e-8, scale);
+        let found = Solve::new(erased(field), 0.0, &[scale])
+            .method(&options)
+            .sensitivities(&wanted)
+            .run(&[1.0])
+            .unwrap();
+        assert_near(found.trajectory.matrix(0)[0], 0.25, 1e-8, scale);
     }
 }
 
@@ -301,10 +317,17 @@ fn stiff() {
         Options::new(Method::Bdf).nonlinear_solver(NonlinearSolver::Newton).relative_tolerance(1e-6);
     for correction in [Correction::Staggered, Correction::Simultaneous] {
         let wanted = Sensitivities::new().by_start(0).correction(correction);
-        let found =
-            solve_with_sensitivities(erased(field()), 0.0, &[0.0], &[10.0], &options, &wanted).unwrap();
-        assert!(found.matrix(0)[0].abs() < 1e-12); // e^(−1e6), and the absolute tolerance
-        assert!(found.motion().statistics().steps < 2000, "{:?}", found.motion().statistics());
+        let found = Solve::new(erased(field()), 0.0, &[0.0])
+            .method(&options)
+            .sensitivities(&wanted)
+            .run(&[10.0])
+            .unwrap();
+        assert!(found.trajectory.matrix(0)[0].abs() < 1e-12); // e^(−1e6), and the absolute tolerance
+        assert!(
+            found.trajectory.motion().statistics().steps < 2000,
+            "{:?}",
+            found.trajectory.motion().statistics()
+        );
     }
 }
 
@@ -328,16 +351,20 @@ fn fields_with_a_projection() {
         let options =
             |tolerance| Options::new(method).relative_tolerance(tolerance).absolute_tolerance(tolerance);
         let wanted = Sensitivities::new().by_start(1); // by φ̇₀
-        let exact =
-            solve_with_sensitivities(erased(by_angle()), 0.0, &[0.0, 2.0], &times, &options(1e-12), &wanted)
-                .unwrap();
+        let exact = Solve::new(erased(by_angle()), 0.0, &[0.0, 2.0])
+            .method(&options(1e-12))
+            .sensitivities(&wanted)
+            .run(&times)
+            .unwrap();
         let mut circle = Circle { farthest: 0.0 };
         let wanted = Sensitivities::new().along([0.0, 0.0, 0.0, 1.0]); // (x, z, ẋ, ż) by φ̇₀
         let start = [1.0, 0.0, 0.0, 2.0];
-        let found =
-            solve_with_sensitivities(erased(&mut circle), 0.0, &start, &times, &options(1e-9), &wanted)
-                .unwrap();
-        for ((t, y, s), (_, angle, by)) in found.iter().zip(exact.iter()) {
+        let found = Solve::new(erased(&mut circle), 0.0, &start)
+            .method(&options(1e-9))
+            .sensitivities(&wanted)
+            .run(&times)
+            .unwrap();
+        for ((t, y, s), (_, angle, by)) in found.trajectory.iter().zip(exact.trajectory.iter()) {
             assert_near(y[0].hypot(y[1]), 1.0, 1e-15, t);
             // Derivatives grow as t², to 3600, and with them the error from the tolerance 1e-9.
             assert_near(y[0] * s[0] + y[1] * s[1], 0.0, 1e-4, (method, t));

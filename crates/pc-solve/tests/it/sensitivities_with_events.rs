@@ -6,8 +6,7 @@ use std::ops::ControlFlow::Continue;
 use crate::boxed::{erased, from_fn};
 use pc_solve::{
     Checkpoint, Correction, DenseOutput, Event, FnEvents, InputError, Integration, Method, Options, Reason,
-    Segment, Sensitivities, SolveError, VectorField, solve_dense_with_sensitivities,
-    solve_with_sensitivities,
+    Segment, Sensitivities, Solve, SolveError, VectorField,
 };
 
 fn sharp(method: Method) -> Options {
@@ -301,10 +300,12 @@ fn parameters_of_any_size() {
         for columns in
             [Sensitivities::new().by_parameter(0), Sensitivities::new().by_parameter(0).scales([size])]
         {
-            let motion =
-                solve_with_sensitivities(erased(field()), 0.0, &[1.0], &[2.0], &Options::default(), &columns)
-                    .unwrap();
-            let (found, expected) = (motion.matrix(0)[0], -2.0 * (-2.0f64).exp() / size);
+            let motion = Solve::new(erased(field()), 0.0, &[1.0])
+                .method(&Options::default())
+                .sensitivities(&columns)
+                .run(&[2.0])
+                .unwrap();
+            let (found, expected) = (motion.trajectory.matrix(0)[0], -2.0 * (-2.0f64).exp() / size);
             // rtol 1e-9 over some dozens of steps.
             assert!((found / expected - 1.0).abs() < 1e-7, "{size}: {found} is not {expected}");
         }
@@ -314,7 +315,13 @@ fn parameters_of_any_size() {
         ydot[0] = 0.0;
         Ok(())
     });
-    assert!(solve_with_sensitivities(erased(one), 0.0, &[1.0], &[1.0], &Options::default(), &wrong).is_err());
+    assert!(
+        Solve::new(erased(one), 0.0, &[1.0])
+            .method(&Options::default())
+            .sensitivities(&wrong)
+            .run(&[1.0])
+            .is_err()
+    );
 }
 
 /// S as a function of time over a bounce, with the derivatives of its polynomials: as accurate as
@@ -368,9 +375,11 @@ fn derivatives_of_a_smooth_motion_as_a_function_of_time() {
     for method in [Method::Adams, Method::Bdf] {
         for rtol in [1e-6, 1e-9] {
             let options = Options::new(method).relative_tolerance(rtol).absolute_tolerance(rtol);
-            let (motion, matrix) =
-                solve_dense_with_sensitivities(erased(decay()), 0.0, &[2.0], 3.0, &options, &columns)
-                    .unwrap();
+            let (motion, matrix) = Solve::new(erased(decay()), 0.0, &[2.0])
+                .method(&options)
+                .sensitivities(&columns)
+                .dense(3.0)
+                .unwrap();
             let error = |t: f64| (matrix.evaluate(t).unwrap()[0] - exact(t)).abs();
             let at_steps = motion.segments().iter().map(|s| error(s.span().1)).fold(0.0, f64::max);
             let between = (0..=3000).map(|i| error(f64::from(i) / 1000.0)).fold(0.0, f64::max);

@@ -7,8 +7,8 @@ use std::rc::Rc;
 
 use crate::boxed::{erased, from_fn};
 use pc_solve::{
-    Code, Failure, Integration, Method, NonFinite, Options, Sensitivities, SensitivityTrajectory, SolveError,
-    SolveFailure, VectorField, solve_with_sensitivities,
+    Code, Failure, Integration, Method, NonFinite, Options, Sensitivities, SensitivitySolution, Solve,
+    SolveError, SolveFailure, VectorField,
 };
 
 type Value = fn(f64) -> Result<f64, Failure>;
@@ -83,14 +83,11 @@ fn wanted() -> Sensitivities {
     Sensitivities::new().by_start(0).by_parameter(0)
 }
 
-fn run(
-    field: Faulty,
-    method: Method,
-) -> Result<SensitivityTrajectory, Box<SolveFailure<SensitivityTrajectory>>> {
+fn run(field: Faulty, method: Method) -> Result<SensitivitySolution, Box<SolveFailure<SensitivitySolution>>> {
     // Adams needs no Jacobian for the state, so all failures are of the sensitivities; for BDF they
     // may be of both.
     let options = Options::new(method).initial_step(0.1).max_step(0.1);
-    solve_with_sensitivities(erased(field), 0.0, &[0.0], &[0.5, 2.0], &options, &wanted())
+    Solve::new(erased(field), 0.0, &[0.0]).method(&options).sensitivities(&wanted()).run(&[0.5, 2.0])
 }
 
 #[test]
@@ -98,9 +95,10 @@ fn failures_carry_the_state_reached() {
     for (by_state, by_parameter) in [(FATAL, ZERO), (ZERO, FATAL), (RECOVERABLE, ZERO), (ZERO, RECOVERABLE)] {
         for products in [true, false] {
             let failure = *run(faulty(by_state, products, by_parameter), Method::Adams).unwrap_err();
-            assert_eq!(failure.reached.motion().times(), [0.5]);
+            assert_eq!(failure.reached.trajectory.motion().times(), [0.5]);
             assert!(
-                (failure.reached.matrix(0)[0] - 1.0).abs() < 1e-12 && !failure.reached.motion().is_complete()
+                (failure.reached.trajectory.matrix(0)[0] - 1.0).abs() < 1e-12
+                    && !failure.reached.trajectory.motion().is_complete()
             );
             let (t, y) = failure.error.reached().unwrap();
             assert!(t > 0.89 && t <= 1.0 && (y[0] - t).abs() < 1e-9, "{t} {y:?}");
@@ -169,9 +167,11 @@ fn derivatives_that_are_not_written_are_named() {
     }
     for (products, wanted) in [(true, Sensitivities::new().by_start(0)), (false, wanted())] {
         let options = Options::default();
-        let failure =
-            solve_with_sensitivities(erased(Silent(products)), 0.0, &[1.0], &[1.0], &options, &wanted)
-                .unwrap_err();
+        let failure = Solve::new(erased(Silent(products)), 0.0, &[1.0])
+            .method(&options)
+            .sensitivities(&wanted)
+            .run(&[1.0])
+            .unwrap_err();
         assert!(failure.source().unwrap().is::<NonFinite>());
         assert_eq!(failure.error.reached(), Some((0.0, &[1.0][..])));
     }
@@ -228,9 +228,13 @@ fn recoverable_failures_are_answered_by_shorter_steps() {
     // them.
     let wanted = Sensitivities::new().by_start(0).correction(pc_solve::Correction::Simultaneous);
     let mut fall = Fall(0);
-    let found = solve_with_sensitivities(erased(&mut fall), 0.0, &[1.0], &[0.9], &options, &wanted).unwrap();
+    let found = Solve::new(erased(&mut fall), 0.0, &[1.0])
+        .method(&options)
+        .sensitivities(&wanted)
+        .run(&[0.9])
+        .unwrap();
     // y = (√y₀ − t)², so ∂y/∂y₀ = 1 − t.
-    assert!((found.matrix(0)[0] - 0.1).abs() < 1e-2);
+    assert!((found.trajectory.matrix(0)[0] - 0.1).abs() < 1e-2);
     assert!(fall.0 > 0);
 }
 
@@ -247,9 +251,12 @@ fn overflow_is_named() {
     });
     let wanted = Sensitivities::new().along([1e300]);
     let options = Options::default();
-    let failure =
-        solve_with_sensitivities(erased(growth), 0.0, &[0.0], &[1.0, 100.0], &options, &wanted).unwrap_err();
-    assert_eq!(failure.reached.motion().len(), 1);
+    let failure = Solve::new(erased(growth), 0.0, &[0.0])
+        .method(&options)
+        .sensitivities(&wanted)
+        .run(&[1.0, 100.0])
+        .unwrap_err();
+    assert_eq!(failure.reached.trajectory.motion().len(), 1);
     let (t, y) = failure.error.reached().unwrap();
     assert!(t > 1.0 && t < 10.0 && y == [0.0], "{t} {y:?}"); // ln(1.8e308/1e300)/2 = 9.5
 }
@@ -259,9 +266,12 @@ fn input_is_checked() {
     let options = Options::default();
     let refusal = |wanted: Sensitivities| {
         let field = faulty(ZERO, true, ZERO);
-        let failure =
-            solve_with_sensitivities(erased(field), 0.0, &[0.0], &[1.0], &options, &wanted).unwrap_err();
-        assert_eq!(failure.reached.motion().len(), 0);
+        let failure = Solve::new(erased(field), 0.0, &[0.0])
+            .method(&options)
+            .sensitivities(&wanted)
+            .run(&[1.0])
+            .unwrap_err();
+        assert_eq!(failure.reached.trajectory.motion().len(), 0);
         failure.to_string()
     };
     let new = Sensitivities::new;
@@ -290,8 +300,10 @@ fn input_is_checked() {
         rate[0] = 1.0;
         Ok(())
     });
-    let failure =
-        solve_with_sensitivities(erased(closure), 0.0, &[0.0], &[1.0], &options, &new().by_parameter(0))
-            .unwrap_err();
+    let failure = Solve::new(erased(closure), 0.0, &[0.0])
+        .method(&options)
+        .sensitivities(&new().by_parameter(0))
+        .run(&[1.0])
+        .unwrap_err();
     assert_eq!(failure.to_string(), "the vector field does not provide its derivatives by the parameters");
 }

@@ -2,8 +2,7 @@
 
 use pc_solve::{
     AdjointOptions, Event, Failure, FnEvents, Functional, Integration, LyapunovOptions, Method, Options,
-    Sensitivities, Slide, Solution, Solve, adjoint_gradient, lyapunov_exponents, solve_with_sensitivities,
-    solve_with_sensitivities_and_events,
+    Sensitivities, Slide, Solution, Solve, adjoint_gradient, lyapunov_exponents,
 };
 
 use crate::pieces::{Function, Pieces};
@@ -235,9 +234,12 @@ fn derivatives_jump_where_a_force_begins() {
     for method in [Method::Adams, Method::Bdf, Method::Dop853] {
         let wanted = Sensitivities::new().by_parameters([0, 1]).by_start(1);
         let options = options(method);
-        let motion =
-            solve_with_sensitivities(step_in_space(), 0.0, &[0.0, speed], &[end], &options, &wanted).unwrap();
-        assert_near(motion.matrix(0), &right, 1e-8, method);
+        let motion = Solve::new(step_in_space(), 0.0, &[0.0, speed])
+            .method(&options)
+            .sensitivities(&wanted)
+            .run(&[end])
+            .unwrap();
+        assert_near(motion.trajectory.matrix(0), &right, 1e-8, method);
     }
 }
 
@@ -280,10 +282,13 @@ fn gradients_jump_where_a_force_begins() {
 fn derivatives_of_a_body_at_rest() {
     for method in [Method::Adams, Method::Bdf, Method::Dop853] {
         let wanted = Sensitivities::new().by_parameter(0).by_start(1);
-        let motion =
-            solve_with_sensitivities(brake(), 0.0, &[0.0, 2.5], &[3.0], &options(method), &wanted).unwrap();
+        let motion = Solve::new(brake(), 0.0, &[0.0, 2.5])
+            .method(&options(method))
+            .sensitivities(&wanted)
+            .run(&[3.0])
+            .unwrap();
         let right = [-2.5 * 2.5 / 18.0, 0.0, 2.5 / 3.0, 0.0];
-        assert_near(motion.matrix(0), &right, 1e-9, method);
+        assert_near(motion.trajectory.matrix(0), &right, 1e-9, method);
     }
 }
 
@@ -351,16 +356,12 @@ fn times_of_events_have_derivatives() {
         .with(Event::new("wall").terminal(true), |_, y| Ok(y[0] - 7.0))
         .with_parameter_derivatives(|_, _, _, _, _| Ok(0.0));
     let wanted = Sensitivities::new().by_parameters([0, 1]).by_start(1);
-    let found = solve_with_sensitivities_and_events(
-        step_in_space(),
-        (0.0, &[0.0, speed]),
-        &[20.0],
-        &options(Method::Adams),
-        &wanted,
-        wall,
-        |_, _| std::ops::ControlFlow::Continue(()),
-    )
-    .unwrap();
+    let found = Solve::new(step_in_space(), 0.0, &[0.0, speed])
+        .method(&options(Method::Adams))
+        .events(wall)
+        .sensitivities(&wanted)
+        .run_observed(&[20.0], |_, _| std::ops::ControlFlow::Continue(()))
+        .unwrap();
     let root = (speed * speed + 2.0 * force * (c - a)).sqrt();
     let by_force = (c - a) / (force * root) - (root - speed) / (force * force);
     let by_speed = -a / (speed * speed) + (speed / root - 1.0) / force;
@@ -519,7 +520,7 @@ fn random_motions_are_those_by_hand() {
         // Derivatives by c₁, d and y₁ against differences, where they exist.
         let wanted = Sensitivities::new().by_parameters([6, 10]).by_start(0);
         let by = Options::new(if case % 2 == 0 { Method::Adams } else { Method::Dop853 });
-        let with = solve_with_sensitivities(field(), 0.0, &start, &[3.0], &by, &wanted).unwrap();
+        let with = Solve::new(field(), 0.0, &start).method(&by).sensitivities(&wanted).run(&[3.0]).unwrap();
         let step = 1e-6;
         let moved = |place: Option<usize>, step: f64| {
             let (mut p, mut y) = (p.clone(), start);
@@ -536,7 +537,8 @@ fn random_motions_are_those_by_hand() {
             let solution = Solve::new(moved, 0.0, &y).method(options(Method::Dop853)).run(&[3.0]).unwrap();
             [solution.trajectory.state(0)[0], solution.trajectory.state(0)[1]]
         };
-        for (place, column) in [Some(6), Some(10), None].into_iter().zip(with.matrix(0).chunks(2)) {
+        for (place, column) in [Some(6), Some(10), None].into_iter().zip(with.trajectory.matrix(0).chunks(2))
+        {
             let (ahead, behind) = (moved(place, step), moved(place, -step));
             let quotient = [0, 1].map(|i| (ahead[i] - behind[i]) / (2.0 * step));
             let size = quotient.iter().fold(1.0f64, |size, q| size.max(q.abs()));

@@ -7,8 +7,8 @@ use crate::boxed::from_fn;
 use crate::fields::{field, heavy_top, oscillator, top_integrals, top_start};
 use pc_expr::ProgramField;
 use pc_solve::{
-    Checkpoint, DenseOutput, InputError, Integration, Method, NoEvents, Options, Reason, SolveError,
-    Statistics, Taylor, solve_checkpointed,
+    Checkpoint, DenseOutput, InputError, Integration, Method, NoEvents, Options, Reason, Resumable,
+    SolveError, Statistics, Taylor,
 };
 
 fn options(tolerance: f64) -> Options {
@@ -291,12 +291,16 @@ fn a_resumed_motion_has_the_same_bits() {
     let every = NonZeroU64::new(7).unwrap();
     let go_on = |_: f64, _: &[f64]| ControlFlow::Continue(());
     let save = |checkpoint: &Checkpoint, _| kept.push(checkpoint.clone());
-    let whole = solve_checkpointed(&options(1e-12), parts, start, &times, every, save, go_on).unwrap();
+    let whole =
+        Resumable::new(parts, start).method(&options(1e-12)).every(every).run(&times, save, go_on).unwrap();
     assert!(kept.len() > 10);
     for checkpoint in kept {
         let (checkpoint, _) = Checkpoint::from_bytes(&checkpoint.to_bytes("top")).unwrap();
-        let part =
-            solve_checkpointed(&options(1e-12), parts, checkpoint, &times, every, |_, _| (), go_on).unwrap();
+        let part = Resumable::new(parts, checkpoint)
+            .method(&options(1e-12))
+            .every(every)
+            .run(&times, |_, _| (), go_on)
+            .unwrap();
         assert_eq!(part, whole);
     }
     let mut plain = begin(heavy_top(), &top_start(), 1e-12);

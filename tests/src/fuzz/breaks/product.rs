@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, Source, Variables};
-use pc_solve::{Method, Options, Sensitivities, Solve, solve_with_sensitivities_and_events};
+use pc_solve::{Method, Options, Sensitivities, Solve};
 
 use super::specimen::{ATOL, RTOL, Specimen};
 
@@ -80,16 +80,12 @@ impl<'a> Product<'a> {
         }
         let (motion, start) = (&mut flow.motion, flow.start.clone());
         let times = self.specimen.times();
-        let solved = solve_with_sensitivities_and_events(
-            motion,
-            (0.0, &start),
-            &times,
-            &options(method),
-            &wanted,
-            &mut flow.events,
-            |_, _| ControlFlow::Continue(()),
-        )
-        .map_err(|failure| failure.error.to_string())?;
+        let solved = Solve::new(motion, 0.0, &start)
+            .method(&options(method))
+            .events(&mut flow.events)
+            .sensitivities(&wanted)
+            .run(&times)
+            .map_err(|failure| failure.error.to_string())?;
         let places = self.places(&flow.names)?;
         let mut all = vec![Vec::new(); asked.len()];
         for (t, y, matrix) in solved.trajectory.iter() {

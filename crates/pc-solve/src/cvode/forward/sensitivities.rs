@@ -24,7 +24,7 @@ use crate::integration::checks::{check_length, finite, positive};
 /// [projected](VectorField::project) states, but not projected themselves.
 ///
 /// ```
-/// use pc_solve::{Options, Sensitivities, from_fn, solve_with_sensitivities};
+/// use pc_solve::{Options, Sensitivities, from_fn, Solve};
 ///
 /// // ẏ = −y²: y = y₀/(1 + y₀ t), so ∂y/∂y₀ = 1/(1 + y₀ t)².
 /// let decay = from_fn(1, |_t, y, ydot| {
@@ -32,7 +32,7 @@ use crate::integration::checks::{check_length, finite, positive};
 ///     Ok(())
 /// });
 /// let sensitivities = Sensitivities::new().by_start(0);
-/// let motion = solve_with_sensitivities(decay, 0.0, &[2.0], &[1.5], &Options::default(), &sensitivities)?;
+/// let motion = Solve::new(decay, 0.0, &[2.0]).method(&Options::default()).sensitivities(&sensitivities).run(&[1.5])?;
 /// assert!((motion.matrix(0)[0] - 1.0 / 16.0).abs() < 1e-8);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
