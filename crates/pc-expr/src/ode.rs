@@ -1,7 +1,7 @@
 //! The interface to integrators: ẏ = f(t, y), its derivatives, its events.
 //!
 //! `vector_field` is the interface between those who derive equations and those who integrate them, `failure` says why it has no value; `events` are zeros
-//! of functions along a motion and resets there; `method` names the methods of integration. `pattern` says where a Jacobian may be nonzero, `colouring` which of
+//! of functions along a motion and resets there; `forward` is for wrappers of all these; `method` names the methods of integration. `pattern` says where a Jacobian may be nonzero, `colouring` which of
 //! its columns one product can separate, `rate_jump` where the rates jump, `switching` how a field
 //! of several pieces is held on one of them, `sliding` how it leads along a surface between two. `program_field` is a
 //! program as a vector field, `lane_field` one to be evaluated at many states at once, `varied` its series with
@@ -10,6 +10,7 @@
 pub(crate) mod colouring;
 pub(crate) mod events;
 pub(crate) mod failure;
+mod forward;
 pub(crate) mod lane_field;
 pub(crate) mod method;
 pub(crate) mod pattern;

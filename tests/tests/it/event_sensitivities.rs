@@ -1,7 +1,5 @@
 //! Derivatives of motions of models with events by their parameters, against differences of whole motions, on random models.
 
-use std::ops::ControlFlow;
-
 use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, Source, Variables};
 use pc_solve::{Method, Options, Sensitivities, SensitivitySolution, Solve};

@@ -1,7 +1,5 @@
 //! Tables in the functions of surfaces: belts whose speed jumps, and bodies that stick to them.
 
-use std::ops::ControlFlow;
-
 use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, Source, Variables};
 use pc_solve::{Method, Options, Sensitivities, Solve};

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::forward;
 use crate::ode::failure::Failure;
 use crate::program::program::Program;
 
@@ -185,46 +186,16 @@ pub trait Events {
 }
 
 impl<E: Events + ?Sized> Events for &mut E {
-    fn events(&self) -> &[Event] {
-        (**self).events()
-    }
-    fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
-        (**self).evaluate(t, y, values)
-    }
-    fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
-        (**self).program()
-    }
-    fn has_parameter_derivatives(&self) -> bool {
-        (**self).has_parameter_derivatives()
-    }
-    fn by_parameter(
-        &mut self,
-        event: usize,
-        parameter: usize,
-        t: f64,
-        y: &[f64],
-        reset: &mut [f64],
-    ) -> Result<f64, Failure> {
-        (**self).by_parameter(event, parameter, t, y, reset)
-    }
-    fn has_derivatives(&self) -> bool {
-        (**self).has_derivatives()
-    }
-    fn gradient(&mut self, event: usize, t: f64, y: &[f64], by_state: &mut [f64]) -> Result<f64, Failure> {
-        (**self).gradient(event, t, y, by_state)
-    }
-    fn reset_along(
-        &mut self,
-        event: usize,
-        t: f64,
-        y: &[f64],
-        along: (f64, &[f64]),
-        change: &mut [f64],
-    ) -> Result<(), Failure> {
-        (**self).reset_along(event, t, y, along, change)
-    }
-    fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-        (**self).reset(event, t, y)
+    forward! { (**self) =>
+        fn events(&self) -> &[Event];
+        fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
+        fn program(&self) -> Option<(&Arc<Program>, &[f64])>;
+        fn has_parameter_derivatives(&self) -> bool;
+        fn by_parameter(&mut self, event: usize, parameter: usize, t: f64, y: &[f64], reset: &mut [f64]) -> Result<f64, Failure>;
+        fn has_derivatives(&self) -> bool;
+        fn gradient(&mut self, event: usize, t: f64, y: &[f64], by_state: &mut [f64]) -> Result<f64, Failure>;
+        fn reset_along(&mut self, event: usize, t: f64, y: &[f64], along: (f64, &[f64]), change: &mut [f64]) -> Result<(), Failure>;
+        fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure>;
     }
 }
 

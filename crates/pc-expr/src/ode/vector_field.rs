@@ -1,5 +1,6 @@
 //! Vector fields ẏ = f(t, y), the interface to every integrator.
 
+use crate::forward;
 use crate::ode::failure::Failure;
 use crate::ode::lane_field::LaneField;
 use crate::ode::pattern::Pattern;
@@ -251,114 +252,39 @@ pub trait VectorField {
 macro_rules! behind {
     ($pointer:ty) => {
         impl<F: VectorField + ?Sized> VectorField for $pointer {
-            fn dim(&self) -> usize {
-                (**self).dim()
-            }
-            fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-                (**self).rhs(t, y, ydot)
-            }
-            fn checks_rates(&self) -> bool {
-                (**self).checks_rates()
-            }
-            fn has_jacobian(&self) -> bool {
-                (**self).has_jacobian()
-            }
-            fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
-                (**self).jacobian(t, y, jacobian)
-            }
-            fn sparsity(&self) -> Option<&Pattern> {
-                (**self).sparsity()
-            }
-            fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
-                (**self).sparse_jacobian(t, y, values)
-            }
-            fn has_jvp(&self) -> bool {
-                (**self).has_jvp()
-            }
-            fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
-                (**self).jvp(t, y, v, product)
-            }
-            fn has_vjp(&self) -> bool {
-                (**self).has_vjp()
-            }
-            fn vjp(&mut self, t: f64, y: &[f64], w: &[f64], product: &mut [f64]) -> Result<(), Failure> {
-                (**self).vjp(t, y, w, product)
-            }
-            fn parameters_len(&self) -> usize {
-                (**self).parameters_len()
-            }
-            fn has_parameter_jacobian(&self) -> bool {
-                (**self).has_parameter_jacobian()
-            }
-            fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
-                (**self).parameter_jacobian(t, y, jacobian)
-            }
-            fn parameter_size(&self, j: usize) -> Option<f64> {
-                (**self).parameter_size(j)
-            }
-            fn has_projection(&self) -> bool {
-                (**self).has_projection()
-            }
-            fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-                (**self).project(t, y)
-            }
-            fn time_dependence(&self) -> TimeDependence {
-                (**self).time_dependence()
-            }
-            fn steep_functions(&self) -> Option<SteepFunctions> {
-                (**self).steep_functions()
-            }
-            fn series(&mut self) -> Result<&TaylorSeries, Failure> {
-                (**self).series()
-            }
-            fn expand(
-                &mut self,
-                t: f64,
-                y: &[f64],
-                sides: &[f64],
-                order: usize,
-            ) -> Result<&TaylorSeries, Failure> {
-                (**self).expand(t, y, sides, order)
-            }
-            fn varied_series(&mut self, columns: &[Option<usize>]) -> Result<&TaylorSeries, Failure> {
-                (**self).varied_series(columns)
-            }
-            fn expand_varied(
-                &mut self,
-                columns: &[Option<usize>],
-                t: f64,
-                all: &[f64],
-                sides: &[f64],
-                order: usize,
-            ) -> Result<&TaylorSeries, Failure> {
-                (**self).expand_varied(columns, t, all, sides, order)
-            }
-            fn lanes(&mut self) -> Option<LaneField> {
-                (**self).lanes()
-            }
-            fn restart(&mut self, t: f64, y: &[f64]) {
-                (**self).restart(t, y);
-            }
-            fn breaks(&self) -> &[f64] {
-                (**self).breaks()
-            }
-            fn enter(&mut self, t: f64, end: f64) -> bool {
-                (**self).enter(t, end)
-            }
-            fn switching(&mut self) -> Option<&mut dyn Switching> {
-                (**self).switching()
-            }
-            fn held_time_dependence(&mut self) -> Option<TimeDependence> {
-                (**self).held_time_dependence()
-            }
-            fn jumps(&self) -> &[RateJump] {
-                (**self).jumps()
-            }
-            fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure> {
-                (**self).leads(from, to)
-            }
-            fn component_name(&self, i: usize) -> String {
-                (**self).component_name(i)
+            forward! { (**self) =>
+                fn dim(&self) -> usize;
+                fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
+                fn checks_rates(&self) -> bool;
+                fn has_jacobian(&self) -> bool;
+                fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure>;
+                fn sparsity(&self) -> Option<&Pattern>;
+                fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
+                fn has_jvp(&self) -> bool;
+                fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure>;
+                fn has_vjp(&self) -> bool;
+                fn vjp(&mut self, t: f64, y: &[f64], w: &[f64], product: &mut [f64]) -> Result<(), Failure>;
+                fn parameters_len(&self) -> usize;
+                fn has_parameter_jacobian(&self) -> bool;
+                fn parameter_jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure>;
+                fn parameter_size(&self, j: usize) -> Option<f64>;
+                fn has_projection(&self) -> bool;
+                fn project(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure>;
+                fn time_dependence(&self) -> TimeDependence;
+                fn steep_functions(&self) -> Option<SteepFunctions>;
+                fn series(&mut self) -> Result<&TaylorSeries, Failure>;
+                fn expand(&mut self, t: f64, y: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure>;
+                fn varied_series(&mut self, columns: &[Option<usize>]) -> Result<&TaylorSeries, Failure>;
+                fn expand_varied(&mut self, columns: &[Option<usize>], t: f64, all: &[f64], sides: &[f64], order: usize) -> Result<&TaylorSeries, Failure>;
+                fn lanes(&mut self) -> Option<LaneField>;
+                fn restart(&mut self, t: f64, y: &[f64]);
+                fn breaks(&self) -> &[f64];
+                fn enter(&mut self, t: f64, end: f64) -> bool;
+                fn switching(&mut self) -> Option<&mut dyn Switching>;
+                fn held_time_dependence(&mut self) -> Option<TimeDependence>;
+                fn jumps(&self) -> &[RateJump];
+                fn leads(&mut self, from: (f64, &[f64]), to: (f64, &[f64])) -> Result<(), Failure>;
+                fn component_name(&self, i: usize) -> String;
             }
         }
     };

@@ -8,6 +8,7 @@ mod derivatives;
 mod double;
 mod factor;
 mod folding;
+mod forwarding;
 mod held;
 mod jit;
 mod jit_circle;

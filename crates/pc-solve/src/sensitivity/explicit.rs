@@ -4,6 +4,7 @@
 
 use pc_expr::{
     Failure, Method, PolynomialMotion, SteepFunctions, Switching, TaylorSeries, TimeDependence, VectorField,
+    forward,
 };
 
 use crate::cvode::cvode::Cvode;
@@ -395,103 +396,34 @@ macro_rules! of_either {
 impl<F: VectorField> Stepper for Differentiated<F> {
     type Field = F;
 
-    fn field(&self) -> &F {
-        of_either!(self, method => method.field())
-    }
-
-    fn field_mut(&mut self) -> &mut F {
-        of_either!(self, method => method.field_mut())
-    }
-
     fn into_field(self) -> F {
         of_either!(self, method => method.into_field())
-    }
-
-    fn limits(&self) -> &Limits {
-        of_either!(self, method => method.limits())
-    }
-
-    fn limits_mut(&mut self) -> &mut Limits {
-        of_either!(self, method => method.limits_mut())
-    }
-
-    fn last_step(&self) -> LastStep {
-        of_either!(self, method => method.last_step())
-    }
-
-    fn end_state(&self) -> &[f64] {
-        of_either!(self, method => method.end_state())
-    }
-
-    fn time(&self) -> f64 {
-        of_either!(self, method => method.time())
-    }
-
-    fn stand_at(&mut self, t: f64) {
-        of_either!(self, method => method.stand_at(t));
-    }
-
-    fn step(&mut self, towards: f64) -> Result<(), SolveError> {
-        of_either!(self, method => method.step(towards))
-    }
-
-    fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
-        of_either!(self, method => method.interpolate(t, order))
-    }
-
-    fn centre(&self) -> f64 {
-        of_either!(self, method => method.centre())
-    }
-
-    fn restart(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        columns: &[f64],
-        direction: Option<f64>,
-    ) -> Result<(), SolveError> {
-        of_either!(self, method => method.restart(t, y, columns, direction))
-    }
-
-    fn enter_piece(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        columns: &[f64],
-        direction: Option<f64>,
-    ) -> Result<(), SolveError> {
-        of_either!(self, method => method.enter_piece(t, y, columns, direction))
-    }
-
-    fn stop_time(&self) -> Option<f64> {
-        of_either!(self, method => method.stop_time())
-    }
-
-    fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), SolveError> {
-        of_either!(self, method => method.set_stop_time(t))
-    }
-
-    fn statistics(&self) -> Statistics {
-        of_either!(self, method => method.statistics())
     }
 
     fn polynomial<'a>(&'a mut self, room: &'a mut Vec<f64>) -> Result<PolynomialMotion<'a>, SolveError> {
         of_either!(self, method => method.polynomial(room))
     }
 
-    fn tolerance(&self, i: usize, y: f64) -> f64 {
-        of_either!(self, method => method.tolerance(i, y))
-    }
-
-    fn least_size(&self) -> f64 {
-        of_either!(self, method => method.least_size())
-    }
-
-    fn columns(&self) -> Result<Vec<f64>, SolveError> {
-        of_either!(self, method => method.columns())
-    }
-
-    fn column_parameters(&self) -> &[Option<usize>] {
-        of_either!(self, method => method.column_parameters())
+    forward! { @of_either =>
+        fn field(&self) -> &F;
+        fn field_mut(&mut self) -> &mut F;
+        fn limits(&self) -> &Limits;
+        fn limits_mut(&mut self) -> &mut Limits;
+        fn last_step(&self) -> LastStep;
+        fn end_state(&self) -> &[f64];
+        fn time(&self) -> f64;
+        fn stand_at(&mut self, t: f64);
+        fn step(&mut self, towards: f64) -> Result<(), SolveError>;
+        fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError>;
+        fn centre(&self) -> f64;
+        fn restart(&mut self, t: f64, y: &[f64], columns: &[f64], direction: Option<f64>) -> Result<(), SolveError>;
+        fn enter_piece(&mut self, t: f64, y: &[f64], columns: &[f64], direction: Option<f64>) -> Result<(), SolveError>;
+        fn stop_time(&self) -> Option<f64>;
+        fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), SolveError>;
+        fn statistics(&self) -> Statistics;
+        fn tolerance(&self, i: usize, y: f64) -> f64;
+        fn least_size(&self) -> f64;
+        fn columns(&self) -> Result<Vec<f64>, SolveError>;
+        fn column_parameters(&self) -> &[Option<usize>];
     }
 }

@@ -27,6 +27,7 @@ mod failures;
 mod far_times;
 mod fields;
 mod forcing;
+mod forwarding;
 mod gradients;
 mod hybrid_motions;
 mod inequalities;

@@ -1,7 +1,5 @@
 //! A text run by the program's libraries, as `pc run` does.
 
-use std::ops::ControlFlow;
-
 use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, Source, Variables};
 use pc_solve::{Method, Options, Sensitivities, Solve};
