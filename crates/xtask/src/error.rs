@@ -40,6 +40,10 @@ pub(crate) enum Error {
     Numbers { example: String, wrong: String },
     /// The wheel of the Python package is not as it should be.
     Package { wrong: String },
+    /// Something about a release is not as it should be.
+    Unfit { wrong: String },
+    /// Points of the list of a release that failed.
+    Release { points: Vec<&'static str> },
     /// A command needs what this machine does not have and the workspace does without.
     Unavailable { what: String },
     /// Links of the book lead nowhere.
@@ -95,6 +99,8 @@ impl fmt::Display for Error {
             Error::Tests { failure, .. } => failure.fmt(f),
             Error::Installed { wrong } => write!(f, "the installed library: {wrong}"),
             Error::Numbers { example, wrong } => write!(f, "the example {example}: {wrong}"),
+            Error::Unfit { wrong } => f.write_str(wrong),
+            Error::Release { points } => write!(f, "not fit to be published: {}", points.join(", ")),
             Error::Package { wrong } => write!(f, "the Python package: {wrong}"),
             Error::Unavailable { what } => f.write_str(what),
             Error::Links { lost } => write!(f, "links that lead nowhere:\n  {}", lost.join("\n  ")),

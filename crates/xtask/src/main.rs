@@ -23,6 +23,7 @@ mod notices;
 mod packages;
 mod python;
 mod python_environment;
+mod release;
 mod setup;
 mod test;
 mod tools;
@@ -56,6 +57,8 @@ usage: cargo xtask <command>
                    with those of `pc`
   python [--quick] build the wheel of the Python package, install it in a fresh environment and test it there; --quick tests
                    what is built for debugging, without a wheel
+  release [POINT…] try everything that is to be so before a version is published, or these points of the list: tree, version,
+                   tests, compiler, packages, pages, wheel, materials; nothing is published
   valgrind         run the tests of failures, panics and events of pc-solve under valgrind, where it is installed
   install --prefix DIR [--libdir DIR] [--includedir DIR] [--destdir DIR]
                    build the C library and install it with its headers; `uninstall` with the same removes it
@@ -120,6 +123,7 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
                 python::run()
             }
         }
+        "release" => release::run(rest),
         "valgrind" => {
             no_more(name, rest)?;
             valgrind::run()

@@ -2,9 +2,10 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::command::{
-    announce_and_run, build_as_for_tests, built_program, cargo, target_directory, workspace_root,
+    announce_and_run, build_as_for_tests, built_program, cargo, target_directory, text_of, workspace_root,
 };
 use crate::error::Error;
 use crate::notices::of_dependencies;
@@ -28,14 +29,21 @@ const BUILDER: &str = "maturin>=1.9.4,<2";
 pub(crate) fn run() -> Result<(), Error> {
     setup::native_tools()?;
     announce_and_run(&mut cargo(&["build", "--package", "pc-cli", "--bin", "pc"]))?;
-    let wheel = wheel()?;
-    let size = fs::metadata(&wheel).map_err(|source| Error::of_file(&wheel, source))?.len();
+    tested(&wheel(&target_directory()?)?)
+}
+
+/// Installs a wheel in a fresh environment, and runs its tests there.
+///
+/// # Errors
+/// As for [`run`].
+pub(crate) fn tested(wheel: &Path) -> Result<(), Error> {
+    let size = fs::metadata(wheel).map_err(|source| Error::of_file(wheel, source))?.len();
     println!("{}: {:.1} MB", wheel.display(), size as f64 / 1e6);
     if size > LARGEST_WHEEL {
         let wrong = format!("the wheel has {size} bytes; {LARGEST_WHEEL} are allowed");
         return Err(Error::Package { wrong });
     }
-    let environment = installed(&wheel)?;
+    let environment = installed(wheel)?;
     import_time(&environment)?;
     check(&environment)
 }
@@ -64,12 +72,17 @@ const LIBRARY: &str = "libchetaev_native.dylib";
 #[cfg(not(target_os = "macos"))]
 const LIBRARY: &str = "libchetaev_native.so";
 
-/// The wheel as users get it, with the licences of all that is in it.
-fn wheel() -> Result<PathBuf, Error> {
-    let place = target_directory()?.join("python");
-    let wheels = place.join("wheels");
+/// The wheel as users get it, with the licences of all that is in it, compiled in a target directory; its time is that of the last
+/// commit, so that its bytes follow from the sources.
+///
+/// # Errors
+/// That of the first program that fails; [`Error::Unavailable`] without Python or the package index.
+pub(crate) fn wheel(target: &Path) -> Result<PathBuf, Error> {
+    let wheels = target.join("python/wheels");
     remove(&wheels)?;
-    let maturin = Environment::kept(&place.join("maturin"), &[BUILDER])?;
+    let maturin = Environment::kept(&target_directory()?.join("python/maturin"), &[BUILDER])?;
+    let mut last = Command::new("git");
+    let time = text_of(last.args(["log", "-1", "--format=%ct"]).current_dir(workspace_root()))?;
     let notices = package().join("LICENSE-OF-DEPENDENCIES");
     fs::write(&notices, of_dependencies("pc-python")?).map_err(|source| Error::of_file(&notices, source))?;
     let build = ["build", "--release", "--locked", "--compatibility", "linux", "--out"];
@@ -79,7 +92,8 @@ fn wheel() -> Result<PathBuf, Error> {
             .args(build)
             .arg(&wheels)
             .current_dir(package())
-            .env("CARGO_TARGET_DIR", target_directory()?),
+            .env("CARGO_TARGET_DIR", target)
+            .env("SOURCE_DATE_EPOCH", time.trim()),
     )?;
     only_file(&wheels)
 }
