@@ -78,8 +78,8 @@ pub enum AnalysisError {
         /// The coordinate.
         name: String,
     },
-    /// A box that contains nothing.
-    #[error("the box of `{name}` from {} to {} contains nothing", readable(*low), readable(*high))]
+    /// An empty box.
+    #[error("the box of `{name}` from {} to {} is empty", readable(*low), readable(*high))]
     EmptyBox {
         /// The coordinate.
         name: String,
