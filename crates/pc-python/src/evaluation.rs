@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use crate::error::Error;
 use crate::system::SystemCore;
 
-/// States computed before the first look at signals; how many then is a matter of the time they take.
+/// States computed before the first look at signals; after that the number depends on the time they take.
 const FIRST_PART: usize = 1 << 8;
 
 /// Between two looks at signals: well below the tenth of a second in which Ctrl-C is to end work, and long beside a look.

@@ -126,7 +126,7 @@ fn into_dict(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
 
 #[pymethods]
 impl SystemCore {
-    /// The motion that is wished, and what is said of it. The first one is compared with a second derivation unless `verify` says
+    /// The requested motion, and its summary. The first one is compared with a second derivation unless `verify` says
     /// otherwise of this one.
     fn integrate<'py>(
         &self,

@@ -1,1 +1,1 @@
-"""What comes of models and systems."""
+"""What models and systems give."""

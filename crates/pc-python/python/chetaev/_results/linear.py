@@ -29,7 +29,8 @@ def _complex(pairs: list[list[float]]) -> Complexes:
 class Linearization:
     """The motions near a state to first order: δẏ = A δy + B δu, δh = C δy + D δu.
 
-    The derivatives are exact. It is made by :meth:`Model.linearize`; printed it is the page of ``pc linearize``.
+    The derivatives are exact. It is made by :meth:`Model.linearize`; printing it shows the page of
+    ``pc linearize``.
 
     Attributes
     ----------
