@@ -1,4 +1,4 @@
-//! The kinds of errors: what whoever asked for a run can do about one.
+//! The kinds of errors, by what can be done about them.
 
 /// The kind of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

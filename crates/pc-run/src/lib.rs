@@ -5,8 +5,8 @@
 //! Variation ─► Design ─► Sweep ─► Journal ─► table, picture
 //! StateChoice ─► Linearized, Locus, Found     two Runs ─► Compared
 //! ```
-//! The program `pc` and the Python package are front ends of this crate: they say what is wished, watch as
-//! [`Observer`](observer::Observer), and show what comes out. Whatever the front end, the same wishes give the same numbers,
+//! The program `pc` and the Python package are front ends of this crate: they give the options, watch as
+//! [`Observer`](observer::Observer), and show the results. Whatever the front end, the same options give the same numbers,
 //! compared with the same second derivation.
 //!
 //! ```

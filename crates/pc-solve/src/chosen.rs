@@ -59,7 +59,7 @@ macro_rules! each {
 }
 
 impl<F: VectorField> Chosen<F> {
-    /// Starts at y(t0) = y0, as long as `field` has components.
+    /// Starts at y(t0) = y0, one number per component.
     ///
     /// # Errors
     /// As for `Cvode::new`, [`Dop853::new`], [`Taylor::new`] and `Auto::new`;

@@ -93,7 +93,7 @@ struct Node {
 }
 
 impl<F: VectorField> RungeKutta4<F> {
-    /// Starts at y(t0) = y0, as long as `field` has components.
+    /// Starts at y(t0) = y0, one number per component.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;

@@ -11,7 +11,7 @@ pub enum CompareError {
     /// One model in one form.
     #[error("there is one motion only: give another model, or two forms as in `--form poincare,canonical`")]
     OneMotion,
-    /// More forms than models.
+    /// More forms than models were given.
     #[error("--form: {count} forms are given for two motions; give one or two")]
     Forms {
         /// How many.
@@ -28,7 +28,7 @@ pub enum CompareError {
         /// That of the second.
         second: f64,
     },
-    /// There is nothing to be compared.
+    /// There is nothing to compare.
     #[error(
         "no column but the energy is in both motions: the first has {}, the second {}; say what corresponds, as in `--map \
          \"r=sqrt(x^2+y^2)\"`",

@@ -101,8 +101,8 @@ fn why(estimate: &ErrorEstimate, flow: &Flow) -> String {
     }
 }
 
-/// The time of the first row in which |errors| of the coordinates, of the velocities or of the first-order states exceed a tenth of
-/// their largest values, and `negligible`; not one of `others`.
+/// The time of the first row, other than the rows `others`, in which |errors| of the coordinates, of the velocities or of the
+/// first-order states exceed a tenth of their largest values and `negligible`.
 fn grown(table: &Table, negligible: f64, others: &[usize]) -> Option<f64> {
     let kinds = [table.coordinates(), table.quasi_velocities(), table.states()];
     let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();

@@ -1,4 +1,4 @@
-//! `pc run --sensitivities`: derivatives of the columns of a motion by parameters.
+//! `pc run --sensitivities`: derivatives of the columns of a motion with respect to parameters.
 
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
@@ -24,7 +24,8 @@ pub(crate) struct Derivatives {
 }
 
 impl Derivatives {
-    /// The derivatives by these parameters of the motion of a model, whose start may depend on them.
+    /// The derivatives of the motion of a model with respect to these parameters, on which its start may
+    /// depend.
     ///
     /// # Errors
     /// [`RunError::Model`] where the start has no derivative.
@@ -38,7 +39,7 @@ impl Derivatives {
         Ok(Derivatives { parameters: parameters.to_vec(), names, wanted, matrices: Vec::new() })
     }
 
-    /// Integrates the motion as far as possible; the error says why not further. `output` sees each
+    /// Integrates the motion as far as possible; the error says why it ended. `output` sees each
     /// output and may stop it.
     pub(crate) fn follow(
         &mut self,
@@ -75,7 +76,7 @@ impl Derivatives {
         self.take(solve_checkpointed_with_sensitivities(method, parts, from, times, every, save, step))
     }
 
-    /// Takes the derivatives of what was reached.
+    /// Takes the derivatives as far as they were reached.
     fn take(
         &mut self,
         solved: Result<SensitivitySolution, Box<SolveFailure<SensitivitySolution>>>,

@@ -124,7 +124,7 @@ pub enum SweepError {
     /// The record of a member does not fit the columns.
     #[error(transparent)]
     Misshapen(#[from] Misshapen),
-    /// The finished members cannot be read again.
+    /// The finished members cannot be read back.
     #[error("cannot draw the sweep: its finished members cannot be read")]
     Read(#[source] io::Error),
     /// The requested picture cannot be drawn.

@@ -25,7 +25,7 @@ pub enum Law {
     LogNormal(f64, f64),
 }
 
-/// Why numbers are no distribution.
+/// Why numbers do not give a distribution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LawError {
     /// There is no distribution of this name.

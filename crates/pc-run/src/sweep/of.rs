@@ -1,6 +1,6 @@
-//! What a sweep finds of each member.
+//! What a sweep computes for each member.
 
-/// What a sweep finds of each member.
+/// What a sweep computes for each member.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SweepOf {
     /// Its motion.
@@ -25,7 +25,7 @@ impl SweepOf {
         }
     }
 
-    /// The one of this word.
+    /// The one with this name.
     pub(crate) fn of_word(word: &str) -> Option<SweepOf> {
         SweepOf::ALL.into_iter().find(|of| of.word() == word)
     }

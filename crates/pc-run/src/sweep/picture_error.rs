@@ -1,6 +1,6 @@
 //! Why a sweep cannot be drawn.
 
-/// Most cells of a panel: a picture has no more points.
+/// The most cells of a panel: a picture has no more points.
 pub(super) const MOST_CELLS: u64 = 250_000;
 
 /// Why a sweep cannot be drawn.
@@ -14,7 +14,7 @@ pub enum SweepPlotError {
         /// How many quantities have more than one value.
         varied: usize,
     },
-    /// More members than cells of different colour.
+    /// More members than there are cells for colours.
     #[error(
         "{members} members are more than the {MOST_CELLS} colours that can be told apart; give fewer values"
     )]

@@ -27,7 +27,7 @@ impl Ensemble<'_> {
     ///
     /// `begin` returns any data of a member and, if lanes can integrate it, its
     /// [field](pc_expr::VectorField::lanes) and its state at t₀. `in_lane` turns its complete
-    /// motion into its result. `alone` integrates members for which there is no lane, or whose
+    /// motion into its result. `alone` integrates members that lanes do not support, or whose
     /// motion was not completed there; it should check [`Stop`] regularly. All are called on the
     /// thread that integrates.
     ///
@@ -136,7 +136,7 @@ where
     L: Fn(u64, C, Trajectory) -> T,
     A: Fn(u64, C, &Stop<'_>) -> T,
 {
-    /// The kernels for the next member in a lane; none if there is no member left, or to stop.
+    /// The kernels for the next member in a lane; none if there is no member left, or on a request to stop.
     fn prepare(&mut self) -> Option<Arc<Kernels>> {
         while !self.stop.requested()
             && let Some((member, known, field, start)) =

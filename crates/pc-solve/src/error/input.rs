@@ -118,15 +118,16 @@ pub enum InputError {
     #[error("the integration was begun without sensitivities")]
     NoSensitivities,
 
-    /// Derivatives of a motion are requested whose rates jump where it passes a surface, at a time that moves with
-    /// what it is differentiated by.
+    /// Derivatives are requested of a motion whose rates jump where it passes a surface, at a time that depends on
+    /// the variable of differentiation.
     #[error(
         "{0}: derivatives of the motion jump with it, which they would not show. Make the jump an event that switches a \
          state, or smooth it, as tanh does"
     )]
     RateJump(RateJump),
 
-    /// Derivatives by parameters are requested, with events whose derivatives by these are unknown.
+    /// Derivatives with respect to parameters are requested, with events whose derivatives with respect to
+    /// these are unknown.
     #[error(
         "an event resets the state, but does not say how its function and its reset depend on the parameters: sensitivities need these derivatives"
     )]

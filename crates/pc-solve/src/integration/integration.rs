@@ -31,8 +31,8 @@ use crate::integration::stepper::Stepper;
 /// Others are sampled at the ends of [`samples_per_step`](crate::Options::samples_per_step) equal
 /// parts of the step, again between two of these where divided differences leave doubt, and where
 /// three successive values suggest that a function passes through zero twice. Between two samples
-/// an even number of passages of such a function may be missed; of an odd number one is found, so
-/// that its sign is always known. After a passage the rest of the step is searched anew.
+/// an even number of passages of such a function may be missed; if the number is odd, one is found,
+/// so that its sign is always known. After a passage the rest of the step is searched anew.
 ///
 /// A passage is located to 1e-15 max(|t|, h/1000) in a step of length h, and functions that pass
 /// through zero within 16 times that of each other do so simultaneously: their resets are applied
@@ -95,7 +95,7 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) restarted: bool,
     /// Whether the motion has been restarted, by a reset for example.
     pub(crate) jumped: bool,
-    /// How it gets on.
+    /// Its pace.
     pub(crate) pace: Pace,
 }
 
@@ -241,8 +241,8 @@ pub(crate) fn directions(events: &impl Events, held: &HeldSides) -> Vec<Directio
 }
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// When occurrences of an event count as accumulated, which is an error; the default is that of
-    /// the [options](crate::Options::accumulation).
+    /// Sets when occurrences of an event count as accumulated, which is an error; the default is
+    /// that of the [options](crate::Options::accumulation).
     pub fn accumulation(mut self, accumulation: Accumulation) -> Self {
         self.engine.limits_mut().accumulation = accumulation;
         self

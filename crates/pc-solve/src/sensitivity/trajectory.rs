@@ -113,8 +113,8 @@ pub struct SensitivitySolution {
     pub trajectory: SensitivityTrajectory,
     /// The occurrences, in order.
     pub occurrences: Vec<Occurrence>,
-    /// Of each occurrence the [derivatives of its time](Integration::time_derivatives), one for each column; none are kept
-    /// with checkpoints.
+    /// For each occurrence the [derivatives of its time](Integration::time_derivatives), one for each column; none are
+    /// kept with checkpoints.
     pub time_derivatives: Vec<Vec<f64>>,
     /// How it ended; none if it failed.
     pub ending: Option<Ending>,
@@ -173,8 +173,8 @@ pub fn solve_with_sensitivities_and_events<F: VectorField, E: Events>(
     }
 }
 
-/// As [`solve_checkpointed`](crate::solve_checkpointed), with sensitivities, by any method: those of a checkpoint, and of
-/// the outputs before it, are in it. Derivatives of the times of events are not kept.
+/// As [`solve_checkpointed`](crate::solve_checkpointed), with sensitivities, by any method; a checkpoint contains its own
+/// and those of the outputs before it. Derivatives of the times of events are not kept.
 ///
 /// # Errors
 /// As there; [`InputError::Sensitivities`](crate::InputError::Sensitivities) if the checkpoint has another number of columns.

@@ -18,7 +18,7 @@ use crate::solve::solution::Solution;
 /// Integrates ẏ = f(t, y) from y(t0) = y0 by the method of the options and returns the states at
 /// `times`; [`Solve`] offers more choices.
 ///
-/// `y0` is as long as `field` has components. The times are monotonic, forwards or backwards; the
+/// `y0` has one number per component. The times are monotonic, forwards or backwards; the
 /// first may be t0. The vector field is not evaluated beyond the last time, nor beyond the stop
 /// time of the options.
 ///
