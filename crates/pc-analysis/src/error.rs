@@ -73,7 +73,7 @@ pub enum AnalysisError {
         residual: f64,
     },
     /// A box for a coordinate that equilibria do not depend on.
-    #[error("`{name}` is cyclic: equilibria stand at any value of it, so that it has no box")]
+    #[error("`{name}` is cyclic: equilibria exist at any value of it, so it takes no box")]
     CyclicBox {
         /// The coordinate.
         name: String,

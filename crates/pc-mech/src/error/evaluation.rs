@@ -48,7 +48,7 @@ pub enum EvaluationError {
     },
     /// Equations of variation of a motion of several pieces, whose deviations jump from one to the next.
     #[error(
-        "deviations from this motion jump where it passes through {}: integrate them as sensitivities by the start, which do so",
+        "deviations from this motion jump where it passes through {}: integrate them as sensitivities to the start, which jump there",
         .surfaces.join(" = 0 or ") + " = 0"
     )]
     Pieces {

@@ -341,8 +341,8 @@ pub enum MeaningError {
     /// An axis without direction.
     #[error("the axis has length 0")]
     ZeroAxis,
-    /// A matrix that is no rotation.
-    #[error("these nine entries are no rotation: R·Rᵀ differs from 1 by {}, and the determinant is {}", rounded(*defect), rounded(*determinant))]
+    /// A matrix that is not a rotation.
+    #[error("these nine entries are not a rotation: R·Rᵀ differs from 1 by {}, and the determinant is {}", rounded(*defect), rounded(*determinant))]
     NotARotation {
         /// The largest entry of R Rᵀ − 1.
         defect: f64,
@@ -351,7 +351,7 @@ pub enum MeaningError {
     },
     /// The matrix of a body in redundant coordinates, at the start.
     #[error(
-        "the matrix of `{body}` is no rotation at the start: its columns are not orthogonal and of one length, by {}",
+        "the matrix of `{body}` is not a rotation at the start: its columns are not orthogonal and of one length, by {}",
         rounded(*defect)
     )]
     NotARotationAtTheStart {
@@ -448,8 +448,8 @@ pub enum MeaningError {
         /// Whether a velocity moves no mass there.
         is_massless: bool,
     },
-    /// A tolerance of what is no component of the state.
-    #[error("`{name}` is no component of the state")]
+    /// A tolerance for something that is not a component of the state.
+    #[error("`{name}` is not a component of the state")]
     UnknownComponent {
         /// The name.
         name: String,

@@ -78,7 +78,7 @@ pub enum SweepError {
         path: PathBuf,
     },
     /// There is no shard to be merged.
-    #[error("there are no shards to put together: give the files that `pc sweep --shard` has left")]
+    #[error("there are no shards to put together: give the files that `pc sweep --shard` has written")]
     NoShards,
     /// Two shards are of different sweeps.
     #[error("{} and {} are not of the same sweep: the first has {what}", path.display(), other.display())]

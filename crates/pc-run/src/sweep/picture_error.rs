@@ -8,7 +8,7 @@ pub(super) const MOST_CELLS: u64 = 250_000;
 pub enum SweepPlotError {
     /// More quantities are varied than can be drawn.
     #[error(
-        "{varied} values are varied; of a grid over one or two values, or of drawn members, a picture can be made"
+        "{varied} values are varied; a picture can be made of a grid over one or two values, or of random members"
     )]
     Varied {
         /// How many quantities have more than one value.
