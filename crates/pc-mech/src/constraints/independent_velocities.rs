@@ -162,7 +162,7 @@ impl<'g> Multipliers<'g> {
         Ok(LeastSquares::of(&square).is_ok_and(|square| square.reciprocal_condition() > WELL))
     }
 
-    /// The reactions λ in terms of (t, x) and independent quasi-velocities, each given with its acceleration: with the
+    /// The reactions λ in terms of (t, x) and independent quasi-velocities, each given with its acceleration. With the
     /// dependent ones [solved for](Multipliers::solved_for), from their rows of M η̇ = r + Cᵀ λ,
     ///
     ///   C_αD λ_α = (M η̇ − r)_D,

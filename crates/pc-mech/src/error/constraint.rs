@@ -71,7 +71,7 @@ pub enum ConstraintError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// A constraint whose condition on velocities jumps along the motion, so that velocities do.
+    /// A constraint whose condition on velocities jumps along the motion, and with it the velocities.
     #[error("the condition of `{constraint}` on velocities jumps at {}: velocities jump there", at(place))]
     Jumps {
         /// Its name.

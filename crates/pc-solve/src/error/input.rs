@@ -121,7 +121,7 @@ pub enum InputError {
     /// Derivatives are requested of a motion whose rates jump where it passes a surface, at a time that depends on
     /// the variable of differentiation.
     #[error(
-        "{0}: derivatives of the motion jump with it, which they would not show. Make the jump an event that switches a \
+        "{0}: the derivatives of the motion jump with it, and would not show this. Make the jump an event that switches a \
          state, or smooth it, as tanh does"
     )]
     RateJump(RateJump),

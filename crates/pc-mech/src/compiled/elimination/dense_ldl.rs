@@ -20,7 +20,7 @@ const DEPENDENT: f64 = 1e-13;
 #[derive(Clone, Debug)]
 pub(crate) struct DenseLdl {
     matrix: Mat<f64>,
-    /// The sizes that pivots are compared with: the diagonal of M, unless others are given.
+    /// The sizes that pivots are compared with: the diagonal of M unless given.
     sizes: Vec<f64>,
     pivots: Vec<f64>,
     scratch: Vec<MaybeUninit<u8>>,
@@ -40,7 +40,7 @@ impl DenseLdl {
         }
     }
 
-    /// Factorises M, given by its `values` at the places `lower` on and below the diagonal; all are finite.
+    /// Factorises M, given by its `values` at the indices `lower` on and below the diagonal; all are finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.

@@ -78,7 +78,7 @@ impl Schur {
         self.equations.program().cost().total() + of_a_loop * factors
     }
 
-    /// Writes η̇, then λ, and zeros after them; false where another way has to be taken.
+    /// Writes η̇, then λ, and zeros after them; false if another method has to be used.
     pub(crate) fn solve(&mut self, Point { t, y, p }: Point<'_>, unknowns: &mut [f64]) -> bool {
         self.equations.eval(t, y, p, &mut self.values);
         let (k, m) = (self.k, self.m);

@@ -203,8 +203,8 @@ fn angular_velocities<'g>(
     Ok(rates.into_iter().map(angular).collect())
 }
 
-/// Whether RᵀR is a multiple of the unit matrix and R no reflection. Where n > k this may hold only on the
-/// surface of the motion, which is unknown here.
+/// Whether RᵀR is a multiple of the unit matrix and R is not a reflection. Where n > k this may hold only
+/// on the surface of the motion, which is unknown here.
 fn check_rotation<'g>(rotation: &Matrix<Expr<'g>>, moving: &Moving<'_, 'g>) -> Result<(), MechError> {
     if moving.frame.coordinates().len() > moving.frame.operators() {
         return Ok(());
