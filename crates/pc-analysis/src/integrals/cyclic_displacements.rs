@@ -6,7 +6,7 @@ use pc_mech::{Expr, Number, System};
 
 use crate::integrals::polynomials::combination;
 
-/// A displacement X = a_s X_s with constant a_s whose momentum a_s y_s the motion keeps.
+/// A displacement X = a_s X_s with constant a_s whose momentum a_s y_s the motion conserves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CyclicDisplacement<'g> {
     /// a_1..a_k, whole and coprime.

@@ -17,7 +17,7 @@ impl Model {
     /// The mechanical system, its expressions in `graph`, and its start state.
     ///
     /// # Errors
-    /// [`ModelError`] at the place in the file that is to blame.
+    /// [`ModelError`] at the place in the file that causes it.
     pub fn assemble<'g>(&self, graph: &'g Graph) -> Result<Assembly<'g>, ModelError> {
         self.parameter_values().check(self.document())?;
         let assembler =
