@@ -56,7 +56,7 @@ impl<'g> NoetherField<'g> {
     }
 }
 
-/// X_r a_m + a_s c_rs^m = 0 for r = 0..k, m = 1..k, as far as the graph tells.
+/// X_r a_m + a_s c_rs^m = 0 for r = 0..k, m = 1..k, as far as the graph can decide.
 fn commutes<'g>(system: &System<'g>, a: &[Expr<'g>]) -> bool {
     let (frame, structure, k) = (system.frame(), system.structure(), a.len());
     if structure.operators() != k {

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use crate::ode::failure::Failure;
 use crate::program::program::Program;
 
-/// The direction in which a function passes through zero along the integration: against time where this goes backwards.
+/// The direction in which a function passes through zero along the integration: against time if the
+/// integration goes backwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Direction {
     /// From below.
@@ -118,10 +119,10 @@ pub trait Events {
     }
 
     /// Returns ∂g/∂pⱼ of event number `event` for the parameter number `parameter` of the vector field, and
-    /// writes ∂R/∂pⱼ of its reset, as long as the state: zeros where nothing is reset or does not depend on
-    /// pⱼ.
+    /// writes ∂R/∂pⱼ of its reset, as long as the state: zeros where nothing is reset or where the reset
+    /// does not depend on pⱼ.
     ///
-    /// Called only if there [are such](Events::has_parameter_derivatives), for sensitivities.
+    /// Called only if [they exist](Events::has_parameter_derivatives), for sensitivities.
     ///
     /// # Errors
     /// [`Failure`] where one is not defined; it ends the integration.
@@ -144,7 +145,7 @@ pub trait Events {
 
     /// Returns ∂g/∂t of event number `event`, and writes ∂g/∂y, as long as the state.
     ///
-    /// Called only if there [are such](Events::has_derivatives), for sensitivities.
+    /// Called only if [they exist](Events::has_derivatives), for sensitivities.
     ///
     /// # Errors
     /// [`Failure`] where one is not defined; it ends the integration.
@@ -160,7 +161,7 @@ pub trait Events {
 
     /// Writes τ ∂R/∂t + (∂R/∂y) v of the reset of event number `event` along (τ, v), as long as the state.
     ///
-    /// Called only if there [are such](Events::has_derivatives), for sensitivities.
+    /// Called only if [they exist](Events::has_derivatives), for sensitivities.
     ///
     /// # Errors
     /// [`Failure`] where one is not defined; it ends the integration.

@@ -30,7 +30,7 @@ pub struct Check<'g> {
     pub(super) algebra: String,
     pub(super) mass_rank: usize,
     negative_energy: bool,
-    /// What is said of masses that change in time.
+    /// Remarks on masses that change in time.
     changing_masses: Option<String>,
     /// The number of its rows.
     free: usize,
@@ -58,7 +58,7 @@ impl<'g> Check<'g> {
     /// The properties of an assembled model with its equations in independent quasi-velocities.
     ///
     /// # Errors
-    /// [`ModelError`] if something of it cannot be derived.
+    /// [`ModelError`] if some part cannot be derived.
     pub fn new(
         model: &Model,
         assembly: &Assembly<'g>,
@@ -243,7 +243,7 @@ impl<'g> Check<'g> {
     }
 }
 
-/// The algebra of the operators in words, for the values of the parameters if it depends on them.
+/// The algebra of the operators in words, for the present values of the parameters if it depends on them.
 fn algebra(system: &System<'_>) -> String {
     let (always, bound) = (system.structure(), system.with_parameters_bound());
     match bound.structure().are_constant() && !always.are_constant() {

@@ -13,13 +13,13 @@ use crate::page::{equations, formulas, motion, theory};
 use crate::record::Record;
 use crate::scene::Scene;
 
-/// Columns of a line of a formula.
+/// The width of a line of a formula, in columns.
 const WIDTH: usize = 92;
 /// Texts of more lines are folded until opened.
 const LONG_TEXT: usize = 40;
 
-/// All that is known of a model, and of its motion if there is one, as one page for a browser. The same model
-/// gives the same bytes.
+/// Everything known about a model, and about its motion if there is one, as one page for a browser. The same
+/// model gives the same bytes.
 ///
 /// # Errors
 /// [`ReportError`] if the equations cannot be derived, or a second derivation disagrees with the first.

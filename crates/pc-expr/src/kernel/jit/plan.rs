@@ -87,7 +87,7 @@ pub(super) struct Stay {
     pub(super) dies: bool,
 }
 
-/// No further use.
+/// The value that stands for no further use.
 const NEVER: u32 = u32::MAX;
 
 impl Plan {
