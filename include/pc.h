@@ -18,7 +18,7 @@
  *
  * Errors. A function that can fail returns a pc_status; its last argument is a place for a
  * pc_error, or NULL. On success it writes NULL there, otherwise a new error, which you free; what
- * the place held before does not matter. PC_STOPPED and PC_EVENT are no failures: an observer, or
+ * the place held before does not matter. PC_STOPPED and PC_EVENT are not failures: an observer, or
  * a terminal event, has ended an integration. Results are written unless the call fails; after a
  * failure a new handle or text is NULL, and arrays for results may hold anything.
  *
@@ -122,7 +122,7 @@ typedef enum {
    */
   PC_INTEGRATION = 8,
   /**
-   * An observer stopped the integration. This is no failure, and there is no pc_error.
+   * An observer stopped the integration. This is not a failure, and there is no pc_error.
    */
   PC_STOPPED = 9,
   /**
@@ -136,7 +136,7 @@ typedef enum {
    */
   PC_INTERNAL = 11,
   /**
-   * A terminal event ended the integration. This is no failure, and there is no pc_error.
+   * A terminal event ended the integration. This is not a failure, and there is no pc_error.
    */
   PC_EVENT = 12,
   /**
@@ -780,8 +780,8 @@ pc_status pc_model_hold_start(pc_model *model, const char *name, pc_error **erro
 pc_status pc_model_observe_reactions(pc_model *model, int yes, pc_error **error);
 
 /**
- * Sets whether systems of the model are derived with their derivatives by parameters, which
- * pc_solver_add_sensitivity needs. Any value but 0 means yes.
+ * Sets whether systems of the model are derived with their derivatives with respect to parameters,
+ * which pc_solver_add_sensitivity needs. Any value but 0 means yes.
  */
 pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
 
@@ -831,7 +831,7 @@ pc_status pc_model_add_parameter_expression(pc_model *model,
 /**
  * Adds a first-order state with its value at the start and its rate: an expression of time,
  * coordinates, velocities and states. It is integrated with the motion and comes after the
- * velocities in the state; it is no part of the frame.
+ * velocities in the state; it is not part of the frame.
  */
 pc_status pc_model_add_state(pc_model *model,
                              const char *name,
@@ -1935,16 +1935,15 @@ pc_status pc_system_to_quasi_velocities(const pc_system *system,
 pc_status pc_system_print(const pc_system *system, int format, char **text, pc_error **error);
 
 /**
- * Writes the equations as C source that depends on nothing of this library: the text of NAME.h
+ * Writes the equations as C source that does not depend on this library: the text of NAME.h
  * and of NAME.c, where NAME is `name`, made an identifier: Greek letters by their names, runs
  * of other characters as one `_`, none at the ends, `n_` before a leading digit, `_` after a
  * keyword of C. The source has the right-hand side, its Jacobian, the mass matrix, the
- * energy, the integrals and the outputs of independent quasi-velocities, those of its momenta
- * where the system has these, and says at its head how it is used. External forces are
- * parameters, after the others, called `Q_` and the name of their quasi-velocity, and
- * zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
- * capitals) to a program that integrates from the start of the model to that time. Free both
- * texts with pc_string_free.
+ * energy, the integrals and the outputs of independent quasi-velocities, or those of its momenta
+ * if the system has these, and explains its use at its head. External forces are parameters, after
+ * the others, called `Q_` and the name of their quasi-velocity, and zero until they are set. If
+ * `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
+ * integrates from the start of the model to that time. Free both texts with pc_string_free.
  */
 pc_status pc_system_emit_c(const pc_system *system,
                            const char *name,
@@ -1954,7 +1953,7 @@ pc_status pc_system_emit_c(const pc_system *system,
                            pc_error **error);
 
 /**
- * Prints what can be said of the motions without integrating them, as `pc theory` does: momenta
+ * Prints the analysis of the motions without integrating them, as `pc theory` does: momenta
  * and their brackets, Casimirs, integrals, cyclic displacements, invariant measure, Chaplygin's
  * multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each claim is
  * marked proved, disproved or open. Integrals are sought that are polynomials of a `degree`
@@ -2207,8 +2206,8 @@ pc_status pc_system_start_by_parameter(const pc_system *system,
  * of the start, which pc_system_start_by_parameter gives for that of the model; NULL, of
  * length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
  * Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where
- * an event of the program does. For an input with a table it is the derivative by a shift of
- * all its values.
+ * an event of the program does. For an input with a table it is the derivative with respect to a
+ * shift of all its values.
  */
 pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     size_t parameter,

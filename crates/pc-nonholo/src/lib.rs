@@ -7,8 +7,8 @@
 //!
 //! # Which constraints are nonholonomic
 //!
-//! A [`Constraint`](pc_mech::Constraint) is a condition f(t, x) = 0, or one on velocities. Of those on
-//! velocities some can be integrated, and some follow from others or contradict them. A
+//! A [`Constraint`](pc_mech::Constraint) is a condition f(t, x) = 0, or one on velocities. Some conditions on
+//! velocities can be integrated, and some follow from others or contradict them. A
 //! [`ConstraintClassification`] says which: with X'_1..X'_l a basis of the velocities allowed and X'_0 one of
 //! them,
 //!
@@ -115,7 +115,7 @@
 //!
 //! d/dt ∂θ/∂η_s = (c_rs^m η_r + c_0s^m) ∂θ/∂η_m + (c_rs^α η_r + c_0s^α)(∂T/∂η_α)_0 + X_s (θ + U) + Q_s, m ≤ l (32).
 //!
-//! Without the second term, as if the constraints had been put into L first, they would be wrong.
+//! Without the second term, as if the constraints had been substituted into L first, they would be wrong.
 //! [`Constrained::free_system`] counts this term among the forces: it is a complete [`System`](pc_mech::System) of l
 //! quasi-velocities, whose canonical equations are (34). Its bracket does not satisfy Jacobi's identity.
 //!

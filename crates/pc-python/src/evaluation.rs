@@ -52,7 +52,7 @@ enum Order {
     Components,
 }
 
-/// What is computed of a state.
+/// The quantity computed from a state.
 pub(crate) struct Quantity<F> {
     /// The shape for one state; none for a number.
     pub(crate) shape: Vec<usize>,

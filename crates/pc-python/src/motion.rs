@@ -22,7 +22,8 @@ use crate::plan::Wished;
 use crate::system::SystemCore;
 use crate::task::attended;
 
-/// The part of the size of a state by which it may be off constraints: what is less, the first step takes away.
+/// The fraction of the size of a state by which it may be off constraints: the first step removes anything
+/// smaller.
 const OFF: f64 = 1e-6;
 
 /// An error unless a state satisfies the constraints on which the steps of motions are kept, those on velocities and the lengths of

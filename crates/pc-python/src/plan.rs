@@ -81,7 +81,7 @@ impl Wished {
         Ok(Plan { deadline: Deadline::new(&limits), ..Plan::of(model, &wishes)? })
     }
 
-    /// Whether there are derivatives by parameters.
+    /// Whether there are derivatives with respect to parameters.
     pub(crate) fn differentiates(&self) -> bool {
         !self.sensitivities.is_empty()
     }

@@ -13,7 +13,7 @@ pub enum Kind {
     Conserved,
     /// Outputs of the model, reactions among them.
     Outputs,
-    /// Derivatives by parameters.
+    /// Derivatives with respect to parameters.
     Derivatives,
     /// Estimated global errors of the other columns.
     Errors,

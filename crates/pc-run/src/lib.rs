@@ -1,4 +1,4 @@
-//! A run of a model: what is asked for becomes a plan, the plan a motion, the motion a table.
+//! A run of a model: the options become a plan, the plan a motion, the motion a table.
 //!
 //! ```text
 //! Wishes ─ Model ─► Plan ─► Run ─► table, summary, record

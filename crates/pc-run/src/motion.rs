@@ -1,7 +1,7 @@
 //! The computation of a motion, from a plan to a finished run.
 //!
 //! `integrate` makes a [`Run`](run::Run) of a model and its plan, with equations that may have been `derived` before. `checkpoints`, with their `identity` and `checkpoint_error`,
-//! continue an interrupted run; `sensitivities` are derivatives by parameters, `estimate` the global
+//! continue an interrupted run; `sensitivities` are derivatives with respect to parameters, `estimate` the global
 //! errors; `streamed` is a motion whose rows are written at once. `verification` compares it with a second derivation, `remarks` are notes on the equations. `lost_integral`
 //! finds, at some `step_states`, an integral that was proved to be kept and is `lost`; `lost_inertia` finds why a mass matrix became singular. `fine` is the motion between its
 //! rows, for pictures; `table` and `run` are the results, which `output` writes, `summary` puts into words and `record` prepares for pages and pictures.

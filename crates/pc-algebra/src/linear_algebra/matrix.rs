@@ -11,7 +11,7 @@ pub trait MatrixEntry: Copy + PartialEq {
     /// 0
     const ZERO: Self;
     /// Whether a matrix stores only its nonzero entries: frames and masses of n independent bodies have n²
-    /// expressions, of which some n are not zero.
+    /// expressions, of which about n are not zero.
     const IS_SPARSE: bool;
     /// Whether the entry is left out of a sparse matrix.
     fn is_nothing(&self) -> bool;

@@ -13,7 +13,7 @@ use crate::integrals::polynomials::independent;
 
 /// A Poisson bracket (f, g) = P_ij ∂f/∂z_i ∂g/∂z_j of functions of the variables z, with P_ij = (z_i, z_j).
 ///
-/// Of a system, z = (x, y), it is
+/// For a system, with z = (x, y), it is
 ///
 ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m   (12),
 ///
@@ -36,7 +36,8 @@ pub struct PoissonBracket<'g> {
 
 /// The symbols of the system that are neither variables of its bracket nor quasi-velocities: time unless it
 /// is a variable, parameters, and any others in its equations. Where L is not quadratic, H contains the
-/// quasi-velocities; at their values its derivatives by the other symbols are those of H(x, y).
+/// quasi-velocities; at their values its derivatives with respect to the other symbols are those of H(x,
+/// y).
 fn constants<'g>(system: &System<'g>, variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let closed = quadratic(system.graph(), system.lagrangian(), system.quasi_velocities()).is_some();
     let mut constants = system.symbols();

@@ -20,7 +20,7 @@ pub struct Linearization {
     pub t: f64,
     /// The whole state with its names.
     pub state: Vec<(String, f64)>,
-    /// Whether all rates vanish but those of cyclic coordinates.
+    /// Whether all rates except those of cyclic coordinates vanish.
     pub is_steady: bool,
     /// √Σ f_i² over the components that are not cyclic.
     pub residual: f64,

@@ -77,7 +77,8 @@ pub struct Linearizer {
     outputs: Vec<String>,
     /// The positions, the kept functions and the conditions on velocities, then their slopes.
     surface: Evaluator,
-    /// b, M, and for each output its derivatives by the state, the accelerations, the reactions and the inputs.
+    /// b, M, and for each output its derivatives with respect to the state, the accelerations, the reactions
+    /// and the inputs.
     parts: Evaluator,
     /// The reactions in the outputs.
     reactions: Option<Reactions>,

@@ -72,8 +72,8 @@ impl Reactions {
         })
     }
 
-    /// λ and its derivatives at (t, y), a state with these names, for η̇ with these derivatives by the state and by
-    /// the inputs.
+    /// λ and its derivatives at (t, y), a state with these names, for η̇ with these derivatives with respect to the
+    /// state and by the inputs.
     ///
     /// # Errors
     /// [`AnalysisError::ReactionsUndetermined`] if the constraints are dependent.

@@ -46,9 +46,9 @@ pub struct Eigenvalue {
 /// |A|, some with a positive real part. Zeros in blocks are the rule here: a family of steady motions gives A
 /// a kernel, and an angle whose speed changes along the family a block of two. Therefore they are split off
 /// by orthogonal transformations first: with A = U Σ Vᵀ of rank r, A and its compression to the image, the r
-/// × r matrix U_rᵀ A U_r, have the same eigenvalues but for n − r zeros; this is repeated until the rest is
-/// regular. The numbers split off are [`zero_blocks`](Spectrum::zero_blocks) (V. N. Kublanovskaya's method
-/// for the Jordan structure).
+/// × r matrix U_rᵀ A U_r, have the same eigenvalues except for n − r zeros; this is repeated until the rest
+/// is regular. The numbers split off are [`zero_blocks`](Spectrum::zero_blocks) (V. N. Kublanovskaya's
+/// method for the Jordan structure).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     eigenvalues: Vec<Eigenvalue>,

@@ -260,7 +260,7 @@ fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>,
     Ok(cyclic)
 }
 
-/// The largest set of coordinates on which no rates depend but those of the set itself.
+/// The largest set of coordinates on which no rates depend except those of the set itself.
 pub(crate) fn cyclic_coordinates(pattern: &Pattern, coordinates: usize) -> Vec<usize> {
     let mut cyclic: Vec<usize> = (0..coordinates).collect();
     loop {

@@ -102,7 +102,7 @@ pub unsafe extern "C" fn pc_system_rhs(
     }
 }
 
-/// Writes ydot by machine code alone; false where f is more than that, or fails, or the
+/// Writes ydot by machine code alone; false if f is more than that, or fails, or the
 /// parameters change meanwhile.
 ///
 /// # Safety

@@ -54,8 +54,8 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
 /// of the start, which pc_system_start_by_parameter gives for that of the model; NULL, of
 /// length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
 /// Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where
-/// an event of the program does. For an input with a table it is the derivative by a shift of
-/// all its values.
+/// an event of the program does. For an input with a table it is the derivative with respect to a
+/// shift of all its values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_add_sensitivity(
     solver: *mut pc_solver,

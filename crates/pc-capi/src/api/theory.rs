@@ -17,7 +17,7 @@ use crate::machinery::system::pc_system;
 /// The largest degree in the velocities of integrals that are looked for.
 const MOST_DEGREE: usize = 6;
 
-/// Prints what can be said of the motions without integrating them, as `pc theory` does: momenta
+/// Prints the analysis of the motions without integrating them, as `pc theory` does: momenta
 /// and their brackets, Casimirs, integrals, cyclic displacements, invariant measure, Chaplygin's
 /// multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each claim is
 /// marked proved, disproved or open. Integrals are sought that are polynomials of a `degree`

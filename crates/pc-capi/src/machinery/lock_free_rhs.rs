@@ -28,7 +28,7 @@ pub(crate) struct Direct {
 const ON_STACK: usize = 4096;
 
 impl Direct {
-    /// The code with the current parameters, compiled on first use; none where the field is more
+    /// The code with the current parameters, compiled on first use; none if the field is more
     /// than machine code. It lives as long as the field.
     pub(crate) fn of(field: &mut MotionField) -> Option<Direct> {
         let code = field.machine_code()?;
@@ -76,7 +76,7 @@ impl Direct {
         self.room
     }
 
-    /// Writes ẏ. False where f fails or the parameters change meanwhile; ẏ is then undefined.
+    /// Writes ẏ. False if f fails or the parameters change meanwhile; ẏ is then undefined.
     ///
     /// # Safety
     /// `y` and `ydot` have place for [`dim`](Direct::dim) numbers and share no memory; the field lives.

@@ -160,7 +160,8 @@ impl Dag {
         outputs.iter().map(|&output| rate_of(output)).collect()
     }
 
-    /// Calls `visit(dag, child, p, q)` for each child of `node`, where q·p is the partial derivative by that child.
+    /// Calls `visit(dag, child, p, q)` for each child of `node`, where q·p is the partial derivative with
+    /// respect to that child.
     fn for_each_partial(&mut self, node: NodeId, mut visit: impl FnMut(&mut Dag, NodeId, Atom, Number)) {
         match self.node(node) {
             Node::Constant(_) | Node::Symbol(_) => {}

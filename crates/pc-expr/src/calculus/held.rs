@@ -29,7 +29,7 @@ pub struct Surface<'g> {
 }
 
 impl Graph {
-    /// The expressions with their pieces held: with the side s of each surface g that passes where the `moving` symbols
+    /// The expressions with their pieces held: with the side s of each surface g that is passed as the `moving` symbols
     /// change,
     /// ```text
     /// sign(g) = s,   |g| = s g,   step(g, a, b) = step(s, a, b),   min(a, b) = step(s, b, a) with g = a − b,

@@ -206,8 +206,8 @@ impl Dag {
     /// Interns a candidate. If folding by value is on, constants are recognised, and an existing node of
     /// equal value up to sign is returned if it is at least as good.
     ///
-    /// Of two forms of one function the better one divides by less, as x + 1 has a value at x = 1 and (x² −
-    /// 1)/(x − 1) has none, and takes fewer roots, as (√x − 1)² + 2√x is undefined below 0; if neither is
+    /// Of two forms of one function, the better one divides by less, as x + 1 has a value at x = 1 and (x²
+    /// − 1)/(x − 1) has none, and takes fewer roots, as (√x − 1)² + 2√x is undefined below 0; if neither is
     /// worse, the shorter one is better. Two forms, each with a divisor that the other lacks, stay separate
     /// nodes; so do two forms if one contains a [confined](Dag::confine) symbol.
     ///

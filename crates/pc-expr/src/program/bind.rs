@@ -18,9 +18,9 @@ impl Program {
     /// out. It takes no more operations, and its results are the same to the last bit where they are finite,
     /// up to the sign of zero.
     ///
-    /// Numbers put into expressions before these become a program may make it shorter or longer: the normal
-    /// form multiplies them into sums, so a sum that is computed once in the free program and multiplied by
-    /// several parameters becomes a different sum for each number.
+    /// Substituting numbers into expressions before they become a program may make it shorter or longer:
+    /// the normal form multiplies them into sums, so a sum that is computed once in the free program and
+    /// multiplied by several parameters becomes a different sum for each number.
     ///
     /// ```
     /// use pc_expr::{Graph, Inputs, Program};

@@ -68,7 +68,7 @@ struct Tangent<'a> {
     writer: &'a mut Assembler,
     /// Where the values of the registers are.
     values: &'a [Register],
-    /// The derivatives so far; none where they are 0.
+    /// The derivatives so far; none if they are 0.
     slopes: Vec<Option<Register>>,
 }
 

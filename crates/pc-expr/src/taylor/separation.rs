@@ -81,7 +81,7 @@ impl RootSeparation {
     /// Leaves out these outputs, and no others, from now on: their roots are not separated.
     ///
     /// # Panics
-    /// If there is no output of such a number.
+    /// If there is no output with such a number.
     pub fn leave_out(&mut self, outputs: impl IntoIterator<Item = usize>) {
         self.left_out.fill(false);
         outputs.into_iter().for_each(|output| self.left_out[output] = true);
@@ -94,7 +94,7 @@ impl RootSeparation {
 
     /// Appends places s, in order from the first to the last of these, between which each output has at most one root along the motion. The
     /// last place is s = 1, unless many roots lie before it: then the places end where the next call begins. Returns whether the roots are
-    /// separated: not those of a function that touches zero, or is zero but for rounding.
+    /// separated: not those of a function that touches zero, or is zero up to rounding.
     ///
     /// # Panics
     /// If the motion or the parameters are not those of the program.

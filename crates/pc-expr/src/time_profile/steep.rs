@@ -44,7 +44,7 @@ impl Kind {
         }
     }
 
-    /// Whether a function hides nothing where its jet is the given one, and registers are those of `part`.
+    /// Whether a function hides nothing if its jet is the given one, and registers are those of `part`.
     fn is_quiet(self, jet: &Jet, part: &Part) -> bool {
         let keeps_size = |Interval { lo, hi }| lo > 0.0 && hi < FACTOR * lo || hi < 0.0 && lo > FACTOR * hi;
         match self {

@@ -180,8 +180,8 @@ impl<'g> Equations<'g> {
     }
 
     /// Inverse dynamics: the generalised forces that have to be added to Q for accelerations η̇, whose
-    /// [symbols](crate::System::accelerations) they contain, M η̇ − r; length k. Of a large tree from body to
-    /// body, in O(N).
+    /// [symbols](crate::System::accelerations) they contain, M η̇ − r; length k. For a large tree it is
+    /// computed from body to body, in O(N).
     pub fn inverse_dynamics(&self) -> Vec<Expr<'g>> {
         self.written_first_order().balance().into_iter().map(|left| -left).collect()
     }

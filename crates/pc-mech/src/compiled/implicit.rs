@@ -11,7 +11,7 @@ use crate::compiled::point::Point;
 const MOST_STEPS: usize = 200;
 /// The most halvings of a step before the iteration ends.
 const HALVINGS: i32 = 60;
-/// A residual this small against its terms is accepted as a solution.
+/// A residual this small relative to its terms is accepted as a solution.
 const ENOUGH: f64 = 1e-12;
 /// A residual this small consists of a few roundings, which no step can reduce.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;

@@ -78,7 +78,7 @@ pub(crate) struct InMomenta {
     pub(super) quasi_velocities: usize,
     /// ẏ from (t, (x, η, z, η̇)).
     pub(super) transport: Evaluator,
-    /// The derivatives by x and z and, if compiled, by the parameters and by t.
+    /// The derivatives with respect to x and z and, if compiled, by the parameters and by t.
     pub(super) jacobian: Option<Slopes>,
     pub(super) parameter_jacobian: Option<Slopes>,
     pub(super) time_derivative: Option<Slopes>,
@@ -93,8 +93,8 @@ pub(crate) struct InMomenta {
     pub(super) of_inner: Vec<f64>,
 }
 
-/// Derivatives by symbols q from (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q and (−∂p/∂q, ∂g/∂q) one after the
-/// other; then those of ∂ẏ/∂η and of M.
+/// Derivatives with respect to symbols q from (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q and (−∂p/∂q, ∂g/∂q)
+/// one after the other; then those of ∂ẏ/∂η and of M.
 #[derive(Clone, Debug)]
 pub(super) struct Slopes {
     pub(super) symbols: usize,

@@ -199,7 +199,7 @@ impl Switches {
         self.sides.as_ref().filter(|sides| sides.contains(&0.0)).cloned()
     }
 
-    /// Writes the observables where the motion slides along a surface at (t, y); false where it does not, or where none of
+    /// Writes the observables where the motion slides along a surface at (t, y); false if it does not, or where none of
     /// them changes from one side to the other.
     ///
     /// They are those of Filippov's combination: for a body held by friction, no acceleration, and the friction that
@@ -354,7 +354,7 @@ impl Switches {
         self.motion.expand(t, y, &[], order)
     }
 
-    /// The series of the motion on the sides held, with its derivatives by `columns`.
+    /// The series of the motion on the sides held, with its derivatives with respect to `columns`.
     ///
     /// # Errors
     /// As [`Motion::expand_varied`](VectorField::expand_varied).
@@ -386,7 +386,8 @@ impl Switches {
         }
     }
 
-    /// The series of the motion along the surfaces whose sides are 0, with its derivatives by `columns`.
+    /// The series of the motion along the surfaces whose sides are 0, with its derivatives with respect to
+    /// `columns`.
     ///
     /// # Errors
     /// As [`Sliding::of`]; also if f is not a sum of the changes at these surfaces.

@@ -31,8 +31,8 @@ impl<'g> Multipliers<'g> {
     /// [independent](Multipliers::in_independent_velocities) ones.
     ///
     /// # Errors
-    /// [`ConstraintError::NotIndependent`] if their number is wrong, one is not the system's, or they do not determine
-    /// the others at the values `at` of time, coordinates, quasi-velocities and parameters.
+    /// [`ConstraintError::NotIndependent`] if their number is wrong, one does not belong to the system, or they do not
+    /// determine the others at the values `at` of time, coordinates, quasi-velocities and parameters.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System};

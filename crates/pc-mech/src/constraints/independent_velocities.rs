@@ -96,8 +96,8 @@ impl<'g> Multipliers<'g> {
         Ok(system.frame().eliminated(&dependent, matrix, graph.substitute(&values, &zeros))?)
     }
 
-    /// The system with the dependent quasi-velocities [solved for](Multipliers::solved_for) put in, and these structure
-    /// coefficients.
+    /// The system with the dependent quasi-velocities [solved for](Multipliers::solved_for) and substituted, and with
+    /// these structure coefficients.
     ///
     /// Its equations (9) are the equations of motion if the constraints are integrable and `structure` is that of the
     /// velocities they allow. If they are not, the terms of the eliminated momenta are missing, as in (32), and have

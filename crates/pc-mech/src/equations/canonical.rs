@@ -247,8 +247,8 @@ impl<'g> Canonical<'g> {
         self.check_closed().map(|()| self.quasi_velocities.as_slice())
     }
 
-    /// H(t, x, y), or y_s η_s − L where the equations are not [closed](Canonical::is_closed): its derivatives by
-    /// t, x and y at fixed η are those of H, since ∂/∂η_s (y_r η_r − L) = 0 at the solution.
+    /// H(t, x, y), or y_s η_s − L where the equations are not [closed](Canonical::is_closed): its derivatives
+    /// with respect to t, x and y at fixed η are those of H, since ∂/∂η_s (y_r η_r − L) = 0 at the solution.
     pub fn hamiltonian(&self) -> Expr<'g> {
         self.hamiltonian
     }

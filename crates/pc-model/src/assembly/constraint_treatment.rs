@@ -252,7 +252,7 @@ impl<'g> ConstraintTreatment<'g> {
 
     /// The symbols λ of the reactions with their values in the frame of
     /// [`constrained`](ConstraintTreatment::constrained), functions of time, coordinates and free quasi-velocities, or
-    /// of all where constraints are not affine in them; none where integrable constraints are held by multipliers.
+    /// of all where constraints are not affine in them; none if integrable constraints are held by multipliers.
     /// They contain the symbols of the accelerations if that is shorter.
     ///
     /// # Errors

@@ -123,7 +123,7 @@ pub enum ErrorKind {
         /// What would belong to it, or replace it.
         example: &'static str,
     },
-    /// A body that is no part of a tree.
+    /// A body that is not part of a tree.
     #[error("no body with a joint is called `{name}`")]
     NotInTree {
         /// The name.
@@ -175,7 +175,7 @@ pub enum ErrorKind {
         /// The label.
         label: String,
     },
-    /// A name with a meaning of its own.
+    /// A name with a fixed meaning.
     #[error("the name `{name}` is reserved")]
     Reserved {
         /// The name.

@@ -220,7 +220,7 @@ impl<'a> Item<'a> {
         Located { value, place: self.place.clone() }
     }
 
-    /// The value as a table of its own.
+    /// The value as a separate table.
     pub(super) fn table(&self, expected: &'static str, example: &str) -> Result<Table<'a>, ModelError> {
         match self.value {
             DeValue::Table(entries) => Ok(Table { source: self.source, place: self.place.clone(), entries }),

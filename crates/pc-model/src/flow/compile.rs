@@ -119,7 +119,7 @@ impl Model {
         self.kept().iter().filter(|name| is_there(name) || !is_written(name)).cloned().collect()
     }
 
-    /// With external forces, the derivative by them is part of the Jacobian.
+    /// With external forces, the derivative with respect to them is part of the Jacobian.
     fn options(&self) -> CompileOptions {
         CompileOptions::default()
             .parameter_jacobian(self.differentiates_by_parameters() || !self.external.is_empty())

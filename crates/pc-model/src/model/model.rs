@@ -20,7 +20,7 @@ pub struct Model {
     /// The indices of start values that stay unmoved.
     held_starts: Vec<usize>,
     observes_reactions: bool,
-    /// Whether motions and events are to be differentiated by parameters.
+    /// Whether motions and events are to be differentiated with respect to parameters.
     by_parameters: bool,
     by_time: bool,
     /// The names of the integrals to be kept.
@@ -201,8 +201,8 @@ impl Model {
         self.observes_reactions = yes;
     }
 
-    /// Sets whether sensitivities are needed: motions are then compiled with their derivatives by the parameters, and
-    /// events with theirs by time, state and parameters.
+    /// Sets whether sensitivities are needed: motions are then compiled with their derivatives with respect to the
+    /// parameters, and events with theirs by time, state and parameters.
     pub fn differentiate_by_parameters(&mut self, yes: bool) {
         self.by_parameters = yes;
     }

@@ -14,7 +14,7 @@ pub struct Theory<'g> {
     pub(crate) sections: Vec<Section<'g>>,
 }
 
-/// A part of it.
+/// A part of the description.
 #[derive(Clone, Debug)]
 pub(crate) struct Section<'g> {
     /// Its name for programs.

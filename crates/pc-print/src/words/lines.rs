@@ -1,6 +1,7 @@
 //! Linear combinations and columns of text.
 
-/// The linear combination with those coefficients and elements, as `2*X1 - X3`; `0` if all coefficients are.
+/// The linear combination with those coefficients and elements, as `2*X1 - X3`; `0` if all coefficients are
+/// 0.
 pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String {
     combined(terms).join(" ")
 }

@@ -106,7 +106,8 @@ impl Checkpoints {
         Ok(())
     }
 
-    /// Integrates the motion of `flow` from its start or from the checkpoint, with its derivatives, if any are wanted.
+    /// Integrates the motion of `flow` from its start or from the checkpoint, with its derivatives, if any
+    /// are requested.
     ///
     /// # Errors
     /// [`FileError::Write`] if the file cannot be written at the beginning; later failures are only

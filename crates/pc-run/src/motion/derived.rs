@@ -17,7 +17,7 @@ pub struct Derived {
     pub(crate) facts: Facts,
 }
 
-/// What is known of equations after they are compiled.
+/// Facts about equations after they are compiled.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Facts {
     /// The constraints that were dropped, each with the reason.

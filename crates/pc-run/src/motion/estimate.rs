@@ -11,12 +11,12 @@ use crate::plan::Plan;
 use crate::plan::tolerances::Tolerances;
 use pc_print::short;
 
-/// An error of this part of the largest values has grown to the size of the motion …
+/// An error of this fraction of the largest values has grown to the size of the motion …
 const GROWN: f64 = 0.1;
 /// … if it is more than these absolute tolerances.
 const TOLERANCES: f64 = 10.0;
 
-/// What is known of the global errors of a motion, which the table has row by row.
+/// A summary of the global errors of a motion, which the table has row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// The method of the companion.

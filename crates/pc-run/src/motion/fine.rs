@@ -29,9 +29,9 @@ fn points(method: Method) -> usize {
 /// The relative difference up to which an integrator takes two times as equal.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
-/// The time at which a table of inputs is read at an end `t` of a step that contains `inside`: at a
-/// break after `inside` the last number before the break, at one before it the break itself. So a
-/// jump shows both of its values.
+/// The time at which a table of inputs is read at an end `t` of a step that contains `inside`: for
+/// a break after `inside` it is the last number before the break, for one before `inside` the break
+/// itself. So a jump shows both of its values.
 fn side(breaks: &[f64], t: f64, inside: f64) -> f64 {
     let near = ROUNDINGS * t.abs();
     let first = breaks.partition_point(|&time| time < t - near);

@@ -28,7 +28,7 @@ use crate::plan::Wishes;
 use crate::plan::memory;
 use crate::plan::tolerances::{Tolerances, note_largest};
 
-/// What a run has besides its rows; nothing by default.
+/// The parts of a run besides its rows; none by default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Besides {
     /// Whether the equations are compared with a second derivation, at the start and, where this is
@@ -321,7 +321,7 @@ impl Integration<'_, '_> {
 
     /// The events whose functions are zero at the start and go on in the direction of the event:
     /// this is not a passage. The sides are those at the end of the first step, or of the part of
-    /// it before an event. None are known of a motion that was resumed.
+    /// it before an event. None are known for a motion that was resumed.
     fn passed_at_start(&mut self, steps: &StepStates) -> Vec<usize> {
         let Integration { flow, plan, besides, .. } = self;
         let Some((t, y)) = steps.iter().next().filter(|_| besides.checkpoints.resume.is_none()) else {

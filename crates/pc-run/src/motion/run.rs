@@ -29,12 +29,12 @@ pub struct Run {
     pub never_exceeded: Vec<String>,
     /// The table, as far as the motion was integrated.
     pub table: Table,
-    /// The states of the rows; none where these were written as they were computed.
+    /// The states of the rows; none if these were written as they were computed.
     pub trajectory: Trajectory,
     /// The motion between its rows too, with the points that pictures need, where that was
     /// requested.
     pub fine: Option<Table>,
-    /// What is known of the global errors, where they were requested.
+    /// A summary of the global errors, if they were requested.
     pub estimate: Option<Estimate>,
     /// The constraints that are kept by projection, with the largest residual of each at the output times.
     pub constraints: Vec<(String, f64)>,

@@ -14,7 +14,7 @@ use pc_verify::Slope;
 
 use crate::error::RunError;
 
-/// Derivatives by parameters that are integrated with a motion, with the results.
+/// Derivatives with respect to parameters that are integrated with a motion, with the results.
 pub(crate) struct Derivatives {
     parameters: Vec<usize>,
     names: Vec<String>,
@@ -87,7 +87,7 @@ impl Derivatives {
         (Solution { trajectory: trajectory.motion().clone(), occurrences, ending, slides }, error)
     }
 
-    /// The rates (∂f/∂y) ∂y/∂p + ∂f/∂p at the last output, which the integration is made of; none where the field has no derivatives
+    /// The rates (∂f/∂y) ∂y/∂p + ∂f/∂p at the last output, which the integration is made of; none if the field has no derivatives
     /// of its own.
     pub(crate) fn slopes(&self, flow: &mut Flow, t: f64, state: &[f64]) -> Vec<Slope> {
         let (motion, dim) = (&mut flow.motion, state.len());

@@ -76,7 +76,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
 
 const WORK: &str = "work";
 
-/// What the method `auto` chose, or a remark where DOP853 met a stiff motion.
+/// The choices of the method `auto`, or a remark if DOP853 met a stiff motion.
 fn chosen(run: &Run) -> Vec<String> {
     let (plan, work) = (&run.plan, &run.statistics);
     let times = |n: u64| if n == 1 { "once".to_owned() } else { format!("{n} times") };

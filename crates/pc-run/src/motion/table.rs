@@ -200,7 +200,7 @@ impl Table {
         self.conserved().end..self.columns.len() - self.derivatives - self.errors
     }
 
-    /// The numbers of the columns that are derivatives by parameters.
+    /// The numbers of the columns that are derivatives with respect to parameters.
     pub fn derivatives(&self) -> std::ops::Range<usize> {
         let start = self.outputs().end;
         start..start + self.derivatives

@@ -69,9 +69,9 @@ pub struct Verification {
     form: &'static str,
     /// Where it was compared, with the results.
     outcomes: Vec<(&'static str, Result<Agreement, VerifyError>)>,
-    /// Of derivatives, with differences.
+    /// The comparison of derivatives with differences.
     derivatives: Vec<Result<Agreement, VerifyError>>,
-    /// Of states after events, with the names of the events.
+    /// The comparison of states after events, with the names of the events.
     resets: Vec<(String, Result<Agreement, VerifyError>)>,
 }
 

@@ -53,7 +53,7 @@ impl Linearizations {
         Ok(Linearizations { members: Members::new(model, design, columns), varied, most })
     }
 
-    /// What the numbers depend on beside the model.
+    /// What the numbers depend on besides the model.
     pub(crate) fn depends_on(state: &StateChoice) -> [(&'static str, String); 3] {
         [
             ("--at", state.at.word().to_owned()),

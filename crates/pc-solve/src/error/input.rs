@@ -294,7 +294,7 @@ pub enum InputError {
         highest: u32,
     },
 
-    /// Derivatives by parameters are requested from a vector field that has none.
+    /// Derivatives with respect to parameters are requested from a vector field that has none.
     #[error("the vector field does not provide its derivatives by the parameters")]
     NoParameterJacobian,
 

@@ -89,7 +89,7 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) separation: Option<RootSeparation>,
     /// The sides of the surfaces of the field, whose functions follow those of the events.
     pub(crate) held: HeldSides,
-    /// Of each occurrence so far, if there are columns.
+    /// The time derivatives of each occurrence so far, if there are columns.
     pub(crate) time_derivatives: Vec<Vec<f64>>,
     /// Whether no step has been made since a restart.
     pub(crate) restarted: bool,
@@ -280,7 +280,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.into_field()
     }
 
-    /// Leaves the field on the sides of its own functions.
+    /// Returns the field to the sides given by its own functions.
     pub(crate) fn release(&mut self) {
         if let Some(field) = self.engine.field_mut().switching() {
             field.hold(None);

@@ -100,7 +100,7 @@ impl<F: VectorField> VectorField for WithVariation<F> {
 #[derive(Debug)]
 pub(crate) struct Explicit<S> {
     method: S,
-    /// The parameter of each column, none for derivatives by the start.
+    /// The parameter of each column, none for derivatives with respect to the start.
     parameters: Vec<Option<usize>>,
     dim: usize,
     relative_tolerance: f64,

@@ -268,7 +268,7 @@ impl Second {
         agreement.finished(&[], 1)
     }
 
-    /// Compares at the start and at random states near it, trying up to three times as many as are wanted,
+    /// Compares at the start and at random states near it, trying up to three times as many as needed,
     /// since some may not be regular.
     pub(crate) fn compare_near_start(
         &self,

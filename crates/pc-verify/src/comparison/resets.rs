@@ -1,4 +1,4 @@
-//! States after resets, against the definitions of the text.
+//! States after resets, compared with the definitions of the text.
 
 use pc_mech::VectorField;
 use pc_model::{Flow, Model};

@@ -151,8 +151,8 @@ impl Motion {
         Some((motion, rank))
     }
 
-    /// Whether a polynomial may stand for the motion: it has no derivatives by state and parameters, and does not show
-    /// forces that jump or have corners.
+    /// Whether a polynomial may stand for the motion: it has no derivatives with respect to state and parameters, and
+    /// does not show forces that jump or have corners.
     fn takes_bridge(&self, from: f64, end: f64) -> bool {
         let has_derivatives = self.options.jvp || self.options.parameter_jacobian;
         let breaks = self.signals.breaks().iter().any(|&t| (t - from) * (t - end) <= 0.0);

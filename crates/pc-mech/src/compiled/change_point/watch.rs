@@ -1,4 +1,4 @@
-//! What is known, from step to step, of the rank of the constraints along a motion.
+//! The rank of the constraints along a motion, as known from step to step.
 
 use crate::compiled::change_point::collocation::Collocation;
 use crate::compiled::elimination::saddle_point::{Independence, Pivot};

@@ -13,7 +13,7 @@ use pc_expr::Pattern;
 use crate::compiled::elimination::pivots;
 use crate::compiled::failure::EvaluationFailure;
 
-/// Pivots of complete pivoting this small against the largest are rounding.
+/// Pivots of complete pivoting this small relative to the largest are rounding.
 const DEPENDENT: f64 = 1e-13;
 
 /// A symmetric k × k matrix and, once it is factorised, L below the diagonal and D on it.

@@ -8,10 +8,10 @@ use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::first_order::FirstOrder;
 
-/// A pivot this small against its diagonal entry before elimination is rounding.
+/// A pivot this small relative to its diagonal entry before elimination is rounding.
 const VANISHING_PIVOT: f64 = 1e-14;
 
-/// A diagonal entry this small against the largest may be the square of a rounding error, as sin² π is.
+/// A diagonal entry this small relative to the largest may be the square of a rounding error, as sin² π is.
 const SQUARE_OF_ROUNDING: f64 = 2.0 * f64::EPSILON * f64::EPSILON;
 
 /// Checks that no pivot vanishes; `sizes` are those of the terms of each one, including its diagonal entry.

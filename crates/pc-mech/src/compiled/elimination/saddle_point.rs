@@ -5,7 +5,7 @@ use pc_expr::Pattern;
 use crate::compiled::elimination::dense_ldl::DenseLdl;
 use crate::compiled::failure::EvaluationFailure;
 
-/// A pivot of the constraints this small against their largest coefficient is rounding.
+/// A pivot of the constraints this small relative to their largest coefficient is rounding.
 const VANISHING_PIVOT: f64 = 1e-12;
 
 /// A spare row replaces another one if its pivot is larger by a factor of the inverse of this.

@@ -71,7 +71,8 @@ impl Schur {
         Ok(Some(Schur { equations, values: vec![0.0; outputs.len()], k, m, watched: watched.len(), solved }))
     }
 
-    /// The operations of an evaluation, each of a factorisation counted as `of_a_loop` of straight-line code.
+    /// The operations of an evaluation, each operation of a factorisation counted as `of_a_loop` of
+    /// straight-line code.
     pub(crate) fn operations(&self, of_a_loop: usize) -> usize {
         let m = self.m;
         let factors = m * m * m / 6 + 2 * m * m + self.solved.len();

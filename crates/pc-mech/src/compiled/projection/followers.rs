@@ -13,7 +13,7 @@ const OFF: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub(crate) struct Followers {
     names: Vec<String>,
-    /// Each function, then its derivatives by the components of the state.
+    /// Each function, then its derivatives with respect to the components of the state.
     functions: Evaluator,
     values: Vec<f64>,
     state: usize,

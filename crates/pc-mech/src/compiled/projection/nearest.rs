@@ -113,7 +113,7 @@ impl Surface {
         Err(failed)
     }
 
-    /// Whether the distance between two velocities is greater than a part of the first.
+    /// Whether the distance between two velocities is greater than a fraction of the first.
     fn is_longer(&self, part: f64, a: &[f64], b: &[f64]) -> bool {
         self.speed(a.iter().zip(b).map(|(a, b)| a - b)) > part * self.speed(a.iter().copied())
     }

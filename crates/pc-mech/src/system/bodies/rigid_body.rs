@@ -100,8 +100,8 @@ impl<'g> RigidBody<'g> {
     /// A body whose attitude is the 3 × 3 matrix R(t, x) from body axes to axes in space: ω̂ = RᵀṘ, along body axes.
     ///
     /// R may be a multiple of a rotation matrix, such as the |q|² R of a quaternion off the unit sphere: ω̂ is the
-    /// antisymmetric part of RᵀṘ divided by ⅓ tr RᵀR, in which a factor cancels. Of the matrices of groups, those of
-    /// [`UnitQuaternions`](crate::UnitQuaternions) and [`EulerAngles`](crate::EulerAngles) are such multiples
+    /// antisymmetric part of RᵀṘ divided by ⅓ tr RᵀR, in which a factor cancels. Among the matrices of groups, those
+    /// of [`UnitQuaternions`](crate::UnitQuaternions) and [`EulerAngles`](crate::EulerAngles) are such multiples
     /// everywhere. A matrix of nine coordinates R_ij is one on SO(3) only, and gives a long energy: it is better to
     /// [give](RigidBody::turning) ω by the quasi-velocities.
     pub fn rotating(

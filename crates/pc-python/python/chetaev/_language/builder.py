@@ -191,7 +191,7 @@ class Builder(Generic[M]):
         Parameters
         ----------
         joint : Joint or mapping, optional
-            How it moves against the one it hangs on, as ``Revolute(axis=[0, 0, 1])``; without one it has a ``position``.
+            How it moves relative to the one it hangs on, as ``Revolute(axis=[0, 0, 1])``; without one it has a ``position``.
         parent : str, optional
             The body it hangs on, the world unless given.
         **entries

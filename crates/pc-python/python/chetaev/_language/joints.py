@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """How a body moves against the one it hangs on: the base of all joints.
+    """How a body moves relative to the one it hangs on: the base of all joints.
 
     Parameters
     ----------

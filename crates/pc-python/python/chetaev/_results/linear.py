@@ -45,11 +45,11 @@ class Linearization:
     eigenvalues : array
         Those of A, in descending order of their real parts.
     modes : list
-        The eigenvector of each, an array of n complex numbers, or None where it is not determined.
+        The eigenvector of each, an array of n complex numbers, or None if it is not determined.
     is_steady : bool
         Whether the state is an equilibrium or a steady motion.
     stability : str or None
-        The verdict of ``pc check`` on it; None where it is not steady.
+        The verdict of ``pc check`` on it; None if it is not steady.
     second_order : dict or None
         ``coordinates`` and the matrices ``M``, ``G``, ``K``, ``F`` of M q̈ + G q̇ + K q = F u, where they are defined.
     data : dict
@@ -115,7 +115,7 @@ class RootLocus:
     values : array
         Its values.
     branches : array
-        The eigenvalues: a row for each, followed from value to value; NaN where there are none.
+        The eigenvalues: a row for each, followed from value to value; NaN if there are none.
     missing : dict
         The values that have no linearization, with the reason.
     """

@@ -50,7 +50,7 @@ class Motion(Mapping[str, "Floats"]):
     terminal : str or None
         The name of the event that ended it.
     drift : dict
-        How far each integral, the energy among them, went from its value at the start.
+        How far each integral, including the energy, went from its value at the start.
     residuals : dict
         The largest residual of each constraint that is kept by projection.
     statistics : dict
@@ -120,7 +120,7 @@ class Motion(Mapping[str, "Floats"]):
 
     @property
     def drift(self) -> dict[str, float]:
-        """How far each integral, the energy among them, went from its value at the start."""
+        """How far each integral, including the energy, went from its value at the start."""
         if len(self.t) == 0:
             return {}
         return {name: float(abs(self[name] - self[name][0]).max()) for name in self._kinds["conserved"]}
