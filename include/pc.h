@@ -1635,9 +1635,9 @@ pc_status pc_system_parameter_jacobian(const pc_system *system,
                                        pc_error **error);
 
 /**
- * Writes ∂f/∂t, as long as the state, which Rosenbrock's methods need. The first call derives,
- * as pc_system_new does, unless f is free of t. PC_UNSUPPORTED with external forces, whose ∂/∂t
- * is unknown, and with inputs that have tables.
+ * Writes ∂f/∂t, which Rosenbrock's methods need; it has the length of the state. The first call
+ * derives, as pc_system_new does, unless f is free of t. PC_UNSUPPORTED with external forces,
+ * whose ∂/∂t is unknown, and with inputs that have tables.
  */
 pc_status pc_system_time_derivative(const pc_system *system,
                                     double t,
@@ -1673,7 +1673,7 @@ pc_status pc_system_keep_from(pc_system *system,
  * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
  * energy, the outputs.
  *
- * Where an observable has no value, the number is not finite; so it is for one that contains
+ * Where an observable has no value, the number is not finite; the same holds for one that contains
  * accelerations where external forces cannot be computed.
  */
 pc_status pc_system_observe(const pc_system *system,
@@ -1708,7 +1708,7 @@ pc_status pc_system_energy(const pc_system *system,
 
 /**
  * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: to
- * the force Q_s each adds its value times the derivative of its constraint by η_s.
+ * the force Q_s each adds its value times the derivative of its constraint with respect to η_s.
  */
 pc_status pc_system_reactions(const pc_system *system,
                               double t,
@@ -2189,10 +2189,10 @@ pc_status pc_solver_last_occurrence(const pc_solver *solver,
 pc_status pc_solver_terminal_event(const pc_solver *solver, size_t *event, pc_error **error);
 
 /**
- * Writes the derivative of the start of the model by parameter number `parameter`, from 0:
- * start values may be expressions in parameters. It derives the equations twice.
- * PC_INCONSISTENT_MODEL where nearby parameters have no start, for an input with a table, and
- * for a parameter that is an expression in others.
+ * Writes the derivative of the start of the model with respect to parameter number `parameter`,
+ * from 0: start values may be expressions in parameters. It derives the equations twice.
+ * PC_INCONSISTENT_MODEL where nearby parameters have no start, for an input with a table, and for
+ * a parameter that is an expression in others.
  */
 pc_status pc_system_start_by_parameter(const pc_system *system,
                                        size_t parameter,
@@ -2202,11 +2202,11 @@ pc_status pc_system_start_by_parameter(const pc_system *system,
 
 /**
  * Adds a sensitivity that a solver integrates with the motion, before the first step: the
- * derivative of the state by parameter number `parameter`, from 0. `start` is the derivative
- * of the start, which pc_system_start_by_parameter gives for that of the model; NULL, of
- * length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
- * Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where
- * an event of the program does. For an input with a table it is the derivative with respect to a
+ * derivative of the state with respect to parameter number `parameter`, from 0. `start` is the
+ * derivative of the start, which pc_system_start_by_parameter gives for that of the model; NULL,
+ * of length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
+ * Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where an
+ * event of the program does. For an input with a table it is the derivative with respect to a
  * shift of all its values.
  */
 pc_status pc_solver_add_sensitivity(pc_solver *solver,
@@ -2217,7 +2217,7 @@ pc_status pc_solver_add_sensitivity(pc_solver *solver,
 
 /**
  * Writes sensitivity number `number`, from 0 in the order in which they were added, at the
- * time of the solver; it is as long as the state.
+ * time of the solver; it has the length of the state.
  */
 pc_status pc_solver_sensitivity(const pc_solver *solver,
                                 size_t number,

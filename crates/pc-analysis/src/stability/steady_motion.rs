@@ -78,7 +78,7 @@ impl SteadyOptions {
 /// An equilibrium or a steady motion (Routh): f_i(t, y) = 0 for all components i but the cyclic coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SteadyMotion {
-    /// y, as long as the state; cyclic coordinates have the values of the guess.
+    /// y, one number per component of the state; cyclic coordinates have the values of the guess.
     pub state: Vec<f64>,
     /// √Σ f_i² over the components that are not cyclic.
     pub residual: f64,

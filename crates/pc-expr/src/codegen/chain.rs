@@ -315,8 +315,8 @@ impl Chain {
         }
     }
 
-    /// The body of a function that writes the derivatives of the first outputs by the state, as many as there
-    /// are components, column by column.
+    /// The body of a function that writes the derivatives of the first outputs with respect to the state, as
+    /// many as there are components, column by column.
     pub fn jacobian(&self, program: &Program, array: &str) -> String {
         let functions = &self.calls.functions;
         let (first, values, n) = (program.first_result(), self.values, program.state_len());

@@ -119,8 +119,8 @@ pub trait Events {
     }
 
     /// Returns ∂g/∂pⱼ of event number `event` for the parameter number `parameter` of the vector field, and
-    /// writes ∂R/∂pⱼ of its reset, as long as the state: zeros where nothing is reset or where the reset
-    /// does not depend on pⱼ.
+    /// writes ∂R/∂pⱼ of its reset, one number per component of the state: zeros where nothing is reset or
+    /// where the reset does not depend on pⱼ.
     ///
     /// Called only if [they exist](Events::has_parameter_derivatives), for sensitivities.
     ///
@@ -143,7 +143,7 @@ pub trait Events {
         false
     }
 
-    /// Returns ∂g/∂t of event number `event`, and writes ∂g/∂y, as long as the state.
+    /// Returns ∂g/∂t of event number `event`, and writes ∂g/∂y, one number per component.
     ///
     /// Called only if [they exist](Events::has_derivatives), for sensitivities.
     ///
@@ -159,7 +159,8 @@ pub trait Events {
         Err(Failure::fatal(NoDerivatives))
     }
 
-    /// Writes τ ∂R/∂t + (∂R/∂y) v of the reset of event number `event` along (τ, v), as long as the state.
+    /// Writes τ ∂R/∂t + (∂R/∂y) v of the reset of event number `event` along (τ, v), one number per
+    /// component.
     ///
     /// Called only if [they exist](Events::has_derivatives), for sensitivities.
     ///

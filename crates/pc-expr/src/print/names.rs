@@ -34,7 +34,7 @@ pub struct Given<'g> {
     pub name: String,
     /// Its value.
     pub value: Expr<'g>,
-    /// Whether the value is printed in any case; then the name replaces only long values.
+    /// Whether the value is always printed; then the name replaces only long values.
     pub shorthand: bool,
 }
 
@@ -370,7 +370,7 @@ impl<'d, 'g> Page<'d, 'g> {
         (length + self.roots.iter().map(columns).sum::<usize>(), widest)
     }
 
-    /// Names, their meanings, whether these are printed in any case, and the first line that uses each.
+    /// Names, their meanings, whether these are always printed, and the first line that uses each.
     fn in_order(&self, named: &FxHashSet<NodeId>, given: &[Given<'g>]) -> Vec<(String, NodeId, bool, usize)> {
         let letter = self.letter(given);
         let (mut seen, mut count) = (FxHashSet::default(), 0);

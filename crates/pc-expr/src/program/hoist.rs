@@ -26,7 +26,7 @@ impl Program {
     /// ```
     ///
     /// # Panics
-    /// Unless `fixed` is as long as there are parameters.
+    /// Unless `fixed` has one entry per parameter.
     pub fn hoisted(&self, fixed: &[bool]) -> Option<(Program, Program)> {
         assert_eq!(fixed.len(), self.parameters, "one for each parameter");
         let (first_input, first_result) = (self.first_input(), self.first_result());

@@ -52,7 +52,7 @@ impl Watch {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Part {
     pub(crate) watched: Vec<Watch>,
-    /// Whether rises count as places: so it is for functions that are multiplied by factors which may vanish where
+    /// Whether rises count as places: they do for functions that are multiplied by factors which may vanish where
     /// they turn, and that enclosures do not show to bend.
     pub(crate) shows_rises: bool,
     code: Vec<(usize, Instruction)>,

@@ -50,7 +50,7 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) implicit: Option<Implicit<'g>>,
     /// r, in t and y.
     pub(crate) right: Vec<Expr<'g>>,
-    /// g, in t, y and w, as long as the state.
+    /// g, in t, y and w, one per component of the state.
     pub(crate) rates: Vec<Expr<'g>>,
     /// Symbols by whose powers the unknowns are collected.
     pub(crate) collected_by: Vec<Expr<'g>>,

@@ -207,8 +207,8 @@ impl LegendreTransform {
         })
     }
 
-    /// Replaces each of the columns, as long as the equations of η, by the solution with the matrix M =
-    /// ∂²L/∂η∂η, bordered by the constraints if there are any, at the last state converted into
+    /// Replaces each of the columns, with one entry per equation of η, by the solution with the matrix
+    /// M = ∂²L/∂η∂η, bordered by the constraints if there are any, at the last state converted into
     /// quasi-velocities. Closed expressions have no such matrix.
     pub(crate) fn solve_last(&mut self, columns: &mut [f64]) {
         match &mut self.quasi_velocities {

@@ -78,7 +78,7 @@ pub(crate) struct InMomenta {
     pub(super) quasi_velocities: usize,
     /// ẏ from (t, (x, η, z, η̇)).
     pub(super) transport: Evaluator,
-    /// The derivatives with respect to x and z and, if compiled, by the parameters and by t.
+    /// The derivatives with respect to x and z and, if compiled, to the parameters and t.
     pub(super) jacobian: Option<Slopes>,
     pub(super) parameter_jacobian: Option<Slopes>,
     pub(super) time_derivative: Option<Slopes>,

@@ -416,7 +416,7 @@ impl Motion {
 }
 
 impl Motion {
-    /// ∂f/∂t, as long as the state; inputs given by tables count as constant parameters.
+    /// ∂f/∂t, one number per component; inputs given by tables count as constant parameters.
     ///
     /// # Errors
     /// As [`rhs`](VectorField::rhs), and where it was not [compiled](crate::CompileOptions::time_derivative).
@@ -431,10 +431,10 @@ impl Motion {
         outcome.map_err(|failure| self.failure(failure, t, y))
     }
 
-    /// ẏ = f(t, y), as long as the state.
+    /// ẏ = f(t, y), one number per component.
     ///
     /// # Errors
-    /// Where f is not defined, as [`rhs`](VectorField::rhs).
+    /// As for [`rhs`](VectorField::rhs), if f is not defined there.
     pub fn rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut rates = vec![0.0; y.len()];
         self.rhs(t, y, &mut rates)?;

@@ -29,8 +29,8 @@ impl<'g> BodyReaction<'g> {
         self.turns
     }
 
-    /// The force λ_α f_α of the constraint of that index, with the symbol λ_α, in terms of (t, x, η); as long as the
-    /// position. None if it is not determined.
+    /// The force λ_α f_α of the constraint of that index, with the symbol λ_α, in terms of (t, x, η), with the
+    /// length of the position. None if it is not determined.
     pub fn force(&self, constraint: usize) -> Option<&[Expr<'g>]> {
         self.forces.as_ref()?.get(constraint).map(Vec::as_slice)
     }

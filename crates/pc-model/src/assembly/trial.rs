@@ -16,7 +16,7 @@ const OFF: f64 = 1e-8;
 /// for them.
 const SMALL: f64 = 1e-2;
 
-/// A coordinate may be this far off, times [`OFF`], in any case: it is the rounding of numbers of order one, such as cos(π/2).
+/// A coordinate may always be this far off, times [`OFF`]: this is the rounding of numbers of order one, such as cos(π/2).
 const LEAST: f64 = 1e-7;
 
 /// The indices of the components of the start that are not moved to the constraints.

@@ -152,9 +152,8 @@ class System(_native.SystemCore):
     def reactions(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
         """The reaction of each constraint, by its name.
 
-        Together they add to the force Q_s the sum of each times the derivative of its constraint by η_s.
-        """
-        if not self._model.constraints:
+        Together they add to the force Q_s the sum of each times the derivative of its constraint with
+        respect to η_s. """ if not self._model.constraints:
             return {}
         system = self
         if not self._settings.get("reactions"):

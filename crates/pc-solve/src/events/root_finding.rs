@@ -342,7 +342,7 @@ impl Sides {
 
     /// Locates the first passage, touch or pole between `a`, before it, and `b`, after it: by the
     /// Illinois method with the earliest secant of the functions, and by bisection where that is
-    /// slow. Also returns the functions that change their signs there by a pole, with their sides
+    /// slow. Also returns the functions that change sign there at a pole, with their sides
     /// beyond it.
     fn locate<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &self,

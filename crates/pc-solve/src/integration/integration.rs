@@ -162,8 +162,8 @@ impl<S: Stepper> Integration<S> {
     ///
     /// Its [sensitivities](crate::Cvode::with_sensitivities), if any, are those of the motion with
     /// its events: they jump at resets. For this, resets are also applied to nearby states, and
-    /// events with resets need [derivatives](Events::by_parameter) by the parameters of the
-    /// sensitivities.
+    /// events with resets need [derivatives](Events::by_parameter) with respect to the parameters
+    /// of the sensitivities.
     ///
     /// # Errors
     /// [`SolveError::Integration`] with [`Reason::Event`](crate::Reason::Event) if an event

@@ -112,8 +112,8 @@ pub(crate) struct Explicit<S> {
 }
 
 impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
-    /// Starts at y(t0) = y0 with derivatives of the motion, by the method that `begin` makes of the field, the start
-    /// and the options.
+    /// Starts at y(t0) = y0 with derivatives of the motion, with the method that `begin` makes from the field, the
+    /// start and the options.
     ///
     /// # Errors
     /// As for `begin`; [`SolveError::Input`] if a column needs a derivative that the field does not have.

@@ -7,7 +7,7 @@ use crate::integration::statistics::Statistics;
 /// A functional G = ∫ g(t, y, p) dt + h(t₁, y(t₁), p) of a motion from t₀ to t₁, with its
 /// derivatives.
 ///
-/// Both terms write their derivatives with respect to the state and by the parameters of the field,
+/// Both terms write their derivatives with respect to the state and the parameters of the field,
 /// the latter empty if it has no [derivatives](pc_expr::VectorField::parameter_jacobian) by them.
 /// Every entry must be written, zeros too. A term not implemented is zero.
 pub trait Functional {

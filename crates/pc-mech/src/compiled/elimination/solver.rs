@@ -78,7 +78,7 @@ impl Solver {
         }
     }
 
-    /// Replaces each of the columns, as long as there are unknowns, by the solution.
+    /// Replaces each of the columns, with one entry per unknown, by the solution.
     pub(crate) fn solve(&mut self, columns: &mut [f64]) {
         match self {
             Solver::Ldl(ldl) => ldl.solve(columns),

@@ -48,7 +48,7 @@ impl<'g> Particle<'g> {
         Particle { mass: mass.into(), position, force: None, name: None }
     }
 
-    /// The same particle with the force F on it, as long as the position.
+    /// The same particle with the force F on it, of as many components as the position.
     #[must_use]
     pub fn force(self, force: impl IntoIterator<Item = impl Into<Expr<'g>>>) -> Particle<'g> {
         Particle { force: Some(force.into_iter().map(Into::into).collect()), ..self }

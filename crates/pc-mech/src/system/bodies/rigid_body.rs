@@ -133,7 +133,7 @@ impl<'g> RigidBody<'g> {
         }
     }
 
-    /// The same body with the force F at its position, as long as this.
+    /// The same body with the force F at its position, of as many components as this.
     #[must_use]
     pub fn force(self, force: impl IntoIterator<Item = impl Into<Expr<'g>>>) -> RigidBody<'g> {
         RigidBody { centre: self.centre.force(force), ..self }

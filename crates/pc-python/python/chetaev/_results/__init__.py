@@ -1,1 +1,1 @@
-"""What models and systems give."""
+"""Results of models and systems."""
