@@ -58,7 +58,7 @@ pub(crate) fn variables(name: &str) -> Result<Variables, Error> {
     })
 }
 
-/// As a tolerance is given: a number, or a mapping of names.
+/// A tolerance as the user gives it: a number, or a mapping of names.
 #[derive(IntoPyObject)]
 enum GivenTolerance {
     All(f64),

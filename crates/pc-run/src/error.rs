@@ -35,7 +35,7 @@ pub enum RunError {
     /// An end time equal to the start time.
     #[error("the end time {t} is the start time: nothing to integrate")]
     EndIsStart {
-        /// That time.
+        /// The start and end time.
         t: f64,
     },
     /// More rows than the memory limit allows.

@@ -83,7 +83,7 @@ impl<F: VectorField> Chosen<F> {
     /// Starts by CVODES as `begin` does, at a time from which the method counts.
     ///
     /// # Errors
-    /// Those of `begin`.
+    /// The errors of `begin`.
     #[cfg(feature = "cvode")]
     pub(crate) fn by_cvode(
         field: F,

@@ -89,7 +89,7 @@ pub enum Unable {
     /// Quasi-velocities of which only some are defined.
     #[error("the quasi-velocity `{name}` is neither defined nor in [kinematics]")]
     Undefined {
-        /// One that is not defined.
+        /// A quasi-velocity that is not defined.
         name: String,
     },
     /// The frame is of lower rank, and the brackets are not given.

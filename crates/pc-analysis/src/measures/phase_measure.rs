@@ -66,7 +66,7 @@ impl<'g> MeasureSearch<'g> {
     /// `at` are values of time, state and parameters, where N is positive.
     ///
     /// # Errors
-    /// Those of the equations (9).
+    /// The errors of the equations (9).
     ///
     /// ```
     /// use pc_analysis::MeasureSearch;

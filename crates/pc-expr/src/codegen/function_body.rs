@@ -384,7 +384,7 @@ impl<'a> Printer<'a> {
 }
 
 impl Piece {
-    /// This plus a term that may have a sign.
+    /// The sum of this piece and a term that may have a sign.
     fn and_signed(self, term: &Piece) -> Piece {
         if term.is_negative() && term.binding != Binding::Sum {
             let mut positive = term.clone();

@@ -14,9 +14,9 @@ pub(super) struct Builder {
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Value {
-    /// By its bits.
+    /// A constant, by its bits.
     Constant(u64),
-    /// By its index among time, state and parameters.
+    /// An input, by its index among time, state and parameters.
     Input(usize),
     Result(Instruction),
 }

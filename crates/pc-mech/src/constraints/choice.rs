@@ -86,7 +86,7 @@ impl<'g> Multipliers<'g> {
     /// eliminated with the pivot that is shortest in print among those of at least a tenth of the largest.
     ///
     /// # Errors
-    /// Those of [`dependent_at`](Multipliers::dependent_at).
+    /// The errors of [`dependent_at`](Multipliers::dependent_at).
     pub fn shortest<E>(
         &self,
         at: &[(Expr<'g>, f64)],

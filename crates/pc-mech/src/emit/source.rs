@@ -100,7 +100,7 @@ pub(super) enum Extent {
     QuasiVelocitiesSquared,
     Integrals,
     Outputs,
-    /// This many.
+    /// A fixed number of values.
     Count(usize),
 }
 

@@ -82,7 +82,7 @@ pub enum ConstraintError {
     /// Quasi-velocities that were chosen as independent but do not determine the others.
     #[error("{} cannot be the independent quasi-velocities: {why}", quoted(chosen))]
     NotIndependent {
-        /// Those chosen.
+        /// The chosen quasi-velocities.
         chosen: Vec<String>,
         /// Why not.
         why: String,

@@ -15,7 +15,7 @@ pub enum FrameError {
     /// b or b_0 jumps, and with it a quasi-velocity or a velocity.
     #[error("the frame jumps by {} at {}: velocities or quasi-velocities jump there", approximately(*size), at(place))]
     Jumps {
-        /// By how much an entry jumps.
+        /// The size of the jump of an entry.
         size: f64,
         /// Names and values of a place.
         place: Vec<(String, f64)>,

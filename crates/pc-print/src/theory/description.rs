@@ -50,7 +50,7 @@ pub(crate) enum Verdict {
     ProvedHere,
     /// In numbers this fraction of the terms of an identity is left.
     Disproved {
-        /// From 0 to 1.
+        /// The fraction, from 0 to 1.
         margin: f64,
     },
     /// For the stability of a motion from which others depart.
@@ -67,7 +67,7 @@ pub(crate) enum Verdict {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Side<'g> {
     pub(crate) expression: Option<Expr<'g>>,
-    /// As in a book.
+    /// Text as in a book.
     pub(crate) book: String,
     pub(crate) latex: String,
     /// In the expression language, if possible.

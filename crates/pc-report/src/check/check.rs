@@ -42,9 +42,9 @@ pub struct Check<'g> {
     constraints: Vec<(String, String)>,
     pub(super) classified: Vec<ClassifiedConstraint>,
     redundant: Vec<Redundant>,
-    /// Their number.
+    /// The number of integrable combinations.
     integrable_combinations: usize,
-    /// Those that are found.
+    /// The combinations that are found.
     combinations: Vec<IntegrableCombination<'g>>,
     start_residual: f64,
     pub(super) integrals: Integrals<'g>,

@@ -80,7 +80,7 @@ pub enum Ink {
     Curve(usize),
     /// Rods and springs of a mechanism.
     Rod,
-    /// This red, green and blue.
+    /// A colour by its red, green and blue.
     Mixed([u8; 3]),
 }
 

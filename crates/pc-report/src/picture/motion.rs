@@ -175,7 +175,7 @@ fn errors(record: &Record, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     (!curves.is_empty()).then(|| over_time(record, title(Kind::Errors), Scale::Decades, curves))
 }
 
-/// One column over another.
+/// The curve of one column over another.
 pub(crate) fn portrait(
     samples: &Samples,
     (x, y): (&str, &str),

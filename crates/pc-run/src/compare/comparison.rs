@@ -30,9 +30,9 @@ pub struct Comparison {
     pub until: f64,
     /// The difference of each column that is compared.
     pub differences: Vec<Difference>,
-    /// Columns of the first alone.
+    /// Columns that only the first has.
     pub only_first: Vec<String>,
-    /// Those of the second alone.
+    /// Columns that only the second has.
     pub only_second: Vec<String>,
     /// How the ends differ, in words.
     pub ends: Option<String>,

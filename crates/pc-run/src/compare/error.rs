@@ -23,9 +23,9 @@ pub enum CompareError {
     /// The motions begin at different times.
     #[error("the motions begin at t = {first} and t = {second}: `t_start` in [simulation] must be the same")]
     Starts {
-        /// That of the first.
+        /// The start time of the first.
         first: f64,
-        /// That of the second.
+        /// The start time of the second.
         second: f64,
     },
     /// There is nothing to compare.
@@ -37,7 +37,7 @@ pub enum CompareError {
     NothingShared {
         /// The columns of the first.
         first: Vec<String>,
-        /// Those of the second.
+        /// The columns of the second.
         second: Vec<String>,
     },
     /// A column that is not in both motions.

@@ -61,7 +61,7 @@ pub(crate) struct Varied {
 }
 
 impl Varied {
-    /// Those of a model, at first with its own values.
+    /// Linearizations near a model, which begins with its own values.
     pub(crate) fn of(model: &Model, ground: &Ground<'_>, state: &StateChoice) -> Varied {
         let places = ground.places(model);
         Varied {
@@ -71,7 +71,7 @@ impl Varied {
         }
     }
 
-    /// That of the model with other values.
+    /// The linearization of the model with other values.
     ///
     /// # Errors
     /// [`RunError`]; if the equations of the model depend on the values, at the place in the file that causes

@@ -16,7 +16,7 @@ impl At {
     /// All of them.
     pub const ALL: [At; 3] = [At::Steady, At::Rest, At::Start];
 
-    /// In a word.
+    /// Its name in options and output.
     pub fn word(self) -> &'static str {
         match self {
             At::Steady => "steady",
@@ -29,7 +29,7 @@ impl At {
 /// Which cyclic coordinates are components of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cyclic {
-    /// Those that rest.
+    /// Those that are at rest.
     Keep,
     /// None.
     Drop,
@@ -39,7 +39,7 @@ impl Cyclic {
     /// All of them.
     pub const ALL: [Cyclic; 2] = [Cyclic::Keep, Cyclic::Drop];
 
-    /// In a word.
+    /// Its name in options and output.
     pub fn word(self) -> &'static str {
         match self {
             Cyclic::Keep => "keep",

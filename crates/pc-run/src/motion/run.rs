@@ -70,16 +70,16 @@ pub struct Run {
 /// How a run ended.
 #[derive(Debug)]
 pub enum Ending {
-    /// At its end.
+    /// It reached its end time.
     Completed,
-    /// By a terminal event.
+    /// A terminal event ended it.
     Event {
         /// Its name.
         name: String,
     },
-    /// By Ctrl-C.
+    /// Ctrl-C ended it.
     Interrupted,
-    /// By the time limit.
+    /// The time limit ended it.
     Ended(Spent),
     /// A row could not be written.
     Unwritten,
@@ -88,7 +88,7 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// In a word.
+    /// The word for it in output.
     pub fn word(&self) -> &'static str {
         match self {
             Ending::Completed => "completed",

@@ -25,7 +25,7 @@ impl Tolerances {
         Tolerances { names: flow.motion.names().to_vec(), values }
     }
 
-    /// For the integrator.
+    /// The tolerances as the integrator takes them.
     pub(crate) fn tolerance(&self) -> Tolerance {
         Tolerance::each(self.values.clone())
     }
@@ -40,7 +40,7 @@ impl Tolerances {
         state.iter().zip(&self.values).map(|(value, tolerance)| rtol * value.abs() + tolerance).collect()
     }
 
-    /// This fraction of each.
+    /// The tolerances multiplied by `part`.
     pub(crate) fn times(&self, part: f64) -> AbsoluteTolerance {
         let each = self.names.iter().cloned().zip(self.values.iter().map(|value| part * value));
         AbsoluteTolerance { all: None, each: each.collect() }

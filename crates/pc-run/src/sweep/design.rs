@@ -40,7 +40,7 @@ enum Values {
     Grid(Vec<Vary>),
     /// Independent draws from the stream of the member, in order.
     Random { laws: Vec<Law>, seed: u64 },
-    /// Those of each member one after the other.
+    /// The values of each member, one member after the other.
     Listed(Vec<f64>),
 }
 

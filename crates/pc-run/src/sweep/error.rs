@@ -83,7 +83,7 @@ pub enum SweepError {
     /// Two shards are of different sweeps.
     #[error("{} and {} are not of the same sweep: the first has {what}", path.display(), other.display())]
     OtherShard {
-        /// One of them.
+        /// The path of one of them.
         path: PathBuf,
         /// The other.
         other: PathBuf,

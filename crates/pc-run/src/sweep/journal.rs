@@ -52,7 +52,7 @@ pub struct Tally {
     pub done: u64,
     /// The completed ones among them.
     pub completed: u64,
-    /// Those that a terminal event has ended.
+    /// Members that a terminal event has ended.
     pub by_event: u64,
     /// The first few others, with their messages.
     pub others: Vec<(u64, Status, String)>,

@@ -16,7 +16,7 @@ pub(crate) struct Members {
 }
 
 impl Members {
-    /// Those whose rows have these columns.
+    /// The members of a design; their rows have these columns.
     pub(crate) fn new(model: Model, design: Design, columns: Vec<Column>) -> Members {
         Members { model, design, columns }
     }
@@ -66,7 +66,7 @@ impl Members {
         (!self.is_over()).then(|| Record { status, message: line(message), ..blank })
     }
 
-    /// That of a member whose computation panicked.
+    /// The record of a member whose computation panicked.
     pub(crate) fn panicked(&self, member: u64, message: &str) -> Record {
         Record { status: Status::Panicked, message: line(message), ..self.blank(member) }
     }

@@ -16,7 +16,7 @@ impl SweepOf {
     /// All of them.
     pub const ALL: [SweepOf; 3] = [SweepOf::Run, SweepOf::Linearize, SweepOf::Check];
 
-    /// In a word.
+    /// Its name in options and output.
     pub fn word(self) -> &'static str {
         match self {
             SweepOf::Run => "run",

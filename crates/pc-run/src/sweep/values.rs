@@ -18,7 +18,7 @@ pub enum Values {
     Even(f64, f64, u64),
     /// This many values from one number to another, with a constant ratio.
     Logarithmic(f64, f64, u64),
-    /// These values.
+    /// The values listed.
     List(Vec<f64>),
 }
 

@@ -239,7 +239,7 @@ pub enum InputError {
     /// The target time is the current time.
     #[error("the end time equals the start time, t = {t}")]
     EndIsStart {
-        /// That time.
+        /// The start and end time.
         t: f64,
     },
 

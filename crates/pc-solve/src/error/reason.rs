@@ -32,7 +32,7 @@ pub enum Reason {
     Crawls {
         /// The number of these steps.
         steps: u64,
-        /// By how much they have advanced.
+        /// The time they have advanced.
         by: f64,
         /// What makes them short.
         cause: Shrinks,

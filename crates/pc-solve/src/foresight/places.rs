@@ -114,7 +114,7 @@ impl Places {
     /// Finds the places in the step ahead; returns whether there are any.
     ///
     /// # Errors
-    /// Those of [`Here`].
+    /// The errors of [`Here`].
     pub(crate) fn look(&mut self, ahead: Ahead, here: &mut impl Here) -> Result<bool, SolveError> {
         let Ahead { t, reach, end, .. } = ahead;
         self.found.clear();

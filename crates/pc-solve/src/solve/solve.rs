@@ -64,7 +64,7 @@ pub struct Solve<'a, F, M = Options, E = NoEvents> {
 }
 
 impl<'a, F: VectorField> Solve<'a, F> {
-    /// By the default [`Options`], without events.
+    /// An integration with the default [`Options`], without events.
     pub fn new(field: F, t0: f64, y0: &'a [f64]) -> Self {
         Solve { field, t0, y0, method: Options::default(), events: NoEvents }
     }

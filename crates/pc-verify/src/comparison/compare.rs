@@ -172,9 +172,9 @@ impl Projection {
 
 /// The equations of the first derivation that are compared.
 pub(crate) enum Compared<'g> {
-    /// Those in these forms.
+    /// All equations, in these forms.
     Wholly(Vec<First<'g>>),
-    /// Those of a large model, along random virtual velocities.
+    /// The equations of a large model along random virtual velocities.
     Along(Box<Projection>),
 }
 
