@@ -2351,7 +2351,7 @@ pc_status pc_solver_statistics(const pc_solver *solver,
  * with what it reached, and the others continue. An error that all share, such as one in the
  * times, is reported by each. PC_STOPPED if the observer stops the ensemble; PC_LIMIT, after
  * the members that were finished, if the time limit or the pc_cancel of the system's options
- * ends it. The system may be used meanwhile.
+ * ends it. The system may be used during the call.
  */
 pc_status pc_ensemble_run(const pc_system *system,
                           const pc_solver_options *options,

@@ -71,7 +71,7 @@ fn ending(run: &Run) -> (&'static str, Option<String>) {
     }
 }
 
-/// Why it did not come to its end, or is wrong.
+/// Why it did not reach its end, or is wrong.
 fn error(run: &Run) -> Option<String> {
     if let Some(lost) = &run.lost {
         return Some(RunError::Lost(lost.clone()).to_string());

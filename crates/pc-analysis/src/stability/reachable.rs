@@ -44,7 +44,7 @@ impl Reachable {
 
     /// The number k of neutral directions of a member of a family of steady motions: the first approximation has
     /// λ = 0 in k blocks of size 1 and otherwise negative real parts, and there are k integrals with independent
-    /// differentials, so that on each level near by the steady motion is isolated and asymptotically stable (I.
+    /// differentials, so that on each nearby level the steady motion is isolated and asymptotically stable (I.
     /// G. Malkin's theorem of the critical case of k zeros).
     ///
     /// `differentials` are those of the integrals by the components that are not cyclic.

@@ -201,7 +201,7 @@ fn row(all: &[f64], member: usize, length: usize) -> &[f64] {
 /// with what it reached, and the others continue. An error that all share, such as one in the
 /// times, is reported by each. PC_STOPPED if the observer stops the ensemble; PC_LIMIT, after
 /// the members that were finished, if the time limit or the pc_cancel of the system's options
-/// ends it. The system may be used meanwhile.
+/// ends it. The system may be used during the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_ensemble_run(
     system: *const pc_system,

@@ -102,8 +102,8 @@ pub unsafe extern "C" fn pc_system_rhs(
     }
 }
 
-/// Writes ydot by machine code alone; false if f is more than that, or fails, or the
-/// parameters change meanwhile.
+/// Writes ydot by machine code alone; false if f is more than that, or fails, or the parameters
+/// change during the call.
 ///
 /// # Safety
 /// Each array is null or has the length it states.

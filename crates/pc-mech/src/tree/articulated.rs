@@ -10,7 +10,7 @@
 //! free component c of a joint, with the force τ, is eliminated as a row of a symmetric matrix Φ = (J H; Hᵀ
 //! M) is: w_c = (τ − p_c − Σ_{r≠c} Φ_cr A_r)/Φ_cc, Φ ← Φ − Φ_c Φ_cᵀ/Φ_cc, p ← p + Φ_c (τ − p_c)/Φ_cc.
 //!
-//! This is the elimination M = Lᵀ D L of the mass matrix of all of the tree, in an order in which it does not fill in
+//! This is the elimination M = Lᵀ D L of the mass matrix of the whole tree, in an order in which it does not fill in
 //! (Featherstone 1983; Rodriguez 1987).
 
 use pc_expr::{Expr, Graph, Number};

@@ -224,7 +224,7 @@ class Model:
         return Equations(self, self._form(form), width, inline, settings)
 
     def _rewritten(self, text: str) -> Model:
-        """The model of another text, whose tables stand beside the same file."""
+        """The model of another text, whose tables are beside the same file."""
         return Model(text, self.name)
 
     def _changed(self, settings: Mapping[str, Any]) -> _native.ModelCore:

@@ -105,7 +105,7 @@ impl Derivation {
         }
     }
 
-    /// A place near by that satisfies the constraints, by Newton's method in steps of least length.
+    /// A nearby place that satisfies the constraints, by Newton's method in steps of least length.
     pub(crate) fn on_constraints(&self, mut at: Place) -> Result<Place, Irregular> {
         let exact = Rounding::none();
         let all = 0..self.on_positions.len();

@@ -11,7 +11,7 @@ from chetaev._language.toml import entry, formula, number, quoted
 
 M = TypeVar("M")
 
-#: The sections, in the order in which they stand in the text.
+#: The sections, in the order of the text.
 _SECTIONS = (
     "model",
     "parameters",
