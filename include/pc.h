@@ -1956,11 +1956,11 @@ pc_status pc_system_emit_c(const pc_system *system,
  * Prints the analysis of the motions without integrating them, as `pc theory` does: momenta
  * and their brackets, Casimirs, integrals, cyclic displacements, invariant measure, Chaplygin's
  * multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each claim is
- * marked proved, disproved or open. Integrals are sought that are polynomials of a `degree`
- * from 1 to 6 in the velocities, whose coefficients are polynomials in the coordinates times
- * 1 or one of the `functions`, expressions of the model; the list may be empty. `format` is a
- * pc_format. Parameters have the values of the model. Everything is derived again, which
- * takes longer than pc_system_print. Free the text with pc_string_free.
+ * marked proved, disproved or open. The integrals sought are polynomials of a `degree` from 1 to 6
+ * in the velocities, whose coefficients are polynomials in the coordinates times 1 or one of the
+ * `functions`, expressions of the model; the list may be empty. `format` is a pc_format.
+ * Parameters have the values of the model. Everything is derived again, which takes longer than
+ * pc_system_print. Free the text with pc_string_free.
  */
 pc_status pc_system_theory(const pc_system *system,
                            int format,
@@ -2338,10 +2338,10 @@ pc_status pc_solver_statistics(const pc_solver *solver,
 /**
  * Integrates many members through the times, each from its own state, with its own parameters,
  * as a single solver would: the numbers are the same for any number of threads. The events
- * of the model are followed. By PC_AUTO and PC_DOP853, members of a model without events,
+ * of the model are followed. With PC_AUTO and PC_DOP853, members of a model without events,
  * constraints, kept integrals, tables and explicit dependence on time are integrated side by side
- * in vectors: their last digits may differ from those of a solver, within the tolerances. By
- * PC_AUTO members that turn out to be stiff are integrated by themselves.
+ * in vectors: their last digits may differ from those of a solver, within the tolerances. With
+ * PC_AUTO, members that turn out to be stiff are integrated by themselves.
  *
  * `states` has members × dim numbers, member by member, at the time t; NULL for the start of
  * the model, and then t is ignored. `parameters` has members × pc_system_parameter_count

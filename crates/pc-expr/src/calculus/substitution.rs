@@ -100,7 +100,7 @@ impl Graph {
         self.substitution(replacements).apply(outputs)
     }
 
-    /// The expressions rebuilt in another graph, symbols of the same names.
+    /// The expressions rebuilt in another graph, from symbols of the same names.
     pub fn transcribe<'g, 'h>(&'g self, expressions: &[Expr<'g>], into: &'h Graph) -> Vec<Expr<'h>> {
         let symbols: Vec<(Expr<'g>, Expr<'h>)> = self
             .symbols_of(expressions)

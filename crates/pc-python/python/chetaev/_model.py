@@ -289,7 +289,7 @@ class Model:
         cyclic: str | None = None,
         **settings: Any,
     ) -> Linearization:
-        """The motions near a state to first order: matrices, eigenvalues and modes, as of ``pc linearize``.
+        """The motions near a state to first order: matrices, eigenvalues and modes, as in ``pc linearize``.
 
         Parameters
         ----------

@@ -402,7 +402,7 @@ class System(_native.SystemCore):
         threads : int, optional
             Threads, as many as cores unless given.
         progress : bool
-            Whether to show progress, by tqdm where it is installed.
+            Whether to show progress, with tqdm where it is installed.
         **settings
             ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`. The first member, one in the middle and the last are
             compared with a second derivation unless ``verify=False``.

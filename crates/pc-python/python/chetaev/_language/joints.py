@@ -14,7 +14,7 @@ class Joint:
     Parameters
     ----------
     at : sequence of three expressions, optional
-        Where it is, in the axes of the parent from the origin of the parent; there unless given.
+        Its place in the axes of the parent, from the origin of the parent; zero by default.
     turns : sequence of pairs, optional
         How it is turned there: ``[("z", a), ("x", b)]`` about its z-axis by a, then about its x-axis, as turned, by b.
     rotation : sequence of nine expressions, optional

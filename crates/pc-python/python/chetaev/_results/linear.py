@@ -134,7 +134,7 @@ class RootLocus:
         self.missing: dict[float, str] = {entry["value"]: entry["reason"] for entry in found["missing"]}
 
     def plot(self, *, ax: Any = None) -> Any:
-        """The branches in the complex plane, by matplotlib; returns the figure."""
+        """The branches in the complex plane, with matplotlib; returns the figure."""
         if ax is None:
             import matplotlib.pyplot as plt
 

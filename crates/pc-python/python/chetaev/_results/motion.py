@@ -159,7 +159,7 @@ class Motion(Mapping[str, "Floats"]):
         return pd.DataFrame(self._values, index=index, columns=list(self.columns[1:]))
 
     def plot(self, names: Sequence[str] | None = None, *, ax: Any = None) -> Any:
-        """Columns over time, by matplotlib.
+        """Columns over time, with matplotlib.
 
         Parameters
         ----------
