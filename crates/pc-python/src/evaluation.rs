@@ -212,7 +212,7 @@ impl SystemCore {
     }
 }
 
-/// Which of an array's states, and how long they and what is computed of them are.
+/// Some states of an array, with the lengths of a state and of its result.
 struct Part {
     range: std::ops::Range<usize>,
     n: usize,
