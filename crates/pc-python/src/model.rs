@@ -20,7 +20,7 @@ use crate::task::attended;
 #[pyclass(frozen, module = "chetaev._native")]
 pub(crate) struct ModelCore {
     pub(crate) model: Model,
-    /// Whether equations are compared with a second derivation before they leave.
+    /// Whether equations are compared with a second derivation before they are returned.
     pub(crate) verify: bool,
 }
 

@@ -37,7 +37,7 @@ pub(crate) struct Inventory {
     /// Of a row of a motion: coordinates, quasi-velocities, first-order states, then observables.
     pub(crate) columns: Vec<String>,
     pub(crate) shown: usize,
-    /// Whether equations are compared with a second derivation before they leave.
+    /// Whether equations are compared with a second derivation before they are returned.
     pub(crate) verify: bool,
 }
 

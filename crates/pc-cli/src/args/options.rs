@@ -129,7 +129,7 @@ pub struct DeriveArguments {
     pub verify: VerifyArguments,
 }
 
-/// Whether equations are compared with a second derivation before they leave.
+/// Whether equations are compared with a second derivation before they are printed or written.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct VerifyArguments {
     /// Do not compare the equations with a second derivation, at the start and near it
