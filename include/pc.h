@@ -18,7 +18,7 @@
  *
  * Errors. A function that can fail returns a pc_status; its last argument is a place for a
  * pc_error, or NULL. On success it writes NULL there, otherwise a new error, which you free; what
- * the place held before does not matter. PC_STOPPED and PC_EVENT are no failures: an observer, or
+ * the place held before does not matter. PC_STOPPED and PC_EVENT are not failures: an observer, or
  * a terminal event, has ended an integration. Results are written unless the call fails; after a
  * failure a new handle or text is NULL, and arrays for results may hold anything.
  *
@@ -122,7 +122,7 @@ typedef enum {
    */
   PC_INTEGRATION = 8,
   /**
-   * An observer stopped the integration. This is no failure, and there is no pc_error.
+   * An observer stopped the integration. This is not a failure, and there is no pc_error.
    */
   PC_STOPPED = 9,
   /**
@@ -136,7 +136,7 @@ typedef enum {
    */
   PC_INTERNAL = 11,
   /**
-   * A terminal event ended the integration. This is no failure, and there is no pc_error.
+   * A terminal event ended the integration. This is not a failure, and there is no pc_error.
    */
   PC_EVENT = 12,
   /**
@@ -780,8 +780,8 @@ pc_status pc_model_hold_start(pc_model *model, const char *name, pc_error **erro
 pc_status pc_model_observe_reactions(pc_model *model, int yes, pc_error **error);
 
 /**
- * Sets whether systems of the model are derived with their derivatives by parameters, which
- * pc_solver_add_sensitivity needs. Any value but 0 means yes.
+ * Sets whether systems of the model are derived with their derivatives with respect to parameters,
+ * which pc_solver_add_sensitivity needs. Any value but 0 means yes.
  */
 pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
 
@@ -831,7 +831,7 @@ pc_status pc_model_add_parameter_expression(pc_model *model,
 /**
  * Adds a first-order state with its value at the start and its rate: an expression of time,
  * coordinates, velocities and states. It is integrated with the motion and comes after the
- * velocities in the state; it is no part of the frame.
+ * velocities in the state; it is not part of the frame.
  */
 pc_status pc_model_add_state(pc_model *model,
                              const char *name,
@@ -1635,9 +1635,9 @@ pc_status pc_system_parameter_jacobian(const pc_system *system,
                                        pc_error **error);
 
 /**
- * Writes ∂f/∂t, as long as the state, which Rosenbrock's methods need. The first call derives,
- * as pc_system_new does, unless f is free of t. PC_UNSUPPORTED with external forces, whose ∂/∂t
- * is unknown, and with inputs that have tables.
+ * Writes ∂f/∂t, which Rosenbrock's methods need; it has the length of the state. The first call
+ * derives, as pc_system_new does, unless f is free of t. PC_UNSUPPORTED with external forces,
+ * whose ∂/∂t is unknown, and with inputs that have tables.
  */
 pc_status pc_system_time_derivative(const pc_system *system,
                                     double t,
@@ -1673,7 +1673,7 @@ pc_status pc_system_keep_from(pc_system *system,
  * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
  * energy, the outputs.
  *
- * Where an observable has no value, the number is not finite; so it is for one that contains
+ * Where an observable has no value, the number is not finite; the same holds for one that contains
  * accelerations where external forces cannot be computed.
  */
 pc_status pc_system_observe(const pc_system *system,
@@ -1708,7 +1708,7 @@ pc_status pc_system_energy(const pc_system *system,
 
 /**
  * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: to
- * the force Q_s each adds its value times the derivative of its constraint by η_s.
+ * the force Q_s each adds its value times the derivative of its constraint with respect to η_s.
  */
 pc_status pc_system_reactions(const pc_system *system,
                               double t,
@@ -1935,16 +1935,15 @@ pc_status pc_system_to_quasi_velocities(const pc_system *system,
 pc_status pc_system_print(const pc_system *system, int format, char **text, pc_error **error);
 
 /**
- * Writes the equations as C source that depends on nothing of this library: the text of NAME.h
+ * Writes the equations as C source that does not depend on this library: the text of NAME.h
  * and of NAME.c, where NAME is `name`, made an identifier: Greek letters by their names, runs
  * of other characters as one `_`, none at the ends, `n_` before a leading digit, `_` after a
  * keyword of C. The source has the right-hand side, its Jacobian, the mass matrix, the
- * energy, the integrals and the outputs of independent quasi-velocities, those of its momenta
- * where the system has these, and says at its head how it is used. External forces are
- * parameters, after the others, called `Q_` and the name of their quasi-velocity, and
- * zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
- * capitals) to a program that integrates from the start of the model to that time. Free both
- * texts with pc_string_free.
+ * energy, the integrals and the outputs of independent quasi-velocities, or those of its momenta
+ * if the system has these, and explains its use at its head. External forces are parameters, after
+ * the others, called `Q_` and the name of their quasi-velocity, and zero until they are set. If
+ * `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
+ * integrates from the start of the model to that time. Free both texts with pc_string_free.
  */
 pc_status pc_system_emit_c(const pc_system *system,
                            const char *name,
@@ -1954,14 +1953,14 @@ pc_status pc_system_emit_c(const pc_system *system,
                            pc_error **error);
 
 /**
- * Prints what can be said of the motions without integrating them, as `pc theory` does: momenta
+ * Prints the analysis of the motions without integrating them, as `pc theory` does: momenta
  * and their brackets, Casimirs, integrals, cyclic displacements, invariant measure, Chaplygin's
  * multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each claim is
- * marked proved, disproved or open. Integrals are sought that are polynomials of a `degree`
- * from 1 to 6 in the velocities, whose coefficients are polynomials in the coordinates times
- * 1 or one of the `functions`, expressions of the model; the list may be empty. `format` is a
- * pc_format. Parameters have the values of the model. Everything is derived again, which
- * takes longer than pc_system_print. Free the text with pc_string_free.
+ * marked proved, disproved or open. The integrals sought are polynomials of a `degree` from 1 to 6
+ * in the velocities, whose coefficients are polynomials in the coordinates times 1 or one of the
+ * `functions`, expressions of the model; the list may be empty. `format` is a pc_format.
+ * Parameters have the values of the model. Everything is derived again, which takes longer than
+ * pc_system_print. Free the text with pc_string_free.
  */
 pc_status pc_system_theory(const pc_system *system,
                            int format,
@@ -2190,10 +2189,10 @@ pc_status pc_solver_last_occurrence(const pc_solver *solver,
 pc_status pc_solver_terminal_event(const pc_solver *solver, size_t *event, pc_error **error);
 
 /**
- * Writes the derivative of the start of the model by parameter number `parameter`, from 0:
- * start values may be expressions in parameters. It derives the equations.
- * PC_INCONSISTENT_MODEL where nearby parameters have no start, for an input with a table, and
- * for a parameter that is an expression in others.
+ * Writes the derivative of the start of the model with respect to parameter number `parameter`,
+ * from 0: start values may be expressions in parameters. It derives the equations.
+ * PC_INCONSISTENT_MODEL where nearby parameters have no start, for an input with a table, and for
+ * a parameter that is an expression in others.
  */
 pc_status pc_system_start_by_parameter(const pc_system *system,
                                        size_t parameter,
@@ -2203,12 +2202,12 @@ pc_status pc_system_start_by_parameter(const pc_system *system,
 
 /**
  * Adds a sensitivity that a solver integrates with the motion, before the first step: the
- * derivative of the state by parameter number `parameter`, from 0. `start` is the derivative
- * of the start, which pc_system_start_by_parameter gives for that of the model; NULL, of
- * length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
- * Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where
- * an event of the program does. For an input with a table it is the derivative by a shift of
- * all its values.
+ * derivative of the state with respect to parameter number `parameter`, from 0. `start` is the
+ * derivative of the start, which pc_system_start_by_parameter gives for that of the model; NULL,
+ * of length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
+ * Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where an
+ * event of the program does. For an input with a table it is the derivative with respect to a
+ * shift of all its values.
  */
 pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     size_t parameter,
@@ -2218,7 +2217,7 @@ pc_status pc_solver_add_sensitivity(pc_solver *solver,
 
 /**
  * Writes sensitivity number `number`, from 0 in the order in which they were added, at the
- * time of the solver; it is as long as the state.
+ * time of the solver; it has the length of the state.
  */
 pc_status pc_solver_sensitivity(const pc_solver *solver,
                                 size_t number,
@@ -2339,10 +2338,10 @@ pc_status pc_solver_statistics(const pc_solver *solver,
 /**
  * Integrates many members through the times, each from its own state, with its own parameters,
  * as a single solver would: the numbers are the same for any number of threads. The events
- * of the model are followed. By PC_AUTO and PC_DOP853, members of a model without events,
+ * of the model are followed. With PC_AUTO and PC_DOP853, members of a model without events,
  * constraints, kept integrals, tables and explicit dependence on time are integrated side by side
- * in vectors: their last digits may differ from those of a solver, within the tolerances. By
- * PC_AUTO members that turn out to be stiff are integrated by themselves.
+ * in vectors: their last digits may differ from those of a solver, within the tolerances. With
+ * PC_AUTO, members that turn out to be stiff are integrated by themselves.
  *
  * `states` has members × dim numbers, member by member, at the time t; NULL for the start of
  * the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
@@ -2352,7 +2351,7 @@ pc_status pc_solver_statistics(const pc_solver *solver,
  * with what it reached, and the others continue. An error that all share, such as one in the
  * times, is reported by each. PC_STOPPED if the observer stops the ensemble; PC_LIMIT, after
  * the members that were finished, if the time limit or the pc_cancel of the system's options
- * ends it. The system may be used meanwhile.
+ * ends it. The system may be used during the call.
  */
 pc_status pc_ensemble_run(const pc_system *system,
                           const pc_solver_options *options,

@@ -36,7 +36,7 @@ private:
 };
 
 /// Calls a function with the place of its error last. Throws what a function of the program has
-/// thrown meanwhile, even if the call succeeded, or else the failure of the call.
+/// thrown during it, even if the call succeeded, or else the failure of the call.
 template <class Function, class... Arguments> pc_status call(Function function, Arguments... arguments)
 {
     catching thrown;

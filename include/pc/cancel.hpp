@@ -28,9 +28,9 @@ private:
 
 /// Limits of each derivation, and of each call of a solver or an ensemble.
 struct limits {
-    /// Most bytes of the expressions; 0 for 4 GiB.
+    /// The most bytes that expressions may take; 0 for 4 GiB.
     std::uint64_t memory = 0;
-    /// Most seconds; 0 for no limit.
+    /// The most seconds; 0 for no limit.
     double time = 0.0;
     /// Ends them, unless null; it may be destroyed once the system is made.
     const cancel *by = nullptr;

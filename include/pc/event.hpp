@@ -22,7 +22,7 @@ struct occurrence {
 };
 
 /// g(t, y), which passes through zero where the event occurs. It is NaN where it has no value,
-/// which is no failure after an event that is found before.
+/// which is not a failure after an event that is found before.
 using event_function = std::function<double(double t, view<const double> y)>;
 /// Turns the state before an event into the one after it.
 using event_reset = std::function<void(double t, view<double> y)>;

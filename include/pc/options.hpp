@@ -8,7 +8,7 @@
 
 namespace pc {
 
-/// The options of an integration, at first the defaults; pc.h says what they are.
+/// The options of an integration, at first the defaults; pc.h describes them.
 struct solver_options : pc_solver_options {
     /// One for each component, or none, for `absolute_tolerance` for all. It replaces the pointer
     /// in C.

@@ -72,8 +72,8 @@ public:
     /// Continues with the current parameters and inputs of the system.
     void take_parameters(const system &from) { detail::call(pc_solver_take_parameters, get(), from.get()); }
 
-    /// Also integrates the derivative of the state by a parameter; `start` is that of the start, 0
-    /// if empty.
+    /// Also integrates the derivative of the state with respect to a parameter; `start` is that of the
+    /// start, 0 if empty.
     void add_sensitivity(std::size_t parameter, const vector &start = {})
     {
         detail::call(pc_solver_add_sensitivity, get(), parameter, start.empty() ? nullptr : start.data(), start.size());

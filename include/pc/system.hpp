@@ -109,7 +109,7 @@ public:
         detail::call(pc_system_absolute_tolerances, get(), relative, t_end, values.data(), values.size());
         return values;
     }
-    /// The derivative of the state at the start by a parameter.
+    /// The derivative of the state at the start with respect to a parameter.
     vector start_by_parameter(std::size_t parameter) const
     {
         vector column(dim());

@@ -131,7 +131,7 @@ pub enum AlgebraError {
     /// A name that is not in the catalogue.
     #[error("there is no algebra named `{name}` in the catalogue; it has {}", known.join(", "))]
     UnknownAlgebra {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// The known names.
         known: Vec<&'static str>,
@@ -192,7 +192,7 @@ pub enum AlgebraError {
     /// Matrices that are not a basis.
     #[error("matrix number {number} is a combination of those before it")]
     DependentMatrices {
-        /// The number of the first matrix that depends on those before it, from 1.
+        /// The number of the first matrix that depends on the preceding ones, from 1.
         number: usize,
     },
     /// Matrices whose commutators leave their span.
@@ -206,17 +206,17 @@ pub enum AlgebraError {
     TooLargeFamily {
         /// Name of the family.
         family: &'static str,
-        /// The size asked for.
+        /// The requested size.
         n: usize,
         /// The largest.
         largest: usize,
     },
-    /// A parameter that the Bianchi type does not take.
+    /// A parameter that the Bianchi type does not allow.
     #[error("Bianchi type {kind} has a parameter h {range}, not {h}")]
     BianchiParameter {
         /// VI or VII.
         kind: &'static str,
-        /// The range it takes.
+        /// The range it allows.
         range: &'static str,
         /// The parameter.
         h: String,
@@ -260,7 +260,8 @@ pub enum AlgebraError {
     Expr(#[from] ExprError),
 }
 
-/// Says which combination of operators acts as zero on the coordinates; `name` gives the name of an operator.
+/// Describes the combination of operators that acts as zero on the coordinates; `name` gives the name of an
+/// operator.
 pub fn acts_as_zero(combination: &[(usize, String)], name: impl Fn(usize) -> String) -> String {
     let term = |(s, coefficient): &(usize, String)| match coefficient.as_str() {
         "1" => format!("+ {}", name(*s)),

@@ -1,11 +1,11 @@
 //! Frames of operators ẋ = b η + b_0 (3) and their structure coefficients (5).
 //!
-//! From b and b_0, or definitions of the quasi-velocities (2), to the c_rs^m and their consequences. Read
-//! `frame` first, then `structure` (the coefficients) and how they are found: `closure`, by (6), where the
-//! operators are independent at each point (`followers` names coordinates that are left out), and
-//! `constant_brackets` where they are independent over the constants only. `integrability` (Frobenius) and
-//! `holonomy` (7) interpret the coefficients; `change` compares two frames of one system, and `elimination`
-//! gives the operators that remain when quasi-velocities are solved for.
+//! This leads from b and b_0, or definitions of the quasi-velocities (2), to the c_rs^m and their
+//! consequences. Read `frame` first, then `structure` (the coefficients) and how they are found: `closure`,
+//! by (6), if the operators are independent at each point (`followers` names coordinates that are left
+//! out), and `constant_brackets` if they are independent only over the constants. `integrability`
+//! (Frobenius) and `holonomy` (7) interpret the coefficients; `change` compares two frames of one system,
+//! and `elimination` gives the operators that remain when quasi-velocities are solved for.
 
 pub(crate) mod change;
 pub(crate) mod closure;

@@ -12,7 +12,7 @@
 //! ẋ = b η + b_0 (3), b an n × k matrix, all of it depending on t and x.
 //!
 //! A [`Frame`] is b and b_0, made [from velocities](Frame::from_velocities) (3) or [from
-//! definitions](Frame::from_definitions) (2). Where n > k it stands for constraints (1) as well, which the
+//! definitions](Frame::from_definitions) (2). If n > k it also stands for constraints (1), which the
 //! motion ẋ = b η + b_0 satisfies whatever η is.
 //!
 //! # Operators
@@ -25,8 +25,8 @@
 //!
 //! If the commutators are combinations of the operators again, \[X_r, X_s\] = c_rs^m X_m (5) with r, s from 0
 //! and m from 1, the frame is closed and the c_rs^m are its [`StructureCoefficients`].
-//! [`Frame::structure_coefficients`] finds them from b alone, equal to (6), and names the pair where there
-//! is no combination:
+//! [`Frame::structure_coefficients`] finds them from b alone, equal to (6), and names the pair if there is no
+//! combination:
 //!
 //! ```
 //! use pc_algebra::{EulerAngles, Frame, LieAlgebra, LieGroup, Neighbourhood};
@@ -54,7 +54,7 @@
 //!
 //! # Lie algebra
 //!
-//! Where the c_rs^m are constants, X_1..X_k span a [`LieAlgebra`]; those with a name are in the
+//! If the c_rs^m are constants, X_1..X_k span a [`LieAlgebra`]; those with a name are in the
 //! [`CATALOGUE`]. Its constants are exact, and so are its properties:
 //! [series](LieAlgebra::derived_series), [centre](LieAlgebra::centre), [Killing
 //! form](LieAlgebra::killing_form), [rank](LieAlgebra::rank), [index](LieAlgebra::index) (the number of
@@ -74,9 +74,9 @@
 //!
 //! An algebra belongs to the motions of a [`LieGroup`]: [`RotationMatrices`], [`UnitQuaternions`] and
 //! [`EulerAngles`] for so(3), [`PlaneRotations`], [`PlaneMotions`], [`RigidMotions`], [`HeisenbergGroup`],
-//! and every [`DirectProduct`]. A group gives frames, exact: body velocities [on the
+//! and every [`DirectProduct`]. A group provides exact frames: body velocities [on the
 //! left](LieGroup::left_frame), whose structure coefficients are the constants of the algebra, and spatial
-//! velocities [on the right](LieGroup::right_frame), with the opposite ones. And it gives numbers, for
+//! velocities [on the right](LieGroup::right_frame), with the opposite ones. It also provides numbers, for
 //! integrators and initial values: [`LieGroup::exp`] and its derivative, [`LieGroup::log`],
 //! [`LieGroup::compose`], [`LieGroup::project`].
 //!

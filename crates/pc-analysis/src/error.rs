@@ -24,14 +24,14 @@ pub enum AnalysisError {
         /// Names and values of the state where the residual was least.
         state: Vec<(String, f64)>,
     },
-    /// Newton's method ended where the rates vanish but have no derivatives: at a pole of the coordinates or
-    /// of the frame, say.
+    /// Newton's method ended where the rates vanish but have no derivatives: for example at a pole of the
+    /// coordinates or of the frame.
     #[error("the rates vanish, but have no derivatives, at{}", listed(state).trim_start_matches(','))]
     NotSmooth {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// Outputs that contain reactions, at a state where the constraints do not determine these.
+    /// Outputs that contain reactions, at a state where the constraints do not determine the reactions.
     #[error(
         "the constraints are dependent at{}, where they leave the reactions in {} undetermined",
         listed(state).trim_start_matches(','),
@@ -54,15 +54,16 @@ pub enum AnalysisError {
     /// A component named as cyclic on which a rate depends.
     #[error("`{coordinate}` is not cyclic: the rate of `{component}` depends on it")]
     NotCyclic {
-        /// The component called cyclic.
+        /// The component named as cyclic.
         coordinate: String,
-        /// A component that is not.
+        /// A component whose rate depends on it.
         component: String,
     },
-    /// A steady motion asked for of equations that depend on time.
+    /// A steady motion was requested for equations that depend on time.
     #[error("the equations depend on time explicitly, so that no state is steady")]
     DependsOnTime,
-    /// A steady motion asked for where the coordinates are not independent and their relations are not known.
+    /// A steady motion was requested where the coordinates are not independent and their relations are not
+    /// known.
     #[error(
         "the start is not steady, as rates of norm {} show, and the functions of the coordinates that the frame keeps \
          are not known, so that no other state can be reached from it",
@@ -73,13 +74,13 @@ pub enum AnalysisError {
         residual: f64,
     },
     /// A box for a coordinate that equilibria do not depend on.
-    #[error("`{name}` is cyclic: equilibria stand at any value of it, so that it has no box")]
+    #[error("`{name}` is cyclic: equilibria exist at any value of it, so it takes no box")]
     CyclicBox {
         /// The coordinate.
         name: String,
     },
-    /// A box that contains nothing.
-    #[error("the box of `{name}` from {} to {} contains nothing", readable(*low), readable(*high))]
+    /// An empty box.
+    #[error("the box of `{name}` from {} to {} is empty", readable(*low), readable(*high))]
     EmptyBox {
         /// The coordinate.
         name: String,
@@ -94,7 +95,7 @@ pub enum AnalysisError {
         /// Its name.
         name: String,
     },
-    /// Hamilton–Jacobi's equation asked for with generalised forces.
+    /// Hamilton–Jacobi's equation was requested with generalised forces.
     #[error("Hamilton–Jacobi's equation needs Q = 0; the force on `{quasi_velocity}` is not zero")]
     Forced {
         /// The first quasi-velocity with a force.
@@ -153,7 +154,7 @@ pub enum AnalysisError {
 }
 
 impl From<Failure> for AnalysisError {
-    /// The error of a [`Motion`](pc_mech::Motion); of other vector fields the text of their error.
+    /// The error of a [`Motion`](pc_mech::Motion); for other vector fields the text of their error.
     fn from(failure: Failure) -> AnalysisError {
         MechError::from(failure).into()
     }

@@ -17,9 +17,9 @@ pub struct FrameFacts<'g> {
 /// Whether a quasi-velocity is dπ/dt.
 #[derive(Clone, Debug)]
 pub enum QuasiVelocityKind<'g> {
-    /// It is the rate of this π, or of one that is not found.
+    /// It is the rate of this π, or of a π that is not found.
     RateOf(Option<Expr<'g>>),
-    /// It is the rate of no function, because of the bracket of this pair.
+    /// It is not the rate of a function, because of the bracket of this pair.
     RateOfNothing([String; 2]),
 }
 
@@ -33,7 +33,7 @@ pub enum FrameConstraints {
         /// Whether the f depend on time.
         of_time: bool,
     },
-    /// Not all can, because of the bracket of this pair.
+    /// Not all can be written so, because of the bracket of this pair.
     NotIntegrable {
         /// Names of two quasi-velocities, or `t`.
         pair: [String; 2],

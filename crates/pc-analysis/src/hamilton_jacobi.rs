@@ -36,9 +36,9 @@ pub struct CompleteIntegral<'g> {
 ///   X_0 S + H(t, x, X_s S) = 0
 ///
 /// for S = `action`, a function of t, x and any constants. S is a solution if this [is
-/// zero](Expr::is_zero); then y_s = X_s S satisfies (10) along (11). The constant zero is a proof: it is
-/// what expressions of equal value are folded to. Square roots are followed where the radicand is linear
-/// in some symbol, as it is in the energy.
+/// zero](Expr::is_zero); then y_s = X_s S satisfies (10) along (11). The constant zero is a proof, since
+/// differences of expressions of equal value are folded to it. Square roots are resolved if the radicand
+/// is linear in some symbol, for example the energy.
 ///
 /// # Errors
 /// [`AnalysisError::Forced`] if a generalised force is not zero;
@@ -77,12 +77,12 @@ fn slopes<'g>(canonical: &Canonical<'g>, action: Expr<'g>) -> Vec<Expr<'g>> {
 }
 
 impl<'g> CompleteIntegral<'g> {
-    /// The complete integral S = `action` with the constants α of the names given, k of them.
+    /// The complete integral S = `action` with k constants α of the given names.
     ///
     /// # Errors
     /// [`AnalysisError::NotAnAction`] if S does not satisfy the [equation](hamilton_jacobi): its left side is not
-    /// folded to zero, and in numbers more than rounding; [`AnalysisError::IncompleteIntegral`] if
-    /// det ∂(X_s S)/∂α_r = 0 at almost all points; [`ShapeError`] if there are not k constants and k coordinates;
+    /// folded to zero, and in numbers it is more than rounding; [`AnalysisError::IncompleteIntegral`] if det
+    /// ∂(X_s S)/∂α_r = 0 at almost all points; [`ShapeError`] if there are not k constants and k coordinates;
     /// [`AnalysisError::Forced`]; [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic);
     /// [`ExprError::UnboundSymbol`](pc_mech::ExprError::UnboundSymbol).
     pub fn new(
@@ -155,8 +155,8 @@ impl<'g> CompleteIntegral<'g> {
     /// motion with the constants α, β: ∂S/∂α_s = β_s is solved for x by Newton's method from `guess`; all
     /// have length k.
     ///
-    /// S has several branches where it contains roots or arcs; the position found is on the branch of the
-    /// guess.
+    /// S has several branches if it contains roots or inverse trigonometric functions; the position found
+    /// is on the branch of the guess.
     ///
     /// # Errors
     /// [`AnalysisError::NoPosition`] with the best x found; as [`betas`](CompleteIntegral::betas) at the guess.

@@ -1,9 +1,9 @@
 //! Analysis of motions without integrating them: integrals, steady motions, stability, invariant measures.
 //!
 //! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
-//! corrected; conventions are those of [`pc_mech`]. Questions are asked of its [`System`](pc_mech::System), of its
-//! [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical) equations (10), (11), and of the
-//! [`Motion`](pc_mech::Motion) that these are compiled to. Results are proved unless they are marked open.
+//! corrected; conventions are those of [`pc_mech`]. The analysis applies to its [`System`](pc_mech::System), of
+//! its [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical) equations (10), (11), and to
+//! the [`Motion`](pc_mech::Motion) that these are compiled to. Results are proved unless they are marked open.
 //!
 //! # Frames
 //!
@@ -18,7 +18,7 @@
 //! [`PoissonBracket::new`] is this bracket; for all others [`PoissonBracket::extended`] adds time and its
 //! momentum y_0, with H + y_0 for H. Functions that commute with everything are
 //! [Casimirs](PoissonBracket::casimirs). The bracket of two integrals is an integral (Poisson's theorem);
-//! [`PoissonBracket::closure`] adds what is new.
+//! [`PoissonBracket::closure`] adds the new ones.
 //!
 //! ```
 //! use pc_analysis::PoissonBracket;
@@ -63,11 +63,11 @@
 //! # Integrals
 //!
 //! [`System::energy_rate`](pc_mech::System::energy_rate) is dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s.
-//! [`CyclicDisplacement::all`] finds the a_s X_s whose momentum a_s y_s the motion keeps; for η = ẋ they are in
-//! particular the cyclic coordinates. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on
-//! any function, and [finds](Rates::integrals) integrals of the form of an [`Ansatz`]; these are proved.
+//! [`CyclicDisplacement::all`] finds the a_s X_s whose momentum a_s y_s the motion conserves; for η = ẋ they include
+//! the cyclic coordinates. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on any
+//! function, and [finds](Rates::integrals) integrals of the form of an [`Ansatz`]; these are proved.
 //! [`Integrals::find`] combines all of these, and Casimirs; [`Integrals::add_polynomials`] adds those of a
-//! [`PolynomialAnsatz`], with parameters in their coefficients. To one that is linear in the momenta belongs a
+//! [`PolynomialAnsatz`], with parameters in their coefficients. An integral that is linear in the momenta has a
 //! [`NoetherField`].
 //!
 //! ```
@@ -103,7 +103,7 @@
 //! # Hamilton–Jacobi
 //!
 //! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along (11). [`hamilton_jacobi`] substitutes S and
-//! proves the equation, [`ProposedAction::check`] gives a verdict where there is no proof; from a [`CompleteIntegral`]
+//! proves the equation, [`ProposedAction::check`] gives a verdict if there is no proof; from a [`CompleteIntegral`]
 //! S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
 //!
 //! ```
@@ -164,21 +164,22 @@
 //!
 //! # Reduction
 //!
-//! A [`Routhian`] is the Lagrangian of the remaining coordinates when cyclic ones are eliminated, with their momenta
-//! as constants.
+//! A [`Routhian`] is the Lagrangian of the remaining coordinates when cyclic ones are eliminated; the cyclic momenta
+//! are constants.
 //!
 //! # Invariant measures
 //!
 //! [`divergence`] is the rate at which phase volume grows, and [`invariant_measure`] finds a density N with N
 //! dx dy kept, as it is by every system with potential forces, and by some under nonholonomic constraints.
-//! Those have a bracket as well, the [almost-Poisson](PoissonBracket::almost_poisson) one, and some of
-//! Chaplygin's systems a time in which they are Lagrangian, by a [`ReducingMultiplier`].
-//! [`MeasureSearch::of`] gives all that is known for a motion.
+//! Systems under nonholonomic constraints also have a bracket, the
+//! [almost-Poisson](PoissonBracket::almost_poisson) one, and some of Chaplygin's systems have a time in which
+//! they are Lagrangian, given by a [`ReducingMultiplier`]. [`MeasureSearch::of`] gives all results for a
+//! motion.
 //!
 //! # Around it
 //!
-//! Below: [`pc_mech`] and [`pc_nonholo`], the equations whose motions these are. Above: [pc-print](../pc_print/index.html), which says it
-//! in words; [pc-cli](../pc_cli/index.html), where it is `pc theory`, `pc linearize` and `pc equilibria`.
+//! Below: [`pc_mech`] and [`pc_nonholo`], the equations whose motions these are. Above: [pc-print](../pc_print/index.html), which puts it
+//! into words; [pc-cli](../pc_cli/index.html), where it is `pc theory`, `pc linearize` and `pc equilibria`.
 
 mod brackets;
 mod error;

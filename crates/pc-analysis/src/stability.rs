@@ -1,10 +1,10 @@
 //! Steady motions and their stability.
 //!
 //! Compiled equations and a guess give a steady motion and verdicts on its stability. `steady_motion` finds
-//! it with its first approximation, `spectrum` decides by eigenvalues, those of the directions that are
-//! `reachable`, `second_variation` by integrals, for which `definite` finds a definite combination of
-//! quadratic forms; `steady_search` applies all of them to the steady motion near a start, `steady_motions` to
-//! those found from many starts.
+//! it with its first approximation, `spectrum` decides by eigenvalues of the `reachable` directions,
+//! `second_variation` by integrals, for which `definite` finds a definite combination of quadratic forms;
+//! `steady_search` applies all of them to the steady motion near a start, `steady_motions` to those found from
+//! many starts.
 
 pub(crate) mod definite;
 mod reachable;

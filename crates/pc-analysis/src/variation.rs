@@ -21,7 +21,7 @@ impl<F: VectorField> Variation<F> {
     /// # Errors
     /// [`EvaluationError::NotCompiled`] if the field has no products with its Jacobian, as a
     /// [`Motion`](pc_mech::Motion) has [on demand](pc_mech::CompileOptions::jvp); [`EvaluationError::Pieces`] if it jumps or
-    /// has corners, where deviations would have to jump.
+    /// has corners, at which deviations would have to jump.
     pub fn new(mut field: F, deviations: usize) -> Result<Variation<F>, MechError> {
         if let Some(switching) = field.switching() {
             return Err(EvaluationError::Pieces { surfaces: switching.surfaces().to_vec() }.into());

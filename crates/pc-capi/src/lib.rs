@@ -11,7 +11,7 @@
 //!
 //! # Around it
 //!
-//! Below: [pc-model](../pc_model/index.html), [`pc_print`], [`pc_verify`] and [`pc_solve`], to which the functions hand over.
+//! Below: [pc-model](../pc_model/index.html), [`pc_print`], [`pc_verify`] and [`pc_solve`], which the functions call.
 
 #![expect(unsafe_code, reason = "a C interface")]
 #![expect(non_camel_case_types, reason = "the names are those of C")]

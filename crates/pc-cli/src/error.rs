@@ -130,8 +130,8 @@ pub enum CliError {
     /// Something wrong with a robot in URDF.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
-    /// An option that says nothing of what a sweep finds of each member.
-    #[error("{option} says nothing of what `--of {of}` finds; leave it out")]
+    /// An option that has no effect on what a sweep computes for each member.
+    #[error("{option} has no effect on what `--of {of}` computes; leave it out")]
     Idle {
         /// The option.
         option: &'static str,

@@ -11,7 +11,7 @@ pub enum ExprError {
         /// Text of the dividend.
         dividend: String,
     },
-    /// An expression without a value for any values of the symbols, such as log(−1).
+    /// An expression that has no value for any values of the symbols, such as log(−1).
     #[error("an expression is undefined: a constant in it has no finite value")]
     Undefined,
     /// A symbol that is neither an input of the program nor given a value.
@@ -61,7 +61,7 @@ fn listed(values: &[(String, f64)]) -> String {
     values.join(", ")
 }
 
-/// A number in a message, with an exponent where it is long without one.
+/// A number in a message, with an exponent if it would be long without one.
 pub fn readable(value: f64) -> String {
     let usual = value == 0.0 || (1e-4..1e15).contains(&value.abs()) || !value.is_finite();
     if usual { value.to_string() } else { format!("{value:e}") }

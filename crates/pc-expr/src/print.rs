@@ -1,7 +1,7 @@
 //! Expressions as text for readers.
 //!
 //! Expressions become lines. Read `piece` (text with its binding strength) and `symbol` (names in their
-//! parts), `style` with `book`, `latex` and `mathml` (the alphabets it is set in), then `writer`, which
+//! parts), `style` with `book`, `latex` and `mathml` (the notations), then `writer`, which
 //! decides order, signs and parentheses, `text`, one expression, and `names`, many expressions with names for
 //! long or repeated parts.
 

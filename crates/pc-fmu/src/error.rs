@@ -33,7 +33,7 @@ pub enum FmuError {
         on: String,
     },
     /// A method with fixed steps whose length is none.
-    #[error("a step of length {step} is none: it has to be positive")]
+    #[error("a step cannot have the length {step}: it has to be positive")]
     Step {
         /// The length.
         step: f64,

@@ -1,7 +1,7 @@
 //! Equations of motion as C or Rust source without dependencies.
 //!
 //! Equations become [files](source::EmittedFile). Read `source` (the contents of a file), `function` (further
-//! functions), `c` and `rust`, which write it, then `emit`, which decides what is computed.
+//! functions), then `c` and `rust`, which write it, then `emit`, which decides what is computed.
 
 pub(crate) mod c;
 pub(crate) mod emit;

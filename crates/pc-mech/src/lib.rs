@@ -11,8 +11,8 @@
 //! ẋ = b η + b_0 (3), \[X_r, X_s\] = c_rs^m X_m (5), L(t, x, η) = T + U with U minus the potential energy, and
 //! Q_s (8), the force conjugate to η_s.
 //!
-//! [`System::builder`] takes each in the form in which books give it. The frame: [velocities in terms of
-//! η](SystemBuilder::kinematics), a [`Frame`](SystemBuilder::frame), or neither, and then η = ẋ. The
+//! [`System::builder`] takes each in the form in which books give it. The frame is given by [velocities in terms of
+//! η](SystemBuilder::kinematics) or as a [`Frame`](SystemBuilder::frame); without either, η = ẋ. The
 //! [algebra](SystemBuilder::algebra) is needed only where b does not determine it, because its rank is below k. The
 //! Lagrangian is the sum of [T](SystemBuilder::kinetic), [−V](SystemBuilder::potential), [L(t, x,
 //! η)](SystemBuilder::lagrangian), [L(t, x, ẋ)](SystemBuilder::lagrangian_in_velocities) and what each
@@ -84,9 +84,9 @@
 //!
 //! d/dt ∂L/∂ẋ_s − ∂L/∂x_s − b_js ∂L/∂x_j = Q_s (14)–(16),
 //!
-//! fewer, without reactions, and singular where the choice is. The first is for long motions and for reactions, the
-//! second for further transformations of a system; its canonical equations are (17). The second refuses constraints on
-//! velocities that are not integrable, which `pc-nonholo` treats.
+//! which are fewer, without reactions, and singular where the choice is. The first is for long motions and for
+//! reactions, the second for further transformations of a system; its canonical equations are (17). The second refuses
+//! constraints on velocities that are not integrable, which `pc-nonholo` treats.
 //!
 //! ```
 //! use pc_mech::{Constraint, Graph, System};
@@ -121,8 +121,8 @@
 //! ẏ_s = (c_rs^m ∂H/∂y_r + c_0s^m) y_m − X_s H + Q_s (10), ẋ_i = b_i0 + b_is ∂H/∂y_s (11).
 //!
 //! [`System::canonical`] gives them as [`Canonical`]. For a quadratic L, η is an expression; for any other it is found
-//! by Newton's method at each evaluation ([`Canonical::is_closed`] says which). [`LegendreTransform`] takes states
-//! there and back.
+//! by Newton's method at each evaluation ([`Canonical::is_closed`] says which). [`LegendreTransform`] converts states
+//! in both directions.
 //!
 //! ```
 //! use pc_mech::{Graph, System};
@@ -214,7 +214,7 @@
 //! # Around it
 //!
 //! Below: [`pc_algebra`], frames and brackets. Above: [pc-nonholo](../pc_nonholo/index.html), constraints that are not integrable;
-//! [pc-analysis](../pc_analysis/index.html), what can be said of the motions; [pc-model](../pc_model/index.html), systems from text.
+//! [pc-analysis](../pc_analysis/index.html), the analysis of the motions; [pc-model](../pc_model/index.html), systems from text.
 //! Beside it, [pc-solve](../pc_solve/index.html) integrates a [`Motion`].
 
 mod compiled;

@@ -4,7 +4,7 @@
 //! body. Read `joint` (the kinds, as they are described), `body`, then `tree`, which divides them into
 //! `link`s: one elementary movement each, with body axes chosen along its axis. `spatial` has the vectors and
 //! matrices of three components, `kinematics` the recursion of velocities from body to body, `energy` the
-//! contribution to a system. The equations are solved joint after joint, in O(N), by `dynamics`, on
+//! contribution to a system. The equations are solved joint after joint, in O(N), by `dynamics`, with the
 //! `articulated` inertias of masses that `regrouping` has made sparse; `turning` rotates them from one body
 //! to the next. `system` is a system that is a tree, `own_graph` writes it in a graph of its own, `equations`
 //! are its equations of motion, `reactions` the loads of its joints.

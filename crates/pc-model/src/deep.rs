@@ -1,6 +1,6 @@
 //! Deep recursion on models.
 
-/// With less of the stack left, work gets a stack of its own.
+/// If less than this is left of the stack, work gets its own stack.
 #[cfg(feature = "any-stack")]
 const LEAST: usize = 2 << 20;
 
@@ -9,11 +9,11 @@ const LEAST: usize = 2 << 20;
 #[cfg(feature = "any-stack")]
 const STACK: usize = 8 << 20;
 
-/// Runs work on models that may recurse deeply, such as reading and deriving, on a stack of its own if the
+/// Runs work on models that may recurse deeply, such as reading and deriving, on a separate stack if the
 /// thread has too little left.
 ///
-/// With the feature `any-stack`, any thread with 128 KiB of stack may call it; without, the thread needs as
-/// much as the main thread usually has.
+/// With the feature `any-stack`, any thread with 128 KiB of stack may call it; without it, the thread needs
+/// as much as the main thread usually has.
 pub fn deep<T>(work: impl FnOnce() -> T) -> T {
     #[cfg(feature = "any-stack")]
     return stacker::maybe_grow(LEAST, STACK, work);

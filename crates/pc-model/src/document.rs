@@ -1,11 +1,11 @@
 //! The text of a model as a typed document: every entry with its place, names not yet resolved.
 //!
 //! TOML becomes a [`Document`]. Read the result first: `expression`, with the places that `text_map` finds in
-//! the file, and `contents`, section by section. Then how it is read: `reading` reads bytes, `syntax` TOML,
-//! `reader` gives typed access to it, `hidden` lists characters that labels cannot have; `sections`,
-//! `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation`, with
-//! its `tolerance`s, read the sections, `hanging` declares the coordinates of joints, `checks` tests conditions between the
-//! sections, and `parse` combines these. `schema` is the format for editors.
+//! the file, and `contents`, section by section. Then see how it is read: `reading` reads bytes, `syntax` TOML, `reader`
+//! gives typed access to it, `hidden` lists characters that labels cannot have; `sections`, `bodies`, `tree` with its
+//! `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation`, with its `tolerance`s, read the sections,
+//! `hanging` declares the coordinates of joints, `checks` tests conditions between the sections, and `parse` combines
+//! these. `schema` is the format for editors.
 
 pub(crate) mod bodies;
 pub(crate) mod checks;

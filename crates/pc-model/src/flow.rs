@@ -1,10 +1,9 @@
 //! The vector field that is integrated, its events, and the columns of a table of its states.
 //!
-//! An [`Assembly`](crate::Assembly) becomes a [`Flow`](flow::Flow). Read `variables` first, the equations in
-//! the variables of their state, `free_form`, those of independent quasi-velocities, whose start is given by
-//! `formulas`, and `compile`, their motion, evaluated at the start; `reading` converts states to coordinates,
-//! quasi-velocities and first-order states; `events` are the model's events on them, `constrained_resets` the
-//! states that constraints allow after these, and `flow` combines all of these; `tolerances` are by the scales of a flow; `prototype` gives a flow other
+//! An [`Assembly`](crate::Assembly) becomes a [`Flow`](flow::Flow). Read `variables` first, the equations in the variables of their state, `free_form`,
+//! the equations of independent quasi-velocities, whose start is given by `formulas`, and `compile`, their motion, evaluated at the start; `reading`
+//! converts states to coordinates, quasi-velocities and first-order states; `events` are the model's events on them, `constrained_resets` the states
+//! that constraints allow after these, and `flow` combines all of these; `tolerances` are by the scales of a flow; `prototype` gives a flow other
 //! numbers without deriving it again.
 
 pub(crate) mod compile;

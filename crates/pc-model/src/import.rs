@@ -1,7 +1,7 @@
 //! Models in other formats, as text models.
 //!
-//! In goes a robot in URDF, out comes the text of a model. Read `robot` first, the contents of such
-//! a file; `urdf` reads it, with an `error` that shows the place, and `text` writes the model, with `names` of its own.
+//! A robot in URDF becomes the text of a model. Read `robot` first, the contents of such
+//! a file; `urdf` reads it, with an `error` that shows the place, and `text` writes the model, with its own `names`.
 
 mod error;
 mod names;

@@ -8,7 +8,7 @@ pub enum Variables {
     QuasiVelocities,
     /// The momenta of (10), those of the same quasi-velocities.
     Momenta,
-    /// The quasi-velocities of (9) without the coordinates that nothing depends on: Euler–Poincaré's equations where
+    /// The quasi-velocities of (9) without the coordinates that nothing depends on: Euler–Poincaré's equations if
     /// none is left.
     Reduced,
     /// The momenta of the same: Lie–Poisson equations.

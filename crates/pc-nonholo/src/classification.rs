@@ -2,8 +2,8 @@
 //!
 //! Conditions on positions and velocities are classified: `classification` by Frobenius' test, with `reach`,
 //! the allowed velocities, `involutive`, the directions that these reach by commutators, and `binding`, the
-//! constraints that bind the motion at a state found by `positions`. `combinations` finds those that are
-//! integrable together.
+//! constraints that bind the motion at a state found by `positions`. `combinations` finds constraints that
+//! are integrable together.
 
 pub(crate) mod binding;
 pub(crate) mod classification;

@@ -17,15 +17,15 @@ pub enum NonholoError {
         /// The quasi-velocity.
         name: String,
     },
-    /// Voronets' equations asked for in quasi-velocities.
+    /// Voronets' equations were requested in quasi-velocities.
     #[error("Voronets' equations are those of a system in the velocities of its coordinates")]
     NotInVelocities,
     /// A form of the equations that requires constraints affine in the velocities.
     #[error("{form} need constraints that are affine in the velocities; `{constraint}` is not")]
     Nonlinear {
-        /// The form requested.
+        /// The requested form.
         form: &'static str,
-        /// The name of the first that is not.
+        /// The name of the first constraint that is not.
         constraint: String,
     },
     /// A constraint that no velocity satisfies together with others.
@@ -33,7 +33,7 @@ pub enum NonholoError {
     Contradictory {
         /// Its name.
         constraint: String,
-        /// The constraints that leave no velocity for it; none if it alone leaves none.
+        /// The constraints that leave no velocity for it; empty if it leaves none by itself.
         others: Vec<String>,
     },
     /// An error of the derivation.

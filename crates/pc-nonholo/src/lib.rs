@@ -7,8 +7,8 @@
 //!
 //! # Which constraints are nonholonomic
 //!
-//! A [`Constraint`](pc_mech::Constraint) is a condition f(t, x) = 0, or one on velocities. Of those on
-//! velocities some can be integrated, and some follow from others or contradict them. A
+//! A [`Constraint`](pc_mech::Constraint) is a condition f(t, x) = 0, or one on velocities. Some conditions on
+//! velocities can be integrated, and some follow from others or contradict them. A
 //! [`ConstraintClassification`] says which: with X'_1..X'_l a basis of the velocities allowed and X'_0 one of
 //! them,
 //!
@@ -46,8 +46,9 @@
 //!
 //! d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s, r, s = 1..l, m = 1..k (30),
 //!
-//! the constraints being substituted after differentiation, so that all k momenta count. [`Constrained`]
-//! derives them, and the reactions that the dropped equations are off by,
+//! where the constraints are substituted after differentiation, so that all k momenta count.
+//! [`Constrained`] derives them, and the reactions, which are the residuals of the dropped
+//! equations,
 //!
 //! λ_α = D_t p_α − (c_rα^m η_r + c_0α^m) p_m − X_α L − Q_α.
 //!
@@ -114,9 +115,9 @@
 //!
 //! d/dt ∂θ/∂η_s = (c_rs^m η_r + c_0s^m) ∂θ/∂η_m + (c_rs^α η_r + c_0s^α)(∂T/∂η_α)_0 + X_s (θ + U) + Q_s, m ≤ l (32).
 //!
-//! Without the second term, as if the constraints had been put into L first, they would be wrong.
-//! [`Constrained::free_system`] counts this term among the forces: a [`System`](pc_mech::System) of l quasi-velocities
-//! with all that belongs to one, whose canonical equations are (34). Its bracket does not satisfy Jacobi's identity.
+//! Without the second term, as if the constraints had been substituted into L first, they would be wrong.
+//! [`Constrained::free_system`] counts this term among the forces: it is a complete [`System`](pc_mech::System) of l
+//! quasi-velocities, whose canonical equations are (34). Its bracket does not satisfy Jacobi's identity.
 //!
 //! ```
 //! # use pc_mech::{Graph, System};
@@ -142,8 +143,8 @@
 //!
 //! d/dt ∂θ/∂ẋ_i = ∂(θ+U)/∂x_i + α_ri ∂(θ+U)/∂x_r + (c_ji^r ẋ_j + c_0i^r)(∂T/∂ẋ_r)_0 + Q_i + α_ri Q_r (35)
 //!
-//! of Voronets; Chaplygin's where nothing depends on the x_r, so that those of x_i stand alone. [`Voronets`] takes a
-//! system in velocities, with multipliers.
+//! of Voronets; they are Chaplygin's if nothing depends on the x_r, so that those of x_i form a system by
+//! themselves. [`Voronets`] takes a system in velocities, with multipliers.
 //!
 //! ```
 //! use pc_mech::{Constraint, Graph, System};
@@ -168,14 +169,14 @@
 //!
 //! # Or multipliers
 //!
-//! All forms above are singular where their choice of velocities is. The equations with
-//! [`Multipliers`](pc_mech::Multipliers), M η̇ = r + Cᵀ λ, are singular only where the constraints are, nonholonomic
-//! ones included, and observe the λ: long motions are integrated in them.
+//! All forms above are singular where their choice of velocities is singular. The equations with
+//! [`Multipliers`](pc_mech::Multipliers), M η̇ = r + Cᵀ λ, are singular only where the constraints are singular,
+//! also for nonholonomic ones, and observe the λ: use them for long motions.
 //!
 //! # Around it
 //!
-//! Below: [`pc_mech`], the systems that constraints bind. Above: [pc-model](../pc_model/index.html), which has the constraints of a text
-//! sorted, and [pc-analysis](../pc_analysis/index.html), invariant measures and Chaplygin's multiplier.
+//! Below: [`pc_mech`], the systems that constraints bind. Above: [pc-model](../pc_model/index.html), which classifies the constraints of
+//! a text, and [pc-analysis](../pc_analysis/index.html), invariant measures and Chaplygin's multiplier.
 
 mod classification;
 mod error;

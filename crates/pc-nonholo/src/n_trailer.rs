@@ -19,8 +19,8 @@ pub struct Wagon<'g> {
 /// A car with n trailers, each hitched to the middle of the axle before it [Laumond 1993].
 ///
 /// The coordinates are the middle (x, y) of the car's axle and the headings θ0..θn; the quasi-velocities the
-/// car's speed v, its turning ω, and the velocities u0..un of the axles along themselves, which the wheels
-/// forbid. With v_i the speed of axle i ahead and ℓ_i its distance from the one before,
+/// car's speed v, its turning ω, and the sideways velocities u0..un of the axles, which the wheels forbid.
+/// With v_i the speed of axle i ahead and ℓ_i its distance from the one before,
 ///
 ///   v_i = v_{i−1} cos δ − u_{i−1} sin δ,   ℓ_i θ̇_i = v_{i−1} sin δ + u_{i−1} cos δ − u_i,   δ = θ_{i−1} − θ_i.
 ///

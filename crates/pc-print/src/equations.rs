@@ -1,4 +1,4 @@
-//! What of the equations is printed.
+//! The printed content of the equations.
 //!
 //! A `form` of an assembled model is `derived`, and becomes a `sheet`: kinematics, brackets, equations, energy, with the `operations` that they cost and
 //! the kinds of `constraints`.

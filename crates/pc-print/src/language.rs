@@ -1,4 +1,4 @@
-//! Equations in a language: `text`, `latex`, `mathml` and `json`; `bodies` are the page of bodies on joints in the first two.
+//! Equations in a language: `text`, `latex`, `mathml` and `json`; `bodies` is the page of bodies on joints in the first two.
 
 pub(crate) mod bodies;
 pub(crate) mod json;

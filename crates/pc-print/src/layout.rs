@@ -1,6 +1,7 @@
-//! How a sheet stands on a page.
+//! How a sheet is laid out on a page.
 //!
-//! A `layout` is what whoever prints chooses, in a `format`; a `part` of a sheet is rows with names for what is long.
+//! A `layout` holds the choices for printing, in a `format`; a `part` of a sheet consists of rows, with names
+//! for long expressions.
 
 pub(crate) mod format;
 pub(crate) mod layout;

@@ -1,4 +1,4 @@
-//! The analysis of a model's motions, in print.
+//! The printed analysis of a model's motions.
 //!
 //! An assembled model becomes text. Read `description` first, the content in any format; then `ground`, the
 //! common basis of all parts, and the parts: `brackets`, `integrals`, `measure`, `action`, `steady`, `routh`.

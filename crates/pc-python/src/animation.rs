@@ -77,7 +77,7 @@ fn drawn(panel: Panel) -> Drawn {
 
 #[pymethods]
 impl SystemCore {
-    /// The page of a motion; None where there is nothing to be drawn.
+    /// The page of a motion; None if there is nothing to be drawn.
     fn animation_page(&self, py: Python<'_>, recorded: Recorded) -> PyResult<Option<String>> {
         let record = Record::from(recorded);
         self.derive(py, move |model| {

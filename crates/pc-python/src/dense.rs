@@ -21,7 +21,7 @@ pub(crate) struct DenseCore {
 
 #[pymethods]
 impl DenseCore {
-    /// From when to when.
+    /// The first and the last time.
     #[getter]
     fn span(&self) -> Option<(f64, f64)> {
         self.motion.span()

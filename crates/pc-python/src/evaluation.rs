@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use crate::error::Error;
 use crate::system::SystemCore;
 
-/// States computed before the first look at signals; how many then is a matter of the time they take.
+/// States computed before the first look at signals; after that the number depends on the time they take.
 const FIRST_PART: usize = 1 << 8;
 
 /// Between two looks at signals: well below the tenth of a second in which Ctrl-C is to end work, and long beside a look.
@@ -52,7 +52,7 @@ enum Order {
     Components,
 }
 
-/// What is computed of a state.
+/// The quantity computed from a state.
 pub(crate) struct Quantity<F> {
     /// The shape for one state; none for a number.
     pub(crate) shape: Vec<usize>,
@@ -212,7 +212,7 @@ impl SystemCore {
     }
 }
 
-/// Which of an array's states, and how long they and what is computed of them are.
+/// Some states of an array, with the lengths of a state and of its result.
 struct Part {
     range: std::ops::Range<usize>,
     n: usize,

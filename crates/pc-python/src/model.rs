@@ -20,11 +20,11 @@ use crate::task::attended;
 #[pyclass(frozen, module = "chetaev._native")]
 pub(crate) struct ModelCore {
     pub(crate) model: Model,
-    /// Whether equations are compared with a second derivation before they leave.
+    /// Whether equations are compared with a second derivation before they are returned.
     pub(crate) verify: bool,
 }
 
-/// What a model is changed by before it is derived.
+/// The changes to a model before it is derived.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Changes {
@@ -58,7 +58,7 @@ pub(crate) fn variables(name: &str) -> Result<Variables, Error> {
     })
 }
 
-/// As a tolerance is given: a number, or a mapping of names.
+/// A tolerance as the user gives it: a number, or a mapping of names.
 #[derive(IntoPyObject)]
 enum GivenTolerance {
     All(f64),
@@ -72,7 +72,8 @@ fn absolute(given: AbsoluteTolerance) -> GivenTolerance {
     }
 }
 
-/// Compares equations that leave with a second derivation. It is no error if that cannot be made: `check` says why.
+/// Compares equations that leave with a second derivation. It is not an error if that cannot be made: `check`
+/// says why.
 ///
 /// # Errors
 /// [`Error::Verify`] if the derivations disagree.
@@ -131,7 +132,7 @@ impl ModelCore {
         Ok(ModelCore { model: Model::new(Document::from_bytes(&name, text)?), verify: true })
     }
 
-    /// The model that comes with the package, None where there is none of this name.
+    /// The model that comes with the package, None if there is none with this name.
     #[staticmethod]
     fn builtin(name: &str) -> Result<Option<ModelCore>, Error> {
         let Some(builtin) = Builtin::named(name) else { return Ok(None) };
@@ -213,7 +214,7 @@ impl ModelCore {
         Ok(self.model.start_names().into_iter().zip(self.model.start()?).collect())
     }
 
-    /// What the text says of a run.
+    /// The settings of a run in the text.
     fn simulation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let simulation = &self.model.document().simulation;
         let number = |located: &Option<_>| {
@@ -233,7 +234,7 @@ impl ModelCore {
         Ok(settings)
     }
 
-    /// What is said of the model before it is run: as text, and as JSON.
+    /// The properties of the model before it is run: as text, and as JSON.
     fn check(&self, py: Python<'_>) -> PyResult<(String, String)> {
         self.assembled(py, None, |model, assembly| {
             let equations = assembly.equations()?;

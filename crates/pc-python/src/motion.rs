@@ -22,7 +22,8 @@ use crate::plan::Wished;
 use crate::system::SystemCore;
 use crate::task::attended;
 
-/// The part of the size of a state by which it may be off constraints: what is less, the first step takes away.
+/// The fraction of the size of a state by which it may be off constraints: the first step removes anything
+/// smaller.
 const OFF: f64 = 1e-6;
 
 /// An error unless a state satisfies the constraints on which the steps of motions are kept, those on velocities and the lengths of
@@ -70,7 +71,7 @@ fn ending(run: &Run) -> (&'static str, Option<String>) {
     }
 }
 
-/// Why it did not come to its end, or is wrong.
+/// Why it did not reach its end, or is wrong.
 fn error(run: &Run) -> Option<String> {
     if let Some(lost) = &run.lost {
         return Some(RunError::Lost(lost.clone()).to_string());
@@ -126,7 +127,7 @@ fn into_dict(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
 
 #[pymethods]
 impl SystemCore {
-    /// The motion that is wished, and what is said of it. The first one is compared with a second derivation unless `verify` says
+    /// The requested motion, and its summary. The first one is compared with a second derivation unless `verify` says
     /// otherwise of this one.
     fn integrate<'py>(
         &self,

@@ -1,4 +1,4 @@
-//! What Python wishes of a run.
+//! The options of a run, from Python.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 
 use crate::error::Error;
 
-/// What is wished, as a mapping of Python has it; None for what is that of the text, or else the default.
+/// The options in a Python mapping; None stands for that of the text, or else the default.
 #[derive(Clone, FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Wished {
@@ -81,7 +81,7 @@ impl Wished {
         Ok(Plan { deadline: Deadline::new(&limits), ..Plan::of(model, &wishes)? })
     }
 
-    /// Whether there are derivatives by parameters.
+    /// Whether there are derivatives with respect to parameters.
     pub(crate) fn differentiates(&self) -> bool {
         !self.sensitivities.is_empty()
     }

@@ -68,7 +68,7 @@ fn rows_of(record: &Record, rows: usize, width: usize) -> Vec<f64> {
 
 #[pymethods]
 impl SystemCore {
-    /// The motions of members whose `values` of the quantities stand one after the other; `progress` is told now and then how many are
+    /// The motions of members whose `values` of the quantities stand one after the other; `progress` is told occasionally how many are
     /// done. Where it is to be verified, the first member, one in the middle and the last are compared with a second derivation.
     #[expect(clippy::too_many_arguments, reason = "those of Python")]
     fn ensemble<'py>(

@@ -20,7 +20,7 @@ pub(crate) struct SystemCore {
     pub(crate) variables: Variables,
     pub(crate) inventory: Inventory,
     state: Mutex<State>,
-    /// Held while values are set, which may take a derivation. Nobody waits for it, perhaps with the interpreter's lock in hand.
+    /// Held while values are set, which may take a derivation. No call waits for it, as the call may hold the interpreter's lock.
     setting: Mutex<()>,
     /// Flows for calls that take long, with the version of the values that they have.
     spare: Mutex<Vec<(u64, Flow)>>,
@@ -37,7 +37,7 @@ pub(crate) struct Inventory {
     /// Of a row of a motion: coordinates, quasi-velocities, first-order states, then observables.
     pub(crate) columns: Vec<String>,
     pub(crate) shown: usize,
-    /// Whether equations are compared with a second derivation before they leave.
+    /// Whether equations are compared with a second derivation before they are returned.
     pub(crate) verify: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Work on a thread of its own, while the one that called looks after signals.
+//! Work on a separate thread, while the calling thread looks after signals.
 
 use std::any::Any;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -13,7 +13,7 @@ use crate::error::Error;
 /// Between two looks at signals: Ctrl-C ends work well within the tenth of a second that a user waits.
 const TICK: Duration = Duration::from_millis(25);
 
-/// Bytes of stack, as a main thread usually has; what goes deeper takes a stack of its own.
+/// Bytes of stack, as a main thread usually has; deeper work takes a separate stack.
 const STACK: usize = 8 << 20;
 
 /// The result of `work`, which the interpreter does not wait for: other threads of Python go on. `tick` is called now and
@@ -49,7 +49,7 @@ pub(crate) fn attended<T: Send + 'static>(
     }
 }
 
-/// What a panic said.
+/// The message of a panic.
 fn said(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned());

@@ -6,7 +6,7 @@ use pc_verify::VerifyError;
 /// A report that cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// The model is wrong, or something of it cannot be derived.
+    /// The model is wrong, or some part of it cannot be derived.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// The second derivation of the equations disagrees with the first.

@@ -1,7 +1,7 @@
 //! Pictures as files.
 //!
 //! A [`Drawing`](crate::picture::Drawing) becomes a bitmap or a page: `glyphs` are the outlines of the built-in
-//! font, `png`, `gif` and `pdf` write, and `error` lists the errors. SVG needs nothing of this.
+//! font, `png`, `gif` and `pdf` write, and `error` lists the errors. SVG does not need this.
 
 mod error;
 mod gif;

@@ -1,6 +1,6 @@
 //! A frame of a motion as a drawing, as the player of a page shows it.
 //!
-//! `camera` looks at all that moves, from where the player looks at first; `shapes` has what is drawn of each
+//! `camera` looks at everything that moves, from the player's initial viewpoint; `shapes` draws each
 //! [`SceneShape`](crate::SceneShape); `frame` puts them into one [`Drawing`](crate::picture::Drawing), the farthest first.
 
 mod camera;

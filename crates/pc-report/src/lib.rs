@@ -1,13 +1,13 @@
-//! Everything known of a model, on one page.
+//! Everything known about a model, on one page.
 //!
 //! A [`Model`](pc_model::Model) and, if it was integrated, the [`Record`] of its motion become [one
 //! page](report()) for a browser: the text of the model, frame and operators, verdicts, equations in every
 //! form that applies, brackets, integrals, steady motions, plots. The page is self-contained and readable
 //! without scripts; where scripts run, it plays the motion ([`animation`] is the player alone). A [`Check`]
-//! is the output of `pc check`, which is part of the page, too.
+//! is the output of `pc check`, which is also part of the page.
 //!
 //! Read `check`, the properties of a model; `record`, the data of a motion, and `scene`, its drawing; then
-//! [`picture`], curves and eigenvalues, also for files of their own, and `page`, which puts everything under
+//! [`picture`], curves and eigenvalues, also for separate files, and `page`, which puts everything under
 //! headings. Numbers and formulas come from the crates below.
 //!
 //! ```

@@ -1,6 +1,6 @@
 //! The page of a browser.
 //!
-//! A model becomes a page in parts under headings. `html` escapes text and writes elements, `formulas` shows
+//! A model becomes a page of parts under headings. `html` escapes text and writes elements, `formulas` shows
 //! displays with their sources, `equations`, `theory` and `motion` with the `player` and the `pairs` of
 //! portraits are the long parts, and `report` combines the parts. The page is XML as well as HTML: every
 //! element is closed.

@@ -13,13 +13,13 @@ pub enum Kind {
     Conserved,
     /// Outputs of the model, reactions among them.
     Outputs,
-    /// Derivatives by parameters.
+    /// Derivatives with respect to parameters.
     Derivatives,
     /// Estimated global errors of the other columns.
     Errors,
 }
 
-/// Columns of a kind.
+/// Columns of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
     /// Their kind.
@@ -40,9 +40,9 @@ pub struct Samples {
 /// A motion as far as it was computed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
-    /// Evenly spaced, as frames of a moving picture are.
+    /// Evenly spaced, like the frames of a moving picture.
     pub rows: Samples,
-    /// As close as the motion needs to be drawn in curves, where that is known.
+    /// As dense as smooth curves need, if that is known.
     pub fine: Option<Samples>,
     /// The summary of the motion, lines with labels; the same on every run.
     pub summary: Vec<(String, Vec<String>)>,
@@ -50,7 +50,7 @@ pub struct Record {
     pub keeps_energy: bool,
     /// The times at which events occurred.
     pub events: Vec<f64>,
-    /// Why there is no motion, or how it ended, if not at its end.
+    /// Why there is no motion, or how it ended if it was not completed.
     pub remark: Option<String>,
 }
 
@@ -58,14 +58,14 @@ pub struct Record {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no column `{name}`; the columns are {}", known.join(", "))]
 pub struct UnknownColumn {
-    /// The name asked for.
+    /// The requested name.
     pub name: String,
     /// The known names.
     pub known: Vec<String>,
 }
 
 impl Samples {
-    /// The values of the column of a name.
+    /// The values of the column with a name.
     ///
     /// # Errors
     /// [`UnknownColumn`]

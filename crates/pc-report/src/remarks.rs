@@ -12,7 +12,7 @@ pub fn dropped(assembly: &Assembly<'_>) -> Vec<(String, String)> {
     redundant.map(|redundant| (redundant.constraint.clone(), reason(&redundant.follows_from))).collect()
 }
 
-/// Of the bodies whose masses change in time, if there are any.
+/// The remark on bodies whose masses change in time, if there are any.
 pub fn changing_masses(assembly: &Assembly<'_>) -> Option<String> {
     let (of, changes) = match assembly.changing_masses.as_slice() {
         [] => return None,
@@ -26,6 +26,6 @@ pub fn changing_masses(assembly: &Assembly<'_>) -> Option<String> {
     ))
 }
 
-/// Of a kinetic energy that is negative for some velocities.
+/// The remark on a kinetic energy that is negative for some velocities.
 pub const NEGATIVE_ENERGY: &str = "the kinetic energy is negative for some velocities at the start: a mass or a moment of \
                                    inertia has the wrong sign";

@@ -10,12 +10,12 @@ use crate::record::Record;
 /// The most numbers of all frames together: a third of a megabyte.
 const MOST_NUMBERS: usize = 60_000;
 
-/// A shape; its numbers stand in the frames, those of each shape behind those of the one before it.
+/// A shape; its numbers are stored in the frames, shape after shape.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneShape {
     /// Three numbers: a dot, with a label.
     Point(Option<String>),
-    /// Three numbers for each corner, of which there are so many.
+    /// Three numbers for each of this many corners.
     Line(usize),
     /// Middle, normal, radius.
     Disc,
@@ -79,7 +79,7 @@ impl From<Shape<'_>> for SceneShape {
     }
 }
 
-/// The rows that are shown: all, or every few and the last one.
+/// The rows that are shown: all, or every n-th and the last one.
 fn shown(rows: usize, width: usize) -> Vec<usize> {
     let stride = (rows * width).div_ceil(MOST_NUMBERS).max(1);
     let last = rows.saturating_sub(1);
@@ -96,7 +96,7 @@ pub struct Scene {
     pub times: Vec<f64>,
     /// The numbers of all shapes, frame by frame.
     pub frames: Vec<f32>,
-    /// The acceleration of gravity at the start, against which up is.
+    /// The acceleration of gravity at the start; up is opposite to it.
     pub gravity: [f64; 3],
 }
 
@@ -156,8 +156,8 @@ impl Scene {
         self.shapes.iter().map(SceneShape::numbers).sum()
     }
 
-    /// The data for the player: names, then times and numbers as IEEE 754 single precision, the least byte
-    /// first, in base 64.
+    /// The data for the player: names, then times and numbers in IEEE 754 single precision, least
+    /// significant byte first, in base 64.
     pub(crate) fn data(&self) -> Value {
         let shapes: Vec<Value> = self
             .shapes

@@ -1,4 +1,4 @@
-//! The kinds of errors: what whoever asked for a run can do about one.
+//! The kinds of errors, by what can be done about them.
 
 /// The kind of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub enum Category {
     Request,
     /// The text of the model is wrong, or asks for something that cannot be done yet.
     Text,
-    /// What was asked for is not defined for this model, or exceeds its limits.
+    /// The request is not defined for this model, or exceeds its limits.
     Undefined,
     /// A numerical method did not converge or did not reach its end.
     Failed,

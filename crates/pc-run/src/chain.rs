@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-/// An error with its causes, each after its effect; some messages end with that of their cause.
+/// An error with its causes, each after its effect; some messages already end with that of their cause.
 pub fn chain(error: &dyn Error) -> String {
     let mut text = error.to_string();
     let mut source = error.source();

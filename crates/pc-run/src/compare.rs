@@ -1,6 +1,6 @@
 //! Whether two motions are the same.
 //!
-//! In go two models, each with its wishes, out comes what is [`compared`](compared::Compared), with its `comparison` of the two runs: for each
+//! Two models, each with its options, are [`compared`](compared::Compared), by a `comparison` of the two runs: for each
 //! column that both have, and for each pair of `formula`s, a
 //! [`Difference`](difference::Difference). `page` prints it; `error` lists what cannot be compared,
 //! and is also the result where motions differ.

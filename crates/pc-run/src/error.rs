@@ -18,13 +18,13 @@ use crate::sweep::error::SweepError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// Sensitivities by something that is not a parameter.
+    /// Sensitivities to something that is not a parameter.
     #[error("--sensitivities: {0}")]
     Sensitivities(UnknownParameter),
-    /// A tolerance of something that is no component of the state.
+    /// A tolerance for something that is not a component of the state.
     #[error("--atol: {0}")]
     Tolerance(#[source] UnknownStart),
-    /// Neither the wishes nor the model give an end time.
+    /// Neither the options nor the model give an end time.
     #[error(
         "{model}: no end time: give `--t-end T`, or `t_end = T` in the section [simulation] of the model"
     )]
@@ -35,7 +35,7 @@ pub enum RunError {
     /// An end time equal to the start time.
     #[error("the end time {t} is the start time: nothing to integrate")]
     EndIsStart {
-        /// That time.
+        /// The start and end time.
         t: f64,
     },
     /// More rows than the memory limit allows.
@@ -47,7 +47,7 @@ pub enum RunError {
         bytes.div_ceil(1 << 20)
     )]
     Rows {
-        /// How many are wanted.
+        /// The number of rows requested.
         rows: u64,
         /// Numbers in memory for each row.
         numbers: u64,
@@ -59,8 +59,8 @@ pub enum RunError {
     /// Something wrong with the model.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The equations disagree with a second derivation: one of the two is wrong, by a defect of
-    /// this program.
+    /// The equations disagree with a second derivation: one of the two is wrong, because of a
+    /// defect of this program.
     #[error("{0}; no result is returned, because one of them is wrong through a defect of this program")]
     Verify(Box<VerifyError>),
     /// Something wrong with a file.
@@ -101,7 +101,7 @@ pub enum RunError {
     /// The time limit ended the integration.
     #[error("ended at t = {}: {limit}", short(*t, 17))]
     Ended {
-        /// How far the integration was.
+        /// How far the integration came.
         t: f64,
         /// The limit.
         limit: Spent,
@@ -109,7 +109,7 @@ pub enum RunError {
     /// The observer ended the integration, as by Ctrl-C.
     #[error("interrupted at t = {}", short(*t, 17))]
     Interrupted {
-        /// How far the integration was.
+        /// How far the integration came.
         t: f64,
     },
 }

@@ -1,12 +1,12 @@
-//! A run of a model: what is asked for becomes a plan, the plan a motion, the motion a table.
+//! A run of a model: the options become a plan, the plan a motion, the motion a table.
 //!
 //! ```text
 //! Wishes ─ Model ─► Plan ─► Run ─► table, summary, record
 //! Variation ─► Design ─► Sweep ─► Journal ─► table, picture
 //! StateChoice ─► Linearized, Locus, Found     two Runs ─► Compared
 //! ```
-//! The program `pc` and the Python package are front ends of this crate: they say what is wished, watch as
-//! [`Observer`](observer::Observer), and show what comes out. Whatever the front end, the same wishes give the same numbers,
+//! The program `pc` and the Python package are front ends of this crate: they give the options, watch as
+//! [`Observer`](observer::Observer), and show the results. Whatever the front end, the same options give the same numbers,
 //! compared with the same second derivation.
 //!
 //! ```

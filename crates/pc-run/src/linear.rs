@@ -1,9 +1,9 @@
 //! Linearizations and equilibria of a model, for people and for programs.
 //!
-//! A model becomes a linearizer with its start (`ground`), by which `pc_analysis` computes at the `state` that is asked for, also with other
-//! values (`near`). One linearization is `linearized`, printed as `text` or `json`; `compared` has its matrices compared with a second
-//! derivation. `locus` is the table of eigenvalues over a parameter, `found` the list of equilibria. `arrays` are their numbers, and `output`
-//! writes files; `error` lists the errors.
+//! A model becomes a linearizer with its start (`ground`), with which `pc_analysis` computes at the requested `state`, also with other values
+//! (`near`). One linearization is `linearized`, printed as `text` or `json`; `compared` has its matrices compared with a second derivation.
+//! `locus` is the table of eigenvalues over a parameter, `found` the list of equilibria. `arrays` are their numbers, and `output` writes
+//! files; `error` lists the errors.
 
 mod arrays;
 mod compared;

@@ -1,4 +1,4 @@
-//! Whoever waits for a run: they may end it, and are told how far it is and what to know of it.
+//! Whoever waits for a run: they may end it, and are told of its progress and of remarks on it.
 
 use std::error::Error;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,9 +8,9 @@ pub type Progress<'o, T> = Box<dyn FnMut(T) + 'o>;
 
 static NEVER: AtomicBool = AtomicBool::new(false);
 
-/// Whoever waits for a run. Every method has a default, that of nobody who waits.
+/// Whoever waits for a run. Every method has a default, as if nobody waited.
 pub trait Observer: Sync {
-    /// The flag that ends a run once it is true, as by Ctrl-C; what was reached is kept.
+    /// The flag that ends a run once it is true, for example by Ctrl-C; what was reached is kept.
     fn stop(&self) -> &AtomicBool {
         &NEVER
     }
@@ -25,19 +25,20 @@ pub trait Observer: Sync {
         Box::new(|_| ())
     }
 
-    /// Is told how many members of a sweep of `members` are finished; `before` were when it began.
+    /// Is told how many members of a sweep of `members` are finished; `before` of them were finished when it
+    /// began.
     fn members(&self, _before: u64, _members: u64) -> Progress<'_, u64> {
         Box::new(|_| ())
     }
 
-    /// Is told what to know of the equations or the run, in sentences that may have several lines.
+    /// Is told remarks on the equations or the run, in sentences that may have several lines.
     fn remark(&self, _remark: &str) {}
 
     /// Is told of an error that does not end the run.
     fn trouble(&self, _error: &dyn Error) {}
 }
 
-/// Nobody: a run is not ended from outside, and says nothing.
+/// Nobody: nothing ends a run from outside, and it reports nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Nobody;
 

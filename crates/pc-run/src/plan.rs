@@ -1,7 +1,7 @@
-//! What is to be run: [`Wishes`] and a model become a [`Plan`].
+//! What to run: [`Wishes`] and a model become a [`Plan`].
 //!
-//! `wishes` is what whoever asks says, `plan` all that a run needs, `tolerances` those of the
-//! components of the state, and `memory` whether the rows fit.
+//! `wishes` are the options of the caller, `plan` is all that a run needs, `tolerances` those of
+//! the components of the state, and `memory` whether the rows fit.
 
 pub(crate) mod memory;
 pub(crate) mod plan;

@@ -1,7 +1,7 @@
-//! Tables, each format with one writer for motions, sweeps and linearizations.
+//! Tables: each format has one writer for motions, sweeps and linearizations.
 //!
-//! `rows` are a table as formats see it, `array` is a matrix with a name; `csv`, `json`, `npz`, `parquet` and `mat` are the formats, among
-//! which the name of a `file` chooses.
+//! `rows` are a table as formats see it, `array` is a matrix with a name; `csv`, `json`, `npz`, `parquet` and `mat` are the formats,
+//! chosen by the name of a `file`.
 
 pub mod array;
 pub mod csv;

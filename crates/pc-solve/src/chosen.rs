@@ -59,7 +59,7 @@ macro_rules! each {
 }
 
 impl<F: VectorField> Chosen<F> {
-    /// Starts at y(t0) = y0, as long as `field` has components.
+    /// Starts at y(t0) = y0, one number per component.
     ///
     /// # Errors
     /// As for `Cvode::new`, [`Dop853::new`], [`Taylor::new`] and `Auto::new`;
@@ -83,7 +83,7 @@ impl<F: VectorField> Chosen<F> {
     /// Starts by CVODES as `begin` does, at a time from which the method counts.
     ///
     /// # Errors
-    /// Those of `begin`.
+    /// The errors of `begin`.
     #[cfg(feature = "cvode")]
     pub(crate) fn by_cvode(
         field: F,

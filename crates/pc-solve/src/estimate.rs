@@ -1,6 +1,6 @@
 //! The global error of a motion, from a second motion beside it.
 //!
-//! In go a motion that was integrated, its field and its options, out come the errors of its outputs. Read
+//! From an integrated motion, its field and its options it computes the errors of the outputs. Read
 //! `companion` first, which says how the second motion is integrated, then `estimate`, their distance.
 
 pub(crate) mod companion;

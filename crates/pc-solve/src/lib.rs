@@ -88,7 +88,7 @@
 //!
 //! # Checkpoints
 //!
-//! A [`Resumable`] motion gives a [`Checkpoint`] every so many steps. A motion resumed from one
+//! A [`Resumable`] motion gives a [`Checkpoint`] every n steps. A motion resumed from one
 //! equals the uninterrupted motion to the last bit; a checkpoint [converts to
 //! bytes](Checkpoint::to_bytes) that another process can read. A [`Deadline`] in the options ends a
 //! motion that takes too long.

@@ -17,7 +17,7 @@ use crate::integration::method::IntegrationMethod;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 
-/// A step that would end within this fraction of its length of a stop time or a break ends there.
+/// A step that would end less than this fraction of its length before a stop time or a break ends there.
 const NEAR: f64 = 1e-9;
 /// Relative and absolute tolerance of the state for events, since a fixed-step method has none.
 const TOLERANCES: (f64, f64) = (1e-9, 1e-12);
@@ -93,7 +93,7 @@ struct Node {
 }
 
 impl<F: VectorField> RungeKutta4<F> {
-    /// Starts at y(t0) = y0, as long as `field` has components.
+    /// Starts at y(t0) = y0, one number per component.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;

@@ -1,8 +1,8 @@
 //! Both derivations, compared.
 //!
-//! The `first` and the `second` as numbers become `quantities` with their `natural` sizes, `solved` unknowns among them, and an `agreement` within the
-//! `tolerance`; of large models `projected` ones. `compare` is that at many states, `outlet` that of what leaves a model, `printed` that of
-//! printed expressions, `slopes` of derivatives, `resets` of states after events. `unsteady` tells jumps and rounding from errors.
+//! The numbers of the `first` and the `second` become `quantities` with their `natural` sizes, including `solved` unknowns, and an `agreement` within
+//! the `tolerance`; large models have `projected` quantities. `compare` compares them at many states, `outlet` before results are returned, `printed`
+//! for printed expressions, `slopes` for derivatives, `resets` for states after events. `unsteady` distinguishes jumps and rounding from errors.
 
 pub(crate) mod agreement;
 pub(crate) mod compare;

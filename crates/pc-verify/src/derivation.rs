@@ -1,9 +1,9 @@
 //! The second derivation at one state.
 //!
-//! Terms are evaluated at a `point`, in the variables of a `place`. Read `derivation` first: the parts that are linear in velocities, from which
-//! `velocities`, the `structure` coefficients (`constants` or `brackets`), `forces` with their `force_function`, and by them the
-//! `equations` are found, with `resultants`. `here` is all of it at one place, `quantity` what both derivations have; `states` draws the
-//! places, and `summands` are the sizes of sums.
+//! Terms are evaluated at a `point`, in the variables of a `place`. Read `derivation` first: the parts that are linear in velocities. From them
+//! follow `velocities`, the `structure` coefficients (`constants` or `brackets`) and `forces` with their `force_function`, and from these the
+//! `equations`, with `resultants`. `here` holds all of it at one place, `quantity` what both derivations have; `states` draws the places, and
+//! `summands` are the sizes of sums.
 
 pub(crate) mod brackets;
 pub(crate) mod constants;

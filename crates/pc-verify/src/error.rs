@@ -23,7 +23,7 @@ pub enum VerifyError {
     NothingCompared {
         /// States tried.
         tried: usize,
-        /// Why the last one was passed over.
+        /// Why the last state was skipped.
         reason: String,
     },
 }
@@ -89,7 +89,7 @@ pub enum Unable {
     /// Quasi-velocities of which only some are defined.
     #[error("the quasi-velocity `{name}` is neither defined nor in [kinematics]")]
     Undefined {
-        /// One that is not.
+        /// A quasi-velocity that is not defined.
         name: String,
     },
     /// The frame is of lower rank, and the brackets are not given.
@@ -103,13 +103,13 @@ pub enum Unable {
     },
 }
 
-/// The reason why a state is passed over.
+/// The reason why a state is skipped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Irregular {
     /// The model cannot be evaluated anywhere.
     #[error(transparent)]
     Unable(#[from] Unable),
-    /// Something is not finite.
+    /// A value is not finite.
     #[error("{what} is not finite")]
     NotFinite {
         /// The quantity.
@@ -124,7 +124,7 @@ pub(crate) enum Irregular {
     /// The linear equations for accelerations and multipliers are singular.
     #[error("the equations for the accelerations are singular")]
     Singular,
-    /// The constraints are not met near by.
+    /// No nearby state satisfies the constraints.
     #[error("no nearby state satisfies the constraints")]
     OffConstraints,
     /// The frame does not determine its brackets here.
@@ -144,7 +144,7 @@ pub(crate) enum Irregular {
         /// The limit.
         what: Spent,
     },
-    /// Rounding errors are amplified until they hide errors of derivation.
+    /// Rounding errors are amplified so much that they hide errors of derivation.
     #[error("rounding errors are amplified too much")]
     IllConditioned,
 }

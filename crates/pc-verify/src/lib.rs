@@ -1,11 +1,11 @@
 //! A second derivation of the equations of motion of a text model, and its comparison with the first.
 //!
 //! The first turns the text into expressions of a graph, which is simplified by fingerprints, and these into
-//! machine code. The second shares nothing with it but the parsed text. It evaluates the syntax trees over
+//! machine code. The second shares only the parsed text with it. It evaluates the syntax trees over
 //! dual numbers, which gives every derivative, sets up Lagrange's equations with multipliers at one state and
-//! solves them by dense elimination with pivoting: no graph, no frame with its brackets where the frame
-//! determines these, no rewriting. Where the rank of the frame is below the number of quasi-velocities, the
-//! equations (9) are taken by their definition, with the brackets given.
+//! solves them by dense elimination with pivoting: no graph, no rewriting, and no brackets as long as the
+//! frame determines them. If the rank of the frame is below the number of quasi-velocities, the equations (9)
+//! are used as they are defined, with the given brackets.
 //!
 //! [`verify`] compares both at random states on the constraints, in each form that the program offers. It compares ẋ,
 //! η̇ or ẏ, the multipliers, the energy with its rate, integrals and outputs.

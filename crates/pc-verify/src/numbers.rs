@@ -1,7 +1,7 @@
-//! Numbers with what has to be known of them.
+//! Numbers with additional information.
 //!
-//! A `number` carries its rates of change, a `sized` value the size of its terms, which a `balance` sums and `linear` equations are
-//! solved with; `rounding` puts in errors on purpose, `units` are the sizes that the text has chosen.
+//! A `number` carries its rates of change, a `sized` value the size of its terms, which a `balance` sums and `linear` equations
+//! use; `rounding` introduces deliberate errors, `units` are the sizes implied by the text.
 
 pub(crate) mod balance;
 pub(crate) mod linear;

@@ -18,9 +18,9 @@ type JacobiDefects<'g> = BTreeMap<(usize, usize, usize), BTreeMap<usize, Vec<Exp
 impl<'g> Frame<'g> {
     /// The structure coefficients of the frame (6), found from b and b_0 alone.
     ///
-    /// Where rank b = k they solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs = (bᵀb)⁻¹bᵀ[X_r,
-    /// X_s]. Where rank b < k that would lose the part of c along ker b; there the coefficients sought hold
-    /// at all points, as functions of parameters and time only, and the frame determines them if no
+    /// If rank b = k they solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs = (bᵀb)⁻¹bᵀ[X_r,
+    /// X_s]. If rank b < k that would lose the part of c along ker b; then coefficients are sought that
+    /// hold at all points and depend only on parameters and time, and the frame determines them if no
     /// combination of the operators with such coefficients vanishes. In both cases the result reproduces
     /// every commutator.
     ///
@@ -173,7 +173,7 @@ impl<'g> Frame<'g> {
         defects
     }
 
-    /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ where b is square; `None`
+    /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ if b is square; `None`
     /// if rank b < k.
     ///
     /// Coordinates that [follow](Self::followers) others are left out: if the remaining b is square, b⁻¹ is
@@ -202,8 +202,8 @@ impl<'g> Frame<'g> {
         }))
     }
 
-    /// 1, except powers of 2 for coordinates in whose units the velocities are so small that bᵀb loses them
-    /// beside the others, and 0 for those that move by rounding errors only.
+    /// The weights: 1, except powers of 2 for coordinates in whose units the velocities are so small that
+    /// bᵀb would lose them among the others, and 0 for those that move only by rounding errors.
     fn weights(&self) -> Vec<Expr<'g>> {
         const SMALL: f64 = 1e-3;
         let (b, k) = (self.b(), self.operators());

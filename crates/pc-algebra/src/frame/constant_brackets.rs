@@ -1,9 +1,9 @@
-//! Constant structure coefficients, of frames whose operators are dependent at each point.
+//! Constant structure coefficients of frames whose operators are dependent at each point.
 //!
-//! Where rank b < k, b c_rs = [X_r, X_s] has many solutions c_rs at each point, and so many solutions that
-//! change from point to point. Solutions that are the same at all points, functions of parameters and time
-//! only, are unique if no combination of the operators with such coefficients vanishes; otherwise no one of
-//! them is the bracket.
+//! If rank b < k, b c_rs = [X_r, X_s] has many solutions c_rs at each point, and therefore many solutions
+//! that change from point to point. Solutions that are the same at all points, functions of parameters and
+//! time only, are unique if no combination of the operators with such coefficients vanishes; otherwise
+//! none of them is distinguished as the bracket.
 
 use nalgebra::{DMatrix, DVector};
 use pc_expr::{Expr, Graph, Number};
@@ -17,7 +17,7 @@ use crate::linear_algebra::matrix::Matrix;
 
 /// Operators whose singular values spread more than this may be dependent, as far as numbers show.
 const DEPENDENT: f64 = 1e-9;
-/// The part of a vector that rounding may leave of a component that is 0.
+/// The fraction of a vector that rounding may leave in place of a zero component.
 const ROUNDED: f64 = 1e-11;
 /// The most points tried for each operator to find as many equations as unknowns.
 const POINTS: usize = 8;
@@ -82,8 +82,8 @@ impl<'g> Frame<'g> {
     }
 
     /// The coefficients a with Y = Σ a_s X_s for each Y of the `targets`, if there are any; the X_s are the
-    /// first operators and independent. They are sought as fractions, as expressions in parameters and time,
-    /// and as rounded numbers; each result is verified.
+    /// first operators, which are independent. They are sought as fractions, as expressions in parameters
+    /// and time, and as rounded numbers; each result is verified.
     fn combinations(
         &self,
         operators: &[Vec<Expr<'g>>],
@@ -179,8 +179,8 @@ impl<'g> Frame<'g> {
         (0..targets).map(solve).collect()
     }
 
-    /// The expressions with small numbers for coordinates that are not arguments of functions, and other
-    /// symbols for the rest, which cancel from results that do not depend on them.
+    /// The expressions with small numbers in place of coordinates that are not arguments of functions,
+    /// and new symbols in place of the others, which cancel from results that do not depend on them.
     fn at_simple_point<'h>(&self, entries: &[Expr<'g>], point: usize, page: &'h Graph) -> Vec<Expr<'h>> {
         let graph = self.graph();
         let value =
@@ -243,7 +243,7 @@ impl<'g> Frame<'g> {
     }
 
     /// The columns at points near the centre, stacked, each coordinate in units in which the largest entry is 1; parameters
-    /// and time have their values.
+    /// and time have their present values.
     fn stacked(&self, columns: &[Vec<Expr<'g>>], near: &Neighbourhood<'g>) -> DMatrix<f64> {
         let (graph, n) = (self.graph(), self.coordinates().len());
         let centre =
@@ -271,7 +271,8 @@ fn vanishing(a: &[Expr<'_>], last: usize) -> Vec<(usize, String)> {
     terms
 }
 
-/// The value of a coordinate: first each in turn is 1 and the others 0, then small pseudo-random numbers.
+/// The value of a coordinate: first each in turn is 1 and the others are 0, then they are small pseudo-random
+/// numbers.
 fn simple(place: usize, salt: usize, point: usize, coordinates: usize) -> Number {
     if point < coordinates {
         return Number::integer(i32::from(point == place));
@@ -280,7 +281,7 @@ fn simple(place: usize, salt: usize, point: usize, coordinates: usize) -> Number
     Number::integer((mixed >> 7) as i32 % 7 + 1)
 }
 
-/// The columns divided by their lengths, and these; a column of zeros has 1.
+/// The columns divided by their lengths, and the lengths; a column of zeros has length 1.
 fn normalised(mut columns: DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
     let length = |length: f64| if length > 0.0 { length } else { 1.0 };
     let lengths: Vec<f64> = columns.column_iter().map(|column| length(column.norm())).collect();

@@ -26,7 +26,7 @@ pub struct Elimination<'g> {
 
 impl<'g> Frame<'g> {
     /// The frame after elimination of the operators `dependent`, numbered from 0: η_D = A_DI η_I + A_D0,
-    /// where I are the others in their order, `matrix` is A_DI and `drift` A_D0.
+    /// where I are the others in order, `matrix` is A_DI and `drift` A_D0.
     ///
     /// # Errors
     /// [`AlgebraError::Shape`]
@@ -66,7 +66,7 @@ impl<'g> Elimination<'g> {
         &self.frame
     }
 
-    /// The structure coefficients of the operators that are left from those of the whole frame, whatever its rank: with
+    /// The structure coefficients of the remaining operators, from those of the whole frame, whatever its rank: with
     /// B_ps the components of X'_s along X_p,
     ///
     ///   [X'_r, X'_s] = Y^m X_m,   Y^m = c_pq^m B_pr B_qs + X'_r B_ms − X'_s B_mr,   p, q = 0..k,
@@ -75,7 +75,7 @@ impl<'g> Elimination<'g> {
     ///
     /// # Errors
     /// [`AlgebraError::Shape`] unless `c` has k operators; [`AlgebraError::NotClosed`] naming the first pair whose
-    /// bracket is not a combination of the operators that are left.
+    /// bracket is not a combination of the remaining operators.
     ///
     /// ```
     /// # use pc_algebra::{Frame, LieAlgebra, Matrix, Neighbourhood};

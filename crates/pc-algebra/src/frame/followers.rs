@@ -1,11 +1,11 @@
-//! Coordinates that follow others, as the height z of a point on a curve z = f(x) does.
+//! Coordinates that follow others, such as the height z of a point on a curve z = f(x).
 
 use pc_expr::Expr;
 
 use crate::frame::frame::Frame;
 use crate::identity::sample::Neighbourhood;
 
-/// Points at which rows are compared numerically before a quotient is formed.
+/// The number of points at which rows are compared numerically before a quotient is formed.
 const POINTS: usize = 2;
 
 /// Quotients of the entries of two proportional rows agree to this, up to rounding.
@@ -13,7 +13,8 @@ const SAME: f64 = 1e-9;
 
 impl<'g> Frame<'g> {
     /// Whether coordinate i follows another: its row of b is zero, or f times that of a coordinate j that
-    /// does not follow, with an f that is defined wherever row i is. So ẋ_i tells no more of η than ẋ_j.
+    /// does not follow, with an f that is defined wherever row i is. So ẋ_i says no more about η than
+    /// ẋ_j.
     ///
     /// On the circle, x' = −y ω and y' = x ω, neither follows the other: −y/x has no value at x = 0.
     pub(crate) fn followers(&self) -> Vec<bool> {

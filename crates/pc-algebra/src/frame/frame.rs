@@ -92,7 +92,7 @@ impl<'g> Frame<'g> {
         Frame { graph, time, coordinates, b, b0: vec![Expr::ZERO; n], a: None }
     }
 
-    /// The matrix a of η = a ẋ + a_0 where the frame was made [by definitions](Frame::from_definitions):
+    /// The matrix a of η = a ẋ + a_0 if the frame was made [from definitions](Frame::from_definitions):
     /// where det a = 0 these do not determine ẋ.
     pub fn definition_matrix(&self) -> Option<&Matrix<Expr<'g>>> {
         self.a.as_ref()
@@ -143,7 +143,7 @@ impl<'g> Frame<'g> {
     /// Where n > k, a is one of many with a b = 1: (bᵀb)⁻¹bᵀ.
     ///
     /// # Errors
-    /// [`AlgebraError::DependentOperators`] where rank b < k.
+    /// [`AlgebraError::DependentOperators`] if rank b < k.
     ///
     /// ```
     /// # use pc_algebra::Frame;
@@ -213,7 +213,7 @@ impl<'g> Frame<'g> {
         coupled.into_iter().collect()
     }
 
-    /// Whether all operators commute, X_0 among them, as far as the graph decides.
+    /// Whether all operators commute, including X_0, as far as the graph can decide.
     pub fn commutes(&self) -> bool {
         self.coupled_pairs().into_iter().all(|(r, s)| self.commutator(r, s).iter().all(|c| c.is_zero()))
     }
@@ -240,7 +240,7 @@ impl<'g> Frame<'g> {
         if s == 0 { self.b0.clone() } else { self.b.column(s - 1).collect() }
     }
 
-    /// The frame of the first `operators` operators, as many as there are at most, and X_0.
+    /// The frame of X_0 and the first `operators` operators, or all if there are fewer.
     #[must_use]
     pub fn restricted(&self, operators: usize) -> Frame<'g> {
         let columns = operators.min(self.operators());
@@ -249,7 +249,7 @@ impl<'g> Frame<'g> {
         Frame { b, a: None, ..self.clone() }
     }
 
-    /// The frame of the operators listed, numbered from 0, in the order of the list, and X_0.
+    /// The frame of X_0 and the listed operators, numbered from 0, in the order of the list.
     ///
     /// # Panics
     /// If a number is out of range.
@@ -269,7 +269,7 @@ impl<'g> Frame<'g> {
         Frame { b, b0: self.b0.iter().map(|&x| f(x)).collect(), a, ..self.clone() }
     }
 
-    /// The frame with all its expressions, time and coordinates too, replaced by those of a graph.
+    /// The frame with all its expressions, including time and coordinates, replaced by those of a graph.
     #[must_use]
     pub fn written_in<'n>(&self, graph: &'n Graph, mut f: impl FnMut(Expr<'g>) -> Expr<'n>) -> Frame<'n> {
         Frame {
@@ -282,7 +282,7 @@ impl<'g> Frame<'g> {
         }
     }
 
-    /// Rank of b at almost all points, as decided by the graph; less where numbers show that its operators
+    /// Rank of b at almost all points, as decided by the graph; less if numbers show that its operators
     /// are dependent.
     pub fn rank(&self) -> usize {
         let known = self.graph.generic_rank_of_entries(self.b.columns(), &self.b.nonzero_rows());

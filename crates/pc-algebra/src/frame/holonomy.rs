@@ -1,4 +1,4 @@
-//! Quasi-velocities that are velocities of something (7).
+//! Quasi-velocities that are velocities of a coordinate (7).
 
 use pc_expr::Expr;
 
@@ -11,7 +11,7 @@ pub enum Holonomy<'g> {
     /// c_rs^m = 0 for all r, s = 0..k: locally η_m = dπ_m/dt (7), on each submanifold of the constraints if n
     /// > k.
     Holonomic {
-        /// π_m, where it is elementary to find.
+        /// π_m, if it is elementary to find.
         coordinate: Option<Expr<'g>>,
     },
     /// There is no such coordinate.
@@ -25,11 +25,11 @@ impl<'g> Frame<'g> {
     /// Whether η_m is a velocity, m = 1..k, by the frame's own structure coefficients.
     ///
     /// Let ω^m = a_mi dx_i + a_m0 dt be the form with ω^m(X_s) = δ_ms, s = 0..k, which is η_m dt along
-    /// motions (2). By (6) dω^m(X_r, X_s) = −c_rs^m; so where n = k and the X_0..X_k are a basis, ω^m is
-    /// closed if and only if c_rs^m = 0 for all r, s = 0..k, and then locally ω^m = dπ_m. Where n > k this
+    /// motions (2). By (6) dω^m(X_r, X_s) = −c_rs^m; so if n = k and the X_0..X_k are a basis, ω^m is
+    /// closed if and only if c_rs^m = 0 for all r, s = 0..k, and then locally ω^m = dπ_m. If n > k this
     /// holds on each submanifold that the constraints leave.
     ///
-    /// π_m is returned where n = k and it is [found](pc_expr::Graph::potential); it satisfies X_s π_m = δ_ms.
+    /// π_m is returned if n = k and it is [found](pc_expr::Graph::potential); it satisfies X_s π_m = δ_ms.
     ///
     /// # Panics
     /// If m is not in 1..=k.

@@ -11,9 +11,9 @@ use crate::identity::sample::{Neighbourhood, TRIALS};
 pub enum Integrability {
     /// All [X_r, X_s], r, s = 0..k, are in the span of X_1..X_k at almost each point.
     ///
-    /// Through each (t, x) goes one submanifold that no motion leaves: at each instant of this dimension,
-    /// which is rank b, and moving with time as X_0 says. The n − rank b constraints that the frame stands
-    /// for can be written f(t, x) = const.
+    /// Through each (t, x) goes one submanifold that no motion leaves: its dimension at each instant is
+    /// rank b, and it moves with time as X_0 says. The n − rank b constraints that the frame stands for
+    /// can be written f(t, x) = const.
     Integrable {
         /// rank b.
         dimension: usize,
@@ -23,17 +23,18 @@ pub enum Integrability {
         /// The first such pair r < s.
         pair: (usize, usize),
         /// Its largest distance from the span, relative to the terms of \[X_r, X_s\], each coordinate and
-        /// each operator in units of its own.
+        /// each operator in its own units.
         residual: f64,
     },
 }
 
 impl<'g> Frame<'g> {
     /// Frobenius' test, time included: the fields X_0, X_1..X_k on the space of (t, x) are integrable if and
-    /// only if their commutators are in their span; as \[X_r, X_s\] has no ∂/∂t, in that of X_1..X_k.
+    /// only if their commutators are in their span; since \[X_r, X_s\] has no ∂/∂t, this is the span of
+    /// X_1..X_k.
     ///
-    /// The rank is that of almost all points, decided as by [`pc_expr::Graph::generic_rank`]; where that
-    /// knows too little of the functions in it, a residual at points of `near` decides. Unlike
+    /// The rank is that of almost all points, decided as by [`pc_expr::Graph::generic_rank`]; if that
+    /// knows too little about the functions involved, a residual at points of `near` decides. Unlike
     /// [`structure_coefficients`](Frame::structure_coefficients) this takes frames of any rank.
     ///
     /// To ask whether constraints η_α = 0 are holonomic, [restrict](Frame::restricted) the frame to the other

@@ -11,8 +11,8 @@ use crate::lie_algebra::lie_algebra::LieAlgebra;
 #[derive(Clone, Debug)]
 pub struct StructureCoefficients<'g> {
     operators: usize,
-    /// The c_rs^m that are not 0, r < s, as (r, s, m, c_rs^m) in the order of (r, s, m): of k³ coefficients a
-    /// frame has few.
+    /// The c_rs^m that are not 0, r < s, as (r, s, m, c_rs^m) in the order of (r, s, m): most of the k³
+    /// coefficients of a frame are 0.
     nonzero: Vec<(usize, usize, usize, Expr<'g>)>,
 }
 
@@ -71,7 +71,7 @@ impl<'g> StructureCoefficients<'g> {
     /// The coefficients of the same operators in another order: `order` is a permutation of 0..k.
     ///
     /// # Panics
-    /// If it is not.
+    /// If it is not a permutation.
     #[must_use]
     pub fn permuted(&self, order: &[usize]) -> StructureCoefficients<'g> {
         let mut new = vec![0; order.len() + 1];
@@ -80,7 +80,7 @@ impl<'g> StructureCoefficients<'g> {
         StructureCoefficients::from_nonzero(self.operators, moved)
     }
 
-    /// The coefficients c_rs^m with r, s, m ≤ `operators`, as many as there are at most.
+    /// The coefficients c_rs^m with r, s, m ≤ `operators`, or all if there are fewer operators.
     #[must_use]
     pub fn restricted(&self, operators: usize) -> StructureCoefficients<'g> {
         let kept = self.nonzero.iter().copied().filter(|&(_, s, m, _)| s.max(m) <= operators);
@@ -102,8 +102,8 @@ impl<'g> StructureCoefficients<'g> {
     /// c_rs^m with r, s in 0..=k and m in 1..=k.
     ///
     /// It is the Boltzmann–Hamel symbol γ_rs^m = (∂a_mi/∂x_j − ∂a_mj/∂x_i) b_ir b_js. Authors differ in its
-    /// sign and in the order of its indices: with d/dt ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m − ∂L/∂π_s = Q_s it is
-    /// this one.
+    /// sign and in the order of its indices: in d/dt ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m − ∂L/∂π_s = Q_s it has
+    /// the present ones.
     ///
     /// # Panics
     /// If an index is out of range.
@@ -183,7 +183,7 @@ impl LieAlgebra {
     /// The structure coefficients with these c_rs^m and `drift(s, m)` = c_0s^m, indices from 0.
     ///
     /// # Errors
-    /// [`AlgebraError::Jacobi`], with index 0 for time, where \[X_0, ·\] is no derivation of the algebra:
+    /// [`AlgebraError::Jacobi`], with index 0 for time, if \[X_0, ·\] is not a derivation of the algebra:
     /// \[X_0, \[X_r, X_s\]\] = \[\[X_0, X_r\], X_s\] + \[X_r, \[X_0, X_s\]\].
     ///
     /// ```

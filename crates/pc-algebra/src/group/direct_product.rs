@@ -10,7 +10,7 @@ use crate::linear_algebra::matrix::Matrix;
 
 /// The direct product G × H: the coordinates of G, then those of H, everything part by part.
 ///
-/// Names of coordinates of H that G has too get `_2` (or as many of these as it takes).
+/// Names of coordinates of H that also occur in G get `_2` (or as many of these as necessary).
 ///
 /// ```
 /// use pc_algebra::{DirectProduct, LieGroup, PlaneRotations, UnitQuaternions};

@@ -30,7 +30,8 @@ impl EulerAngles {
     /// The angles about these axes, such as `zxz`.
     ///
     /// # Errors
-    /// [`AlgebraError::EulerSequence`] unless there are three letters x, y, z, neighbours different.
+    /// [`AlgebraError::EulerSequence`] unless there are three letters among x, y, z with different
+    /// neighbours.
     ///
     /// ```
     /// # use pc_algebra::{EulerAngles, LieGroup, Side};
@@ -77,7 +78,7 @@ impl EulerAngles {
     }
 
     /// α and β from R, then γ from row j of R_i(−α) R = R_j(β) R_k(γ), which is independent of β: so the
-    /// product is right for any α where R does not determine it.
+    /// product is right for any α if R does not determine it.
     fn angles(&self, r: &Matrix3<f64>) -> Vec<f64> {
         let ([i, j, _], (l, sign)) = (self.axes, self.third());
         let sign = f64::from(sign);
@@ -119,7 +120,7 @@ impl EulerAngles {
     }
 }
 
-/// The angle of (c, s), 0 where both are 0.
+/// The angle of (c, s), 0 if both are 0.
 fn angle(s: f64, c: f64) -> f64 {
     if s == 0.0 && c == 0.0 { 0.0 } else { s.atan2(c) }
 }
@@ -195,8 +196,8 @@ impl LieGroup for EulerAngles {
         finite(g)
     }
 
-    /// On the right by the inverse rotation R_k(−γ) R_j(−β) R_i(−α), whose body velocity is −ω for the
-    /// spatial velocity ω of R.
+    /// On the right it uses the inverse rotation R_k(−γ) R_j(−β) R_i(−α), whose body velocity is −ω
+    /// for the spatial velocity ω of R.
     fn operators<'g>(&self, side: Side, x: &[Expr<'g>]) -> Matrix<Expr<'g>> {
         let [i, j, k] = self.axes;
         let b = match side {

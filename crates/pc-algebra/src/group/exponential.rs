@@ -1,4 +1,4 @@
-//! The derivative of the exponential map where ad x has the eigenvalue 0 and at most double eigenvalues ±iθ.
+//! The derivative of the exponential map if ad x has the eigenvalue 0 and at most double eigenvalues ±iθ.
 
 use nalgebra::DMatrix;
 

@@ -17,7 +17,7 @@ use crate::frame::frame::{Frame, shape};
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// How a velocity of a group is brought to the algebra.
+/// How a velocity of a group is mapped to the algebra.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// η = g⁻¹ġ: body velocities, the left-invariant operators X_s.
@@ -30,11 +30,11 @@ pub enum Side {
 ///
 /// Elements g are slices of length n, elements x of the algebra slices of length k in the basis of
 /// [`algebra`](LieGroup::algebra). The coordinates may be redundant (n > k, as a rotation matrix), several
-/// may stand for one element (angles), and the frame may be singular somewhere (Euler angles); each group
-/// states this.
+/// values may stand for one element (angles), and the frame may be singular somewhere (Euler angles); each
+/// group states this.
 ///
 /// # Panics
-/// The numerical functions, where a slice is shorter than that.
+/// The numerical functions panic if a slice is shorter than that.
 ///
 /// ```
 /// use pc_algebra::{LieGroup, RigidMotions};
@@ -53,7 +53,7 @@ pub trait LieGroup {
     /// The element 1.
     fn identity(&self) -> Vec<f64>;
 
-    /// The product gh: first h, then g, where elements are motions.
+    /// The product gh: first h, then g, if elements are motions.
     fn compose(&self, g: &[f64], h: &[f64]) -> Vec<f64>;
 
     /// g⁻¹
@@ -68,7 +68,7 @@ pub trait LieGroup {
     /// The matrix of Ad_g x = g x g⁻¹, k × k.
     fn adjoint(&self, g: &[f64]) -> DMatrix<f64>;
 
-    /// The derivative of exp at x brought to the algebra, k × k: d/dε exp(x + εy) at ε = 0 is exp(x)·D(x)y
+    /// The derivative of exp at x, mapped to the algebra, k × k: d/dε exp(x + εy) at ε = 0 is exp(x)·D(x)y
     /// with [`Side::Left`] and D(x)y·exp(x) with [`Side::Right`], where
     ///
     /// D(x) = (1 − e^(−ad x))/ad x = Σ (−ad x)^i/(i + 1)! with [`Side::Left`],
@@ -81,7 +81,7 @@ pub trait LieGroup {
     /// there.
     fn dexp_inverse(&self, side: Side, x: &[f64]) -> DMatrix<f64>;
 
-    /// A distance of two elements in the entries that describe them, 0 only where they are the same.
+    /// A distance of two elements in the entries that describe them, 0 only if they are the same.
     fn distance(&self, g: &[f64], h: &[f64]) -> f64;
 
     /// The element nearest to coordinates that have drifted off the group.

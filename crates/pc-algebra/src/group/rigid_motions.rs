@@ -14,12 +14,12 @@ use crate::group::unit_quaternions::{quaternion_operators, unit};
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// The motions of space, SE(3) (twice, as the unit quaternions are SO(3) twice): coordinates (q_0..q_3, x, y,
-/// z), the motion that turns by q and then shifts by r = (x, y, z).
+/// The motions of space, SE(3) (covered twice, as the unit quaternions cover SO(3) twice): coordinates
+/// (q_0..q_3, x, y, z), the motion that turns by q and then shifts by r = (x, y, z).
 ///
 /// Velocities are (ω, v): q̇ = ½ q ω, ṙ = R(q) v in body axes (left); q̇ = ½ ω q, ṙ = v + ω × r in axes in
-/// space (right). `log` has |ω| ≤ 2π. Its v has a pole at q = −1 but for r along the axis of ω; at q = −1
-/// itself ω is taken along r (along x where r = 0).
+/// space (right). `log` has |ω| ≤ 2π. Its v has a pole at q = −1 unless r is along the axis of ω; at q =
+/// −1 itself ω is taken along r (along x if r = 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RigidMotions;
 

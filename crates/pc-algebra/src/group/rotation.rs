@@ -50,8 +50,8 @@ pub(crate) fn matrix_log(r: &Matrix3<f64>) -> Vector3<f64> {
     quaternion_log(&quaternion_of(r), &Vector3::x())
 }
 
-/// The quaternion with q_0 ≥ 0 of a rotation matrix; where q_0 = 0, the one whose first component that is not
-/// 0 is positive.
+/// The quaternion with q_0 ≥ 0 of a rotation matrix; if q_0 = 0, the one whose first nonzero component is
+/// positive.
 ///
 /// 4 q qᵀ is linear in R; the row with the largest diagonal entry is normalised, so that nothing cancels
 /// (S. W. Shepperd, *Quaternion from rotation matrix*, 1978).
@@ -89,7 +89,7 @@ pub(crate) fn components(q: &Quaternion<f64>) -> [f64; 4] {
 }
 
 /// The matrix of x ↦ q x q* in expressions, homogeneous of degree 2 in q. (With squares replaced by 1 − …,
-/// its derivatives would be right on unit quaternions only.)
+/// its derivatives would be right only on unit quaternions.)
 pub(crate) fn rotation_of<'g>(q: &[Expr<'g>]) -> [[Expr<'g>; 3]; 3] {
     let square = |i: usize| q[i] * q[i];
     let norm = [0, 1, 2].map(|i| {

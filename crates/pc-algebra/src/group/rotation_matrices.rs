@@ -14,8 +14,8 @@ use crate::linear_algebra::matrix::Matrix;
 /// to components along axes in space. Ṙ = R ω̂ with body velocities ω (left), Ṙ = ω̂ R with spatial ones
 /// (right), where ω̂ x = ω × x.
 ///
-/// `log` has |x| ≤ π. At π, where x and −x give the same R, it is the one whose first component that is not 0
-/// is positive; it is computed by way of the quaternion and is accurate there too.
+/// `log` has |x| ≤ π. At π, where x and −x give the same R, it is the one whose first nonzero component is
+/// positive; it is computed by way of the quaternion and is also accurate there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RotationMatrices;
 

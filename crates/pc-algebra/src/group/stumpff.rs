@@ -1,4 +1,4 @@
-//! Stumpff's functions, in which the exponentials of rotations and motions are written without cancellation.
+//! Stumpff's functions, which express the exponentials of rotations and motions without cancellation.
 
 /// c_n(θ²) = Σ (−θ²)^i/(2i + n)! for n = 0..5, so that c_0 = cos θ, c_1 = sin θ/θ, c_2 = (1 − cos θ)/θ²,
 /// c_3 = (θ − sin θ)/θ³ and c_n = 1/n! − θ² c_(n+2).

@@ -1,4 +1,4 @@
-//! The unit quaternions, twice SO(3).
+//! The unit quaternions, which cover SO(3) twice.
 
 use nalgebra::{DMatrix, Vector3};
 use pc_expr::Expr;
@@ -16,8 +16,8 @@ use crate::linear_algebra::matrix::Matrix;
 /// two elements that stand for one rotation x ↦ q x q* from body axes to axes in space.
 ///
 /// The basis of the algebra is ½i, ½j, ½k, so that q̇ = ½ q ω with body angular velocity ω (left) and q̇ = ½
-/// ω q with the spatial one (right). `log` is the rotation vector with |x| ≤ 2π, (2π, 0, 0) for q = −1; the
-/// shorter rotation is that of −q where q_0 < 0. Off the unit sphere the frames are homogeneous in q and |q|
+/// ω q with the spatial one (right). `log` is the rotation vector with |x| ≤ 2π, (2π, 0, 0) for q = −1; if
+/// q_0 < 0, the shorter rotation is that of −q. Off the unit sphere the frames are homogeneous in q and |q|
 /// is constant along their motions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnitQuaternions;

@@ -5,15 +5,15 @@ use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
 use crate::identity::magnitudes::magnitudes;
 
 /// The points from which each surface is sought; their components have magnitudes between 10⁻² and 10², in units in which the
-/// terms of the functions are of one order.
+/// terms of the functions are of the same order.
 const TRIALS: u64 = 32;
 /// Newton's steps to a surface, enough to halve the distance to a double zero as often as numbers allow.
 const MOST_STEPS: usize = 60;
-/// A step that is this small against the point has arrived.
+/// A step this small relative to the point has converged.
 const ARRIVED: f64 = 1e-12;
-/// How far from a surface values are compared, against the size of the point.
+/// The distance from a surface at which values are compared, relative to the size of the point.
 const BESIDE: [f64; 3] = [1e-5, 1e-6, 1e-7];
-/// A jump is at least this part of the values, and the same at all distances up to a tenth.
+/// A jump is at least this fraction of the values, and equal at all distances to within a tenth.
 const LEAST: f64 = 1e-8;
 const SAME: f64 = 0.1;
 
@@ -27,11 +27,11 @@ pub struct Discontinuity<'g> {
 }
 
 /// The [seams](Graph::seams) on which functions jump as the `moving` symbols change; the symbols of `numbers` have these
-/// values, all others any.
+/// values, all others may have any.
 ///
 /// Newton's steps lead to points of a seam. Lengths are those of vectors whose components are in units in which the terms of the
-/// functions and of the seam are of one order. From the difference D(δ) of the values at the distances ±δ the part that
-/// grows as δ does is taken off, (D(qδ) − q D(δ))/(1 − q): what is left, is the same at each δ and is no rounding is a
+/// functions and of the seam are of the same order. From the difference D(δ) of the values at the distances ±δ the part
+/// proportional to δ is subtracted, (D(qδ) − q D(δ))/(1 − q): if the rest is the same at each δ and is not rounding, it is a
 /// jump. At a corner or a root it falls with δ, at a pole it rises.
 ///
 /// # Errors

@@ -5,14 +5,15 @@
 pub enum Identity {
     /// The graph folds it to zero.
     Proved,
-    /// The graph does not, but the numerical residual is small enough to be rounding, or there are no numbers (∞).
+    /// The graph does not fold it, but the numerical residual is small enough to be rounding, or there are no
+    /// numbers (∞).
     Open {
-        /// The residual, as a part of the terms.
+        /// The residual, as a fraction of the terms.
         rest: f64,
     },
     /// The numerical residual is larger than any rounding.
     Disproved {
-        /// The residual, as a part of the terms.
+        /// The residual, as a fraction of the terms.
         rest: f64,
     },
 }

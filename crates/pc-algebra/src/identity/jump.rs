@@ -4,11 +4,11 @@ use pc_expr::{Break, Expr, Graph, Weighed};
 
 use crate::identity::sample::{Neighbourhood, TRIALS};
 
-/// Newton's steps to a surface: what is not reached with so many is not looked at.
+/// The number of Newton's steps to a surface: a surface that is not reached with these is ignored.
 const MOST_STEPS: usize = 40;
-/// A step that is this small against the point has arrived.
+/// A step this small relative to the point has converged.
 const ARRIVED: f64 = 1e-14;
-/// How far from the surface its sign is looked at, against the size of the point.
+/// The distance from the surface at which its sign is evaluated, relative to the size of the point.
 const BESIDE: f64 = 1e-6;
 
 /// A jump of an expression.
@@ -16,15 +16,15 @@ const BESIDE: f64 = 1e-6;
 pub struct Jump {
     /// Names and values of a point at which it jumps.
     pub at: Vec<(String, f64)>,
-    /// By how much.
+    /// The size of the jump.
     pub size: f64,
 }
 
 impl<'g> Neighbourhood<'g> {
-    /// A jump of `value` at a surface that points pass when the `moving` symbols change, if there is one near by.
+    /// A jump of `value` at a surface that points pass when the `moving` symbols change, if there is one nearby.
     ///
-    /// The surface is f = 0 of a `step` or `sign`; from points near the centre Newton's steps along ∇f lead to it. What is no more
-    /// than rounding on it is no jump, nor is a surface that f only touches.
+    /// The surface is f = 0 of a `step` or `sign`; from points near the centre Newton's steps along ∇f lead to it. A difference
+    /// that is no more than rounding is not a jump, and neither is a surface that f only touches.
     ///
     /// ```
     /// # use pc_algebra::Neighbourhood;

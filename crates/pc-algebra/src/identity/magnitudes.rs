@@ -1,20 +1,22 @@
-//! The orders of magnitude that symbols have in the units in which expressions are written.
+//! The orders of magnitude of symbols in the units of the expressions.
 //!
-//! Rational functions look alike at any point. Others have a scale: of exp(−(10⁷x)²) nothing is left at x = 1, and √(1 + 10⁻¹⁸x²)
-//! is 1 there; both show what they are where x is of the order of 10⁻⁷ and 10⁹. There the [commensurable](Graph::commensurable) terms
-//! of the expressions are of one order.
+//! Rational functions look alike at any point. Others have a scale: exp(−(10⁷x)²) has vanished at x = 1, and √(1 + 10⁻¹⁸x²) is 1
+//! there; they show their nature where x is of the order of 10⁻⁷ and 10⁹. There the [commensurable](Graph::commensurable) terms of
+//! the expressions are of the same order.
 
 use pc_expr::{Backend, Evaluator, Expr, Graph, Inputs, Program};
 
-/// Terms that differ by up to so many powers of ten are of one order: each still counts beside the other.
+/// Terms that differ by up to this many powers of ten are of the same order: each still counts beside the
+/// other.
 const ORDERS: f64 = 2.0;
-/// The powers of ten by which a symbol is tried to be another.
+/// The powers of ten by which a symbol is multiplied on trial.
 const STEPS: [f64; 12] = [1e1, 1e-1, 1e2, 1e-2, 1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9, 1e12, 1e-12];
-/// What a group without values counts: more powers of ten than there are.
+/// The count of a group without values: more powers of ten than exist.
 const WITHOUT_VALUES: f64 = 1e6;
 
-/// Values of the `symbols` at which the terms of the expressions are of one order, those given multiplied by powers of ten;
-/// `None` if these are such values, or as good as any. The symbols of `numbers` keep their values, all others are 1.
+/// Values of the `symbols` at which the terms of the expressions are of the same order: the given values multiplied by
+/// powers of ten; `None` if the given values are suitable, or as good as any. The symbols of `numbers` keep their
+/// values, all others are 1.
 pub(crate) fn magnitudes<'g>(
     graph: &'g Graph,
     expressions: &[Expr<'g>],
@@ -55,7 +57,7 @@ struct Terms {
 }
 
 impl Terms {
-    /// None where there are no groups.
+    /// None if there are no groups.
     fn new<'g>(
         graph: &'g Graph,
         expressions: &[Expr<'g>],

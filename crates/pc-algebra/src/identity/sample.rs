@@ -8,14 +8,14 @@ use crate::linear_algebra::matrix::Matrix;
 /// The number of points at which an identity that the graph leaves open is tested.
 pub(crate) const TRIALS: usize = 8;
 
-/// The greatest part of its terms in a sum that vanishes identically, after some thousand roundings.
+/// The greatest fraction of its terms that some thousand roundings leave of a sum that vanishes identically.
 pub(crate) const HIDDEN: f64 = 1e-12;
 
 /// Values of symbols near which an expression is regular; symbols that are not listed are taken near 1.
 ///
-/// Points near by are of the order of the values and of 1. Where expressions have no values there, are too small for numbers, or
-/// seem to vanish, points are added at which the [commensurable](Graph::commensurable) terms of the expressions are of one order: so
-/// nothing that is said of a model depends on its units.
+/// Nearby points are of the order of the values and of 1. If expressions have no values there, are too small for numbers, or seem to
+/// vanish, points are added at which the [commensurable](Graph::commensurable) terms of the expressions are of the same order, so
+/// that no result about a model depends on its units.
 #[derive(Clone, Debug, Default)]
 pub struct Neighbourhood<'g> {
     /// Symbols and their values.
@@ -23,11 +23,11 @@ pub struct Neighbourhood<'g> {
 }
 
 impl<'g> Neighbourhood<'g> {
-    /// A sum smaller than this part of its terms counts as rounding, even for constants of ten digits: a sum
-    /// that does not vanish is of the order of its terms.
+    /// A sum smaller than this fraction of its terms counts as rounding, even for constants of ten digits: a
+    /// sum that does not vanish is of the order of its terms.
     pub const ROUNDING: f64 = 1e-9;
 
-    /// Values of `outputs` at point number `index` of a fixed sequence beside the centre (0 is the centre).
+    /// Values of `outputs` at point number `index` of a fixed sequence near the centre (0 is the centre).
     pub(crate) fn sample<S: Scalar>(
         &self,
         graph: &'g Graph,
@@ -51,8 +51,8 @@ impl<'g> Neighbourhood<'g> {
         symbols.iter().map(|&symbol| (symbol, value(symbol))).collect()
     }
 
-    /// Points at which the terms of the expressions are of one order, by turns near the centre and away from it; none if the points
-    /// of [`sample`](Self::sample) are of this kind.
+    /// Points at which the terms of the expressions are of the same order, alternately near the centre and away from it; none if
+    /// the points of [`sample`](Self::sample) already are.
     pub(crate) fn points_of_one_order(
         &self,
         graph: &'g Graph,
@@ -87,7 +87,7 @@ impl<'g> Neighbourhood<'g> {
 
     /// The largest |f|/Σ|terms| of sums f of `terms` at the centre and points near it where all are finite: about
     /// 10⁻¹⁶ where f vanishes identically but the graph does not fold it to 0, and never more than 1; infinity if
-    /// there are no such points. It is 0 only where the graph folds f to 0. Σ|terms| includes terms that have
+    /// there are no such points. It is 0 only if the graph folds f to 0. Σ|terms| includes terms that have
     /// cancelled inside a term.
     ///
     /// It does not depend on units: 10⁻¹⁰ x is not zero.
@@ -130,8 +130,8 @@ impl<'g> Neighbourhood<'g> {
         }
     }
 
-    /// A neighbourhood in which the expressions have values, if one is found, without any values given for
-    /// their symbols.
+    /// A neighbourhood in which the expressions have values, if one is found without given values of their
+    /// symbols.
     pub fn anywhere(graph: &'g Graph, expressions: &[Expr<'g>]) -> Neighbourhood<'g> {
         let symbols = graph.symbols_of(expressions);
         let about =
@@ -148,7 +148,7 @@ impl<'g> Neighbourhood<'g> {
         known.or_else(|| usual().find(has(Weighed::is_finite))).unwrap_or_default()
     }
 
-    /// Whether an expression is zero, or at most rounding wherever it has values near by, although the graph does
+    /// Whether an expression is zero, or at most rounding wherever it has values nearby, although the graph does
     /// not fold it to zero.
     pub fn vanishes(&self, graph: &'g Graph, expression: Expr<'g>) -> bool {
         if expression.constant().is_some() {
@@ -162,8 +162,8 @@ impl<'g> Neighbourhood<'g> {
         !samples.is_empty() && vanish(&samples) && vanish(&self.of_one_order(graph, &[expression], TRIALS))
     }
 
-    /// The greatest numerical rank of a matrix at nearby points; `None` where it has no values, or where
-    /// these belong to one piece of a function only.
+    /// The greatest numerical rank of a matrix at nearby points; `None` if it has no values, or if these
+    /// belong to only one piece of a function.
     pub(crate) fn rank(&self, graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<usize> {
         let entries = matrix.nonzero_entries();
         if in_pieces(graph, &entries) {
@@ -181,7 +181,7 @@ impl<'g> Neighbourhood<'g> {
         })
     }
 
-    /// The rank of a matrix at the centre; `None` where it has no values there.
+    /// The rank of a matrix at the centre; `None` if it has no values there.
     pub fn rank_at_centre(&self, graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<usize> {
         let sample = self.sample::<Weighed>(graph, &matrix.nonzero_entries(), 0)?;
         sample.iter().all(|x| x.is_finite()).then(|| rank_of_sample(matrix, &sample))
@@ -206,7 +206,7 @@ impl<'g> Neighbourhood<'g> {
         found
     }
 
-    /// Values at up to `count` points beside the centre where all outputs are such numbers.
+    /// Values at up to `count` points near the centre at which all outputs are such numbers.
     fn beside(
         &self,
         graph: &'g Graph,

@@ -9,7 +9,7 @@ impl LieAlgebra {
     /// Bianchi's type VI_h, h ≤ 0: \[X_1, X_2\] = −aX_2 − X_3, \[X_2, X_3\] = 0, \[X_3, X_1\] = X_2 + aX_3
     /// with a = √−h. Type III is VI_h with h = −1.
     ///
-    /// The constants are rational where h is minus the square of a rational, otherwise a is rounded and only
+    /// The constants are rational if h is minus the square of a rational; otherwise a is rounded and only
     /// numerical questions are answered.
     ///
     /// # Errors
@@ -52,7 +52,7 @@ pub(crate) fn behr(a: Number, n: [i32; 3]) -> LieAlgebra {
     })
 }
 
-/// √x, exact where it is rational; `None` where it is not real.
+/// √x, exact if it is rational; `None` if it is not real.
 fn root(x: Number) -> Option<Number> {
     (x.is_finite() && (x.is_zero() || !x.is_negative()))
         .then(|| x.exact_sqrt().unwrap_or_else(|| Number::Real(x.to_f64().sqrt())))

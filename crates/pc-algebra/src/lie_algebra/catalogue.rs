@@ -20,8 +20,8 @@ const fn entry(name: &'static str, description: &'static str, make: fn() -> LieA
     Entry { name, description, make }
 }
 
-/// The algebras that have a name, sizes of families and parameters left out. Where two have equal constants,
-/// the more common name comes first. Commutative algebras are missing: they need no name.
+/// The algebras that have a name, without sizes of families and parameters. If two have equal constants, the
+/// more common name comes first. Commutative algebras are missing: they need no name.
 pub const CATALOGUE: &[Entry] = &[
     entry(
         "so3",
@@ -104,7 +104,7 @@ impl LieAlgebra {
     /// `heisenberg7`), `bianchi1`, or a Bianchi type with parameter (`bianchi6(-1/4)`, `bianchi7(0.25)`).
     ///
     /// # Errors
-    /// [`AlgebraError::UnknownAlgebra`] with the names there are; [`AlgebraError::BianchiParameter`];
+    /// [`AlgebraError::UnknownAlgebra`] with the existing names; [`AlgebraError::BianchiParameter`];
     /// [`AlgebraError::TooLargeFamily`].
     ///
     /// ```

@@ -15,7 +15,7 @@ impl LieAlgebra {
     /// \[g, g\].
     ///
     /// They are the characters of the algebra; as functions of the momenta they are not Casimirs. Entries are
-    /// whole and coprime.
+    /// coprime integers.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].
@@ -30,7 +30,7 @@ impl LieAlgebra {
     }
 
     /// A basis of the symmetric bilinear forms B with B([x, y], z) + B(y, [x, z]) = 0: the solutions of
-    /// c_rs^p B_pm + c_rm^p B_sp = 0, as k × k matrices with whole, coprime entries.
+    /// c_rs^p B_pm + c_rm^p B_sp = 0, as k × k matrices with coprime integer entries.
     ///
     /// The Killing form is one of them; a regular one makes coadjoint motion the same as adjoint motion.
     ///

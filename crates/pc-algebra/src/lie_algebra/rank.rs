@@ -6,7 +6,7 @@ use crate::error::AlgebraError;
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// Random points at which a rank is taken; the largest counts.
+/// The number of random points at which a rank is computed; the largest counts.
 const POINTS: u64 = 2;
 
 impl LieAlgebra {
@@ -46,7 +46,7 @@ impl LieAlgebra {
     /// codimension of the largest coadjoint orbits and so the number of independent Casimir functions near
     /// such a ξ (J. Dixmier, *Enveloping Algebras*).
     ///
-    /// Computed as [`rank`](LieAlgebra::rank) is, with k/2⁶¹ in the place of 2k²/2⁶¹.
+    /// It is computed like [`rank`](LieAlgebra::rank), with k/2⁶¹ in place of 2k²/2⁶¹.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].

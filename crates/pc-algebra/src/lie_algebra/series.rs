@@ -36,7 +36,7 @@ impl LieAlgebra {
         Ok(Subspace::of_exact(k, Echelon::of(k, equations).null_space()))
     }
 
-    /// g ⊃ [g, g] ⊃ [[g, g], [g, g]] ⊃ …, as far as it decreases; g is the first entry.
+    /// g ⊃ [g, g] ⊃ [[g, g], [g, g]] ⊃ …, as long as it decreases; g is the first entry.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].
@@ -52,7 +52,7 @@ impl LieAlgebra {
         Ok(decreasing(self.dim(), |h| product(&c, h, h)))
     }
 
-    /// g ⊃ [g, g] ⊃ [g, [g, g]] ⊃ …, as far as it decreases; g is the first entry.
+    /// g ⊃ [g, g] ⊃ [g, [g, g]] ⊃ …, as long as it decreases; g is the first entry.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].

@@ -34,12 +34,12 @@ pub(crate) fn small(value: &BigRational) -> Option<Number> {
     (num.abs() <= LARGEST && den <= LARGEST).then(|| Number::ratio(num, den))
 }
 
-/// The number nearest to `value`, equal to it where it is small.
+/// The number nearest to `value`, equal to it if it is small.
 pub(crate) fn rounded(value: &BigRational) -> Number {
     small(value).unwrap_or_else(|| Number::Real(value.to_f64().unwrap_or(f64::NAN)))
 }
 
-/// A multiple of `vector` with whole entries without a common factor, the first that is not 0 positive.
+/// A multiple of `vector` with integer entries without a common factor, the first nonzero one positive.
 pub(crate) fn primitive(vector: &[BigRational]) -> Vec<BigRational> {
     let Some(first) = vector.iter().find(|x| !x.is_zero()) else { return vector.to_vec() };
     let scale = vector.iter().filter(|x| !x.is_zero()).fold(first.abs(), |g, x| common_divisor(&g, x));
@@ -60,7 +60,7 @@ fn common_divisor(a: &BigRational, b: &BigRational) -> BigRational {
 /// The entries of `matrix` as rationals.
 ///
 /// # Errors
-/// [`AlgebraError::IrrationalEntry`] naming the first entry that is not.
+/// [`AlgebraError::IrrationalEntry`] naming the first entry that is not rational.
 pub(crate) fn exact_matrix(
     what: &'static str,
     matrix: &Matrix<Number>,
@@ -141,7 +141,7 @@ impl LieAlgebra {
     /// The algebra with rational constants that are known to satisfy Jacobi's identity.
     ///
     /// # Errors
-    /// [`AlgebraError::TooLarge`] naming the first that no [`Number`] holds exactly.
+    /// [`AlgebraError::TooLarge`] naming the first that no [`Number`] can hold exactly.
     pub(crate) fn from_exact(
         dim: usize,
         c: impl Fn(usize, usize, usize) -> BigRational,

@@ -19,7 +19,7 @@ impl Subspace {
     ///
     /// # Errors
     /// [`AlgebraError::Shape`] for a vector of another length, [`AlgebraError::IrrationalEntry`] for an entry
-    /// that is no rational (the vectors count as rows).
+    /// that is not rational (the vectors count as rows).
     ///
     /// ```
     /// # use pc_algebra::Subspace;
@@ -67,7 +67,7 @@ impl Subspace {
         self.echelon.columns()
     }
 
-    /// A basis of vectors with whole, coprime entries (rounded where they exceed 2⁵³), in echelon form.
+    /// A basis of vectors with coprime integer entries (rounded if they exceed 2⁵³), in echelon form.
     pub fn basis(&self) -> Vec<Vec<Number>> {
         self.rows().iter().map(|row| primitive(row).iter().map(rounded).collect()).collect()
     }
@@ -80,7 +80,7 @@ impl Subspace {
         Ok(self.has(&exact_vector(self.ambient(), 0, vector)?))
     }
 
-    /// Whether every vector of this subspace lies in `other`; never so in another ambient space.
+    /// Whether every vector of this subspace lies in `other`; false for different ambient spaces.
     pub fn is_within(&self, other: &Subspace) -> bool {
         self.ambient() == other.ambient() && self.rows().iter().all(|row| other.has(row))
     }

@@ -82,8 +82,8 @@ fn at_zero<'g>(
     defined.then_some((parts, value))
 }
 
-/// Whether derivatives determine the value, up to rounding: functions without corners, jumps and poles,
-/// beyond which they may continue differently.
+/// Whether derivatives determine the value, up to rounding: true for functions without corners, jumps
+/// and poles, beyond which they might continue differently.
 fn smooth<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) -> bool {
     !graph.applies(value, symbols, |function| !function.is_smooth()) && !graph.divides_by(value, symbols)
 }

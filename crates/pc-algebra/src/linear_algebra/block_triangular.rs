@@ -2,11 +2,11 @@
 //!
 //! Rows are matched with columns; the strongly connected components of the resulting dependency graph are the blocks
 //! (I. S. Duff, A. M. Erisman, J. K. Reid, *Direct Methods for Sparse Matrices*, 2017, ch. 6). The determinant is the
-//! product of theirs, so each is regular wherever the matrix is.
+//! product of those of the blocks, so each block is regular wherever the matrix is.
 
-/// The rows and columns of the diagonal blocks, so that the rows of each have entries in its own columns and
-/// in those of earlier ones only; `entries` are the columns of the entries of each row. `None` if no rows and
-/// columns can be matched.
+/// The rows and columns of the diagonal blocks, such that the rows of each block have entries only in its own
+/// columns and in those of earlier blocks; `entries` are the columns of the entries of each row. `None` if no
+/// rows and columns can be matched.
 pub(crate) fn block_triangular(entries: &[Vec<usize>]) -> Option<Vec<(Vec<usize>, Vec<usize>)>> {
     let n = entries.len();
     let mut row_of = vec![None; n];
@@ -45,7 +45,7 @@ fn is_matched(row: usize, entries: &[Vec<usize>], tried: &mut [bool], row_of: &m
     false
 }
 
-/// The strongly connected components, each after all that are reached from it (R. Tarjan, 1972).
+/// The strongly connected components, each after all that can be reached from it (R. Tarjan, 1972).
 fn components(next: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut search = Search {
         next,

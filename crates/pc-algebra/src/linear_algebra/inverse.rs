@@ -8,19 +8,21 @@ use crate::linear_algebra::matrix::Matrix;
 
 /// Blocks up to this size are inverted by cofactors, larger ones by elimination.
 const COFACTORS: usize = 4;
-/// Pivots down to this part of the largest are acceptable: rounding errors grow at most tenfold.
+/// Pivots down to this fraction of the largest are acceptable: rounding errors grow at most tenfold.
 const READILY: f64 = 0.1;
-/// Constants smaller than this part of their row are not pivots: rounding errors would grow a thousandfold.
+/// Constants smaller than this fraction of their row are not pivots: rounding errors would grow a
+/// thousandfold.
 const TINY: f64 = 1e-3;
-/// A difference of rounded constants that is smaller than this part of them is zero: some hundred roundings.
+/// A difference of rounded constants that is smaller than this fraction of them, some hundred roundings, is
+/// zero.
 const ROUNDING: f64 = 1e-13;
 
 /// The inverse of a square matrix; `None` if its determinant is identically zero.
 ///
-/// Its entries are regular wherever the matrix is. Constant pivots that are not small against their row are
-/// eliminated first. The remaining matrix is solved block by block of its block triangular form, small blocks
-/// by cofactors over their determinant, larger ones by orthogonalisation: no divisor vanishes where the
-/// matrix is regular, at any state. Constants that cancel up to rounding count as zero; so does a divisor
+/// Its entries are regular wherever the matrix is. Constant pivots that are not small relative to their row
+/// are eliminated first. The remaining matrix is solved block by block of its block triangular form, small
+/// blocks by cofactors over their determinant, larger ones by orthogonalisation: no divisor vanishes where
+/// the matrix is regular, at any state. Constants that cancel up to rounding count as zero; so does a divisor
 /// that is at most rounding at random points, even if the graph does not fold it.
 ///
 /// Uncoupled rows and columns are inverted separately.
@@ -83,7 +85,8 @@ fn inverse_of_block<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<M
     Some(result)
 }
 
-/// The determinant of a square matrix; `None` for more than four rows, where it is not a short expression.
+/// The determinant of a square matrix; `None` for more than four rows, since it is then not a short
+/// expression.
 pub fn determinant<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
     let all: Vec<usize> = (0..matrix.rows()).collect();
     (all.len() <= COFACTORS && matrix.columns() == all.len()).then(|| minor(graph, matrix, &all, &all))
@@ -150,7 +153,7 @@ impl<'g> Elimination<'g> {
     }
 
     /// The size of each entry relative to the largest remaining one in its row. An expression is evaluated at
-    /// one point, and counts as one where it has no value there.
+    /// one point, and counts as one if it has no value there.
     fn shares(&self) -> Matrix<f64> {
         let open: Vec<(usize, usize)> = self.open().collect();
         let entries: Vec<Expr<'g>> = open.iter().map(|&at| self.left[at]).collect();
@@ -193,7 +196,7 @@ impl<'g> Elimination<'g> {
     }
 }
 
-/// x − y, and 0 for constants that differ by rounding only.
+/// x − y, and 0 for constants that differ only by rounding.
 fn difference<'g>(graph: &'g Graph, x: Expr<'g>, y: Expr<'g>) -> Expr<'g> {
     let difference = graph.sum([x, -y]);
     let (Some(Number::Real(rest)), Some(x)) = (difference.constant(), x.constant()) else {
@@ -378,7 +381,7 @@ mod tests {
         }
     }
 
-    /// Small constants are pivots where the row has nothing larger, as with a small unit of a quasi-velocity.
+    /// Small constants are pivots if the row has nothing larger, as with a small unit of a quasi-velocity.
     #[test]
     fn a_small_unit_is_not_a_rounding_error() {
         let graph = Graph::new();

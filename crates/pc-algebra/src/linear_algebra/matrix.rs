@@ -1,4 +1,4 @@
-//! A matrix of numbers, or of expressions of which most are zero.
+//! A matrix of numbers, or of expressions most of which are zero.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ pub trait MatrixEntry: Copy + PartialEq {
     /// 0
     const ZERO: Self;
     /// Whether a matrix stores only its nonzero entries: frames and masses of n independent bodies have n²
-    /// expressions, of which some n are not zero.
+    /// expressions, of which about n are not zero.
     const IS_SPARSE: bool;
     /// Whether the entry is left out of a sparse matrix.
     fn is_nothing(&self) -> bool;
@@ -103,7 +103,7 @@ impl<T: MatrixEntry> Matrix<T> {
         Cow::Owned(row)
     }
 
-    /// The entries of row `i` that are not zero, with their columns, which ascend.
+    /// The nonzero entries of row `i`, with their columns in ascending order.
     pub fn nonzero(&self, i: usize) -> impl Iterator<Item = (usize, T)> + Clone + '_ {
         let all = if T::IS_SPARSE { &[] } else { &self.all[i * self.columns..(i + 1) * self.columns] };
         let held = if T::IS_SPARSE { self.held[i].as_slice() } else { &[] };
@@ -111,12 +111,12 @@ impl<T: MatrixEntry> Matrix<T> {
         all.chain(held.iter().copied()).filter(|(_, entry)| !entry.is_nothing())
     }
 
-    /// The entries that are not zero of each row, with their columns, which ascend.
+    /// The nonzero entries of each row, with their columns in ascending order.
     pub fn nonzero_rows(&self) -> Vec<Vec<(usize, T)>> {
         (0..self.rows).map(|i| self.nonzero(i).collect()).collect()
     }
 
-    /// The entries that are not zero, row after row.
+    /// The nonzero entries, row after row.
     pub fn nonzero_entries(&self) -> Vec<T> {
         (0..self.rows).flat_map(|i| self.nonzero(i)).map(|(_, entry)| entry).collect()
     }
@@ -225,7 +225,7 @@ impl<'g> Matrix<Expr<'g>> {
     /// terms.
     ///
     /// # Panics
-    /// If that has fewer.
+    /// If it has fewer.
     pub fn times(&self, graph: &'g Graph, other: &Matrix<Expr<'g>>) -> Matrix<Expr<'g>> {
         let row = |i: usize| {
             let mut terms: BTreeMap<usize, Vec<Expr<'g>>> = BTreeMap::new();

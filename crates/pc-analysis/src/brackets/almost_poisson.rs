@@ -14,7 +14,7 @@ impl<'g> PoissonBracket<'g> {
     /// the (∂L/∂η_α)_0 as functions of (x, y). It is skew and generates the motion (34) of a stationary system without
     /// forces, ẋ_i = (x_i, H), ẏ_s = (y_s, H); Jacobi's identity holds if and only if the constraints are integrable
     /// [van der Schaft, Maschke, Rep. Math. Phys. 34 (1994) 225], which
-    /// [`jacobi_violation`](PoissonBracket::jacobi_violation) tells.
+    /// [`jacobi_violation`](PoissonBracket::jacobi_violation) decides.
     ///
     /// # Errors
     /// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if H has no closed form.
@@ -60,7 +60,7 @@ impl<'g> PoissonBracket<'g> {
     }
 }
 
-/// (∂L/∂η_α)_0 with the free quasi-velocities substituted, and the number of these.
+/// (∂L/∂η_α)_0 with the free quasi-velocities substituted, and the number of free quasi-velocities.
 fn dropped_momenta<'g>(constrained: &Constrained<'g>, free: &[Expr<'g>]) -> (Vec<Expr<'g>>, usize) {
     let (system, l) = (constrained.system(), free.len());
     let eta = system.quasi_velocities();

@@ -12,7 +12,7 @@ impl<'g> PoissonBracket<'g> {
     /// whatever the Hamiltonian.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something else than variables and constants.
+    /// [`AnalysisError::NotAVariable`] for a function of anything other than variables and constants.
     pub fn is_casimir(&self, f: Expr<'g>) -> Result<bool, AnalysisError> {
         Ok(self.field(f)?.iter().all(|rate| rate.is_zero()))
     }
@@ -23,7 +23,7 @@ impl<'g> PoissonBracket<'g> {
     /// may be missed.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something else than variables and constants.
+    /// [`AnalysisError::NotAVariable`] for a function of anything other than variables and constants.
     pub fn casimirs_among(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, AnalysisError> {
         self.check(functions)?;
         Ok(self.combinations(functions))
@@ -33,7 +33,7 @@ impl<'g> PoissonBracket<'g> {
     /// of the variables that are `moving` and rational a_jl, and independent of those known to the ansatz.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for an ansatz with functions of something else than variables and constants.
+    /// [`AnalysisError::NotAVariable`] for an ansatz with functions of anything other than variables and constants.
     pub fn casimirs_by(
         &self,
         ansatz: &Ansatz<'g>,

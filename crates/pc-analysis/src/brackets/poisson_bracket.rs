@@ -13,7 +13,7 @@ use crate::integrals::polynomials::independent;
 
 /// A Poisson bracket (f, g) = P_ij ∂f/∂z_i ∂g/∂z_j of functions of the variables z, with P_ij = (z_i, z_j).
 ///
-/// Of a system, z = (x, y), it is
+/// For a system, with z = (x, y), it is
 ///
 ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m   (12),
 ///
@@ -21,10 +21,10 @@ use crate::integrals::polynomials::independent;
 /// ∂f/∂y_s y_m that the source adds for other systems is left out: with it (f, g) is not −(g, f). For them use the
 /// [extended](PoissonBracket::extended) bracket.
 ///
-/// Besides the variables, functions may contain symbols that count as constants: the symbols that stand in
-/// the tensor, those of the system it is a bracket of but for its quasi-velocities, and those
-/// [declared](PoissonBracket::with_constants). Any other symbol in a function is an error, quasi-velocities
-/// too: [`Canonical::in_momenta`](pc_mech::Canonical::in_momenta) puts momenta in their place.
+/// Besides the variables, functions may contain symbols that count as constants: the symbols in the tensor,
+/// those of the system to which it belongs except for its quasi-velocities, and those
+/// [declared](PoissonBracket::with_constants). Any other symbol in a function is an error, including
+/// quasi-velocities: [`Canonical::in_momenta`](pc_mech::Canonical::in_momenta) puts momenta in their place.
 #[derive(Clone, Debug)]
 pub struct PoissonBracket<'g> {
     graph: &'g Graph,
@@ -36,7 +36,8 @@ pub struct PoissonBracket<'g> {
 
 /// The symbols of the system that are neither variables of its bracket nor quasi-velocities: time unless it
 /// is a variable, parameters, and any others in its equations. Where L is not quadratic, H contains the
-/// quasi-velocities; at their values its derivatives by the other symbols are those of H(x, y).
+/// quasi-velocities; at their values its derivatives with respect to the other symbols are those of H(x,
+/// y).
 fn constants<'g>(system: &System<'g>, variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let closed = quadratic(system.graph(), system.lagrangian(), system.quasi_velocities()).is_some();
     let mut constants = system.symbols();
@@ -159,7 +160,8 @@ impl<'g> PoissonBracket<'g> {
     /// The bracket with (z_i, z_j) = `tensor`_ij of the variables z, whether or not it satisfies Jacobi's identity.
     ///
     /// # Errors
-    /// [`ShapeError`](pc_mech::ShapeError) if the tensor is not square with a row a variable; [`MatrixError::NotSkew`].
+    /// [`ShapeError`](pc_mech::ShapeError) if the tensor is not square with one row per variable;
+    /// [`MatrixError::NotSkew`].
     pub fn of_tensor(
         graph: &'g Graph,
         variables: Vec<Expr<'g>>,
@@ -204,7 +206,7 @@ impl<'g> PoissonBracket<'g> {
     }
 
     /// The first three variables whose brackets do not satisfy Jacobi's identity, with the defect. A defect that is
-    /// not folded to zero counts where numbers show that it is not zero.
+    /// not folded to zero counts if numbers show that it is not zero.
     pub fn jacobi_violation(&self) -> Option<([Expr<'g>; 3], Expr<'g>)> {
         let z = &self.variables;
         let triples = (0..z.len())
@@ -243,13 +245,13 @@ impl<'g> PoissonBracket<'g> {
     /// [`closure`](PoissonBracket::closure).
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something else.
+    /// [`AnalysisError::NotAVariable`] for a function of anything else.
     pub fn of(&self, f: Expr<'g>, g: Expr<'g>) -> Result<Expr<'g>, AnalysisError> {
         self.check(&[f, g])?;
         Ok(self.bracket(f, g))
     }
 
-    /// The rates (f, h) of the functions f, one each, along the flow of h, ż_i = (z_i, h).
+    /// The rates (f, h) of the functions f, one for each, along the flow of h, ż_i = (z_i, h).
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).
@@ -278,7 +280,7 @@ impl<'g> PoissonBracket<'g> {
     }
 
     /// The functions, their brackets, the brackets of these and so on, as far as they are functionally
-    /// independent, the given ones first. Brackets of integrals are integrals.
+    /// independent; the given ones come first. Brackets of integrals are integrals.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).

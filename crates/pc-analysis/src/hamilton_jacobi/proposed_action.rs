@@ -31,8 +31,8 @@ pub struct Residual {
 }
 
 impl<'g> ProposedAction<'g> {
-    /// The verdict on S = `action`, a function of (t, x) and of `constants`, by terms that cancel and by numbers
-    /// `near` a point where it is defined.
+    /// The verdict on S = `action`, a function of (t, x) and of `constants`: by cancellation of terms, and by
+    /// numbers `near` a point where it is defined.
     ///
     /// # Errors
     /// As for [`hamilton_jacobi`].
@@ -78,7 +78,7 @@ impl<'g> ProposedAction<'g> {
     }
 }
 
-/// The point, the centre or one near it, where the sum of two terms is the largest part of these.
+/// The point, the centre or one near it, where the sum of two terms is largest relative to them.
 fn largest<'g>(graph: &'g Graph, terms: [Expr<'g>; 2], near: &Neighbourhood<'g>) -> Option<Residual> {
     let symbols = graph.symbols_of(&terms);
     let centre =

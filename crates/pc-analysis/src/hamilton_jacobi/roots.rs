@@ -5,12 +5,12 @@ use std::ops::{Add, Mul, Neg};
 
 use pc_expr::{Expr, Folding, Function, Graph, Number, Scalar};
 
-/// Whether `expression` is zero wherever it is defined, as far as the graph decides once its roots are
-/// related to each other here.
+/// Whether `expression` is zero wherever it is defined, as far as the graph can decide once the roots
+/// are related to each other here.
 ///
 /// The graph knows the square of each root, but few relations between roots of several sums. So each root √u
-/// becomes a symbol r and, where u is linear in a symbol z, this symbol is eliminated: z = (r² − u_0)/u_1 for
-/// u = u_0 + u_1 z. The result is rational in r, and zero for all r only if `expression` is zero for all z.
+/// becomes a symbol r and, if u is linear in a symbol z, this symbol is eliminated: z = (r² − u_0)/u_1 for u
+/// = u_0 + u_1 z. The result is rational in r, and zero for all r only if `expression` is zero for all z.
 pub(crate) fn vanishes<'g>(graph: &'g Graph, expression: Expr<'g>) -> bool {
     if expression.is_zero() {
         return true;

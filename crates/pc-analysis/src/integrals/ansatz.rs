@@ -20,7 +20,7 @@ pub struct Ansatz<'g> {
 
 impl<'g> Rates<'g> {
     /// The integrals that are linear combinations of `functions` with rational coefficients; a basis of them,
-    /// constants and functions of each other not left out.
+    /// including constants and functions of each other.
     ///
     /// The functions are of (t, x, η) or (t, x, y), and may contain parameters. Each integral is proved: its rate is
     /// folded to zero. Parameters are unknowns that the coefficients do not contain:
@@ -28,7 +28,7 @@ impl<'g> Rates<'g> {
     /// See [`linear_relations`](pc_expr::Graph::linear_relations) for what else may be missed.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something that is not of the motion.
+    /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
     pub fn integrals_among(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, AnalysisError> {
         let rates: Vec<Vec<Expr<'g>>> = self.of_all(functions)?.into_iter().map(|rate| vec![rate]).collect();
         let relations = self.graph.linear_relations(&rates);
@@ -39,7 +39,7 @@ impl<'g> Rates<'g> {
     /// ones; of low degree first.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something that is not of the motion.
+    /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
     ///
     /// ```
     /// use pc_analysis::Rates;
@@ -68,7 +68,7 @@ impl<'g> Rates<'g> {
 
     /// The ansatz of polynomials of degree ≤ `degree` in η or y whose coefficients are polynomials of degree
     /// ≤ `coefficients` in the coordinates, or, for those that the equations contain in sines and cosines
-    /// only, in their sine and cosine; no integrals are known. Time is left out; add functions of it where they matter.
+    /// only, in their sine and cosine; no integrals are known. Time is left out; add functions of it if they matter.
     pub fn ansatz(&self, degree: u32, coefficients: u32) -> Ansatz<'g> {
         let rates: Vec<Expr<'g>> = self.flow.iter().map(|&(_, rate)| rate).collect();
         let places: Vec<Places> = self.coordinates.iter().map(|&x| Places::of(self, x, &rates)).collect();

@@ -30,7 +30,7 @@ pub enum Origin {
     DeclaredCasimir,
     /// It is the energy of the velocities in the equations.
     Energy,
-    /// It is the energy of all velocities, where the equations are those of independent ones.
+    /// It is the energy of all velocities, if the equations are those of independent ones.
     EnergyOfAll,
     /// It is the momentum a_s y_s of a [`CyclicDisplacement`](crate::CyclicDisplacement).
     CyclicDisplacement {
@@ -50,20 +50,20 @@ pub enum ConservationVerdict<'g> {
     Conserved,
     /// It vanishes identically for these values of the parameters.
     ConservedHere,
-    /// It vanishes identically, if only for these values, where the function does not jump.
+    /// It vanishes identically, possibly only for these values, where the function does not jump.
     BetweenJumps,
     /// It is unknown, because the function does not depend on time and state alone, such as one with reactions.
     NoFunction,
-    /// It is not found to vanish.
+    /// It was not found to vanish.
     Rate {
         /// The rate in terms of (t, x, η).
         rate: Expr<'g>,
         /// Its value at the start, if it has one.
         at_start: Option<f64>,
-        /// The part of its terms that is left in their sum at the start, from 0 to 1: no more than rounding where the function is
-        /// an integral.
+        /// The fraction of its terms that is left in their sum at the start, from 0 to 1: no more than rounding if the function
+        /// is an integral.
         part_left: Option<f64>,
-        /// The same at states near the start, where the start alone does not refute it and every state near it is possible.
+        /// The same at states near the start, if the start alone does not refute it and every nearby state is possible.
         near: Option<f64>,
     },
 }
@@ -80,7 +80,7 @@ impl<'g> Integrals<'g> {
         &self.list
     }
 
-    /// Those that are proved to be conserved, if only for the values that the parameters have.
+    /// Those that are proved to be conserved, possibly only for the present values of the parameters.
     pub fn conserved(&self) -> impl Iterator<Item = &Integral<'g>> {
         self.list.iter().filter(|integral| integral.is_conserved())
     }
@@ -110,7 +110,7 @@ impl<'g> Integrals<'g> {
         });
     }
 
-    /// Marks the energy as proved to be conserved, by a theorem where its rate along the equations is not
+    /// Marks the energy as proved to be conserved: by a theorem, if its rate along the equations is not
     /// found to vanish.
     pub fn keep_energy(&mut self, equations: &Equations<'g>) {
         let open = |integral: &&mut Integral<'g>| {
@@ -156,14 +156,15 @@ pub(crate) fn bind<'g>(system: &System<'g>, function: Expr<'g>) -> Expr<'g> {
 }
 
 impl ConservationVerdict<'_> {
-    /// Whether the function is proved to be an integral, if only for the values that the parameters have.
+    /// Whether the function is proved to be an integral, possibly only for the present values of the
+    /// parameters.
     pub fn is_conserved(self) -> bool {
         matches!(self, ConservationVerdict::Conserved | ConservationVerdict::ConservedHere)
     }
 }
 
 impl Integral<'_> {
-    /// Whether it is proved to keep its value, if only for these parameters.
+    /// Whether it is proved to keep its value, possibly only for these parameters.
     pub fn is_conserved(&self) -> bool {
         self.verdict.is_conserved()
     }

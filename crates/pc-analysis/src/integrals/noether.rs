@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use pc_algebra::affine;
 use pc_mech::{Canonical, Expr, System};
 
-/// A field X = a_s X_s, a_s functions of (t, x), with whose momentum a_s y_s the motion keeps a_s y_s + f(t, x).
+/// A field X = a_s X_s, a_s functions of (t, x), with momentum a_s y_s, such that the motion conserves a_s
+/// y_s + f(t, x).
 ///
 /// It is a symmetry of L up to the rate of f. Where it [commutes](NoetherField::commutes) with all operators
 /// it is cyclic in Chetaev's sense: (9) of the frame with X among its operators has d/dt (a_s y_s) = X L +
-/// a_s Q_s. A coordinate that is cyclic in Lagrange's sense is X = ∂/∂x; the rotations in space of a body
-/// described in its own axes are others.
+/// a_s Q_s. A coordinate that is cyclic in Lagrange's sense is X = ∂/∂x; other examples are the rotations in
+/// space of a body described in its own axes.
 #[derive(Clone, Debug)]
 pub struct NoetherField<'g> {
     /// a_1..a_k
@@ -55,7 +56,7 @@ impl<'g> NoetherField<'g> {
     }
 }
 
-/// X_r a_m + a_s c_rs^m = 0 for r = 0..k, m = 1..k, as far as the graph tells.
+/// X_r a_m + a_s c_rs^m = 0 for r = 0..k, m = 1..k, as far as the graph can decide.
 fn commutes<'g>(system: &System<'g>, a: &[Expr<'g>]) -> bool {
     let (frame, structure, k) = (system.frame(), system.structure(), a.len());
     if structure.operators() != k {

@@ -8,7 +8,7 @@ use crate::integrals::polynomials::{Generator, combination, monomials};
 use crate::integrals::rates::Rates;
 use crate::integrals::search::{Search, binomial};
 
-/// The most functions with unknown coefficients; these take some seconds.
+/// The most functions with unknown coefficients; a search with so many takes some seconds.
 const MOST_FUNCTIONS: usize = 600;
 
 /// The longest accelerations along which they are differentiated, in operations written out.
@@ -56,16 +56,16 @@ pub enum AnsatzSearch {
 }
 
 impl<'g> Integrals<'g> {
-    /// Adds the integrals of an ansatz to those known already, unless they are polynomials of known ones with rational
+    /// Adds the integrals of an ansatz to those already known, unless they are polynomials of known ones with rational
     /// coefficients; those of low degree come first. Other functions of integrals before them are marked as dependent,
     /// such as the third component of the Runge–Lenz vector.
     ///
-    /// They are sought for the values that the parameters have. Where the coefficients are polynomials in the
-    /// parameters, up to a common factor, these stand in them and the integral is proved for all their
+    /// They are sought for the present values of the parameters. If the coefficients are polynomials in the
+    /// parameters, up to a common factor, these polynomials are used and the integral is proved for all
     /// values.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something that is not of the motion.
+    /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
     ///
     /// ```
     /// use pc_analysis::{Integrals, PolynomialAnsatz};
@@ -191,8 +191,8 @@ struct Span<'g> {
 }
 
 impl<'g> Span<'g> {
-    /// The span with coefficients of the largest degree up to `most` that can be tried; otherwise the number
-    /// of functions at degree 0.
+    /// The span with coefficients of the largest degree up to `most` that can be searched; otherwise the
+    /// number of functions at degree 0.
     fn new(
         graph: &'g Graph,
         rates: &Rates<'g>,
@@ -273,7 +273,8 @@ fn products<'g>(graph: &'g Graph, known: &[Expr<'g>], eta: &[Expr<'g>], degree: 
     all
 }
 
-/// Whether f is a linear combination of functions with constant coefficients, as far as fingerprints tell.
+/// Whether f is a linear combination of functions with constant coefficients, as far as fingerprints can
+/// decide.
 fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>) -> bool {
     let columns: Vec<Vec<Expr<'g>>> = of.iter().chain([&f]).map(|&f| vec![f]).collect();
     graph.dependent_columns(&columns, &[]).iter().any(|&(j, _)| j == of.len())

@@ -10,17 +10,18 @@ use crate::error::{AnalysisError, check_variables};
 pub enum Conservation<'g> {
     /// Its rate vanishes identically: it is an integral.
     Conserved,
-    /// Its rate vanishes identically for the values that the parameters have.
+    /// Its rate vanishes identically for the present values of the parameters.
     ConservedHere,
-    /// Its rate vanishes identically, if only for the values that the parameters have, but the function jumps where a
-    /// sign or a step in it does, which its rate does not show.
+    /// Its rate vanishes identically, possibly only for the present values of the parameters, but the function jumps
+    /// where a sign or a step in it does, which its rate does not show.
     ConservedBetweenJumps,
-    /// Its rate, which the graph does not fold to zero.
+    /// Its rate is not folded to zero by the graph.
     Changing(Expr<'g>),
 }
 
 impl Conservation<'_> {
-    /// Whether the function is proved to be an integral, if only for the values that the parameters have.
+    /// Whether the function is proved to be an integral, possibly only for the present values of the
+    /// parameters.
     pub fn is_conserved(self) -> bool {
         matches!(self, Conservation::Conserved | Conservation::ConservedHere)
     }
@@ -28,9 +29,9 @@ impl Conservation<'_> {
 
 /// The derivative along the motion, df/dt = ∂f/∂t + ẋ_i ∂f/∂x_i + η̇_s ∂f/∂η_s, or with y_s in place of η_s.
 ///
-/// Of [`Equations`] for functions of (t, x, η, η̇), nonholonomic ones included, and of [`Canonical`]
-/// equations for functions of (t, x, y). Where these are not [closed](Canonical::is_closed), the functions may
-/// contain η too, and the rates are in (t, x, η).
+/// It is that of [`Equations`], including nonholonomic ones, for functions of (t, x, η, η̇), and that of
+/// [`Canonical`] equations for functions of (t, x, y). Where these are not [closed](Canonical::is_closed), the
+/// functions may contain η too, and the rates are in (t, x, η).
 #[derive(Clone, Debug)]
 pub struct Rates<'g> {
     pub(crate) graph: &'g Graph,
@@ -41,7 +42,7 @@ pub struct Rates<'g> {
     parameters: Vec<(Expr<'g>, Expr<'g>)>,
     /// The symbols of η̇ with their expressions in (t, x, η).
     accelerations: Vec<(Expr<'g>, Expr<'g>)>,
-    /// The symbols of y with their expressions in (t, x, η), where these are not solved for η.
+    /// The symbols of y with their expressions in (t, x, η), if these are not solved for η.
     momenta: Vec<(Expr<'g>, Expr<'g>)>,
     /// Each symbol that changes, with its rate.
     pub(crate) flow: Vec<(Expr<'g>, Expr<'g>)>,
@@ -155,7 +156,7 @@ impl<'g> Rates<'g> {
     }
 
     /// The rate relative to its terms, |df/dt|/Σ|∂f/∂z_i ż_i|, at a point, from 0 to 1: at most rounding if f
-    /// is an integral. None where all terms vanish, or are not numbers.
+    /// is an integral. None if all terms vanish, or are not numbers.
     ///
     /// # Errors
     /// As for [`of`](Rates::of).
@@ -172,7 +173,8 @@ impl<'g> Rates<'g> {
         Ok(Some(left).filter(|left| left.is_finite()))
     }
 
-    /// Whether f contains a sign, a step or an angle of changing quantities, and so may jump, or is seen to.
+    /// Whether f contains a sign, a step or an angle of changing quantities, and so may jump, or is seen to
+    /// jump.
     pub fn has_jumps(&self, f: Expr<'g>) -> bool {
         let f = self.graph.substitute(&[f], &self.accelerations)[0];
         let changing: Vec<Expr<'g>> = self.flow.iter().map(|&(symbol, _)| symbol).collect();

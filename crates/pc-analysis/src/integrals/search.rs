@@ -8,7 +8,8 @@ use crate::integrals::integral::{ConservationVerdict, Integral, Integrals, Origi
 use crate::integrals::polynomials::combination;
 use crate::integrals::rates::{Conservation, Rates};
 
-/// The most functions with unknown coefficients in an ansatz; these take some hundredths of a second.
+/// The most functions with unknown coefficients in an ansatz; a search with so many takes some hundredths of
+/// a second.
 const MOST_FUNCTIONS: usize = 150;
 
 impl<'g> Integrals<'g> {
@@ -175,9 +176,9 @@ impl<'a, 'g> Search<'a, 'g> {
         }
     }
 
-    /// The rate of the energy without accelerations: the power of the forces and what depends on time. Under constraints that
-    /// are homogeneous in the velocities, c_0r^m = 0, reactions have no power; that it is the `rate` along the equations is then
-    /// looked at.
+    /// The rate of the energy without accelerations: the power of the forces and the explicit time dependence. Under constraints
+    /// that are homogeneous in the velocities, c_0r^m = 0, reactions have no power; whether it equals the `rate` along the
+    /// equations is then checked.
     fn power(&self, rate: Expr<'g>) -> Option<Expr<'g>> {
         if self.unconstrained {
             return Some(self.system().energy_rate());
@@ -225,7 +226,7 @@ impl<'a, 'g> Search<'a, 'g> {
     /// The Casimirs of the bracket (12) in terms of (x, η) that are independent of the integrals in the list;
     /// functions of Casimirs in the list are marked as such.
     ///
-    /// Where b_0 = 0, c_0s = 0 and Q = 0, they are integrals for any Lagrangian.
+    /// If b_0 = 0, c_0s = 0 and Q = 0, they are integrals for any Lagrangian.
     fn add_casimirs(&self, list: &mut Vec<Integral<'g>>) {
         let (frame, structure) = (self.bound.frame(), self.bound.structure());
         let stationary = frame.b0().iter().all(|b| b.is_zero()) && structure.nonzero().all(|(r, ..)| r > 0);

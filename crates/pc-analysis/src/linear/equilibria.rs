@@ -40,8 +40,8 @@ pub struct EquilibriumSearch {
 }
 
 impl Default for EquilibriumSearch {
-    /// Angles over a turn about the start, other coordinates and first-order states from it by 2 (1 + |x|) to
-    /// both sides; 256 starts.
+    /// Angles over one turn about the start, other coordinates and first-order states by 2 (1 + |x|) to both
+    /// sides of it; 256 starts.
     fn default() -> EquilibriumSearch {
         EquilibriumSearch { bounds: Vec::new(), starts: 256 }
     }
@@ -52,7 +52,8 @@ impl Default for EquilibriumSearch {
 pub struct Equilibria {
     /// The equilibria in ascending order of energy.
     pub list: Vec<FoundEquilibrium>,
-    /// The cyclic coordinates: whatever their values, equilibria remain such. They have those of the start.
+    /// The cyclic coordinates: equilibria remain equilibria whatever their values, which are those of the
+    /// start.
     pub anywhere: Vec<String>,
     /// The coordinates and first-order states that were searched over, with the bounds of the starts.
     pub bounds: Vec<(String, f64, f64)>,
@@ -73,7 +74,7 @@ pub struct FoundEquilibrium {
     pub linearization: Linearization,
     /// The results on its stability.
     pub motion: NearbySteadyMotion,
-    /// The dimension of its family, without that due to cyclic coordinates; 0 if it is isolated, also where the first approximation
+    /// The dimension of its family, without that due to cyclic coordinates; 0 if it is isolated, even if the first approximation
     /// has a kernel, as at the minimum of x⁴.
     pub family: usize,
     /// The number of members of the family that were found.
@@ -82,7 +83,7 @@ pub struct FoundEquilibrium {
     reach: f64,
 }
 
-/// Where a kernel of the first approximation belongs to an isolated equilibrium, Newton's method ends somewhere within about this
+/// If a kernel of the first approximation belongs to an isolated equilibrium, Newton's method ends somewhere within about this
 /// distance of it, relative to 1 + |y|: the rates are below its tolerance there.
 const FLAT: f64 = 0.02;
 
@@ -93,11 +94,11 @@ const DIRECTIONS: usize = 3;
 /// Steps of Newton's method.
 const MOST_STEPS: usize = 60;
 
-/// Where rates are steeper than at the start by this factor, coordinates are singular.
+/// If rates are steeper than at the start by this factor, coordinates are singular.
 const MOST_STEEPER: f64 = 1e6;
 
-/// A rate above this part of |∂f/∂y| (1 + |y|) is not near a zero: it is small by decay, such as a force at a
-/// distance.
+/// A rate above this fraction of |∂f/∂y| (1 + |y|) is not near a zero: it is small because it decays, like a
+/// force at a distance.
 const FALLING: f64 = 1e-3;
 
 /// Relative differences of energy within one family.
@@ -118,10 +119,10 @@ impl EquilibriumSearch {
     }
 
     /// The equilibria found, on the leaf of the start (t, y): all rates vanish. No two are the same modulo
-    /// the periods of angles; of a family with one energy there is one member. There may be others.
+    /// the periods of angles; a family with one energy is represented by one member. There may be others.
     ///
-    /// `integrals` are those of the `equations` in independent quasi-velocities, by which the energy
-    /// criterion judges; `linearizer` is of these equations, or of those with multipliers.
+    /// `integrals` are those of the `equations` in independent quasi-velocities, which the energy
+    /// criterion uses; `linearizer` is of these equations, or of those with multipliers.
     ///
     /// # Errors
     /// [`AnalysisError::UnknownComponent`], [`AnalysisError::CyclicBox`] or [`AnalysisError::EmptyBox`] for a
@@ -316,7 +317,7 @@ impl Domain {
         components.fold(0.0, f64::max)
     }
 
-    /// A place beside a state, in one of a few directions that are parallel to no plane of the components.
+    /// A place near a state, in one of a few directions that are not parallel to any plane of the components.
     fn beside(&self, number: usize, state: &[f64]) -> Vec<f64> {
         let mut beside = state.to_vec();
         for (edge, prime) in self.edges.iter().zip(primes()) {
@@ -331,7 +332,7 @@ impl Domain {
     }
 }
 
-/// Eigenvalues of a form that are a smaller part of the largest count as zero.
+/// Eigenvalues of a form that are a smaller fraction of the largest count as zero.
 const DEFINITE: f64 = 1e-10;
 
 impl FoundEquilibrium {
@@ -359,7 +360,7 @@ impl FoundEquilibrium {
 }
 
 impl Linearizer {
-    /// The equilibrium near a guess, if there is one where coordinates are regular.
+    /// The equilibrium near a guess, if there is one at which coordinates are regular.
     fn equilibrium(
         &mut self,
         t: f64,

@@ -5,8 +5,8 @@ use pc_mech::{Matrix, SingularValues};
 use crate::error::AnalysisError;
 use crate::numeric::dense::{norm, product};
 
-/// Singular values, and rows of an orthonormal basis, below this part of the largest are zeros. Entries of
-/// frames and slopes of constraints are accurate to some ten or hundred roundings.
+/// Singular values, and rows of an orthonormal basis, below this fraction of the largest are zeros.
+/// Entries of frames and slopes of constraints are accurate to some ten or hundred roundings.
 pub(super) const ZERO: f64 = 1e-10;
 
 /// The directions δx in which coordinates can move: the image of b, tangent to the leaf of an integrable
@@ -91,11 +91,11 @@ impl Velocities {
     }
 }
 
-/// The remainder of a zero after some roundings of products of numbers up to 1.
+/// What some roundings of products of numbers up to 1 leave in place of a zero.
 const ROUNDING: f64 = 1e-14;
 
 /// Rows that are a basis of all rows, ascending: each time the row with the greatest remainder orthogonal to
-/// those taken, the first among equals, as long as it is at least `zero`.
+/// those already taken (the first among equals), as long as this is at least `zero`.
 pub(super) fn independent_rows(matrix: &Matrix<f64>, zero: f64) -> Vec<usize> {
     let mut left: Vec<Vec<f64>> = matrix.to_rows();
     let mut picked = Vec::new();

@@ -20,15 +20,15 @@ pub struct Linearization {
     pub t: f64,
     /// The whole state with its names.
     pub state: Vec<(String, f64)>,
-    /// Whether all rates vanish but those of cyclic coordinates.
+    /// Whether all rates except those of cyclic coordinates vanish.
     pub is_steady: bool,
     /// √Σ f_i² over the components that are not cyclic.
     pub residual: f64,
-    /// The Euclidean distance from the state asked for.
+    /// The Euclidean distance from the requested state.
     pub distance: f64,
     /// The names of the r components of the reduced state.
     pub components: Vec<String>,
-    /// E in δy = E δ(reduced): all components of the state by those r, up to the first order.
+    /// E in δy = E δ(reduced): all components of the state in terms of those r, to first order.
     pub extension: Matrix<f64>,
     /// The cyclic coordinates that are left out, with their rates.
     pub cyclic: Vec<(String, f64)>,
@@ -57,14 +57,14 @@ pub struct Linearization {
 /// The cyclic coordinates that are components of the reduced state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum CyclicCoordinates {
-    /// None: stability is judged without them.
+    /// None: stability is judged without cyclic coordinates.
     #[default]
     LeftOut,
-    /// Those that rest, unless others that move act on them: equations with constant coefficients hold for these.
+    /// Those that rest, unless moving ones act on them: the others have equations with constant coefficients.
     KeptAtRest,
 }
 
-/// A rate counts as zero up to this part of |∂f/∂y| (1 + |y|).
+/// A rate counts as zero up to this fraction of |∂f/∂y| (1 + |y|).
 const AT_REST: f64 = 1e-12;
 
 impl Linearizer {
@@ -104,11 +104,12 @@ impl Linearizer {
         Ok(result)
     }
 
-    /// The Jacobian on the states that satisfy the constraints, at any of them, whether or not it is steady;
-    /// with all cyclic coordinates. The reduced state deviates from a solution that moves there.
+    /// The Jacobian on the states that satisfy the constraints, at any such state, steady or not;
+    /// with all cyclic coordinates. The reduced state is the deviation from a solution that passes
+    /// there.
     ///
     /// # Errors
-    /// [`ShapeError`](pc_mech::ShapeError); where f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
+    /// [`ShapeError`](pc_mech::ShapeError); if f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
     pub fn at(&mut self, t: f64, state: &[f64]) -> Result<Linearization, AnalysisError> {
         shape("the state", state.len(), self.names().len())?;
         let rates = self.motion.rates(t, state)?;
@@ -123,7 +124,7 @@ impl Linearizer {
     /// The number of components of the reduced state near a state, without the cyclic coordinates or with all of them.
     ///
     /// # Errors
-    /// [`ShapeError`](pc_mech::ShapeError); where f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
+    /// [`ShapeError`](pc_mech::ShapeError); if f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
     pub fn components(
         &mut self,
         t: f64,
@@ -217,7 +218,7 @@ impl Linearizer {
         })
     }
 
-    /// In the coordinates that are not cyclic, and as many cyclic ones as needed.
+    /// The equations in the coordinates that are not cyclic, and as many cyclic ones as needed.
     fn second_order(
         &self,
         evaluated: &Evaluated,
@@ -249,7 +250,7 @@ impl Linearizer {
 }
 
 impl Evaluated {
-    /// The reduced state with these of the n coordinates, for a state of `all` components.
+    /// The reduced state with the given ones of the n coordinates, for a state of `all` components.
     fn reduced(&self, coordinates: &[usize], n: usize, all: usize) -> Result<Reduced, AnalysisError> {
         let chart = self.directions.chart(coordinates)?;
         let Velocities { independent, of_independent, of_coordinates } = &self.velocities;

@@ -19,11 +19,12 @@ use crate::stability::steady_search::{is_autonomous, names_time};
 /// The states that a motion can reach from its start.
 #[derive(Clone, Debug)]
 pub struct Leaf<'g> {
-    /// The system with all quasi-velocities, those that constraints make vanish too: its frame is integrable.
+    /// The system with all quasi-velocities, including those that constraints make vanish: its frame is
+    /// integrable.
     pub whole: System<'g>,
     /// The f of the conditions f(x) = 0 that constraints imply.
     pub positions: Vec<Expr<'g>>,
-    /// Functions of the coordinates alone that motions keep at their start values, such as the length of a quaternion.
+    /// Functions of the coordinates alone that keep their start values, such as the length of a quaternion.
     pub kept: Vec<Expr<'g>>,
 }
 
@@ -76,16 +77,17 @@ pub struct Linearizer {
     outputs: Vec<String>,
     /// The positions, the kept functions and the conditions on velocities, then their slopes.
     surface: Evaluator,
-    /// b, M, and for each output its derivatives by the state, the accelerations, the reactions and the inputs.
+    /// b, M, and for each output its derivatives with respect to the state, the accelerations, the reactions
+    /// and the inputs.
     parts: Evaluator,
-    /// Those in the outputs.
+    /// The reactions in the outputs.
     reactions: Option<Reactions>,
     pub(super) sizes: Sizes,
-    /// Whether as many functions are known as the frame keeps.
+    /// Whether all functions that the frame keeps are known.
     is_leaf_known: bool,
 }
 
-/// The numbers of all parts.
+/// The sizes of all parts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sizes {
     pub(super) coordinates: usize,
@@ -118,7 +120,7 @@ impl Linearizer {
     /// Linearizes equations in independent quasi-velocities, with the parameters that are inputs.
     ///
     /// # Errors
-    /// [`AnalysisError::UnknownComponent`] for an input that is no parameter; otherwise as
+    /// [`AnalysisError::UnknownComponent`] for an input that is not a parameter; otherwise as
     /// [`Equations::compile`](pc_mech::Equations::compile).
     pub fn new<'g>(
         equations: &Equations<'g>,
@@ -130,7 +132,8 @@ impl Linearizer {
     }
 
     /// Linearizes equations with multipliers, which are regular wherever the constraints are: no choice of
-    /// independent velocities is, as that of ẏ at the lowest point of a circle.
+    /// independent velocities is regular everywhere; ẏ, for example, is not at the lowest point of a
+    /// circle.
     ///
     /// # Errors
     /// As [`new`](Linearizer::new).
@@ -144,7 +147,7 @@ impl Linearizer {
         Linearizer::of(motion, multipliers.equations(), leaf, Some(multipliers), inputs)
     }
 
-    /// As [`new`](Linearizer::new), with `multipliers` where these hold conditions on the velocities.
+    /// As [`new`](Linearizer::new), with `multipliers` if these hold conditions on the velocities.
     fn of<'g>(
         motion: Motion,
         equations: &Equations<'g>,
@@ -293,8 +296,8 @@ impl Linearizer {
     /// The equilibrium or steady motion near a state, on the leaf of that state.
     ///
     /// # Errors
-    /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`] where Newton's method would have to
-    /// know functions of the coordinates that are not among those kept, and the state is not steady itself;
+    /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`] if Newton's method would need
+    /// functions of the coordinates that are not known to be kept, and the state itself is not steady;
     /// otherwise as [`SteadyMotion::near`].
     pub(super) fn find(
         &mut self,
@@ -421,7 +424,8 @@ impl Linearizer {
     }
 
     /// The dimension of the family of equilibria or steady motions through a state on its leaf, to first
-    /// order: that of the kernel of the slopes of the rates `kept`, by the components `free`.
+    /// order: that of the kernel of the slopes of the rates `kept`, with respect to the components
+    /// `free`.
     pub(super) fn family(
         &mut self,
         t: f64,
@@ -441,5 +445,5 @@ impl Linearizer {
     }
 }
 
-/// Singular values below this part of the largest are zeros.
+/// Singular values below this fraction of the largest are zeros.
 const FAMILY: f64 = 1e-8;

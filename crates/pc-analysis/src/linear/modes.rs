@@ -11,8 +11,8 @@ use crate::stability::spectrum::{Eigenvalue, Spectrum};
 pub struct Mode {
     /// λ
     pub eigenvalue: Eigenvalue,
-    /// v, pairs of real and imaginary part of each component, the largest of them 1. None for a multiple zero
-    /// beyond the kernel: deviations grow with a power of t there.
+    /// v, as pairs of real and imaginary part of each component; the largest component is 1. None for a
+    /// multiple zero beyond the kernel: deviations grow with a power of t there.
     pub vector: Option<Vec<(f64, f64)>>,
 }
 

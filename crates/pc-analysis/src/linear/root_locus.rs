@@ -5,8 +5,8 @@ use crate::stability::spectrum::Eigenvalue;
 
 /// The eigenvalues of a linearization for values of a parameter, each followed as a branch.
 ///
-/// From one value to the next those eigenvalues are taken for the same branch that are, in sum of the roots
-/// of the distances, nearest to where the branches lead; where two branches meet, either goes on as either.
+/// From one value to the next, eigenvalues continue the branches to whose extrapolations they are nearest,
+/// by the sum of the roots of the distances; where two branches meet, either may continue as either.
 ///
 /// ```
 /// use pc_analysis::{Eigenvalue, RootLocus};
@@ -30,7 +30,7 @@ pub struct RootLocus {
     branches: Vec<Vec<Option<Eigenvalue>>>,
 }
 
-/// Another number of eigenvalues than there are branches.
+/// A number of eigenvalues that differs from the number of branches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found} eigenvalues continue {expected} branches")]
 pub struct BranchCount {
@@ -41,10 +41,10 @@ pub struct BranchCount {
 }
 
 impl RootLocus {
-    /// Adds the eigenvalues for the next value of the parameter; none where there is no linearization.
+    /// Adds the eigenvalues for the next value of the parameter; none if there is no linearization.
     ///
     /// # Errors
-    /// [`BranchCount`] if there are more or fewer than before; the locus is as it was.
+    /// [`BranchCount`] if there are more or fewer than before; the locus is then unchanged.
     pub fn push(&mut self, value: f64, eigenvalues: Option<&[Eigenvalue]>) -> Result<(), BranchCount> {
         let before = self.values.len();
         let Some(found) = eigenvalues else {

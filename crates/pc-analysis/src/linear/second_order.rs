@@ -29,7 +29,7 @@ pub struct SecondOrder {
     pub input: Matrix<f64>,
 }
 
-/// Reasons for which there are no such equations.
+/// The reasons why there are no such equations.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoSecondOrder {
     /// The velocities change at the state.
@@ -38,7 +38,8 @@ pub enum NoSecondOrder {
     /// The mass matrix is not written out.
     #[error("the mass matrix of a large tree is not written out")]
     LargeTree,
-    /// Under nonholonomic constraints equations may depend on more coordinates than there are velocities.
+    /// The equations depend on more coordinates than there are velocities, as may happen under nonholonomic
+    /// constraints.
     #[error(
         "the equations depend on {coordinates} independent coordinates, but only {velocities} velocities are independent"
     )]
@@ -59,12 +60,12 @@ pub enum NoSecondOrder {
     /// First-order states act on the velocities.
     #[error("the first-order state {state} acts on the velocities")]
     FirstOrderState {
-        /// The first that does.
+        /// The first state that does.
         state: String,
     },
 }
 
-/// A row depends on others if less than this part of it is independent of them.
+/// A row depends on others if less than this fraction of it is independent of them.
 const ZERO: f64 = 1e-10;
 
 /// The reduced state: its components, and all components of the state in terms of them.
@@ -91,7 +92,7 @@ pub(super) struct Parts<'a> {
     pub(super) by_inputs: &'a Matrix<f64>,
     /// M of all quasi-velocities of the state.
     pub(super) mass: &'a Matrix<f64>,
-    /// The cyclic coordinates, and those on whose rates moving ones act.
+    /// The cyclic coordinates, and those whose rates depend on moving ones.
     pub(super) cyclic: &'a [usize],
     pub(super) acted_on: &'a [usize],
     /// The reduced state without cyclic coordinates.
@@ -194,7 +195,7 @@ impl Parts<'_> {
         independent_rows(&all, ZERO * largest(&rows)).len()
     }
 
-    /// The rate of a coordinate by the independent quasi-velocities.
+    /// The rate of a coordinate in terms of the independent quasi-velocities.
     fn velocity_row(&self, i: usize) -> Vec<f64> {
         let first = self.reduced.coordinates;
         (first..first + self.reduced.velocities).map(|column| self.moved[(i, column)]).collect()

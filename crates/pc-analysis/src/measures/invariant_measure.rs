@@ -17,8 +17,8 @@ impl<'g> InvariantMeasure<'g> {
         self.density_to(Number::ONE)
     }
 
-    /// The measure of a relation between growths ψ̇_i/ψ_i, a column each, and the divergence in the last
-    /// column.
+    /// The measure from a relation between the growth rates ψ̇_i/ψ_i, one column each, and the
+    /// divergence in the last column.
     pub(crate) fn of_relation(
         graph: &'g Graph,
         factors: &[Expr<'g>],
@@ -53,7 +53,7 @@ fn states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
 }
 
 /// The divergence ∂ẋ_i/∂x_i + ∂ẏ_s/∂y_s + ∂ż/∂z of the motion (10), (11): the rate at which phase volume dx
-/// dy grows, in terms of (t, x, y). Under constraints, (34), that of their [free
+/// dy grows, in terms of (t, x, y). Under constraints, (34), it is that of their [free
 /// system](pc_nonholo::Constrained::free_system).
 ///
 /// # Errors
@@ -148,7 +148,7 @@ pub(crate) fn simple_factors<'g>(system: &System<'g>, parts: &[Expr<'g>]) -> Vec
     moving.flat_map(|&x| [x, x.sin(), x.cos()]).collect()
 }
 
-/// Simple factors, those of det b where b is square, the diagonal of the mass matrix and its determinant, as
+/// Simple factors: those of det b if b is square, the diagonal of the mass matrix and its determinant, as
 /// far as they are not constant.
 pub(crate) fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, AnalysisError> {
     let graph = system.graph();

@@ -13,7 +13,8 @@ const MOST_VELOCITIES: usize = 6;
 /// The most factors of a density that are tried together.
 const MOST_FACTORS: usize = 60;
 
-/// The longest equations of such motions, in operations written out; these take some tenths of a second.
+/// The longest equations of such motions, in operations written out; a search then takes some tenths of a
+/// second.
 const LONGEST: u32 = 4_000;
 
 /// The result of a search for an invariant measure.
@@ -21,7 +22,7 @@ const LONGEST: u32 = 4_000;
 pub enum MeasureSearch<'g> {
     /// The motion keeps this one.
     Found(PhaseMeasure<'g>),
-    /// None is found.
+    /// None was found.
     None,
     /// It depends on forces that are computed outside.
     External,
@@ -34,11 +35,11 @@ pub enum MeasureSearch<'g> {
 pub struct PhaseMeasure<'g> {
     /// Whether it is Liouville's, that of a holonomic system by its frame, whatever the Lagrangian.
     pub liouville: bool,
-    /// N of N dx dy, positive at the start; none where 1/det b or det(∂f/∂x_D)/det b_I is not a short expression.
+    /// N of N dx dy, positive at the start; none if 1/det b or det(∂f/∂x_D)/det b_I is not a short expression.
     pub density: Option<Expr<'g>>,
-    /// N det M of N det M dx dη, M = ∂²L/∂η∂η; none where it is not a short expression.
+    /// N det M of N det M dx dη, M = ∂²L/∂η∂η; none if it is not a short expression.
     pub in_velocities: Option<Expr<'g>>,
-    /// The momenta on whose zeros N is zero or infinite.
+    /// The momenta at whose zeros N is zero or infinite.
     pub singular: Vec<Expr<'g>>,
     /// Whether momenta or ẋ contain a sign, a step or an angle, which may jump: the measure is kept where they do not.
     pub jumps: bool,
@@ -48,12 +49,12 @@ impl<'g> MeasureSearch<'g> {
     /// The measure of the motion (10), (11) of a system; under constraints, of their [free
     /// system](pc_nonholo::Constrained::free_system).
     ///
-    /// Where forces other than those of L are functions of the place, or gyroscopic, phase volume grows at
-    /// the rate η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: by (10) the terms of H cancel,
-    /// those of c_rs^m by its antisymmetry. N = 1 is a density if this vanishes. With n = k and rank b = k it
-    /// is N = 1/det b, by which dx dy is Liouville's dx dp: y = bᵀp. Where n − k functions f(t, x) are
-    /// constant, with any choice of as many dependent coordinates x_D and the others x_I, it is N =
-    /// det(∂f/∂x_D)/det b_I: Liouville's on each surface f = const. If no f are known, N is sought as a
+    /// Where forces other than those of L are functions of the position, or gyroscopic, phase volume grows
+    /// at the rate η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: by (10) the terms of H
+    /// cancel, and those of c_rs^m by its antisymmetry. N = 1 is a density if this vanishes. With n = k and
+    /// rank b = k it is N = 1/det b, by which dx dy is Liouville's dx dp: y = bᵀp. Where n − k functions
+    /// f(t, x) are constant, with any choice of as many dependent coordinates x_D and the others x_I, it is
+    /// N = det(∂f/∂x_D)/det b_I: Liouville's on each surface f = const. If no f are known, N is sought as a
     /// product of powers of coordinates, their sines and cosines. For dx dη it is multiplied by det M.
     /// `positions` are f of a holonomic system, and declared integrals of the place are others; `None` means
     /// that it is not holonomic.
@@ -65,7 +66,7 @@ impl<'g> MeasureSearch<'g> {
     /// `at` are values of time, state and parameters, where N is positive.
     ///
     /// # Errors
-    /// Those of the equations (9).
+    /// The errors of the equations (9).
     ///
     /// ```
     /// use pc_analysis::MeasureSearch;
@@ -139,8 +140,8 @@ fn jumps(system: &System<'_>) -> bool {
     parts.iter().any(|&part| system.graph().applies(part, &state, |function| !function.is_continuous()))
 }
 
-/// The density by which (10), (11) keep phase volume for any Lagrangian; `Some(None)` if it is not a short
-/// expression.
+/// The density with which (10), (11) keep phase volume for any Lagrangian; `Some(None)` if it is not a
+/// short expression.
 fn of_the_frame<'g>(system: &System<'g>, positions: &[Expr<'g>]) -> Option<Option<Expr<'g>>> {
     if !system.states().is_empty() || has_resistance(system) {
         return None;
@@ -206,7 +207,7 @@ fn of_factors<'g>(system: &System<'g>, growth: Vec<Expr<'g>>) -> Option<Expr<'g>
     Some(InvariantMeasure::of_relation(graph, &factors, &columns)?.density())
 }
 
-/// The first columns that are independent at almost all places.
+/// The first columns that are independent at almost all positions.
 fn independent_columns<'g>(graph: &'g Graph, rows: &[Vec<Expr<'g>>]) -> Vec<usize> {
     let mut kept: Vec<usize> = Vec::new();
     for column in 0..rows.first().map_or(0, Vec::len) {

@@ -23,10 +23,10 @@ impl<'g> ReducingMultiplier<'g> {
     ///   d/dτ ∂L*/∂x_i' = ∂L*/∂x_i,   L*(x, x') = (θ + U)(x, N x'),
     ///
     /// those of Lagrange, without a term of the constraints. Their volume dx dP, P = N p, is N^l dx dp, and
-    /// by the old time N^(l−1) dx dp is invariant: N is sought as a root of the density of an invariant
-    /// measure. With two degrees of freedom and T quadratic in the velocities there is one exactly if there
-    /// is such a measure [Chaplygin 1911]; else N is given only where the equations are proved to be the
-    /// same.
+    /// with respect to the old time N^(l−1) dx dp is invariant: N is sought as a root of the density of an
+    /// invariant measure. With two degrees of freedom and T quadratic in the velocities there is one
+    /// exactly if there is such a measure [Chaplygin 1911]; else N is given only if the equations are
+    /// proved to be the same.
     ///
     /// None for systems that are not [Chaplygin's](Voronets::is_chaplygin) or depend on time.
     ///

@@ -38,8 +38,8 @@ impl Iterate {
     }
 
     /// The step of Levenberg and Marquardt, δ = −(JᵀJ + μ)⁻¹ Jᵀ F with μ = |J| |F|/(1 + |z|): near a family
-    /// of solutions it goes to the nearest one and converges quadratically, as Newton's does near a single
-    /// one (J. Fan, Y. Yuan, Computing 74, 2005, 23–39).
+    /// of solutions it converges to the nearest one and converges quadratically, as Newton's does near a
+    /// single one (J. Fan, Y. Yuan, Computing 74, 2005, 23–39).
     fn step(&self) -> Result<Vec<f64>, AnalysisError> {
         let factors = SingularValues::of(&self.slopes)?;
         let size = self.slopes.rows().max(self.slopes.columns()) as f64;
@@ -61,10 +61,10 @@ impl Iterate {
 /// Reduces |F(z)| from `start` on, until it no longer decreases or `most` steps are made. The caller decides
 /// whether the residual counts as zero.
 ///
-/// `f` returns F(z) and ∂F/∂z; where it fails on the way, a shorter step is tried.
+/// `f` returns F(z) and ∂F/∂z; if it fails on the way, a shorter step is tried.
 ///
 /// # Errors
-/// Those of `f` at `start`.
+/// The error of `f` at `start`.
 pub(crate) fn solve(
     start: Vec<f64>,
     most: usize,

@@ -7,7 +7,7 @@ use crate::error::AnalysisError;
 /// The outputs of a program of (t, y, p), which takes the first of these parameters.
 ///
 /// # Errors
-/// [`AnalysisError::Expr`] with the expression to blame, if one is not finite.
+/// [`AnalysisError::Expr`] with the responsible expression, if one is not finite.
 pub(crate) fn values(
     program: &mut Evaluator,
     t: f64,

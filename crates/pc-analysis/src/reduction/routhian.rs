@@ -22,20 +22,20 @@ pub struct Routhian<'g> {
     pub rates: Vec<Expr<'g>>,
     /// R.
     pub routhian: Expr<'g>,
-    /// The system of the other coordinates, R its Lagrangian and p_c among its parameters; none where all are cyclic.
+    /// The system of the other coordinates, R its Lagrangian and p_c among its parameters; none if all are cyclic.
     pub system: Option<System<'g>>,
 }
 
 impl<'g> Routhian<'g> {
-    /// The Routhian of a system, in the velocities of its coordinates for any quasi-velocities. Cyclic are
-    /// coordinates on which neither L nor any force depends and along which no force acts. The p_c have their
+    /// The Routhian of a system, in the velocities of its coordinates for any quasi-velocities. Coordinates
+    /// are cyclic if neither L nor any force depends on them and no force acts along them. The p_c have their
     /// values where time and state have those `at` which the motion starts.
     ///
     /// None if no coordinate is cyclic, if there are not as many quasi-velocities as coordinates, for systems
-    /// with first-order states or forces that are computed outside, and where L is not quadratic in the ẋ_c.
+    /// with first-order states or forces that are computed outside, and if L is not quadratic in the ẋ_c.
     ///
     /// # Errors
-    /// Those of the change to velocities; [`ExprError`](pc_mech::ExprError) where p_c has no value.
+    /// The errors of the change to velocities; [`ExprError`](pc_mech::ExprError) if p_c has no value.
     ///
     /// ```
     /// use pc_analysis::Routhian;

@@ -49,7 +49,7 @@ pub(crate) fn definite_combination(
     Ok(None)
 }
 
-/// The case of one form or none.
+/// The result for one form or none.
 fn single(forms: &[Matrix<f64>], tolerance: f64) -> Result<Option<Vec<f64>>, MechError> {
     for sign in [1.0, -1.0].into_iter().take(2 * forms.len()) {
         if least_eigenvalue(forms, &[sign])?.0 > tolerance {

@@ -9,12 +9,12 @@ use crate::stability::steady_motion::SteadyMotion;
 /// Singular values of rows and bases of length one below this are zeros.
 const ZERO: f64 = 1e-10;
 
-/// A differential is independent of others if more than this part of it is orthogonal to them.
+/// A differential is independent of others if more than this fraction of it is orthogonal to them.
 const INDEPENDENT: f64 = 1e-8;
 
-/// The directions δy = E δz to the states that motions can reach: those in which no function of the coordinates
-/// changes that all motions keep, such as the length of a quaternion or a constraint on positions. They are invariant
-/// under the first approximation, δż = Eᵀ A E δz.
+/// The directions δy = E δz to the states that motions can reach: those that leave unchanged every function of the
+/// coordinates that all motions keep, such as the length of a quaternion or a constraint on positions. They are
+/// invariant under the first approximation, δż = Eᵀ A E δz.
 #[derive(Clone, Debug)]
 pub(super) struct Reachable {
     /// E, orthonormal, with a row for each component that is not cyclic.
@@ -44,7 +44,7 @@ impl Reachable {
 
     /// The number k of neutral directions of a member of a family of steady motions: the first approximation has
     /// λ = 0 in k blocks of size 1 and otherwise negative real parts, and there are k integrals with independent
-    /// differentials, so that on each level near by the steady motion is isolated and asymptotically stable (I.
+    /// differentials, so that on each nearby level the steady motion is isolated and asymptotically stable (I.
     /// G. Malkin's theorem of the critical case of k zeros).
     ///
     /// `differentials` are those of the integrals by the components that are not cyclic.
@@ -73,7 +73,7 @@ impl Reachable {
     }
 }
 
-/// An orthonormal basis of the kernel of `normals`, as far as the components `kept` see it.
+/// An orthonormal basis of the kernel of `normals`, restricted to the components `kept`.
 fn directions(kept: &[usize], normals: &Matrix<f64>) -> Result<Matrix<f64>, MechError> {
     if normals.rows() == 0 {
         return Ok(Matrix::from_fn(kept.len(), kept.len(), |i, j| f64::from(u8::from(i == j))));

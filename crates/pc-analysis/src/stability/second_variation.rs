@@ -46,11 +46,11 @@ impl SecondVariation {
     ///
     /// With d(H + λ_j I_j) = 0 there, λ by least squares, a second variation that is definite on the common
     /// kernel of the dI_j proves that the steady motion is stable: H + λ_j I_j ± κ (I_j − I_j(y))² has a
-    /// strict extremum at y for large κ. This does not need independent dI_j. Where they depend on each other
-    /// the λ_j are not determined, and those for which the form is definite are searched for.
+    /// strict extremum at y for large κ. This does not need independent dI_j. If they depend on each other,
+    /// the λ_j are not determined, and values for which the form is definite are searched for.
     ///
     /// Stability is that of the [variables](SecondVariation::variables). Redundant coordinates are variables:
-    /// their constraints, such as γ² = 1, are to be among the integrals.
+    /// their constraints, such as γ² = 1, must be among the integrals.
     ///
     /// # Errors
     /// [`AnalysisError::NotConserved`] if H or an integral changes along motions or depends on the time;
@@ -146,7 +146,7 @@ struct Multipliers {
 }
 
 impl Multipliers {
-    /// `size` is that of the state, whose rounding changes dH by d²H times as much.
+    /// `size` is that of the state; rounding of the state changes dH by d²H times as much.
     fn of(energy: &Expansion, integrals: &[Expansion], size: f64) -> Result<Multipliers, MechError> {
         let (n, count) = (energy.gradient.len(), integrals.len());
         let factors = SingularValues::of(&Matrix::from_fn(n, count, |i, j| integrals[j].gradient[i]))?;

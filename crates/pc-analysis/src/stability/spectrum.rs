@@ -42,13 +42,13 @@ pub struct Eigenvalue {
 
 /// The eigenvalues of a matrix A, its zeros counted by rank and not by size.
 ///
-/// A zero of multiplicity m in one Jordan block comes out of any eigenvalue routine as m numbers of size
-/// ε^(1/m) |A|, some with a positive real part. Zeros in blocks are the rule here: a family of steady motions
-/// gives A a kernel, and an angle whose speed changes along the family a block of two. Therefore they are
-/// split off by orthogonal transformations first: with A = U Σ Vᵀ of rank r, A and its compression to the
-/// image, the r × r matrix U_rᵀ A U_r, have the same eigenvalues but for n − r zeros; this is repeated until
-/// the rest is regular. The numbers split off are [`zero_blocks`](Spectrum::zero_blocks) (V. N.
-/// Kublanovskaya's method for the Jordan structure).
+/// Any eigenvalue routine returns a zero of multiplicity m in one Jordan block as m numbers of size ε^(1/m)
+/// |A|, some with a positive real part. Zeros in blocks are the rule here: a family of steady motions gives A
+/// a kernel, and an angle whose speed changes along the family a block of two. Therefore they are split off
+/// by orthogonal transformations first: with A = U Σ Vᵀ of rank r, A and its compression to the image, the r
+/// × r matrix U_rᵀ A U_r, have the same eigenvalues except for n − r zeros; this is repeated until the rest
+/// is regular. The numbers split off are [`zero_blocks`](Spectrum::zero_blocks) (V. N. Kublanovskaya's
+/// method for the Jordan structure).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     eigenvalues: Vec<Eigenvalue>,
@@ -103,7 +103,7 @@ impl Spectrum {
         self.tolerance
     }
 
-    /// To what part of |A| the entries are known.
+    /// The fraction of |A| to which the entries are known.
     pub(crate) fn uncertainty(&self) -> f64 {
         self.uncertainty
     }

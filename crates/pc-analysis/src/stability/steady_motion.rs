@@ -35,22 +35,22 @@ pub struct SteadyOptions {
 }
 
 impl Default for SteadyOptions {
-    /// Cyclic coordinates as the equations have them, nothing fixed, 100 steps, a relative residual of 10⁻¹².
+    /// The cyclic coordinates of the equations, no fixed components, 100 steps, a relative residual of 10⁻¹².
     fn default() -> SteadyOptions {
         SteadyOptions { cyclic: None, fixed: Vec::new(), iterations: 100, tolerance: 1e-12 }
     }
 }
 
 impl SteadyOptions {
-    /// Names the cyclic coordinates, whose rates need not vanish. Without it they are all coordinates on
-    /// which no rate depends but rates of cyclic ones.
+    /// Names the cyclic coordinates, whose rates need not vanish. By default they are all coordinates on
+    /// which no rates depend except those of cyclic ones.
     #[must_use]
     pub fn cyclic<S: Into<String>>(self, names: impl IntoIterator<Item = S>) -> SteadyOptions {
         SteadyOptions { cyclic: Some(names.into_iter().map(Into::into).collect()), ..self }
     }
 
     /// Names components of the state that keep the value of the guess: they choose one of a family of steady
-    /// motions. Without it the one near the guess is found.
+    /// motions. Otherwise the one near the guess is found.
     #[must_use]
     pub fn fixed<S: Into<String>>(self, names: impl IntoIterator<Item = S>) -> SteadyOptions {
         SteadyOptions { fixed: names.into_iter().map(Into::into).collect(), ..self }
@@ -67,8 +67,8 @@ impl SteadyOptions {
         SteadyOptions { iterations, ..self }
     }
 
-    /// The residual |f| that counts as zero, in units of |∂f/∂y| (1 + |y|). The iteration goes on as long as
-    /// the residual falls, so that it usually ends at the rounding whatever this is.
+    /// The residual |f| that counts as zero, in units of |∂f/∂y| (1 + |y|). The iteration continues as long
+    /// as the residual falls, so that it usually ends at the level of rounding, whatever this value is.
     #[must_use]
     pub fn tolerance(self, tolerance: f64) -> SteadyOptions {
         SteadyOptions { tolerance, ..self }
@@ -78,7 +78,7 @@ impl SteadyOptions {
 /// An equilibrium or a steady motion (Routh): f_i(t, y) = 0 for all components i but the cyclic coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SteadyMotion {
-    /// y, as long as the state; cyclic coordinates have the values of the guess.
+    /// y, one number per component of the state; cyclic coordinates have the values of the guess.
     pub state: Vec<f64>,
     /// √Σ f_i² over the components that are not cyclic.
     pub residual: f64,
@@ -101,7 +101,7 @@ impl SteadyMotion {
     /// system the result is an equilibrium of the rates at that time.
     ///
     /// # Errors
-    /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::NotSmooth`] where the
+    /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::NotSmooth`] if the
     /// rates have no derivatives; [`AnalysisError::UnknownComponent`], [`AnalysisError::NotCyclic`] for
     /// unsuitable names; otherwise as [`first_approximation`].
     pub fn near(
@@ -116,13 +116,14 @@ impl SteadyMotion {
         })
     }
 
-    /// The steady motion among the states with g(y) = 0, for coordinates that are not independent: γ² = 1, say.
+    /// The steady motion among the states with g(y) = 0, for coordinates that are not independent, for
+    /// example γ² = 1.
     ///
-    /// `surface` returns g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Only
-    /// functions g that the motion keeps leave steady motions steady.
+    /// `surface` returns g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Steady
+    /// motions remain steady only if the motion keeps the functions g.
     ///
     /// # Errors
-    /// As [`near`](SteadyMotion::near), and those of `surface`.
+    /// As [`near`](SteadyMotion::near), and the errors of `surface`.
     pub fn on_surface(
         motion: &mut Motion,
         t: f64,
@@ -181,10 +182,10 @@ impl SteadyMotion {
 /// The matrix A = ∂f/∂y of the first approximation δẏ = A δy at (t, y), n × n for a state of n
 /// components.
 ///
-/// Its [`Spectrum`] is that of all components, cyclic coordinates among them.
+/// Its [`Spectrum`] is that of all components, including cyclic coordinates.
 ///
 /// # Errors
-/// [`ShapeError`](pc_mech::ShapeError); [`EvaluationError::NotCompiled`] without the Jacobian; where f is not
+/// [`ShapeError`](pc_mech::ShapeError); [`EvaluationError::NotCompiled`] without the Jacobian; if f is not
 /// defined, as [`rhs`](VectorField::rhs).
 pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Matrix<f64>, AnalysisError> {
     let n = motion.dim();
@@ -195,8 +196,8 @@ pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Mat
 }
 
 /// At the distance `BESIDE`, relative to 1 + |y|, derivatives differ by at most `AS_THERE` of their size
-/// there or at `FARTHER`, unless rates have none at the state: Newton's method ends some roundings beside a
-/// pole of the coordinates.
+/// there or at `FARTHER`, unless rates have no derivatives at the state: Newton's method may end some
+/// roundings away from a pole of the coordinates.
 const BESIDE: f64 = 1e-7;
 const FARTHER: f64 = 1e-2;
 const AS_THERE: f64 = 1e-3;
@@ -259,7 +260,7 @@ fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>,
     Ok(cyclic)
 }
 
-/// The largest set of coordinates on which no rates depend but those of the set itself.
+/// The largest set of coordinates on which no rates depend except those of the set itself.
 pub(crate) fn cyclic_coordinates(pattern: &Pattern, coordinates: usize) -> Vec<usize> {
     let mut cyclic: Vec<usize> = (0..coordinates).collect();
     loop {

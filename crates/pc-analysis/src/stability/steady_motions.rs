@@ -21,13 +21,13 @@ const MOST_STEPS: usize = 50;
 /// The residual at which the integrals count as attained; the search that follows is exact.
 const ON_SURFACE: f64 = 1e-6;
 
-/// The most components of a state: beyond, each step of Newton's method takes some tenths of a second.
+/// The most components of a state: beyond this, each step of Newton's method takes some tenths of a second.
 const MOST_COMPONENTS: usize = 150;
 
 /// The relative difference within which steady motions are the same.
 pub(crate) const SAME: f64 = 1e-6;
 
-/// Singular values below this part of the largest are zeros.
+/// Singular values below this fraction of the largest are zeros.
 const ZERO: f64 = 1e-8;
 
 /// The equilibria and steady motions of an autonomous system that are found from many starts.
@@ -39,7 +39,7 @@ pub struct SteadyMotions {
     pub starts: usize,
 }
 
-/// A steady motion, and whether it is one of a family.
+/// A steady motion, and whether it belongs to a family.
 #[derive(Clone, Debug)]
 pub struct FoundSteadyMotion {
     /// The motion.
@@ -69,7 +69,7 @@ impl SteadyMotions {
     /// The steady motions found from the start (t, y), and from starts spread evenly about it: equilibria, and the
     /// steady motions that have as many integrals as possible in common with the start (Routh). Coordinates in which
     /// rates and integrals are periodic are searched over one period, others up to some three times their value at the
-    /// start. Where there are families with these integrals, one member of each dimension is kept.
+    /// start. If there are families with these integrals, one member of each dimension is kept.
     ///
     /// `motion` is compiled from the `equations`, `positions` are the relations between coordinates that constraints
     /// imply, `integrals` the known integrals.
@@ -175,7 +175,8 @@ impl Found {
         self.list.push((steady.state, FoundSteadyMotion { motion: described, family }));
     }
 
-    /// The nearest first; of families of each dimension and kind of stability only the nearest member.
+    /// The motions sorted by distance; of the families of each dimension and kind of stability, only the
+    /// nearest member is kept.
     fn without_families(mut self) -> Vec<FoundSteadyMotion> {
         self.list.sort_by(|(_, a), (_, b)| a.motion.distance.total_cmp(&b.motion.distance));
         let mut list: Vec<FoundSteadyMotion> = Vec::new();
@@ -209,7 +210,7 @@ fn family(steady: &SteadyMotion, surface: &Surface<'_>, kept: &[usize]) -> Optio
     Some(columns - values.rank(ZERO * largest))
 }
 
-/// 2π for the coordinates in which the rates have this period, at the start and beside it.
+/// 2π for the coordinates in which the rates have this period, at the start and near it.
 pub(crate) fn periods(motion: &mut Motion, t: f64, start: &[f64]) -> Vec<Option<f64>> {
     let beside: Vec<f64> = start.iter().map(|z| z + 0.37 + 0.11 * z.abs()).collect();
     let coordinates = motion.coordinates();

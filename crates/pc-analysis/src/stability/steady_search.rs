@@ -10,7 +10,7 @@ use crate::stability::second_variation::SecondVariation;
 use crate::stability::spectrum::{Eigenvalue, Verdict};
 use crate::stability::steady_motion::{SteadyMotion, SteadyOptions, first_approximation};
 
-/// Where rates are steeper than at the start by this factor, the coordinates are singular.
+/// If rates are steeper than at the start by this factor, the coordinates are singular.
 const MOST_STEEPER: f64 = 1e6;
 
 /// Steps of Newton's method.
@@ -25,13 +25,14 @@ const MOST_COMPONENTS: usize = 200;
 pub struct NearbySteadyMotion {
     /// The components that are not cyclic, with their values.
     pub state: Vec<(String, f64)>,
-    /// The cyclic coordinates whose rates are constant, with these.
+    /// The cyclic coordinates whose rates are constant, with these rates.
     pub rates: Vec<(String, f64)>,
     /// The Euclidean distance from the start in the components that are not cyclic.
     pub distance: f64,
-    /// The integrals that have their values at the start.
+    /// The integrals that have the same values as at the start.
     pub same: Vec<String>,
-    /// The eigenvalues of the first approximation, in the directions that relations of the coordinates leave.
+    /// The eigenvalues of the first approximation, in the directions that relations between the coordinates
+    /// leave free.
     pub eigenvalues: Vec<Eigenvalue>,
     /// The real part that counts as zero.
     pub tolerance: f64,
@@ -49,7 +50,7 @@ pub struct NearbySteadyMotion {
 pub struct EnergyCriterion {
     /// Stable, or undecided.
     pub verdict: Verdict,
-    /// Its variables, if they are not all those that are not cyclic.
+    /// Its variables, unless they are all that are not cyclic.
     pub variables: Option<Vec<String>>,
 }
 
@@ -60,7 +61,7 @@ pub enum Stability {
     ByFirstApproximation(Verdict),
     /// It is stable by the second variation of the energy.
     BySecondVariation {
-        /// Its variables, if they are not all those that are not cyclic.
+        /// Its variables, unless they are all that are not cyclic.
         variables: Option<Vec<String>>,
     },
     /// It is asymptotically stable except for neutral directions, by the first approximation.
@@ -70,7 +71,7 @@ pub enum Stability {
     },
     /// No criterion decides.
     Undecided {
-        /// Whether the second variation was asked too.
+        /// Whether the second variation was also tried.
         second_variation: bool,
     },
 }
@@ -80,7 +81,7 @@ pub enum Stability {
 pub enum SteadySearch {
     /// The equations depend on time.
     NotAutonomous,
-    /// Not as many functions of the coordinates are known as the frame keeps: a solution might not be reached.
+    /// Fewer functions of the coordinates are known than the frame keeps: a solution might be unreachable.
     SurfaceUnknown,
     /// The constraints leave no velocities that are independent of each other.
     Nonlinear,
@@ -205,7 +206,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         same
     }
 
-    /// The steady motion near a guess, if there is one where coordinates are regular.
+    /// The steady motion near a guess, if there is one at which coordinates are regular.
     pub(super) fn steady_motion(
         &self,
         motion: &mut Motion,
@@ -218,7 +219,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         (largest(&found.first_approximation) <= self.steepest).then_some(found)
     }
 
-    /// The motion in names and numbers, with the results on its stability.
+    /// The motion as names and numbers, with the results on its stability.
     pub(crate) fn described(
         &self,
         found: &SteadyMotion,
@@ -276,8 +277,8 @@ impl<'a, 'g> Seeker<'a, 'g> {
     }
 }
 
-/// The differentials of the integrals by the components that are not cyclic. An integral with a cyclic coordinate
-/// is not one of these components alone.
+/// The differentials of the integrals by the components that are not cyclic. An integral that contains a cyclic
+/// coordinate is not a function of these components alone.
 fn differentials<'g>(
     system: &System<'g>,
     found: &SteadyMotion,
@@ -292,7 +293,7 @@ fn differentials<'g>(
     of_kept.map(|&(_, f)| graph.evaluate(&graph.gradient(f, &kept), &at)).collect()
 }
 
-/// The rates of the cyclic coordinates that contain no cyclic coordinate.
+/// The rates of the cyclic coordinates, as far as they contain no cyclic coordinate.
 fn constant_rates(equations: &Equations<'_>, found: &SteadyMotion) -> Vec<(String, f64)> {
     let x = equations.system().frame().coordinates();
     let is_cyclic = |name: &str| found.rates.iter().any(|(cyclic, _)| cyclic == name);
@@ -351,7 +352,7 @@ impl<'g> Known<'g> {
     }
 
     /// The integrals that a steady motion may share with the start, the largest set first: a motion is
-    /// compared with the steady ones of the same integrals, if there are any (E. J. Routh).
+    /// compared with steady motions that have the same integrals, if there are any (E. J. Routh).
     pub(super) fn choices(self) -> Vec<Vec<(String, Expr<'g>)>> {
         let mut choices = vec![self.integrals, self.casimirs, self.of_coordinates];
         choices.dedup_by_key(|choice| choice.len());
@@ -359,7 +360,7 @@ impl<'g> Known<'g> {
     }
 }
 
-/// The states in which given functions have their values of the start.
+/// The states in which given functions have the same values as at the start.
 pub(super) struct Surface<'g> {
     graph: &'g Graph,
     symbols: Vec<Expr<'g>>,
@@ -369,8 +370,8 @@ pub(super) struct Surface<'g> {
 }
 
 impl<'g> Surface<'g> {
-    /// The surface, if n − rank b of the functions depend on the coordinates alone, as many as the frame
-    /// keeps.
+    /// The surface, if n − rank b of the functions, as many as the frame keeps, depend on the
+    /// coordinates alone.
     pub(super) fn new(
         equations: &Equations<'g>,
         same: &[(String, Expr<'g>)],

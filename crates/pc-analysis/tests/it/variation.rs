@@ -121,8 +121,8 @@ fn linear_motions_vary_as_they_move() {
     let relay = relay.poincare().unwrap().compile_for(CompileOptions::default().jvp(true)).unwrap();
     assert_eq!(
         Variation::new(relay, 1).unwrap_err().to_string(),
-        "deviations from this motion jump where it passes through y = 0: integrate them as sensitivities by the start, which \
-         do so"
+        "deviations from this motion jump where it passes through y = 0: integrate them as sensitivities to the start, which \
+         jump there"
     );
 
     let plain = Variation::new(equations.compile().unwrap(), 1).unwrap_err();

@@ -103,7 +103,7 @@ pub unsafe extern "C" fn pc_model_add_parameter_expression(
 
 /// Adds a first-order state with its value at the start and its rate: an expression of time,
 /// coordinates, velocities and states. It is integrated with the motion and comes after the
-/// velocities in the state; it is no part of the frame.
+/// velocities in the state; it is not part of the frame.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_state(
     model: *mut pc_model,

@@ -188,10 +188,10 @@ fn row(all: &[f64], member: usize, length: usize) -> &[f64] {
 
 /// Integrates many members through the times, each from its own state, with its own parameters,
 /// as a single solver would: the numbers are the same for any number of threads. The events
-/// of the model are followed. By PC_AUTO and PC_DOP853, members of a model without events,
+/// of the model are followed. With PC_AUTO and PC_DOP853, members of a model without events,
 /// constraints, kept integrals, tables and explicit dependence on time are integrated side by side
-/// in vectors: their last digits may differ from those of a solver, within the tolerances. By
-/// PC_AUTO members that turn out to be stiff are integrated by themselves.
+/// in vectors: their last digits may differ from those of a solver, within the tolerances. With
+/// PC_AUTO, members that turn out to be stiff are integrated by themselves.
 ///
 /// `states` has members × dim numbers, member by member, at the time t; NULL for the start of
 /// the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
@@ -201,7 +201,7 @@ fn row(all: &[f64], member: usize, length: usize) -> &[f64] {
 /// with what it reached, and the others continue. An error that all share, such as one in the
 /// times, is reported by each. PC_STOPPED if the observer stops the ensemble; PC_LIMIT, after
 /// the members that were finished, if the time limit or the pc_cancel of the system's options
-/// ends it. The system may be used meanwhile.
+/// ends it. The system may be used during the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_ensemble_run(
     system: *const pc_system,

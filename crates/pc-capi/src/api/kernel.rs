@@ -171,8 +171,8 @@ pub unsafe extern "C" fn pc_kernel_rhs_many(
 }
 
 /// # Safety
-/// `kernel` is null or a live `pc_kernel` that no other thread uses, `y` null or as long as its
-/// state, `target` null or as long as `len` says.
+/// `kernel` is null or a live `pc_kernel` that no other thread uses, `y` null or of the length of
+/// its state, `target` null or of length `len`.
 #[inline]
 unsafe fn evaluate(
     y: *const f64,

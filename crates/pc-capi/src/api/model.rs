@@ -306,8 +306,8 @@ pub unsafe extern "C" fn pc_model_observe_reactions(
     unsafe { change(model, error, observe) }
 }
 
-/// Sets whether systems of the model are derived with their derivatives by parameters, which
-/// pc_solver_add_sensitivity needs. Any value but 0 means yes.
+/// Sets whether systems of the model are derived with their derivatives with respect to parameters,
+/// which pc_solver_add_sensitivity needs. Any value but 0 means yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_differentiate(
     model: *mut pc_model,

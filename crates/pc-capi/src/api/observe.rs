@@ -9,7 +9,7 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
 /// energy, the outputs.
 ///
-/// Where an observable has no value, the number is not finite; so it is for one that contains
+/// Where an observable has no value, the number is not finite; the same holds for one that contains
 /// accelerations where external forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn pc_system_energy(
 }
 
 /// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: to
-/// the force Q_s each adds its value times the derivative of its constraint by η_s.
+/// the force Q_s each adds its value times the derivative of its constraint with respect to η_s.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_reactions(
     system: *const pc_system,

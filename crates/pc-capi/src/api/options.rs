@@ -286,7 +286,7 @@ impl pc_solver_options {
     /// The options of a solver for a state of `dim` components, with the deadline.
     ///
     /// # Safety
-    /// The tolerances are null or as many numbers as said.
+    /// The tolerances are null or have the stated length.
     pub(crate) unsafe fn options(&self, dim: usize, deadline: Deadline) -> Result<Options, CallError> {
         unreserved("pc_solver_options.reserved", self.reserved.into())?;
         let choice = |what, value: c_int| CallError::Choice { what, value: value.into() };

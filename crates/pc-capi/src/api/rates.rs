@@ -30,7 +30,7 @@ pub(crate) struct Target {
 /// The state and the array as slices.
 ///
 /// # Safety
-/// Both are null or as long as they say.
+/// Each is null or has the length it states.
 #[inline]
 pub(crate) unsafe fn slices<'a>(
     state: State,
@@ -102,11 +102,11 @@ pub unsafe extern "C" fn pc_system_rhs(
     }
 }
 
-/// Writes ydot by machine code alone; false where f is more than that, or fails, or the
-/// parameters change meanwhile.
+/// Writes ydot by machine code alone; false if f is more than that, or fails, or the parameters
+/// change during the call.
 ///
 /// # Safety
-/// The arrays are null or as long as they say.
+/// Each array is null or has the length it states.
 #[inline]
 unsafe fn rates_without_lock(
     system: &pc_system,
@@ -271,9 +271,9 @@ pub unsafe extern "C" fn pc_system_parameter_jacobian(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Writes ∂f/∂t, as long as the state, which Rosenbrock's methods need. The first call derives,
-/// as pc_system_new does, unless f is free of t. PC_UNSUPPORTED with external forces, whose ∂/∂t
-/// is unknown, and with inputs that have tables.
+/// Writes ∂f/∂t, which Rosenbrock's methods need; it has the length of the state. The first call
+/// derives, as pc_system_new does, unless f is free of t. PC_UNSUPPORTED with external forces,
+/// whose ∂/∂t is unknown, and with inputs that have tables.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_time_derivative(
     system: *const pc_system,

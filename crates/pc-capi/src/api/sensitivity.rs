@@ -10,10 +10,10 @@ use crate::ffi::status::pc_status;
 use crate::machinery::engine::Integration;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes the derivative of the start of the model by parameter number `parameter`, from 0:
-/// start values may be expressions in parameters. It derives the equations.
-/// PC_INCONSISTENT_MODEL where nearby parameters have no start, for an input with a table, and
-/// for a parameter that is an expression in others.
+/// Writes the derivative of the start of the model with respect to parameter number `parameter`,
+/// from 0: start values may be expressions in parameters. It derives the equations.
+/// PC_INCONSISTENT_MODEL where nearby parameters have no start, for an input with a table, and for
+/// a parameter that is an expression in others.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_start_by_parameter(
     system: *const pc_system,
@@ -53,12 +53,12 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
 }
 
 /// Adds a sensitivity that a solver integrates with the motion, before the first step: the
-/// derivative of the state by parameter number `parameter`, from 0. `start` is the derivative
-/// of the start, which pc_system_start_by_parameter gives for that of the model; NULL, of
-/// length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
-/// Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where
-/// an event of the program does. For an input with a table it is the derivative by a shift of
-/// all its values.
+/// derivative of the state with respect to parameter number `parameter`, from 0. `start` is the
+/// derivative of the start, which pc_system_start_by_parameter gives for that of the model; NULL,
+/// of length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
+/// Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where an
+/// event of the program does. For an input with a table it is the derivative with respect to a
+/// shift of all its values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_add_sensitivity(
     solver: *mut pc_solver,
@@ -80,7 +80,7 @@ pub unsafe extern "C" fn pc_solver_add_sensitivity(
 }
 
 /// Writes sensitivity number `number`, from 0 in the order in which they were added, at the
-/// time of the solver; it is as long as the state.
+/// time of the solver; it has the length of the state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_sensitivity(
     solver: *const pc_solver,

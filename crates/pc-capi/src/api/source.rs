@@ -66,16 +66,15 @@ fn printed(inventory: &Inventory, model: &Model, page: Page) -> Result<String, C
     model.derived(|assembly| Ok(pc_print::page(form, page, &Layout::default(), model.title(), assembly)?))
 }
 
-/// Writes the equations as C source that depends on nothing of this library: the text of NAME.h
+/// Writes the equations as C source that does not depend on this library: the text of NAME.h
 /// and of NAME.c, where NAME is `name`, made an identifier: Greek letters by their names, runs
 /// of other characters as one `_`, none at the ends, `n_` before a leading digit, `_` after a
 /// keyword of C. The source has the right-hand side, its Jacobian, the mass matrix, the
-/// energy, the integrals and the outputs of independent quasi-velocities, those of its momenta
-/// where the system has these, and says at its head how it is used. External forces are
-/// parameters, after the others, called `Q_` and the name of their quasi-velocity, and
-/// zero until they are set. If `t_end` is finite, it can be compiled with -DNAME_MAIN (in
-/// capitals) to a program that integrates from the start of the model to that time. Free both
-/// texts with pc_string_free.
+/// energy, the integrals and the outputs of independent quasi-velocities, or those of its momenta
+/// if the system has these, and explains its use at its head. External forces are parameters, after
+/// the others, called `Q_` and the name of their quasi-velocity, and zero until they are set. If
+/// `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
+/// integrates from the start of the model to that time. Free both texts with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_emit_c(
     system: *const pc_system,

@@ -47,7 +47,7 @@ pub const PREAMBLE: &str = "\
  *
  * Errors. A function that can fail returns a pc_status; its last argument is a place for a
  * pc_error, or NULL. On success it writes NULL there, otherwise a new error, which you free; what
- * the place held before does not matter. PC_STOPPED and PC_EVENT are no failures: an observer, or
+ * the place held before does not matter. PC_STOPPED and PC_EVENT are not failures: an observer, or
  * a terminal event, has ended an integration. Results are written unless the call fails; after a
  * failure a new handle or text is NULL, and arrays for results may hold anything.
  *

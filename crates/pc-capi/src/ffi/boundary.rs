@@ -37,7 +37,7 @@ pub(crate) unsafe fn entry(
     status
 }
 
-/// Writes to `*error` that there is none.
+/// Writes null to `*error`.
 ///
 /// # Safety
 /// `error` is null or a place for a pointer.

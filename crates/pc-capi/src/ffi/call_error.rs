@@ -17,7 +17,7 @@ use crate::ffi::strings::c_string;
 pub(crate) enum CallError {
     #[error("{what} is a null pointer")]
     Null { what: &'static str },
-    #[error("{what}: room for {found} numbers, but there are {expected}")]
+    #[error("{what}: {found} numbers instead of {expected}")]
     Length { what: &'static str, found: usize, expected: usize },
     #[error("{what}: memory cannot hold {found} numbers, only {most}; is the length −1?")]
     TooLong { what: &'static str, found: usize, most: usize },

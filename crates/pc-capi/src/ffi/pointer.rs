@@ -55,7 +55,7 @@ pub(crate) unsafe fn room<'a>(
 /// `len` numbers at `data`, all set to NaN.
 ///
 /// # Safety
-/// Room for `len` numbers that nobody else uses during the call; it may be uninitialised so far.
+/// Room for `len` numbers that nobody else uses during the call; it may still be uninitialised.
 #[inline]
 pub(crate) unsafe fn fresh<'a>(data: *mut f64, len: usize) -> &'a mut [f64] {
     for i in 0..len {

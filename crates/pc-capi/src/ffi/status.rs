@@ -27,7 +27,7 @@ pub enum pc_status {
     /// The integration could not begin or continue. Events that accumulate, such as the bounces
     /// of a ball that comes to rest, end it in this way.
     PC_INTEGRATION = 8,
-    /// An observer stopped the integration. This is no failure, and there is no pc_error.
+    /// An observer stopped the integration. This is not a failure, and there is no pc_error.
     PC_STOPPED = 9,
     /// The handle is in use: by another thread, or by the call that called the observer or the
     /// force function.
@@ -35,7 +35,7 @@ pub enum pc_status {
     /// A fault of the library, after which the handle can only be freed; or threads or memory
     /// for a solver are not available, and the handle is unchanged.
     PC_INTERNAL = 11,
-    /// A terminal event ended the integration. This is no failure, and there is no pc_error.
+    /// A terminal event ended the integration. This is not a failure, and there is no pc_error.
     PC_EVENT = 12,
     /// The bytes are not a checkpoint, or part of it is missing or changed.
     PC_INVALID_CHECKPOINT = 13,

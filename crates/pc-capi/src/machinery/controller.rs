@@ -13,7 +13,7 @@ type Function = unsafe extern "C" fn(f64, *const f64, usize, *mut f64, usize, *m
 #[derive(Clone, Default)]
 pub(crate) struct Controller {
     callback: Option<Arc<Callback>>,
-    /// For difference quotients.
+    /// Memory for difference quotients.
     room: Vec<f64>,
 }
 

@@ -33,7 +33,7 @@ pub(crate) fn engine(
     Ok(Box::new(begun.with_events_of(events, from)?))
 }
 
-/// What a solver records of its events: the same amount however often they occur.
+/// A solver's record of its events: the same amount however often they occur.
 #[derive(Default)]
 pub(crate) struct Record {
     /// How often each has occurred.

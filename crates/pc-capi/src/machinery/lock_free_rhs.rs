@@ -11,7 +11,7 @@ use crate::machinery::motion_field::MotionField;
 /// The machine code of f, and the parameters it is for.
 ///
 /// An evaluation writes only to its own scratch, so it needs no lock. Like the reader of a seqlock,
-/// it notices when new parameters are published meanwhile.
+/// it notices when new parameters are published during an evaluation.
 pub(crate) struct Direct {
     code: MachineCode,
     /// Even while the published numbers are complete; changed by every publication.
@@ -28,7 +28,7 @@ pub(crate) struct Direct {
 const ON_STACK: usize = 4096;
 
 impl Direct {
-    /// The code with the current parameters, compiled on first use; none where the field is more
+    /// The code with the current parameters, compiled on first use; none if the field is more
     /// than machine code. It lives as long as the field.
     pub(crate) fn of(field: &mut MotionField) -> Option<Direct> {
         let code = field.machine_code()?;
@@ -76,7 +76,7 @@ impl Direct {
         self.room
     }
 
-    /// Writes ẏ. False where f fails or the parameters change meanwhile; ẏ is then undefined.
+    /// Writes ẏ. False if f fails or the parameters change during the call; ẏ is then undefined.
     ///
     /// # Safety
     /// `y` and `ydot` have place for [`dim`](Direct::dim) numbers and share no memory; the field lives.
@@ -98,7 +98,7 @@ impl Direct {
         right && version.is_multiple_of(2) && self.version.load(Ordering::Relaxed) == version
     }
 
-    /// The same where nothing is published meanwhile.
+    /// The same where nothing is published during the call.
     ///
     /// # Safety
     /// As for [`rates`](Direct::rates), with place for [`room`](Direct::room) numbers at `room`.

@@ -1,4 +1,4 @@
-//! A system behind its handle: what never changes of it, and what one call at a time may use.
+//! A system behind its handle: the part that never changes, and the part that one call at a time may use.
 
 use std::ffi::{CString, c_char};
 use std::sync::{Arc, OnceLock};
@@ -28,7 +28,7 @@ pub struct pc_system {
     pub(crate) inventory: Arc<Inventory>,
 }
 
-/// What never changes.
+/// The part that never changes.
 pub(crate) struct Inventory {
     pub(crate) model: Model,
     pub(crate) variables: Variables,
@@ -86,7 +86,7 @@ pub(crate) struct Inner {
     /// Derived on first use.
     pub(crate) mechanics: Option<Mechanics>,
     pub(crate) legendre: Option<LegendreTransform>,
-    /// The motion with its derivative by time, or nothing where f does not contain time.
+    /// The motion with its derivative with respect to time, or nothing if f does not contain time.
     by_time: Option<Option<Box<Motion>>>,
     /// The factors of M, after the first solution with M.
     pub(crate) factors: Option<MassFactors>,
@@ -219,8 +219,8 @@ impl Inner {
         }
     }
 
-    /// The motion with its derivative by time, derived on first use, with the current parameters;
-    /// nothing where f does not contain time.
+    /// The motion with its derivative with respect to time, derived on first use, with the current
+    /// parameters; nothing if f does not contain time.
     pub(crate) fn by_time(&mut self, inventory: &Inventory) -> Result<Option<&mut Motion>, CallError> {
         if self.by_time.is_none() {
             self.by_time = Some(match self.field.time_dependence() {

@@ -210,7 +210,7 @@ fn wrong_calls_are_refused() {
         pc_dense_rate(ptr::null(), 1.0, y, 6);
         pc_dense_rate(motion.0, 1.5, none, 6);
     }
-    refused! { PC_INVALID_ARGUMENT, "room for 5 numbers, but there are 6";
+    refused! { PC_INVALID_ARGUMENT, "5 numbers instead of 6";
         pc_solver_interpolate(solver.0, 2.0, 0, y, 5);
         pc_dense_eval(motion.0, 1.5, y, 5);
         pc_dense_rate(motion.0, 1.5, y, 5);

@@ -304,10 +304,10 @@ fn wrong_calls_are_refused() {
         pc_ensemble_run(system.0, options, 2, 0.0, none, 0, none, 0, none, 1, 0, Some(watch), user);
         pc_ensemble_run(system.0, options, 2, 0.0, none, 0, none, 0, times, 1, 0, None, user);
     }
-    refused! { PC_INVALID_ARGUMENT, "states: room for 5 numbers, but there are 6";
+    refused! { PC_INVALID_ARGUMENT, "states: 5 numbers instead of 6";
         pc_ensemble_run(system.0, options, 2, 0.0, all, 5, none, 0, times, 1, 0, Some(watch), user);
     }
-    refused! { PC_INVALID_ARGUMENT, "parameters: room for 7 numbers, but there are 6";
+    refused! { PC_INVALID_ARGUMENT, "parameters: 7 numbers instead of 6";
         pc_ensemble_run(system.0, options, 2, 0.0, none, 0, all, 7, times, 1, 0, Some(watch), user);
     }
     // So many members that the length of their states overflows.

@@ -281,14 +281,14 @@ fn missing_events_are_refused() {
         pc_solver_terminal_event(no_solver, size);
     }
     assert_eq!(own.destroyed, 3);
-    refused! { PC_INVALID_ARGUMENT, "numbers, but there are 2";
+    refused! { PC_INVALID_ARGUMENT, "numbers instead of 2";
         pc_system_events(system.0, 0.0, y, 3, z, 1);
         pc_system_event_reset(system.0, 0, 0.0, y, 1);
         pc_solver_last_occurrence(solver.0, 0, z, y, 1, z, 2);
         pc_solver_last_occurrence(solver.0, 0, z, y, 2, z, 3);
         pc_solver_last_occurrence(solver.0, 0, z, none, 0, z, 0);
     }
-    refused! { PC_INVALID_ARGUMENT, "numbers, but there are 1"; pc_system_events(system.0, 0.0, y, 2, z, 2); }
+    refused! { PC_INVALID_ARGUMENT, "numbers instead of 1"; pc_system_events(system.0, 0.0, y, 2, z, 2); }
     refused! { PC_INVALID_ARGUMENT, "share memory, but must be separate";
         pc_system_events(system.0, 0.0, y, 2, y, 1);
         pc_solver_last_occurrence(solver.0, 0, z, y, 2, y, 2);

@@ -160,7 +160,11 @@ fn arrays_of_wrong_lengths_are_refused() {
         for wrong in [length + 1, length.wrapping_sub(1).min(100)] {
             let refusal = system.at(function, t, &y, wrong).unwrap_err();
             assert_eq!(refusal.status, PC_INVALID_ARGUMENT);
-            assert!(refusal.message.contains(&format!("room for {wrong} numbers")), "{}", refusal.message);
+            assert!(
+                refusal.message.contains(&format!(": {wrong} numbers instead of ")),
+                "{}",
+                refusal.message
+            );
         }
         assert_eq!(status(system.at(function, t, &y[1..], length)), PC_INVALID_ARGUMENT);
     }

@@ -34,10 +34,10 @@ pub struct Arguments {
     /// Print the version
     #[arg(short = 'V', long)]
     pub version: bool,
-    /// With --version: what was built in, for which system, and what this processor offers
+    /// With --version: print the features built in, the target system, and what this processor offers
     #[arg(long, requires = "version")]
     pub verbose: bool,
-    /// What to do; nothing but printing the version if it is left out.
+    /// The command; without one, only the version can be printed.
     #[command(subcommand)]
     pub command: Option<Command>,
 }
@@ -66,13 +66,13 @@ pub enum Command {
     Run(Box<RunArguments>),
     /// Write a page for a browser: equations in all forms, analysis, verdicts, plots of the motion
     Report(Box<ReportArguments>),
-    /// Write a page on which the motion can be watched
+    /// Write a page that animates the motion
     Animate(Box<AnimateArguments>),
-    /// Integrate, linearize or check over parameters and starts, on all cores; what is finished survives interruptions
+    /// Integrate, linearize or check over parameters and starts, on all cores; finished members survive interruptions
     Sweep(Box<SweepArguments>),
-    /// Make one table of the shards of a sweep
+    /// Merge the shards of a sweep into one table
     Merge(MergeArguments),
-    /// Say whether two models, or two forms of one, have the same motion
+    /// Compare the motions of two models, or of two forms of one model
     #[command(after_help = examples::COMPARE)]
     Compare(Box<CompareArguments>),
     /// Measure the derivation of a model and the evaluation of its equations
@@ -81,7 +81,7 @@ pub enum Command {
     /// Write the equations as C or Rust source without dependencies
     #[command(after_help = examples::EMIT)]
     Emit(EmitArguments),
-    /// Make a model of a robot in URDF
+    /// Convert a robot in URDF into a model
     #[command(after_help = examples::IMPORT)]
     Import(ImportArguments),
     /// List the built-in models, or print one

@@ -18,7 +18,7 @@ pub struct CompareArguments {
     /// A file, `-` for standard input, or a built-in name
     #[arg(value_name = "A")]
     pub first: String,
-    /// Another model; A again if it is left out
+    /// Another model [default: A again]
     #[arg(value_name = "B")]
     pub second: Option<String>,
     /// Form of the equations: one for both, or one for A and one for B [default: that of each file, or poincare]
@@ -31,31 +31,32 @@ pub struct CompareArguments {
     /// End time [default: that of A, or that of B]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
-    /// Number of evenly spaced times that are compared, start and end included [default: as for `pc run` of A]
+    /// Number of evenly spaced times to compare, start and end included [default: as for `pc run` of A]
     #[arg(long, value_name = "N", value_parser = options::samples)]
     pub samples: Option<usize>,
     /// Tolerances and method.
     #[command(flatten)]
     pub integration: IntegrationArguments,
-    /// The difference that is allowed, in parts of the largest value of its column
+    /// Allowed difference, as a fraction of the largest value of its column
     #[arg(long, value_name = "P", default_value = "1e-6", allow_hyphen_values = true, value_parser = options::not_negative)]
     pub tolerance: f64,
-    /// The difference that is allowed besides, whatever the size of the values
+    /// Difference allowed in addition, whatever the size of the values
     #[arg(long, value_name = "D", default_value = "1e-9", allow_hyphen_values = true, value_parser = options::not_negative)]
     pub absolute: f64,
     /// Compare only these columns, separated by commas [default: all that both have]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub columns: Vec<String>,
-    /// Compare an expression in columns and parameters of A with one in those of B, too (repeatable)
+    /// Also compare an expression in columns and parameters of A with one in those of B (repeatable)
     #[arg(long, value_name = "EXPR=EXPR", value_parser = options::definition)]
     pub map: Vec<Setting>,
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Format,
-    /// Memory limit of the expressions of the equations, and likewise of the rows of a motion, such as 500M or 8G
+    /// Memory limit for the expressions of the equations, and separately for the rows of a motion, such as
+    /// 500M or 8G
     #[arg(long, value_name = "BYTES", value_parser = options::bytes, default_value = "4G")]
     pub limit_memory: u64,
-    /// Time limit in seconds of all work on each model; none unless given
+    /// Time limit in seconds for all work on each model [default: none]
     #[arg(long, value_name = "SECONDS", value_parser = options::seconds)]
     pub limit_time: Option<Duration>,
 }
@@ -73,7 +74,7 @@ impl CompareArguments {
         }
     }
 
-    /// What is wished of A or, with 1, of B.
+    /// The options for A or, with 1, for B.
     pub(crate) fn wishes(&self, which: usize, t_end: Option<f64>) -> Wishes {
         Wishes {
             form: self.form.get(which).or(self.form.first()).copied(),
@@ -83,7 +84,7 @@ impl CompareArguments {
         }
     }
 
-    /// What is compared.
+    /// What to compare.
     pub(crate) fn question(&self) -> Question {
         Question {
             allowance: Allowance { relative: self.tolerance, absolute: self.absolute },

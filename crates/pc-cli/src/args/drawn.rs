@@ -14,7 +14,7 @@ pub struct DrawnArguments {
     /// same scale (repeatable)
     #[arg(long, value_name = "X,Y", value_parser = pair, requires = "plot")]
     pub xy: Vec<(String, String)>,
-    /// With --plot: draw these angles, separated by commas, from −π to π
+    /// With --plot: wrap these angles, separated by commas, to the range from −π to π
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
     pub wrap: Vec<String>,
 }

@@ -70,8 +70,8 @@ pub struct EquilibriaArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Bounds of a coordinate or first-order state; else a turn about the start for angles, and 2 (1 + |start|) to both sides
-    /// for others, outside of which others may be found (repeatable)
+    /// Bounds of a coordinate or first-order state (repeatable) [default: a turn about the start for angles;
+    /// for others 2 (1 + |start|) on both sides of it, beyond which equilibria may still be found]
     #[arg(long = "box", value_name = "NAME=FROM..TO", value_parser = bounds)]
     pub bounds: Vec<Bounds>,
     /// Number of starts of Newton's method

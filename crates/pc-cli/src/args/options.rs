@@ -28,10 +28,11 @@ pub struct ModelArguments {
     /// With --project-start: coordinates and quasi-velocities, separated by commas, that keep their start values
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "project_start")]
     pub keep: Vec<String>,
-    /// Memory limit of the expressions of the equations, and likewise of the rows of a motion, such as 500M or 8G
+    /// Memory limit for the expressions of the equations, and separately for the rows of a motion, such as
+    /// 500M or 8G
     #[arg(long, value_name = "BYTES", value_parser = bytes, default_value = "4G")]
     pub limit_memory: u64,
-    /// Time limit in seconds of all work on the model, from its derivation to the end of a motion; none unless given
+    /// Time limit in seconds for all work on the model, from its derivation to the end of a motion [default: none]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub limit_time: Option<Duration>,
 }
@@ -39,8 +40,8 @@ pub struct ModelArguments {
 /// The velocities of the equations.
 #[derive(Clone, Debug, Default, Args)]
 pub struct VelocityArguments {
-    /// With --form hamel: quasi-velocities by linear forms in the velocities x' or the quasi-velocities of the model;
-    /// those of the model complete them
+    /// With --form hamel: quasi-velocities as linear forms in the velocities x' or the quasi-velocities of the model,
+    /// which complete them where they are too few
     #[arg(value_name = "NAME=EXPR", value_parser = definition)]
     pub definitions: Vec<Setting>,
     /// Independent velocities of equations in which multipliers are eliminated, separated by commas: as many
@@ -114,7 +115,7 @@ pub struct DeriveArguments {
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Page,
-    /// Columns of a line; longer expressions are broken between two signs
+    /// Width of a line in columns; longer expressions are broken between two signs
     #[arg(long, value_name = "COLUMNS", default_value_t = 100, value_parser = clap::value_parser!(u16).range(60..))]
     pub width: u16,
     /// In text: only the first line of each equation, without the meanings of names for long parts
@@ -128,7 +129,7 @@ pub struct DeriveArguments {
     pub verify: VerifyArguments,
 }
 
-/// Whether equations are compared with a second derivation before they leave.
+/// Whether equations are compared with a second derivation before they are printed or written.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct VerifyArguments {
     /// Do not compare the equations with a second derivation, at the start and near it
@@ -206,7 +207,7 @@ pub struct ToleranceSetting {
 }
 
 impl IntegrationArguments {
-    /// What is wished of the integration.
+    /// The options of the integration.
     pub(crate) fn wishes(&self) -> Wishes {
         let all = self.atol.iter().rev().find(|setting| setting.name.is_none()).map(|setting| setting.value);
         let own = |setting: &ToleranceSetting| Some((setting.name.clone()?, setting.value));
@@ -249,19 +250,19 @@ pub struct RunArguments {
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,
-    /// More columns: the reactions of the constraints, as λ_NAME for the expression as it is written, and in models
-    /// with bodies as forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in its axes, as
-    /// far as virtual work determines them: a component perpendicular to every possible motion is 0 here, whatever
+    /// More columns: the reactions of the constraints. λ_NAME belongs to the expression as it is written; models with
+    /// bodies also have forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in its axes,
+    /// as far as virtual work determines them: a component perpendicular to every possible motion is 0 here, whatever
     /// holds the body
     #[arg(long, value_name = "OUTPUTS")]
     pub outputs: Option<Outputs>,
     /// More columns: the derivatives ∂x/∂p of coordinates, quasi-velocities and first-order states by these parameters,
-    /// separated by commas, with those of the start, and over events
+    /// separated by commas; a start that depends on them, and events, are taken into account
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub sensitivities: Vec<String>,
-    /// More columns: the estimated global error error(NAME) of each column NAME but those of --sensitivities, the distance from a
-    /// companion, a second motion that is integrated more accurately: by taylor at rtol 1e-16 where that is possible. The
-    /// summary has those of the end
+    /// More columns: error(NAME), the estimated global error of each column NAME except those of --sensitivities. It is the
+    /// distance from a companion, a second motion that is integrated more accurately, by taylor at rtol 1e-16 where possible. The
+    /// summary has the errors at the end
     #[arg(long)]
     pub estimate: bool,
     /// Do not compare the motion at its start and at its end with a second derivation
@@ -283,7 +284,7 @@ pub struct RunArguments {
 }
 
 impl RunArguments {
-    /// What is wished of the run.
+    /// The options of the run.
     pub(crate) fn wishes(&self) -> Wishes {
         Wishes {
             form: self.form,
@@ -330,7 +331,7 @@ pub struct EmitArguments {
     /// Verification.
     #[command(flatten)]
     pub verify: VerifyArguments,
-    /// Output directory, which is created if it does not exist; `-` for standard output, of Rust; with --fmu the file to write
+    /// Output directory, created if it does not exist, or `-` for standard output (Rust only); with --fmu the file to write
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
 }
@@ -369,7 +370,7 @@ pub enum Lang {
 /// Arguments of `pc import`.
 #[derive(Clone, Debug, Args)]
 pub struct ImportArguments {
-    /// The robot, in URDF, macros expanded; `-` for standard input
+    /// The robot, in URDF, with macros expanded; `-` for standard input
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Let the root link move freely; it stands still otherwise

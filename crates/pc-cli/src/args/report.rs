@@ -77,7 +77,7 @@ pub struct AnimateArguments {
 }
 
 impl ShownArguments {
-    /// What is wished of the motion.
+    /// The options of the motion.
     pub(crate) fn wishes(&self) -> Wishes {
         Wishes { form: self.form, t_end: self.t_end, samples: self.samples, ..self.integration.wishes() }
     }

@@ -82,11 +82,11 @@ pub struct SweepArguments {
     /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Compute the members I, I + N, … alone and keep them in FILE.shard-I-of-N, for `pc merge` to make the table of all N
+    /// Compute only the members I, I + N, … and keep them in FILE.shard-I-of-N; `pc merge` makes the table of all N
     #[arg(long, value_name = "I/N", value_parser = Shard::parse, conflicts_with = "plot")]
     pub shard: Option<Shard>,
-    /// Draw the last row of each member into FILE.svg, FILE.png or FILE.pdf: over one value curves, over two a colour for each
-    /// pair, of drawn members histograms with quantiles; with --rows curves over time
+    /// Draw the last row of each member into FILE.svg, FILE.png or FILE.pdf: curves over one varied value, a colour for each
+    /// pair of two, histograms with quantiles of randomly drawn members; with --rows, curves over time
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
     /// With --plot: draw these columns, separated by commas
@@ -106,7 +106,7 @@ pub struct SweepArguments {
                         the same command. Shards that are missing, there twice, not complete or of another sweep are named, and \
                         nothing is written then. The shards stay where they are.")]
 pub struct MergeArguments {
-    /// The files that `pc sweep --shard` has left, in any order
+    /// The files that `pc sweep --shard` has written, in any order
     #[arg(value_name = "SHARD", required = true)]
     pub shards: Vec<PathBuf>,
     /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet
@@ -121,7 +121,7 @@ pub struct MergeArguments {
 }
 
 impl SweepArguments {
-    /// The first option that says nothing of what is found of each member.
+    /// The first option given that has no effect on what is computed for each member.
     pub(crate) fn idle(&self) -> Option<&'static str> {
         let IntegrationArguments { rtol, atol, max_step, max_steps, events, method } = &self.integration;
         let of_runs = [
@@ -154,7 +154,7 @@ impl SweepArguments {
         Variation { vary: vary.clone(), random: random.clone(), samples: *samples, seed: *seed }
     }
 
-    /// What is found of each member, and how.
+    /// What to compute for each member, and how.
     pub(crate) fn wishes(&self) -> SweepWishes {
         SweepWishes {
             of: self.of,

@@ -11,11 +11,11 @@ pub struct NewArguments {
     /// The kind of system
     #[arg(value_name = "KIND")]
     pub kind: Kind,
-    /// The file to write, which must not be there yet; standard output if it is not given
+    /// The file to write, which must not exist yet; standard output if it is not given
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// With -o FILE: write the schema of the format beside it unless it is there, and name it in the first line, by which editors with Taplo
-    /// complete entries and mark what is wrong
+    /// With -o FILE: write the schema of the format beside it unless it exists, and name it in the first line, so that editors with Taplo
+    /// complete entries and mark mistakes
     #[arg(long, requires = "output")]
     pub schema: bool,
 }

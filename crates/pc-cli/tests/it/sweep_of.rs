@@ -209,7 +209,7 @@ fn options_that_say_nothing_are_refused() {
         ("run", ["--hold", "θ"], "--hold"),
     ] {
         let sweep = ["sweep", "model.toml", "-o", "a.csv", "--vary", "g=1:2:3", "--of", of];
-        let said = format!("{option} says nothing of what `--of {of}` finds; leave it out");
+        let said = format!("{option} has no effect on what `--of {of}` computes; leave it out");
         place.ends(&[&sweep[..], &options].concat(), 2, &[&said]);
     }
     assert_eq!(fs::read_dir(place.at("")).expect("a directory").count(), 1, "nothing is left");

@@ -1,4 +1,4 @@
-//! Surfaces on which functions of several pieces change from one to the next.
+//! Surfaces on which functions of several pieces change from one piece to the next.
 
 use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
@@ -11,7 +11,7 @@ use crate::graph::subgraph::Cone;
 /// A surface on which a `step` or a `sign` in an expression changes.
 #[derive(Clone, Copy, Debug)]
 pub struct Break<'g> {
-    /// Changes its sign there.
+    /// A function that changes its sign on the surface.
     pub surface: Expr<'g>,
     /// The expression as it is where the surface is positive.
     pub above: Expr<'g>,
@@ -20,7 +20,7 @@ pub struct Break<'g> {
 }
 
 impl Graph {
-    /// The surfaces on which an expression may jump; those of `atan2` are not among them, as its values are those of an angle.
+    /// The surfaces on which an expression may jump; those of `atan2` are not among them, since its values are angles.
     ///
     /// ```
     /// # use pc_expr::Graph;

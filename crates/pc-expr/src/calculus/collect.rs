@@ -20,10 +20,10 @@ const TOO_LONG: u32 = 20_000;
 
 impl Graph {
     /// Each expression in the shortest form found: collected by powers of `variables` in this order, every
-    /// coefficient without the symbols it does not depend on.
+    /// coefficient written without the symbols it does not depend on.
     ///
-    /// Symbols that a value does not depend on are set to a number; those of the `variables` only to 0, so that no
-    /// other number takes their place.
+    /// Symbols that a value does not depend on are set to a number; those of the `variables` are set only to 0, so
+    /// that no other number replaces them.
     pub fn shorten<'g>(&'g self, expressions: &[Expr<'g>], variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let places = SymbolPlaces::of(variables);
         expressions.iter().map(|&e| self.collect(e, (variables, &places), 0)).collect()
@@ -62,7 +62,7 @@ impl Graph {
 
     /// A long sum whose terms fall into groups without common variables, each group collected on its own: the
     /// cost of collecting by all variables in turn is quadratic in their number. `None` if the result is not
-    /// shorter, or e is no sum.
+    /// shorter, or e is not a sum.
     fn collect_apart<'g>(
         &'g self,
         e: Expr<'g>,

@@ -1,4 +1,4 @@
-//! The approximate length of expressions in print.
+//! The approximate length of printed expressions.
 
 use rustc_hash::FxHashMap;
 
@@ -11,7 +11,7 @@ const DEPTH: u32 = 5;
 const NAME: usize = 3;
 
 impl Dag {
-    /// The approximate number of columns of an expression in print.
+    /// The approximate number of columns of a printed expression.
     pub(super) fn columns(&self, atom: Atom) -> usize {
         match atom {
             Atom::Constant(c) => c.to_string().len(),

@@ -1,4 +1,4 @@
-//! Terms that are of one dimension, whatever the units of the symbols.
+//! Terms that have the same dimension, whatever the units of the symbols.
 
 use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
@@ -9,11 +9,12 @@ use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
 impl Graph {
-    /// Groups of terms q f, as pairs (q, f), that are of one dimension wherever the values mean something: the terms of
-    /// each sum, the arguments of `atan2`, `min` and `max`, and the arguments of sines, exponentials, logarithms and their
-    /// like, each with the number 1.
+    /// Groups of terms q f, as pairs (q, f), that have the same dimension in any physically meaningful expression: the
+    /// terms of each sum, the arguments of `atan2`, `min` and `max`, and the arguments of sines, exponentials, logarithms
+    /// and similar functions, each with the number 1.
     ///
-    /// In units in which the symbols are of order one, the terms of a group are of one order of magnitude.
+    /// In units in which the symbols are of order one, the terms of a group are of the same order of
+    /// magnitude.
     ///
     /// ```
     /// # use pc_expr::{Expr, Graph};

@@ -1,6 +1,6 @@
 //! Derivatives: reverse sweeps for gradients, forward sweeps along a direction.
 //!
-//! Of `step`, min and max only the branch that is taken counts. The other one may have no value or no slope
+//! For `step`, min and max only the branch that is taken counts. The other one may have no value or no slope
 //! there, and 0 times that would be NaN. A branch that is not defined everywhere is therefore differentiated
 //! separately, and the choice is made between the derivatives.
 
@@ -107,7 +107,7 @@ impl Dag {
     }
 
     /// An expression that is not negative where the first argument is the smaller, or the larger; at a tie
-    /// the first one counts, whose node is older.
+    /// the first argument counts, whose node is older.
     fn lead(&mut self, function: Function, [first, second]: [NodeId; 2]) -> Atom {
         let q = if function == Function::Min { Number::ONE } else { Number::MINUS_ONE };
         self.sum(Number::ZERO, &[(second, q), (first, -q)])
@@ -160,7 +160,8 @@ impl Dag {
         outputs.iter().map(|&output| rate_of(output)).collect()
     }
 
-    /// Calls `visit(dag, child, p, q)` for each child of `node`, where q·p is the partial derivative by that child.
+    /// Calls `visit(dag, child, p, q)` for each child of `node`, where q·p is the partial derivative with
+    /// respect to that child.
     fn for_each_partial(&mut self, node: NodeId, mut visit: impl FnMut(&mut Dag, NodeId, Atom, Number)) {
         match self.node(node) {
             Node::Constant(_) | Node::Symbol(_) => {}
@@ -282,7 +283,7 @@ impl Graph {
         self.build_all(|dag| dag.gradient(output, &nodes))
     }
 
-    /// The ∂`output`/∂`symbol` that are not 0 for each of `outputs`, with the place of the symbol: the
+    /// The ∂`output`/∂`symbol` that are not 0 for each of `outputs`, with the index of the symbol: the
     /// [gradients](Graph::gradient) as a sparse matrix.
     ///
     /// ```
@@ -316,7 +317,8 @@ impl Graph {
         outputs.iter().map(row).collect()
     }
 
-    /// The rates of change of `outputs` when each symbol of `rates` changes at the rate beside it: one forward sweep.
+    /// The rates of change of `outputs` when each symbol of `rates` changes at the rate paired with it: one
+    /// forward sweep.
     ///
     /// # Panics
     /// If the first of a pair is not a symbol.

@@ -15,7 +15,7 @@ use crate::graph::subgraph::Cone;
 pub struct Held<'g> {
     /// The expressions with sides for the pieces.
     pub values: Vec<Expr<'g>>,
-    /// The surfaces, each with its side; a surface contains the sides of those before it only.
+    /// The surfaces, each with its side; a surface contains only the sides of preceding ones.
     pub surfaces: Vec<Surface<'g>>,
 }
 
@@ -29,7 +29,7 @@ pub struct Surface<'g> {
 }
 
 impl Graph {
-    /// The expressions with their pieces held: with the side s of each surface g that passes where the `moving` symbols
+    /// The expressions with their pieces held: with the side s of each surface g that is passed as the `moving` symbols
     /// change,
     /// ```text
     /// sign(g) = s,   |g| = s g,   step(g, a, b) = step(s, a, b),   min(a, b) = step(s, b, a) with g = a − b,
@@ -51,7 +51,7 @@ impl Graph {
         self.held_on(values, moving, &[])
     }
 
-    /// The same for further expressions, with the surfaces of the first ones: those that are new follow them.
+    /// The same for further expressions, with the surfaces of the first ones: new ones follow them.
     pub fn held_on<'g>(
         &'g self,
         values: &[Expr<'g>],

@@ -1,7 +1,7 @@
 //! Expressions written without the symbols that they do not depend on.
 //!
 //! A symbol that cancels is replaced by a number at which, by its fingerprint, the value stays the
-//! same. Where constants are rounded there may be no such number; then the derivative decides, by its
+//! same. If constants are rounded there may be no such number; then the derivative decides, by its
 //! `rounding`.
 
 use std::collections::HashSet;
@@ -70,7 +70,7 @@ impl Graph {
         self.equal_form_without(e, z).or_else(|| self.rounded_form_without(e, z)).unwrap_or(e)
     }
 
-    /// The same if e does not depend on z, exactly or but for the rounding of its constants; e itself otherwise.
+    /// The same if e does not depend on z, exactly or up to the rounding of its constants; e itself otherwise.
     fn without_idle_symbol<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
         // With jumps the slope says nothing: that of atan(tan z) − z is zero.
         let jumps = || self.symbols_of(&self.seams(&[e])).contains(&z);
@@ -85,14 +85,14 @@ impl Graph {
         self.regular_or_last(e, forms)
     }
 
-    /// A form without z, where e does not depend on it. Where constants are rounded, those of each form are
-    /// rounded anew, so that none has the fingerprint of e. At 0 nothing is left of what cancels.
+    /// A form without z, if e does not depend on it. If constants are rounded, each form rounds them anew,
+    /// so that none has the fingerprint of e. At z = 0 the cancelling terms vanish.
     fn rounded_form_without<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Option<Expr<'g>> {
         let forms = [Number::ZERO, Number::ONE, ODD].into_iter().map(|value| self.at(e, z, value));
         self.regular_or_last(e, forms.filter(|&form| self.is_without(form, z)))
     }
 
-    /// The first of the forms of e without a new divisor, else the last, which is the oddest.
+    /// The first of the forms of e without a new divisor, else the last, which is the most irregular.
     fn regular_or_last<'g>(&'g self, e: Expr<'g>, forms: impl Iterator<Item = Expr<'g>>) -> Option<Expr<'g>> {
         let mut last = None;
         for form in forms {
@@ -104,12 +104,12 @@ impl Graph {
         last
     }
 
-    /// Whether a form has values, and no symbol z.
+    /// Whether a form has values, and does not contain the symbol z.
     fn is_without<'g>(&'g self, form: Expr<'g>, z: Expr<'g>) -> bool {
         self.has_values(form) && !self.symbols_of(&[form]).contains(&z)
     }
 
-    /// Whether the functions of numbers in a form are numbers: exp(z), written at z = 10⁶, has no value.
+    /// Whether the functions of numbers in a form have values: exp(z), written at z = 10⁶, has no value.
     fn has_values<'g>(&'g self, form: Expr<'g>) -> bool {
         let Atom::Node(root) = form.atom_in(self) else { return !form.is_undefined() };
         self.with(|dag| {
@@ -128,8 +128,8 @@ impl Graph {
     }
 
     /// `outputs` written without symbols other than `known`, as far as they do not depend on them. Such a
-    /// symbol cancels; it appears where a result has the value of an older and cheaper expression that
-    /// contains it. Where constants are rounded, it cancels if the derivative along it is no more than
+    /// symbol cancels; it may appear if a result has the value of an older and cheaper expression that
+    /// contains it. If constants are rounded, it cancels if the derivative along it is no more than
     /// [rounding](crate::Weighed::rest).
     ///
     /// ```
@@ -152,7 +152,7 @@ impl Graph {
         outputs.iter().map(|&e| foreign(&[e]).into_iter().fold(e, without)).collect()
     }
 
-    /// e at those points of z, from simple to odd ones, that leave its value unchanged.
+    /// e at those points of z, from simple to irregular ones, that leave its value unchanged.
     fn forms_without<'g>(
         &'g self,
         e: Expr<'g>,

@@ -1,4 +1,4 @@
-//! Sums whose brackets are multiplied out where terms then cancel, or are those of the sine or cosine of a sum:
+//! Sums whose brackets are multiplied out if terms then cancel, or combine to the sine or cosine of a sum:
 //! cos a (p sin a + q sin b) − sin a (p cos a + q cos b) = −q sin(a − b).
 
 use rustc_hash::FxHashMap;
@@ -17,7 +17,7 @@ const MOST_PRODUCTS: usize = 24;
 const MOST_NODES: usize = 4000;
 
 impl Graph {
-    /// The expressions with their brackets multiplied out where sines and cosines then merge to a shorter
+    /// The expressions with their brackets multiplied out if sines and cosines then merge to a shorter
     /// form.
     ///
     /// ```

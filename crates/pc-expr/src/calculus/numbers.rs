@@ -1,6 +1,6 @@
 //! Whether two forms of one function have the same numerical values.
 //!
-//! Fingerprints take rounded constants as exact: a divisor that is zero but for their rounding is not zero to
+//! Fingerprints take rounded constants as exact: a divisor that is zero up to their rounding is not zero for
 //! them. So (1.19² − 1.4161) divided by itself is 1 by fingerprint, but noise in numbers.
 
 use crate::graph::expr::Expr;

@@ -20,9 +20,9 @@ pub struct Polynomial<'g> {
 
 impl<'g> Polynomial<'g> {
     /// Polynomials written out in another graph, not nested, coefficients in front of their monomials; monomials with
-    /// the same coefficient are collected behind it where that is shorter.
+    /// the same coefficient are collected behind it if that is shorter.
     ///
-    /// What several coefficients contain is typeset once.
+    /// Parts common to several coefficients are typeset once.
     pub fn expanded<'h>(polynomials: &[Self], from: &'g Graph, into: &'h Graph) -> Vec<Expr<'h>> {
         let coefficients: Vec<Expr<'g>> =
             polynomials.iter().flat_map(|polynomial| &polynomial.terms).map(|&(_, c)| c).collect();
@@ -48,7 +48,7 @@ impl<'g> Polynomial<'g> {
 }
 
 impl Dag {
-    /// Σ c z, terms of equal coefficient collected.
+    /// Σ c z, with terms of equal coefficient collected.
     fn collected_by_coefficient(&mut self, terms: &[(Atom, Atom)]) -> Atom {
         let mut groups: Vec<(Atom, Vec<(Atom, Number)>)> = Vec::new();
         for &(coefficient, monomial) in terms {

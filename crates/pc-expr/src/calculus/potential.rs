@@ -12,16 +12,16 @@ use crate::graph::number::Number;
 /// The most products into which one component is multiplied out.
 const MOST_PRODUCTS: usize = 64;
 
-/// The most functions that are combined; as many take some hundredths of a second.
+/// The most functions that are combined; this many take some hundredths of a second.
 const MOST_FUNCTIONS: usize = 200;
 
-/// The longest components, in operations written out; this bounds their depth, too.
+/// The longest components, in operations written out; this also bounds their depth.
 const LONGEST: u32 = 1_000;
 
 /// The greatest power of a sum that is multiplied out.
 const MOST_POWER: i32 = 4;
 
-/// A product of powers, its rational factor left out.
+/// A product of powers, without its rational factor.
 type Product<'g> = Vec<(Expr<'g>, i32)>;
 
 impl Graph {
@@ -202,7 +202,7 @@ fn pair<'g>((sine, angle): (Function, Expr<'g>)) -> (Expr<'g>, Expr<'g>) {
     (Expr::apply(sine, &[angle]), Expr::apply(cosine, &[angle]))
 }
 
-/// f divided by ∂u/∂z, if that is free of z.
+/// f divided by ∂u/∂z, if the quotient is free of z.
 fn over<'g>(f: Expr<'g>, u: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
     let slope = u.derivative(z);
     if slope.is_zero() || slope.depends_on(z) { f } else { f / slope }
@@ -257,7 +257,7 @@ mod tests {
         assert_eq!(graph.potential(&[0.into(), 0.into(), 0.into()], &[x, y, z]), Some(0.into()));
     }
 
-    /// A deeply nested form is refused instead of being descended into.
+    /// A deeply nested form is refused without descending into it.
     #[test]
     fn deeply_nested_forms_are_refused() {
         let graph = Graph::new();

@@ -51,11 +51,11 @@ impl Graph {
     }
 }
 
-/// The powers of a symbol in an expression, as far as they are seen without differentiating.
+/// The powers of a symbol in an expression, as far as they are visible without differentiating.
 enum Powers {
     /// The coefficients.
     Coefficients(Vec<Atom>),
-    /// The symbol stands in a denominator, or its powers are high.
+    /// The symbol occurs in a denominator, or its powers are high.
     Unknown,
     /// It is an argument of a function.
     BelowACall,

@@ -1,4 +1,4 @@
-//! Powers of roots, made so that later expressions of the same value are recognised as such powers.
+//! Powers of roots, created so that later expressions of the same value are recognised as such powers.
 
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;

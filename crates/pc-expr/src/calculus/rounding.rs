@@ -1,9 +1,9 @@
-//! Whether an expression is zero but for the rounding of its constants.
+//! Whether an expression is zero up to the rounding of its constants.
 //!
 //! Fingerprints take rounded constants as exact. The components of a unit vector, each rounded, have squares
-//! whose sum is not quite 1, so that what they multiply seems to stay. Numbers decide it: a sum that is left
-//! over by roundings is small beside its terms at every point, one that is small by itself is as large as
-//! its terms.
+//! whose sum is not quite 1, so that the terms they multiply do not seem to cancel. Numbers decide: a sum
+//! that roundings leave over is small relative to its terms at every point; a sum that is genuinely small is
+//! as large as its terms.
 
 use crate::graph::evaluate::Scalar;
 use crate::graph::expr::Expr;
@@ -11,19 +11,19 @@ use crate::graph::function::Function;
 use crate::graph::graph::Graph;
 use crate::identity::running_error::Weighed;
 
-/// The orders of magnitude of the points: what cancels at one of them only, as √(1 + v²/c²) − 1 where v is far
-/// below c, is found at another.
+/// The orders of magnitude of the points: a sum that cancels at only one of them, such as √(1 + v²/c²) − 1 for
+/// v far below c, is detected at another.
 const SCALES: [f64; 5] = [1.0, 1e-3, 1e3, 1e-9, 1e9];
 /// The number of points of each order.
 const POINTS: u32 = 4;
-/// So many points have to agree.
+/// The number of points that must agree.
 const LEAST: usize = 4;
-/// The greatest part of its terms that some thousand roundings leave of a sum.
+/// The greatest fraction of its terms that some thousand roundings leave of a sum.
 const ROUNDING: f64 = 1e-12;
 
 impl Graph {
     /// Whether an expression is zero, or no more than the rounding of its own operations at each of several
-    /// points; not if too few points have values.
+    /// points; false if too few points have values.
     pub(crate) fn is_rounding<'g>(&'g self, e: Expr<'g>) -> bool {
         if e.is_zero() {
             return true;

@@ -10,8 +10,8 @@ use crate::graph::number::Number;
 use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::{Assignment, Cone};
 
-/// Symbols with their replacements. Applied to a short expression, it costs what that expression has, however
-/// long the list.
+/// Symbols with their replacements. Applying it to a short expression costs only the size of that expression,
+/// however long the list is.
 #[derive(Clone, Debug)]
 pub struct Substitution<'g> {
     graph: &'g Graph,
@@ -41,8 +41,8 @@ impl<'g> Substitution<'g> {
 
     /// Writes results without the symbols that were replaced.
     ///
-    /// Such a symbol comes back where it cancels, as the result then has the value of an older and cheaper
-    /// expression that contains it.
+    /// A symbol that cancels may reappear, because the graph prefers an older, cheaper expression of the
+    /// same value that contains it.
     fn drop_returned(&self, results: &mut [Expr<'g>]) {
         let graph = self.graph;
         let is_replaced = |symbol: &Expr<'g>| match symbol.atom() {
@@ -65,7 +65,7 @@ impl<'g> Substitution<'g> {
 }
 
 impl Graph {
-    /// The replacement of each symbol of `replacements` by the expression beside it, all at once.
+    /// The replacement of each symbol of `replacements` by the expression paired with it, all at once.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -86,9 +86,9 @@ impl Graph {
         }
     }
 
-    /// `outputs` with each symbol of `replacements` replaced by the expression beside it, all at once.
+    /// `outputs` with each symbol of `replacements` replaced by the expression paired with it, all at once.
     ///
-    /// A replaced symbol is in the results only where the replacing expressions contain it.
+    /// A replaced symbol occurs in the results only if the replacing expressions contain it.
     ///
     /// # Panics
     /// If the first of a pair is not a symbol.
@@ -100,7 +100,7 @@ impl Graph {
         self.substitution(replacements).apply(outputs)
     }
 
-    /// The expressions rebuilt in another graph, symbols of the same names.
+    /// The expressions rebuilt in another graph, from symbols of the same names.
     pub fn transcribe<'g, 'h>(&'g self, expressions: &[Expr<'g>], into: &'h Graph) -> Vec<Expr<'h>> {
         let symbols: Vec<(Expr<'g>, Expr<'h>)> = self
             .symbols_of(expressions)

@@ -112,8 +112,8 @@ impl Dag {
         if self.columns(other) < self.columns(sum) { other } else { sum }
     }
 
-    /// A product in which factors common to all terms of a sum and its divisors are cancelled: (a² + a b)/a
-    /// is a + b.
+    /// A product in which factors common to all terms of a sum and to its divisors are cancelled: (a² + a
+    /// b)/a is a + b.
     fn cancelled(&mut self, product: Atom) -> Atom {
         let Atom::Node(node) = product else { return product };
         let Node::Product { factors } = self.node(node) else { return product };

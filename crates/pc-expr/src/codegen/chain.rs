@@ -1,7 +1,7 @@
 //! Long programs as a table of operations, traversed forward for their values and by the chain rule for derivatives.
 //!
-//! Straight-line code of a Jacobian is an order of magnitude longer than that of its function. Where that is too long
-//! to be read or compiled, the operations of the function are a table, and two short loops do the rest.
+//! Straight-line code of a Jacobian is an order of magnitude longer than that of its function. If that is too long to
+//! read or compile, the operations of the function become a table, and two short loops do the rest.
 
 use std::fmt::Write;
 
@@ -315,8 +315,8 @@ impl Chain {
         }
     }
 
-    /// The body of a function that writes the derivatives of the first outputs by the state, as many as there
-    /// are components, column by column.
+    /// The body of a function that writes the derivatives of the first outputs with respect to the state, as
+    /// many as there are components, column by column.
     pub fn jacobian(&self, program: &Program, array: &str) -> String {
         let functions = &self.calls.functions;
         let (first, values, n) = (program.first_result(), self.values, program.state_len());

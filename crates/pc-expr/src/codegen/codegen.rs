@@ -1,8 +1,8 @@
 //! Programs as source text: the statements of one straight-line function.
 //!
 //! The source computes what the [interpreter](crate::Interpreter) computes, operation by operation. A value
-//! used once is written in place, with brackets wherever the order of operations needs them; any other value
-//! becomes a local constant.
+//! used once is written in place, with brackets wherever the order of operations requires them; any other
+//! value becomes a local constant.
 
 use crate::codegen::function_body::Printer;
 use crate::codegen::layout::{FunctionBody, Language, Layout};

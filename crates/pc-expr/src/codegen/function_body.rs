@@ -11,7 +11,7 @@ use crate::program::program::{Instruction, Program, Register};
 const LONG: usize = 80;
 /// A sum of several lines may become this long before its beginning gets a name.
 const LONG_SUM: usize = 320;
-/// In functions of more operations, declarations are a tenth of the text.
+/// From this many operations on, declarations take a tenth of the text.
 const MANY: usize = 2000;
 /// Longer comments are cut.
 const LONGEST_COMMENT: usize = 60;
@@ -33,7 +33,7 @@ enum Binding {
 /// The text of a value.
 #[derive(Clone, Debug)]
 struct Piece {
-    /// The terms of a sum, each but the first with its sign and a space before it; otherwise one term.
+    /// The terms of a sum, each except the first with its sign and a space before it; otherwise one term.
     terms: Vec<String>,
     binding: Binding,
     /// How deep brackets are nested.
@@ -384,7 +384,7 @@ impl<'a> Printer<'a> {
 }
 
 impl Piece {
-    /// This plus a term that may have a sign.
+    /// The sum of this piece and a term that may have a sign.
     fn and_signed(self, term: &Piece) -> Piece {
         if term.is_negative() && term.binding != Binding::Sum {
             let mut positive = term.clone();

@@ -28,7 +28,7 @@ impl Budget {
         Budget(Arc::new(Meter::new(limits, deadline)))
     }
 
-    /// A new budget with the same limit of memory that ends when this one does.
+    /// A new budget with the same memory limit, which ends when this one does.
     pub fn beside(&self) -> Budget {
         Budget(Arc::new(Meter::new(self.0.limits.clone(), self.0.deadline.clone())))
     }

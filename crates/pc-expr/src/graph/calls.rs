@@ -46,7 +46,7 @@ impl Dag {
         }
     }
 
-    /// √x, kept as a root where x is not a perfect square: the square of a rounded root is not x.
+    /// √x, kept as a root if x is not a perfect square: the square of a rounded root is not x.
     pub(crate) fn exact_root(&mut self, x: Atom) -> Atom {
         match x {
             Atom::Constant(c) if !c.is_negative() && c.exact_sqrt().is_none() => {

@@ -21,11 +21,11 @@ const CONFINED: u64 = 1 << 63;
 #[derive(Debug)]
 pub(crate) struct Dag {
     pub(super) folding: Folding,
-    /// `None` where constants are combined without a graph.
+    /// `None` if constants are combined without a graph.
     meter: Option<Arc<Meter>>,
     /// Bytes taken from the meter.
     taken: u64,
-    /// Counts queries: the clock and the handle for cancelling are read only once in so many.
+    /// Counts queries: the clock and the handle for cancelling are read only once in a number of queries.
     asked: u8,
     nodes: Vec<Node>,
     fingerprints: Vec<Fingerprint>,
@@ -36,9 +36,9 @@ pub(crate) struct Dag {
     pub(super) nonnegative: Vec<bool>,
     /// Operations of the node written out as a tree, saturating: decides which of two nodes of equal value is kept.
     costs: Vec<u32>,
-    /// A bit for each symbol in the node; symbols 63 apart share a bit, and those [confined](CONFINED) have the last one.
+    /// A bit for each symbol in the node; symbols 63 apart share a bit, and [confined](CONFINED) ones have the last bit.
     symbols: Vec<u64>,
-    /// Nodes that sums and products above them leave closed.
+    /// Nodes that sums and products above them do not open.
     kept: FxHashSet<NodeId>,
     /// The divisors in the node.
     pub(super) divisors: Vec<Divisors>,
@@ -171,7 +171,7 @@ impl Dag {
         })
     }
 
-    /// Leaves this node closed in sums and products built from now on.
+    /// Keeps this node closed in sums and products built from now on.
     pub(crate) fn keep(&mut self, atom: Atom) {
         if let Atom::Node(node) = atom {
             let (node, _) = self.split_coefficient(node, Number::ONE);
@@ -183,7 +183,7 @@ impl Dag {
         !self.kept.is_empty() && self.kept.contains(&node)
     }
 
-    /// Whether two expressions are the same node, or have the same value where folding by value is on.
+    /// Whether two expressions are the same node, or have the same value if folding by value is on.
     pub(crate) fn same(&self, a: Atom, b: Atom) -> bool {
         match (a, b) {
             (Atom::Node(a), Atom::Node(b)) => {
@@ -194,7 +194,7 @@ impl Dag {
         }
     }
 
-    /// The best node known to have this node's value up to the sign that is returned with it.
+    /// The best node known to have this node's value up to sign, with that sign.
     pub(super) fn representative(&self, mut node: NodeId) -> (NodeId, Number) {
         let mut sign = Number::ONE;
         while let Some((next, s)) = self.successor[node.index()] {
@@ -203,13 +203,13 @@ impl Dag {
         (node, sign)
     }
 
-    /// Interns a candidate. Where folding by value is on, constants are recognised, and an existing node of
+    /// Interns a candidate. If folding by value is on, constants are recognised, and an existing node of
     /// equal value up to sign is returned if it is at least as good.
     ///
-    /// Of two forms of one function the better one divides by less, as x + 1 has a value at x = 1 and (x² −
-    /// 1)/(x − 1) has none, and takes fewer roots, as (√x − 1)² + 2√x is undefined below 0; where neither is
-    /// worse, the shorter one is better. Two forms each with a divisor that the other lacks stay separate
-    /// nodes, as do two of which one contains a [confined](Dag::confine) symbol.
+    /// Of two forms of one function, the better one divides by less, as x + 1 has a value at x = 1 and (x²
+    /// − 1)/(x − 1) has none, and takes fewer roots, as (√x − 1)² + 2√x is undefined below 0; if neither is
+    /// worse, the shorter one is better. Two forms, each with a divisor that the other lacks, stay separate
+    /// nodes; so do two forms if one contains a [confined](Dag::confine) symbol.
     ///
     /// Once the budget is spent the result is undefined, so that the work ends soon.
     pub(super) fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
@@ -265,7 +265,7 @@ impl Dag {
         Atom::Node(id)
     }
 
-    /// Confines a symbol: where it cancels from an expression, no other one is replaced by this.
+    /// Confines a symbol: if it cancels from an expression, that expression does not replace others.
     pub(crate) fn confine(&mut self, symbol: NodeId) {
         self.symbols[symbol.index()] = CONFINED;
     }

@@ -1,11 +1,11 @@
-//! When work has to end.
+//! When work must end.
 
 use std::time::{Duration, Instant};
 
 use crate::graph::limits::{Cancel, Limits, Spent};
 
-/// When work has to end: after some time, or when it is [cancelled](Cancel). Work that makes no expressions,
-/// and so takes nothing from a [`Budget`](crate::Budget), checks a deadline now and then.
+/// When work must end: after some time, or when it is [cancelled](Cancel). Work that makes no expressions,
+/// and so takes nothing from a [`Budget`](crate::Budget), checks a deadline occasionally.
 ///
 /// ```
 /// use std::time::Duration;
@@ -40,7 +40,7 @@ impl Deadline {
         }
     }
 
-    /// Why work has to end by now, if it has to.
+    /// Why work must end now, if it must.
     pub fn passed(&self) -> Option<Spent> {
         if self.cancel.is_cancelled() {
             return Some(Spent::Cancelled);

@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use crate::graph::node::NodeId;
 
-/// A set of more divisors counts as the set of all.
+/// A set of more divisors counts as the set of all divisors.
 const MOST: usize = 64;
 
 /// A set of divisors, by its index.

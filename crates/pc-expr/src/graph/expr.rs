@@ -12,7 +12,7 @@ use crate::graph::number::Number;
 /// A constant, or a node of a [`Graph`]: `Copy`, with the arithmetic operators and elementary functions.
 ///
 /// Two expressions compare equal when they are the same node, that is, with folding by value, when they are equal
-/// as functions as far as the graph can tell.
+/// as functions as far as the graph can decide.
 ///
 /// # Panics
 /// Combining expressions of two graphs is a programming error and panics.
@@ -299,7 +299,7 @@ impl From<Number> for Expr<'_> {
 }
 
 impl From<f64> for Expr<'_> {
-    /// The constant; see [`Number::from`] for what the value of a decimal is.
+    /// The constant; see [`Number::from`] for the value of a decimal.
     fn from(value: f64) -> Self {
         Number::from(value).into()
     }

@@ -82,7 +82,7 @@ impl Function {
         !matches!(self, Function::Atan2 | Function::Sign | Function::Step)
     }
 
-    /// Whether it is put together of several functions, each on a part of its domain.
+    /// Whether it consists of several functions, each on a part of its domain.
     pub fn is_piecewise(self) -> bool {
         matches!(self, Function::Abs | Function::Sign | Function::Min | Function::Max | Function::Step)
     }

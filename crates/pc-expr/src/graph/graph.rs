@@ -13,7 +13,7 @@ use crate::graph::node::Folding;
 /// Expressions that are written alike are the same node; so are, unless switched off with
 /// [`Folding::Structural`], expressions that *are* alike: each node carries its value at two random points of a
 /// prime field, so sin²x + cos²x is 1 and a structure coefficient that is a constant in disguise is that constant.
-/// The field only tests identity, values are always computed in `f64`.
+/// The field only tests identity; values are always computed in `f64`.
 ///
 /// ```
 /// use pc_expr::Graph;
@@ -69,7 +69,7 @@ impl Graph {
     /// is replaced by an error that names the stage.
     ///
     /// # Errors
-    /// [`ExprError::Spent`], and those of the work.
+    /// [`ExprError::Spent`], and the errors of the work.
     pub fn stage<T, E: From<ExprError>>(
         &self,
         name: &'static str,
@@ -83,7 +83,7 @@ impl Graph {
     }
 
     /// # Errors
-    /// [`ExprError::Spent`] if the budget is.
+    /// [`ExprError::Spent`] if the budget is spent.
     pub fn check_budget(&self) -> Result<(), ExprError> {
         match self.budget.spent() {
             None => Ok(()),

@@ -12,7 +12,7 @@ pub struct Limits {
     pub memory: u64,
     /// Time since the [budget](crate::Budget) was made; no limit by default.
     pub time: Option<Duration>,
-    /// Ends the work from elsewhere.
+    /// A handle that ends the work from elsewhere.
     pub cancel: Cancel,
 }
 
@@ -28,7 +28,7 @@ impl Default for Limits {
 pub struct Cancel(Arc<AtomicBool>);
 
 impl Cancel {
-    /// Ends the work for good.
+    /// Ends the work permanently.
     pub fn cancel(&self) {
         self.0.store(true, Ordering::Relaxed);
     }

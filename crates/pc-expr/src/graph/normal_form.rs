@@ -189,7 +189,7 @@ impl Dag {
     }
 
     /// Adds the exponents of equal factors and turns (√e)² into e, e/√e into √e and |e|² into e², signs into
-    /// `coefficient`. Returns whether the factors may be gathered once more.
+    /// `coefficient`. Returns whether the factors may have to be gathered once more.
     fn collect_exponents(&self, factors: &mut Vec<(NodeId, i32)>, coefficient: &mut Number) -> bool {
         factors.sort_unstable_by_key(|&(node, _)| node);
         factors.dedup_by(|next, kept| {
@@ -282,8 +282,8 @@ impl Dag {
     }
 }
 
-/// The greatest common content of a linear combination, with the sign of its first term; of a sum whose
-/// content is not an exact rational only the sign.
+/// The greatest common content of a linear combination, with the sign of its first term; for a sum
+/// whose content is not an exact rational, only the sign.
 fn content(constant: Number, terms: &[(NodeId, Number)]) -> Number {
     let sign = if terms[0].1.is_negative() { Number::MINUS_ONE } else { Number::ONE };
     let coefficients = || terms.iter().map(|&(_, q)| q).chain((!constant.is_zero()).then_some(constant));

@@ -11,9 +11,9 @@ const EXACT: i128 = 1 << 53;
 
 /// A constant of the graph.
 ///
-/// An `f64` that is given to the graph counts as the decimal number it prints as, so that `0.1 + 0.2` is 3/10 and
-/// like terms cancel exactly; so do those with powers of units such as 10⁻⁹. Results that are no small rational, nor one times a power
-/// of ten, are rounded to `f64`.
+/// An `f64` given to the graph counts as the decimal number it prints as, so that `0.1 + 0.2` is 3/10 and like terms cancel exactly,
+/// also with powers of units such as 10⁻⁹. Results that are neither a small rational nor one times a power of ten are rounded to
+/// `f64`.
 #[derive(Clone, Copy, Debug)]
 pub enum Number {
     /// `num / den` in lowest terms, `den > 0`, both at most 2⁵³ in size.
@@ -23,8 +23,8 @@ pub enum Number {
         /// Denominator, positive.
         den: i64,
     },
-    /// `num / den · 10^exponent`, which is no small rational: in lowest terms, both at most 2⁵³ in size, `den > 0` without a factor 2 or 5,
-    /// and `num` without a factor 10.
+    /// `num / den · 10^exponent`, which is not a small rational: in lowest terms, both at most 2⁵³ in size, `den > 0` without a factor 2 or
+    /// 5, and `num` without a factor 10.
     Scaled {
         /// Numerator.
         num: i64,
@@ -37,7 +37,8 @@ pub enum Number {
     Real(f64),
 }
 
-/// The most digits of a number that is meant as a decimal. What has more is the rounded result of a computation.
+/// The most digits of a number that is meant as a decimal. A number with more digits is the rounded result of
+/// a computation.
 const DIGITS: usize = 15;
 
 impl Number {
@@ -284,7 +285,8 @@ fn gcd(mut a: u128, mut b: u128) -> u128 {
 }
 
 impl From<f64> for Number {
-    /// The shortest decimal that rounds to `value`, exactly, where it is a small rational or has few digits.
+    /// The shortest decimal that rounds to `value`, as an exact number if it is a small rational or has few
+    /// digits.
     fn from(value: f64) -> Number {
         if !value.is_finite() {
             return Number::Real(value);
@@ -297,7 +299,7 @@ impl From<f64> for Number {
 }
 
 /// Reads the shortest decimal expansion of `value` as digits · 10^exponent, if that is a small rational, or has so few
-/// digits that it is meant.
+/// digits that it is intended.
 fn decimal(value: f64) -> Option<Number> {
     let text = format!("{value:e}");
     let (mantissa, exponent) = text.split_once('e')?;
@@ -405,7 +407,7 @@ impl Hash for Number {
 }
 
 impl fmt::Display for Number {
-    /// Small fractions as such (`-1/3`), other rationals as decimals where they terminate.
+    /// Small fractions as such (`-1/3`), other rationals as decimals if they terminate.
     ///
     /// Very large and very small numbers are written with an exponent.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -449,7 +451,7 @@ mod tests {
         }
     }
 
-    /// Powers of units, which are no small rationals, cancel as others do.
+    /// Powers of units, which are not small rationals, cancel as others do.
     #[test]
     fn powers_of_ten_are_exact() {
         let [unit, back] = [1e-9, 1e9].map(Number::from);

@@ -20,8 +20,8 @@ pub struct SymbolPlaces {
 }
 
 impl SymbolPlaces {
-    /// The places in a list; of a symbol that occurs twice the first one. An expression that is not a symbol
-    /// has no place.
+    /// The indices in a list; for a symbol that occurs twice, the first index. An expression that is not a
+    /// symbol has no place.
     pub fn of(symbols: &[Expr<'_>]) -> SymbolPlaces {
         let mut by_node = FxHashMap::default();
         for (place, symbol) in symbols.iter().enumerate() {

@@ -16,7 +16,8 @@ impl Graph {
     ///
     /// # Errors
     /// If not, [`ExprError::DivisionByZero`] with the dividend of the first division by an expression that is
-    /// identically zero, or [`ExprError::Undefined`] if there was none; [`ExprError::Spent`] if the budget is.
+    /// identically zero, or [`ExprError::Undefined`] if there was none; [`ExprError::Spent`] if the budget is
+    /// spent.
     pub fn check<'g>(&'g self, expressions: &[Expr<'g>]) -> Result<(), ExprError> {
         self.check_budget()?;
         if !expressions.iter().any(|x| x.is_undefined()) {
@@ -28,8 +29,8 @@ impl Graph {
         }
     }
 
-    /// The expression x, which sums and products made of it from now on leave closed: the result of a step of
-    /// a recursion, computed once and used as a unit. Otherwise a sum of sums becomes one sum, which is
+    /// The expression x, which sums and products made from it do not open from now on: the result of a step
+    /// of a recursion, computed once and used as a unit. Otherwise a sum of sums becomes one sum, which is
     /// shorter to read and longer to compute.
     ///
     /// ```
@@ -48,7 +49,7 @@ impl Graph {
         })
     }
 
-    /// √x, kept as a root where x is a number that is not a square, so that its square is x.
+    /// √x, kept as a root if x is a number that is not a square, so that its square is x.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -62,13 +63,14 @@ impl Graph {
         self.build(|dag| dag.exact_root(x))
     }
 
-    /// The number of different nodes in the expressions: about their length when each node is written once.
+    /// The number of different nodes in the expressions: roughly their length when each node is written once.
     pub fn size<'g>(&'g self, expressions: &[Expr<'g>]) -> usize {
         let roots: Vec<Atom> = expressions.iter().map(|expression| expression.atom_in(self)).collect();
         self.with(|dag| Cone::below(dag, roots).order.len())
     }
 
-    /// The factors of a product with their exponents, without its number; the expression itself if it is no product.
+    /// The factors of a product with their exponents, without its number; the expression itself if it is not
+    /// a product.
     ///
     /// ```
     /// # use pc_expr::Graph;

@@ -8,7 +8,7 @@ use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 
 impl Dag {
-    /// The divisors of a candidate, its own and those below it; none where nodes are merged by structure
+    /// The divisors of a candidate, its own and those below it; none if nodes are merged by structure
     /// alone.
     pub(crate) fn divisors_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
         if self.folding == Folding::Structural {
@@ -38,7 +38,7 @@ impl Dag {
     }
 
     /// The arguments that bound the region where a candidate has a value, its own and those below it; none
-    /// where nodes are merged by structure alone.
+    /// if nodes are merged by structure alone.
     pub(crate) fn limits_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
         if self.folding == Folding::Structural {
             return Divisors::NONE;
@@ -68,7 +68,7 @@ impl Dag {
         all
     }
 
-    /// Whether each limit of the first set is one of the second.
+    /// Whether each limit of the first set also belongs to the second.
     pub(crate) fn are_among(&self, some: Divisors, others: Divisors) -> bool {
         if some == others || some == Divisors::NONE || others == Divisors::ALL {
             return true;

@@ -50,7 +50,7 @@ impl Cone {
         active
     }
 
-    /// The nodes that `one` picks and that lie above no other one, with what it says of them.
+    /// The nodes that `one` picks and that lie above no other such node, with its results for them.
     pub(crate) fn innermost<T>(&self, dag: &Dag, one: impl Fn(NodeId) -> Option<T>) -> Vec<(NodeId, T)> {
         let mut above: FxHashSet<NodeId> = FxHashSet::default();
         let mut found = Vec::new();

@@ -39,7 +39,7 @@ impl<'g, 'n> Transcription<'g, 'n> {
         Transcription { from, to, written: RefCell::default() }
     }
 
-    /// The expression in the other graph; nodes [kept](Graph::keep) closed are kept there, too.
+    /// The expression in the other graph; nodes [kept](Graph::keep) closed are also kept there.
     pub fn write(&self, x: Expr<'g>) -> Expr<'n> {
         let root = match x.atom_in(self.from) {
             constant @ Atom::Constant(_) => return self.to.expr(constant),

@@ -168,7 +168,7 @@ impl Dag {
         product
     }
 
-    /// u as c·Π f^e, factored only as far as its node is.
+    /// u as c·Π f^e, factored only as far as its node is factored.
     fn factors_of(&self, u: NodeId) -> (Number, Vec<(NodeId, i32)>) {
         let (inner, c) = self.split_coefficient(u, Number::ONE);
         match self.node(inner) {

@@ -25,7 +25,7 @@ impl Fingerprint {
         Fingerprint(Residue::integer(value), Residue::integer(value))
     }
 
-    /// That of a finite f64, which is a dyadic rational.
+    /// The fingerprint of a finite f64, which is a dyadic rational.
     pub(crate) fn dyadic(value: f64) -> Fingerprint {
         Fingerprint(Residue::dyadic(value), Residue::dyadic(value))
     }

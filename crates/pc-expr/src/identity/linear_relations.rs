@@ -26,9 +26,9 @@ impl Graph {
     /// ascending order: simple columns should come first.
     ///
     /// Every relation is certified: Σ_j a_j f_ji folds to zero for each i, so that [`Folding::Structural`]
-    /// finds few. Missed are relations whose coefficients, divided by the last, are not rational or are p/q
-    /// with p·q beyond about 2⁵⁰; those blurred by constants beyond the range of exact [`Number`]s; and those
-    /// invisible to fingerprints, as between logarithms.
+    /// finds few. Some relations are missed: those whose coefficients, divided by the last, are not rational
+    /// or are p/q with p·q beyond about 2⁵⁰; those blurred by constants beyond the range of exact
+    /// [`Number`]s; and those invisible to fingerprints, as between logarithms.
     ///
     /// # Panics
     /// If the columns have different lengths.
@@ -51,16 +51,16 @@ impl Graph {
         self.echelon(columns, &[]).null_space().into_iter().map(proposal).filter(holds).collect()
     }
 
-    /// The columns that are combinations of those before them with coefficients a that do not change with the
-    /// symbols of the columns but for `constants`: f_j = Σ_{i<j} a_ji f_i at almost all values, where the
+    /// The columns that are combinations of the preceding ones with coefficients a that depend only on the
+    /// `constants` among the symbols of the columns: f_j = Σ_{i<j} a_ji f_i at almost all values, where the
     /// a_ji are functions of the `constants`.
     ///
     /// Each comes with a_j1..a_j,j−1 as fractions, which are 0 for columns that are combinations themselves. They are a
-    /// proposal, and right only where the coefficients are rational numbers.
+    /// proposal, and right only if the coefficients are rational numbers.
     ///
-    /// The other columns are independent over the functions of the `constants`, for certain; that a column is
-    /// a combination may be missed where functions stand in it of which fingerprints know no identities, or
-    /// rounded constants.
+    /// The other columns are certainly independent over the functions of the `constants`; a combination may
+    /// be missed if a column contains rounded constants, or functions for which fingerprints know no
+    /// identities.
     ///
     /// # Panics
     /// If the columns have different lengths.
@@ -203,7 +203,7 @@ fn value(graph: &Graph, expression: Expr<'_>) -> Residue {
 }
 
 /// The fraction p/q = x with the smallest p·q, by maximal quotient rational reconstruction (M. Monagan,
-/// ISSAC 2004): in Euclid's algorithm for 2⁶¹ − 1 and x, p and q stand before the largest quotient.
+/// ISSAC 2004): in Euclid's algorithm for 2⁶¹ − 1 and x, p and q precede the largest quotient.
 fn fraction(x: Residue) -> Number {
     let (mut r0, mut r1) = ((-Residue::<1>::ONE).to_bits() + 1, x.to_bits());
     let (mut s0, mut s1) = (0i64, 1i64);

@@ -28,7 +28,7 @@ impl Graph {
         blocks.iter().map(|(i, j)| self.rank_of_block(rows, i, j)).sum()
     }
 
-    /// The rank of some rows of a matrix, all of whose entries are in some columns.
+    /// The rank of some rows of a matrix whose entries all lie in some columns.
     fn rank_of_block<'g>(
         &'g self,
         rows: &[Vec<(usize, Expr<'g>)>],

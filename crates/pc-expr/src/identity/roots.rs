@@ -13,14 +13,14 @@ use crate::identity::fingerprint::Fingerprint;
 
 /// A value of more terms is no longer kept as a sum.
 const MOST_TERMS: usize = 48;
-/// Products of sums of more terms than this, all told, are not multiplied out.
+/// Products of sums with more terms than this in total are not multiplied out.
 const MOST_PRODUCTS: usize = 512;
-/// Once so many products of roots are known, products of sums are not multiplied out any more.
+/// Once this many products of roots are known, products of sums are no longer multiplied out.
 const MOST_MONOMIALS: usize = 1 << 16;
 /// A sum with more square roots than this is not inverted by its conjugates.
 const MOST_CONJUGATES: usize = 3;
 
-/// Index of a product of roots; [`Monomial::ONE`] is that of none.
+/// Index of a product of roots; [`Monomial::ONE`] is that of the empty product.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct Monomial(u32);
 
@@ -28,7 +28,7 @@ impl Monomial {
     const ONE: Monomial = Monomial(0);
 }
 
-/// The value of an expression: its fingerprint, where the roots are random, and its terms where there are roots in it.
+/// The value of an expression: its fingerprint, where the roots are random, and its terms if it contains roots.
 #[derive(Clone, Debug)]
 pub(crate) struct Value {
     pub(crate) fingerprint: Fingerprint,

@@ -13,7 +13,7 @@ use crate::graph::number::Number;
 /// The relative change of an argument that shows how a function magnifies errors: far above rounding.
 const CHANGE: f64 = 1e-12;
 
-/// A number and its weight: the size of the terms that it was added up from, so that its rounding error is of
+/// A number and its weight: the size of the terms of which it is the sum, so that its rounding error is of
 /// the order of the weight times the unit of rounding. Exact numbers have weight 0.
 ///
 ///   w(a + b) = w(a) + w(b),   w(a b) = max(|a b|, |a| w(b), w(a) |b|),   w(f(a)) = max(|f|, |f'| w(a)),
@@ -35,7 +35,7 @@ pub struct Weighed {
     /// The number.
     pub value: f64,
     weight: f64,
-    /// Whether it is 0 only because what is not 0 was too small for a number, as exp(−10⁶) is.
+    /// Whether it is 0 only because its nonzero value was too small for a number, such as exp(−10⁶).
     lost: bool,
 }
 
@@ -51,7 +51,7 @@ impl Weighed {
         self.value.abs().max(self.weight)
     }
 
-    /// The sum as a part of its terms, from 0 to 1; rounding leaves about 10⁻¹⁶.
+    /// The sum as a fraction of its terms, from 0 to 1; rounding leaves about 10⁻¹⁶.
     pub fn rest(self) -> f64 {
         if self.value == 0.0 { 0.0 } else { self.value.abs() / self.size() }
     }

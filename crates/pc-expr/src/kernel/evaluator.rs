@@ -11,7 +11,7 @@ use crate::program::program::Program;
 /// operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// Machine code where the host allows it and the program is not too long, else the interpreter.
+    /// Machine code if the host allows it and the program is not too long, else the interpreter.
     #[default]
     Fastest,
     /// The interpreter, which needs no compiling.

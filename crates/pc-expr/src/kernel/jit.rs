@@ -2,7 +2,7 @@
 //!
 //! A program becomes machine code in three steps, one file each: `plan` decides the order of
 //! computation and which values wait in memory, `emit` writes Cranelift's intermediate code, with
-//! sines and cosines in line by `sincos`, and `assembly` owns the resulting code. `host` describes
+//! sines and cosines inline by `sincos`, and `assembly` owns the resulting code. `host` describes
 //! the processor; `jit` is the kernel.
 
 #![expect(

@@ -206,12 +206,12 @@ impl Tape {
     }
 }
 
-/// Chains of instructions that add a product to, or subtract it from, the result of another one
-/// used nowhere else.
+/// Chains of instructions, each of which adds a product to, or subtracts it from, the result of
+/// another one that is used nowhere else.
 struct Sums {
-    /// By instruction: that other one.
+    /// For each instruction, the one whose result it continues.
     previous: Vec<Option<usize>>,
-    /// Whether an instruction is such another one.
+    /// Whether an instruction is continued by another one in this way.
     absorbed: Vec<bool>,
 }
 

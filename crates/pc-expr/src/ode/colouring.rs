@@ -14,8 +14,8 @@ pub struct Colouring {
 }
 
 impl Colouring {
-    /// Gives each column the first colour that none of its rivals has: those with the most rivals first, in
-    /// the order of the matrix among equals.
+    /// Gives each column the first colour that none of its rivals has; columns with the most rivals come
+    /// first, and equal ones keep the order of the matrix.
     pub(crate) fn of(pattern: &Pattern) -> Colouring {
         let rivals = rivals(pattern);
         let mut order: Vec<usize> = (0..pattern.columns()).collect();

@@ -6,7 +6,8 @@ use crate::forward;
 use crate::ode::failure::Failure;
 use crate::program::program::Program;
 
-/// The direction in which a function passes through zero along the integration: against time where this goes backwards.
+/// The direction in which a function passes through zero along the integration: against time if the
+/// integration goes backwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Direction {
     /// From below.
@@ -119,10 +120,10 @@ pub trait Events {
     }
 
     /// Returns ∂g/∂pⱼ of event number `event` for the parameter number `parameter` of the vector field, and
-    /// writes ∂R/∂pⱼ of its reset, as long as the state: zeros where nothing is reset or does not depend on
-    /// pⱼ.
+    /// writes ∂R/∂pⱼ of its reset, one number per component of the state: zeros where nothing is reset or
+    /// where the reset does not depend on pⱼ.
     ///
-    /// Called only if there [are such](Events::has_parameter_derivatives), for sensitivities.
+    /// Called only if [they exist](Events::has_parameter_derivatives), for sensitivities.
     ///
     /// # Errors
     /// [`Failure`] where one is not defined; it ends the integration.
@@ -143,9 +144,9 @@ pub trait Events {
         false
     }
 
-    /// Returns ∂g/∂t of event number `event`, and writes ∂g/∂y, as long as the state.
+    /// Returns ∂g/∂t of event number `event`, and writes ∂g/∂y, one number per component.
     ///
-    /// Called only if there [are such](Events::has_derivatives), for sensitivities.
+    /// Called only if [they exist](Events::has_derivatives), for sensitivities.
     ///
     /// # Errors
     /// [`Failure`] where one is not defined; it ends the integration.
@@ -159,9 +160,10 @@ pub trait Events {
         Err(Failure::fatal(NoDerivatives))
     }
 
-    /// Writes τ ∂R/∂t + (∂R/∂y) v of the reset of event number `event` along (τ, v), as long as the state.
+    /// Writes τ ∂R/∂t + (∂R/∂y) v of the reset of event number `event` along (τ, v), one number per
+    /// component.
     ///
-    /// Called only if there [are such](Events::has_derivatives), for sensitivities.
+    /// Called only if [they exist](Events::has_derivatives), for sensitivities.
     ///
     /// # Errors
     /// [`Failure`] where one is not defined; it ends the integration.

@@ -1,17 +1,17 @@
-//! Fields as programs, to be evaluated at many states at once.
+//! Fields as programs for evaluation at many states at once.
 
 use std::sync::Arc;
 
 use crate::program::program::Program;
 
-/// f of one member of an ensemble: a program, which members may share, and parameters of its own.
+/// f of one member of an ensemble: a program, which members may share, and its own parameters.
 #[derive(Clone, Debug)]
 pub struct LaneField {
     /// The rates, then the watched pivots, then the sizes with which these are compared.
     pub program: Arc<Program>,
     /// The values of the program's parameters.
     pub parameters: Vec<f64>,
-    /// Which states are regular.
+    /// The conditions for regular states.
     pub watched: Watched,
     /// Places in the state of quaternions, which are divided by their lengths at the end of each step.
     pub unit_quaternions: Vec<[usize; 4]>,

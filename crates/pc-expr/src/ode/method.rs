@@ -16,7 +16,7 @@ pub enum Method {
     /// fastest at tolerances of 1e-8 and below, and accurate to rounding.
     Taylor,
     /// [`Dop853`](Method::Dop853) where the motion is not stiff, [`Bdf`](Method::Bdf) where
-    /// stiffness is detected: that of a run for which no other is given.
+    /// stiffness is detected: the default method of a run.
     #[default]
     Auto,
 }
@@ -36,7 +36,7 @@ impl Method {
         }
     }
 
-    /// The one of this [`name`](Method::name).
+    /// The method with this [`name`](Method::name).
     pub fn named(name: &str) -> Option<Method> {
         Method::ALL.into_iter().find(|method| method.name() == name)
     }

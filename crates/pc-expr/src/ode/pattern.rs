@@ -93,7 +93,7 @@ impl Pattern {
     /// Writes the entries `values` and the zeros to `dense[i + j * rows]`.
     ///
     /// # Panics
-    /// If `dense` has less than rows × columns numbers.
+    /// If `dense` has fewer than rows × columns numbers.
     pub fn scatter(&self, values: &[f64], dense: &mut [f64]) {
         dense.fill(0.0);
         for ((i, j), &value) in self.entries().zip(values) {
@@ -104,7 +104,7 @@ impl Pattern {
     /// Writes the entries of `dense[i + j * rows]` to `values`.
     ///
     /// # Panics
-    /// If `dense` has less than rows × columns numbers.
+    /// If `dense` has fewer than rows × columns numbers.
     pub fn gather(&self, dense: &[f64], values: &mut [f64]) {
         for ((i, j), value) in self.entries().zip(values) {
             *value = dense[i + j * self.rows];

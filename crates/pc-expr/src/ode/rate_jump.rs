@@ -4,11 +4,11 @@ use std::fmt;
 
 /// A surface g(t, y, p) = 0 on which f jumps.
 ///
-/// Where a motion passes it, derivatives of the motion by p and y₀ jump, too, if these move the passage:
+/// Where a motion passes it, derivatives of the motion by p and y₀ also jump, if these move the passage:
 ///
 ///   s⁺ = s⁻ + (f⁻ − f⁺) ∂τ,   ∂τ the derivative of the time τ of the passage,
 ///
-/// a term that no derivative of f contains.
+/// a term that is not contained in any derivative of f.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RateJump {
     /// The text of g.
@@ -22,7 +22,7 @@ pub struct RateJump {
 }
 
 impl RateJump {
-    /// Whether this parameter moves the passage; for none, whether the start does.
+    /// Whether this parameter moves the passage; without a parameter, whether the start does.
     pub fn moves_with(&self, parameter: Option<usize>) -> bool {
         self.of_state || self.parameters.iter().any(|(j, _)| parameter == Some(*j))
     }

@@ -3,9 +3,9 @@
 use crate::ode::failure::Failure;
 use crate::ode::switching::Switching;
 
-/// Up to this number of surfaces f is evaluated on each combination of their sides.
+/// Up to this number of surfaces, f is evaluated on each combination of their sides.
 const MOST_COMBINED: usize = 3;
-/// A pivot below this fraction of the largest entry of its row is none.
+/// A pivot below this fraction of the largest entry of its row counts as zero.
 const SINGULAR: f64 = 1e-12;
 /// Equations that follow from others contradict them if they differ by more than this.
 const CONTRADICTS: f64 = 1e-7;
@@ -23,9 +23,9 @@ const MOST_STEPS: usize = 50;
 /// ```text
 /// ẏ = Σ_s Π_i (1 + s_i σ_i)/2 f(s),   s_i = ±1
 /// ```
-/// [Alexander, Seidman, Houston J. Math. 24 (1998) 545], for more than three of them only where it is a sum of what each
-/// surface changes. Where dg/dt is the same on all sides, as of a force that jumps with a position, and vanishes, d²g/dt²
-/// = 0 takes its place: a body rests in the bottom of a groove. Of several σ with the same ẏ the smallest are taken.
+/// [Alexander, Seidman, Houston J. Math. 24 (1998) 545], for more than three of them only if it is a sum of the changes
+/// at each surface. If dg/dt is the same on all sides, as for a force that jumps with a position, and vanishes, d²g/dt² =
+/// 0 takes its place: a body rests at the bottom of a groove. Of several σ with the same ẏ, the smallest are taken.
 #[derive(Clone, Debug)]
 pub struct Sliding {
     /// The surfaces, ascending.
@@ -34,13 +34,13 @@ pub struct Sliding {
     pub weights: Vec<f64>,
     /// The change of dg/dt of each by its σ: negative where f leads back to it.
     pub slopes: Vec<f64>,
-    /// The surfaces for which that is the change of d²g/dt², and dg/dt there.
+    /// The surfaces for which it is instead the change of d²g/dt², with dg/dt there.
     pub resting: Vec<Option<f64>>,
     /// ẏ
     pub rates: Vec<f64>,
 }
 
-/// Surfaces along which a motion does not slide in a way that their sides determine.
+/// Surfaces whose sides do not determine how a motion slides along them.
 #[derive(Debug, thiserror::Error)]
 pub enum SlidingError {
     /// dg/dt does not depend on the sides.
@@ -55,7 +55,7 @@ pub enum SlidingError {
         /// Their functions.
         surfaces: Vec<String>,
     },
-    /// f is not a sum of what single surfaces change.
+    /// f is not a sum of the changes at single surfaces.
     #[error(
         "the motion slides along more than {MOST_COMBINED} surfaces at once, {}, whose effects do not add up",
         surfaces.join(", ")
@@ -163,14 +163,14 @@ fn second_normal(
 
 /// f as a function of the σ.
 enum Combination {
-    /// On each combination of sides; bit i of its number is set where surface i has side 1.
+    /// f on each combination of sides; bit i of the index is set if surface i has side 1.
     Products(Vec<Vec<f64>>),
-    /// At σ = 0, then the change by each σ.
+    /// f at σ = 0, then the change by each σ.
     Sum(Vec<f64>, Vec<Vec<f64>>),
 }
 
 impl Combination {
-    /// None if f is neither.
+    /// None if f has neither form.
     fn of(
         field: &mut (impl Switching + ?Sized),
         (sides, surfaces): (&[f64], &[usize]),
@@ -253,7 +253,7 @@ impl Combination {
         }
     }
 
-    /// The σ for which all g stay zero, by Newton's method, with the change of each dg/dt by its σ; none where they are
+    /// The σ for which all g stay zero, by Newton's method, with the change of each dg/dt by its σ; none if they are
     /// not determined.
     fn solve(&self, normals: &[(f64, Vec<f64>)]) -> Option<(Vec<f64>, Vec<f64>)> {
         let along = |i: usize, rates: &[f64]| -> f64 {

@@ -10,8 +10,8 @@ use crate::time_profile::profile::TimeDependence;
 /// corner.
 ///
 /// An integrator holds it on one side of each surface during a step, so that f is smooth along the step, ends the step
-/// where a surface is reached, and decides there how the motion goes on: on the other side, or along the surface if f
-/// leads back to it from both sides.
+/// where a surface is reached, and decides there how the motion continues: on the other side, or along the surface if
+/// f leads back to it from both sides.
 ///
 /// A side is 1 or −1, the sign of g, or 0 while the motion slides along the surface.
 pub trait Switching {
@@ -25,8 +25,8 @@ pub trait Switching {
     /// The sides on which f is held.
     fn held(&self) -> Option<&[f64]>;
 
-    /// Writes the functions g, which may jump where another one passes through zero: they are those of the sides
-    /// held. A function without a value is written as NaN.
+    /// Writes the functions g, which may jump where another one passes through zero: they are evaluated on the
+    /// sides held. A function without a value is written as NaN.
     fn functions(&mut self, t: f64, y: &[f64], values: &mut [f64]);
 
     /// Writes f on these sides, none of them 0.
@@ -44,6 +44,7 @@ pub trait Switching {
     /// The explicit dependence of f on t while it is held.
     fn time_dependence(&self) -> TimeDependence;
 
-    /// The program of the functions g of (t, y) and parameters with the values of these, as long as it is one.
+    /// The program of the functions g of (t, y) and parameters, with the values of the parameters, if there
+    /// is one.
     fn program(&self) -> Option<(&Arc<Program>, &[f64])>;
 }

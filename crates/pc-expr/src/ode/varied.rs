@@ -1,4 +1,4 @@
-//! The series of a motion with its derivatives, kept for the columns asked for last.
+//! The series of a motion with its derivatives, kept for the columns requested last.
 
 use crate::kernel::evaluator::Backend;
 use crate::program::program::Program;
@@ -9,7 +9,7 @@ use crate::taylor::coefficients::TaylorSeries;
 pub struct VariedSeries(Option<(Vec<Option<usize>>, TaylorSeries)>);
 
 impl VariedSeries {
-    /// That of a program with these columns.
+    /// The series of a program with these columns.
     pub fn of(
         &mut self,
         columns: &[Option<usize>],
@@ -22,7 +22,7 @@ impl VariedSeries {
         &mut self.0.insert(kept).1
     }
 
-    /// Forgets it, since the program changes.
+    /// Discards it, since the program changes.
     pub fn forget(&mut self) {
         self.0 = None;
     }

@@ -12,7 +12,7 @@ use crate::time_profile::steep::SteepFunctions;
 
 /// A first-order system ẏ = f(t, y) of [`dim`](VectorField::dim) equations.
 ///
-/// Implemented by compiled equations of motion and by anything a user writes; integrators know nothing else.
+/// It is implemented by compiled equations of motion and by users; integrators need nothing else.
 pub trait VectorField {
     /// Number of components of y.
     fn dim(&self) -> usize;
@@ -119,7 +119,7 @@ pub trait VectorField {
         None
     }
 
-    /// Whether the states lie on a surface that f is tangent to and numerical errors leave.
+    /// Whether the states lie on a surface to which f is tangent and from which numerical errors lead away.
     fn has_projection(&self) -> bool {
         false
     }
@@ -140,8 +140,9 @@ pub trait VectorField {
         TimeDependence::Unknown
     }
 
-    /// The functions of the state in f, while it is [held](VectorField::switching) if it can be, that a step may pass
-    /// over; none if there are none, or if f does not show them. They are queried when an integration begins.
+    /// The functions of the state in f that a step may pass over, with f [held](VectorField::switching) on one side
+    /// if possible; none if there are none, or if f does not reveal them. They are queried when an integration
+    /// begins.
     fn steep_functions(&self) -> Option<SteepFunctions> {
         None
     }
@@ -226,18 +227,18 @@ pub trait VectorField {
         self.switching().map(|switching| switching.time_dependence())
     }
 
-    /// The surfaces on which f jumps as the state or, at a time that parameters move, as t passes them, as far as they
-    /// are known. A jump at a [break](VectorField::breaks) is none of these, nor one where f is
+    /// The surfaces, as far as they are known, on which f jumps as the state passes them, or as t passes them at a
+    /// time that depends on parameters. Jumps at a [break](VectorField::breaks) are not included, nor those where f is
     /// [held](VectorField::switching).
     fn jumps(&self) -> &[RateJump] {
         &[]
     }
 
-    /// Checks whether one motion connects `from` with `to`, both times and states, to which a step of an integrator
-    /// led: a field may have places that no motion crosses.
+    /// Checks whether one motion connects the times and states `from` and `to`, between which an integrator made a
+    /// step: a field may have places that no motion crosses.
     ///
     /// # Errors
-    /// [`Failure`] where the one does not follow from the other.
+    /// [`Failure`] if the second does not follow from the first.
     fn leads(&mut self, _from: (f64, &[f64]), _to: (f64, &[f64])) -> Result<(), Failure> {
         Ok(())
     }

@@ -37,7 +37,7 @@ pub enum ParseErrorKind {
     ExpectedOperator {
         /// The second operand's first token.
         found: String,
-        /// The two with a `*` between them.
+        /// The two operands with a `*` between them.
         product: String,
     },
     /// `(` without `)`.
@@ -54,7 +54,7 @@ pub enum ParseErrorKind {
     UnknownFunction {
         /// The name that was called.
         name: String,
-        /// A function with nearly that name.
+        /// A function with a similar name.
         nearest: Option<&'static str>,
     },
     /// A function's name without arguments.
@@ -76,7 +76,7 @@ pub enum ParseErrorKind {
     TooDeep,
 }
 
-/// The character, or its escape where it could not be seen.
+/// The character, or its escape if it would be invisible.
 fn visible(character: char) -> String {
     if character == '\'' || character == '"' { character.into() } else { character.escape_debug().collect() }
 }

@@ -14,7 +14,7 @@ use crate::parse::vocabulary::{FUNCTIONS, Function, OTHER_NAMES, continues_name,
 /// The syntax tree of one expression.
 ///
 /// # Errors
-/// The first thing in the text that is not part of an expression, with its span.
+/// The first part of the text that does not belong to an expression, with its span.
 pub fn parse(text: &str) -> Result<Ast, ParseError> {
     let mut parser = Parser {
         text,
@@ -124,7 +124,8 @@ impl<'i> Parser<'i> {
         }
     }
 
-    /// The operand before the next token with what it multiplies or divides: `1/2` before `m` in `x + 1/2 m`.
+    /// The operand before the next token, with the factors that it multiplies or divides: `1/2` before `m` in
+    /// `x + 1/2 m`.
     fn product_so_far(&self) -> String {
         let last = excerpt(self.text, self.last);
         if last == ")" {

@@ -60,7 +60,7 @@ pub(super) fn continues_name(c: char) -> bool {
 }
 
 /// The candidate nearest to `word`, if one is near enough to be a misspelling: at most one edit (a letter
-/// more, less, other, or two exchanged) for every three letters.
+/// inserted, deleted or replaced, or two exchanged) for every three letters.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = word.chars().take(64).collect();
     let limit = word.len().div_ceil(3).min(word.len().saturating_sub(1));

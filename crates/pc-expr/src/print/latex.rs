@@ -98,7 +98,7 @@ pub(super) fn call(function: Function, args: Vec<Piece>) -> Piece {
 /// Functions whose argument may follow without brackets.
 const BARE: [&str; 6] = ["\\sin", "\\cos", "\\sinh", "\\cosh", "\\tanh", "\\log"];
 
-/// Whether an argument is a single symbol, which needs no brackets behind \sin.
+/// Whether an argument is a single symbol, which needs no brackets after \sin.
 fn is_simple(argument: &str) -> bool {
     !argument.contains([' ', '+', '-', '(']) && !argument.contains("\\frac")
 }
@@ -119,7 +119,7 @@ pub(super) fn power(base: &Piece, exponent: &str) -> String {
     }
 }
 
-/// The argument in brackets behind a function that another factor follows: \sin x y would be sin(x y).
+/// The argument in brackets after a function, if another factor follows: \sin x y would be sin(x y).
 fn closed(factor: &str) -> String {
     let bare = BARE.iter().find_map(|function| {
         let rest = factor.strip_prefix(function)?;

@@ -193,7 +193,7 @@ fn one(row: &str) -> String {
     if is_token { row.to_owned() } else { format!("<mrow>{row}</mrow>") }
 }
 
-/// Whether the row is a single symbol, which needs no brackets behind sin.
+/// Whether the row is a single symbol, which needs no brackets after sin.
 fn is_symbol(row: &str) -> bool {
     let inner = row.strip_prefix("<msub>").and_then(|inner| inner.strip_suffix("</msub>"));
     let tokens = inner.unwrap_or(row).matches("</m").count();

@@ -1,8 +1,8 @@
 //! Names for long or repeated parts of a page of expressions.
 //!
 //! Expressions share their parts, so that a page which writes all of them out may be as long as 2 to the
-//! power of their depth. Here such parts are named, each once, before their use: as few as let every piece
-//! between two signs fit a line, and those that shorten the page.
+//! power of their depth. Here such parts are named, each once, before their use: just enough for every
+//! piece between two signs to fit a line, and those that shorten the page.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -24,7 +24,7 @@ const PRICE: usize = 24;
 const WORTH_A_SHORTHAND: usize = 20;
 /// The least width of a line that is named because it recurs in one other line.
 const WIDE_LINE: usize = 80;
-/// Stands for a name while widths are measured.
+/// A placeholder for a name while widths are measured.
 const PLACEHOLDER: &str = "z10";
 
 /// An existing name for the value of an expression.
@@ -34,7 +34,7 @@ pub struct Given<'g> {
     pub name: String,
     /// Its value.
     pub value: Expr<'g>,
-    /// Whether the value is printed in any case; then the name replaces long values only.
+    /// Whether the value is always printed; then the name replaces only long values.
     pub shorthand: bool,
 }
 
@@ -43,7 +43,7 @@ pub struct Given<'g> {
 pub enum Side<'g> {
     /// A line: a sum may continue on the next one, between two of its terms.
     Sum(Expr<'g>),
-    /// A part of a line, such as a coefficient, which has to fit as a whole.
+    /// A part of a line, such as a coefficient, which must fit as a whole.
     Factor(Expr<'g>),
 }
 
@@ -163,7 +163,7 @@ impl<'g> Names<'g> {
         Written { style, terms, pieces, named: names.collect() }
     }
 
-    /// One of the lines with its names behind it.
+    /// One of the lines, followed by its names.
     pub(super) fn sentence(&self, line: Expr<'g>, style: Style) -> String {
         let written = self.written(style);
         let [wheres, equals, comma] = style.words();
@@ -188,8 +188,8 @@ pub struct Written {
 }
 
 impl Written {
-    /// The terms of a line, all but the first with their sign and a space before them; a named expression is its name,
-    /// unless the name is a shorthand.
+    /// The terms of a line, all except the first with their sign and a space before them; a named expression is its
+    /// name, unless the name is a shorthand.
     pub fn terms(&self, line: Expr<'_>) -> Vec<String> {
         if self.named.contains(&line.atom()) { vec![self.text(line)] } else { self.meaning(line) }
     }
@@ -275,7 +275,7 @@ impl<'d, 'g> Page<'d, 'g> {
     }
 
     /// The named nodes: shorthands, parts that recur and have at least this width, and those needed to fit
-    /// the lines; the last alone if there is no such width.
+    /// the lines; only the last if there is no such width.
     fn named(&self, least: Option<usize>) -> FxHashSet<NodeId> {
         let mut writer = Writer::new(self.dag, Style::Book);
         let mut named = FxHashSet::default();
@@ -370,7 +370,7 @@ impl<'d, 'g> Page<'d, 'g> {
         (length + self.roots.iter().map(columns).sum::<usize>(), widest)
     }
 
-    /// Names, their meanings, whether these are printed in any case, and the first line that uses each.
+    /// Names, their meanings, whether these are always printed, and the first line that uses each.
     fn in_order(&self, named: &FxHashSet<NodeId>, given: &[Given<'g>]) -> Vec<(String, NodeId, bool, usize)> {
         let letter = self.letter(given);
         let (mut seen, mut count) = (FxHashSet::default(), 0);

@@ -27,7 +27,7 @@ impl Style {
         }
     }
 
-    /// The sign before a term that is subtracted.
+    /// The sign before a subtracted term.
     pub(super) fn minus(self) -> &'static str {
         if self == Style::MathMl { mathml::MINUS } else { "-" }
     }
@@ -59,7 +59,7 @@ impl Style {
         }
     }
 
-    /// Brackets between which a line may end.
+    /// Brackets inside which a line may end.
     pub(super) fn large_brackets(self) -> [&'static str; 2] {
         match self {
             Style::Text | Style::Book => ["(", ")"],

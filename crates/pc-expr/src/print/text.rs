@@ -11,7 +11,7 @@ use crate::print::writer::Writer;
 
 /// Expressions that take more operations when written out get names for their parts.
 const LONG: u32 = 20_000;
-/// So do those whose parts have more bytes in total: nested parts add up to the square of the whole.
+/// So do expressions whose parts have more bytes in total: nested parts add up to the square of the whole.
 const LARGE: usize = 16 << 20;
 /// The columns between two signs in such an expression.
 const ROOM: usize = 80;
@@ -19,7 +19,7 @@ const ROOM: usize = 80;
 impl Expr<'_> {
     /// The text in a style other than [`Display`](fmt::Display)'s.
     ///
-    /// It is complete: parts of a long expression are named after it, `z1 + 1/z1 where z1 = …`.
+    /// It is complete: parts of a long expression are defined after it, `z1 + 1/z1 where z1 = …`.
     /// [`Graph::names`](crate::Graph::names) prints several expressions with common names.
     pub fn display(self, style: Style) -> String {
         let Some(graph) = self.graph() else {

@@ -29,13 +29,13 @@ impl<'d> Writer<'d> {
         Writer { dag, style, pieces: FxHashMap::default(), named: FxHashSet::default() }
     }
 
-    /// Has a node appear written out in its parents.
+    /// Makes a node appear written out in its parents.
     pub(super) fn write(&mut self, id: NodeId) {
         let piece = self.composed(id);
         self.pieces.insert(id, piece);
     }
 
-    /// Has a node appear as a name.
+    /// Makes a node appear as a name.
     pub(super) fn name(&mut self, id: NodeId, name: &str) {
         self.pieces.insert(id, self.style.symbol(name));
         self.named.insert(id);
@@ -66,7 +66,7 @@ impl<'d> Writer<'d> {
         self.pieces.get(&id).cloned().unwrap_or_else(|| Piece::atom("?"))
     }
 
-    /// A node written out, its children as they appear in it.
+    /// A node written out, with its children as they appear in it.
     pub(super) fn composed(&self, id: NodeId) -> Piece {
         match self.dag.node(id) {
             Node::Constant(c) => self.style.number(c),
@@ -88,7 +88,7 @@ impl<'d> Writer<'d> {
     }
 
     /// The terms of a line with marks on those that are subtracted, an added one first. A line may also end
-    /// between the terms in a bracket.
+    /// between the terms inside a bracket.
     pub(super) fn line(&self, id: NodeId) -> Vec<(bool, Piece)> {
         let (product, q) = match self.dag.node(id) {
             Node::Sum { constant, terms } => match *self.dag.terms(terms) {
@@ -190,7 +190,7 @@ impl<'d> Writer<'d> {
         Some(inside.into_iter().enumerate().map(term).collect())
     }
 
-    /// q x (a − b) with q < 0 as −q x (b − a), if the bracket is one `to_turn`.
+    /// q x (a − b) with q < 0, written as −q x (b − a) if the bracket is in `to_turn`.
     fn turned(
         &self,
         node: NodeId,
@@ -337,7 +337,7 @@ fn join(style: Style, terms: Vec<(bool, Piece)>) -> Piece {
     }
 }
 
-/// Terms side by side, all but the first with their sign before them.
+/// Terms side by side, all except the first with their sign before them.
 pub(super) fn signed(style: Style, terms: Vec<(bool, Piece)>) -> Vec<String> {
     let term = |(i, (negative, text)): (usize, (bool, String))| {
         let sign = match (i, negative) {
@@ -350,7 +350,7 @@ pub(super) fn signed(style: Style, terms: Vec<(bool, Piece)>) -> Vec<String> {
     bracketed(style, terms).into_iter().enumerate().map(term).collect()
 }
 
-/// Terms with brackets where they need them, and marks on those that are subtracted.
+/// Terms, with brackets if necessary and marks on those that are subtracted.
 fn bracketed(style: Style, terms: Vec<(bool, Piece)>) -> Vec<(bool, String)> {
     let alone = terms.len() == 1;
     let text = |(negative, piece): (bool, Piece)| {

@@ -1,4 +1,4 @@
-//! Sines and cosines of sums of two angles, computed from those of the angles where that takes fewer calls.
+//! Sines and cosines of sums of two angles, computed from those of the angles if that takes fewer calls.
 //!
 //! The N(N − 1)/2 differences of N absolute angles of a chain follow from the sines and cosines of the N
 //! angles:

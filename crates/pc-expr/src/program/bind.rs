@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use crate::program::program::{Instruction, Program, Register};
 
-/// What a register of the free program becomes in the bound one.
+/// The counterpart of a register of the free program in the bound one.
 #[derive(Clone, Copy)]
 enum Value {
     Number(f64),
@@ -14,13 +14,13 @@ enum Value {
 
 impl Program {
     /// The same program with these values of the parameters, which it no longer reads: operations on them
-    /// alone are computed here, and those that a 0 or a 1 among them makes superfluous are left out. It takes
-    /// no more operations, and its results are the same to the last bit where they are finite, up to the sign
-    /// of zero.
+    /// alone are computed here, and operations that become superfluous because a value is 0 or 1 are left
+    /// out. It takes no more operations, and its results are the same to the last bit where they are finite,
+    /// up to the sign of zero.
     ///
-    /// Numbers put into expressions before these become a program may make it shorter or longer: the normal
-    /// form multiplies them into sums, so a sum that is computed once in the free program and multiplied by
-    /// several parameters becomes a different sum for each number.
+    /// Substituting numbers into expressions before they become a program may make it shorter or longer:
+    /// the normal form multiplies them into sums, so a sum that is computed once in the free program and
+    /// multiplied by several parameters becomes a different sum for each number.
     ///
     /// ```
     /// use pc_expr::{Graph, Inputs, Program};

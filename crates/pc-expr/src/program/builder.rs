@@ -4,8 +4,8 @@ use rustc_hash::FxHashMap;
 
 use crate::program::program::{Instruction, Program, Register};
 
-/// A program on the way, whose registers are numbered as they come. The same operation on the same registers is one of them, and
-/// what constants alone determine is one too.
+/// A program being built, whose registers are numbered as they are created. The same operation on the same registers gives one
+/// register, and operations on constants give constants.
 #[derive(Default)]
 pub(super) struct Builder {
     values: Vec<Value>,
@@ -14,9 +14,9 @@ pub(super) struct Builder {
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Value {
-    /// By its bits.
+    /// A constant, by its bits.
     Constant(u64),
-    /// By its place among time, state and parameters.
+    /// An input, by its index among time, state and parameters.
     Input(usize),
     Result(Instruction),
 }
@@ -26,7 +26,7 @@ impl Builder {
         self.value(Value::Constant(value.to_bits()))
     }
 
-    /// The input in a place: time, state, parameters.
+    /// The input with an index: time, state, parameters.
     pub(super) fn input(&mut self, place: usize) -> Register {
         self.value(Value::Input(place))
     }

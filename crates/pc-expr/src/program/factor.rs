@@ -1,7 +1,7 @@
 //! Factors made of parameters, moved to where they cost nothing.
 //!
-//! Of ω̇ = −((C−B) ω₂ω₃ + mg (r₃γ₂ − r₂γ₃))/A the parameters determine −(C−B)/A, −mg r₃/A and mg r₂/A; with these for parameters, four
-//! operations are left of ten, and no division.
+//! In ω̇ = −((C−B) ω₂ω₃ + mg (r₃γ₂ − r₂γ₃))/A the parameters determine −(C−B)/A, −mg r₃/A and mg r₂/A; with these as parameters, four
+//! of ten operations remain, and no division.
 
 use rustc_hash::FxHashMap;
 
@@ -9,10 +9,11 @@ use crate::program::builder::Builder;
 use crate::program::program::{Instruction, Program, Register};
 
 impl Program {
-    /// This program in two, of which the first computes of the parameters what the second takes for its own.
+    /// This program divided into two: the first computes from the parameters the numbers that the second
+    /// takes as its parameters.
     ///
-    /// A factor that depends on parameters alone goes into the terms of a sum, if each of them has such a factor already, and what
-    /// is divided by one is multiplied by its inverse. So the outputs may differ by rounding from this program's.
+    /// A factor that depends on parameters alone goes into the terms of a sum, if each of them has such a factor already, and a
+    /// division by it becomes a multiplication by its inverse. So the outputs may differ by rounding from this program's.
     ///
     /// ```
     /// # use pc_expr::{Graph, Inputs, Program};
@@ -32,12 +33,12 @@ impl Program {
     }
 }
 
-/// What becomes of an instruction whose result depends on more than parameters; factors are registers of the first program.
+/// The new form of an instruction whose result depends on more than parameters; factors are registers of the first program.
 #[derive(Clone, Copy)]
 enum Plan {
-    /// The same operation on what has become of its operands.
+    /// The same operation on the new forms of its operands.
     Same,
-    /// The value of its operand, which takes the factor.
+    /// The value of its operand, which receives the factor.
     Operand(Register),
     /// A product with a factor.
     Scaled(Register, Register),
@@ -48,11 +49,11 @@ enum Plan {
 struct Factoring<'a> {
     program: &'a Program,
     first: Builder,
-    /// What is fixed, in the first program.
+    /// The fixed registers, in the first program.
     fixed: Vec<Option<Register>>,
-    /// Whether a factor changes a value without an operation more.
+    /// Whether a value can take a factor without a further operation.
     is_free: Vec<bool>,
-    /// The factor that each result is to have.
+    /// The factor that each result is to receive.
     asked: Vec<Option<Register>>,
 }
 
@@ -84,7 +85,7 @@ impl<'a> Factoring<'a> {
         Factoring { program, first, fixed, is_free, asked }
     }
 
-    /// What becomes of each instruction, found from the outputs back.
+    /// The new form of each instruction, found backwards from the outputs.
     fn plans(&mut self) -> Vec<Plan> {
         let first_result = self.program.first_result();
         let mut plans = vec![Plan::Same; self.program.code.len()];
@@ -96,7 +97,7 @@ impl<'a> Factoring<'a> {
         plans
     }
 
-    /// Of an instruction whose result is to have a factor.
+    /// The new form of an instruction whose result is to receive a factor.
     fn plan(&mut self, instruction: Instruction, factor: Option<Register>) -> Plan {
         let fixed = |r: Register| self.fixed[r.index()];
         match instruction {
@@ -125,7 +126,7 @@ impl<'a> Factoring<'a> {
         }
     }
 
-    /// Has operands take a factor; those that are fixed get it where they are read.
+    /// Gives a factor to the operands; fixed ones receive it where they are read.
     fn ask<const N: usize>(&mut self, operands: [Register; N], factor: Option<Register>) -> Plan {
         for operand in operands.map(Register::index) {
             if self.fixed[operand].is_none() && factor.is_some() {
@@ -160,13 +161,13 @@ impl<'a> Factoring<'a> {
     }
 }
 
-/// The second program on the way.
+/// The second program, being built.
 struct Rest<'a> {
     given: Factoring<'a>,
     second: Builder,
-    /// What has become of the registers that are not fixed.
+    /// The new forms of the registers that are not fixed.
     values: Vec<Register>,
-    /// What it takes for parameters: registers of the first, and their places.
+    /// Its parameters: registers of the first program, and their indices.
     numbers: Vec<Register>,
     places: FxHashMap<Register, usize>,
 }
@@ -182,7 +183,7 @@ impl<'a> Rest<'a> {
         Rest { given, second, values, numbers: Vec::new(), places: FxHashMap::default() }
     }
 
-    /// What becomes of the next instruction.
+    /// Adds the new form of the next instruction.
     fn made(&mut self, instruction: Instruction, plan: Plan) -> Register {
         let place = self.values.len();
         if self.given.fixed[place].is_some() {
@@ -211,7 +212,7 @@ impl<'a> Rest<'a> {
         }
     }
 
-    /// What has become of a register; of one that is fixed, times a factor.
+    /// The new form of a register; for a fixed one, times a factor.
     fn read(&mut self, register: Register, factor: Option<Register>) -> Register {
         match (self.given.fixed[register.index()], factor) {
             (None, _) => self.values[register.index()],

@@ -90,7 +90,7 @@ impl Program {
         self.without(&code, &absorbed)
     }
 
-    /// The program of the first outputs alone.
+    /// The program of only the first outputs.
     ///
     /// # Panics
     /// If there are fewer than `outputs`.

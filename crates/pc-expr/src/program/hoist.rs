@@ -1,16 +1,16 @@
-//! The part of a program that depends on parameters alone, as a program of its own.
+//! The part of a program that depends on parameters alone, as a separate program.
 
 use rustc_hash::FxHashMap;
 
 use crate::program::program::{Instruction, Program, Register};
 
-/// The least number of operations to save: reading their results takes time, too.
+/// The least number of operations to save, since reading their results also takes time.
 const WORTH_IT: usize = 4;
 
 impl Program {
-    /// This program in two: the first computes, from the parameters in the `fixed` places alone, values that
-    /// the second reads after its parameters; it runs only when these have changed. `None` if that saves next
-    /// to nothing.
+    /// This program divided into two: the first computes, from the `fixed` parameters alone, values that the
+    /// second reads after its parameters; it runs only when these have changed. `None` if that saves next to
+    /// nothing.
     ///
     /// ```
     /// # use pc_expr::{Graph, Inputs, Interpreter, Kernel, Program};
@@ -26,7 +26,7 @@ impl Program {
     /// ```
     ///
     /// # Panics
-    /// Unless `fixed` is as long as there are parameters.
+    /// Unless `fixed` has one entry per parameter.
     pub fn hoisted(&self, fixed: &[bool]) -> Option<(Program, Program)> {
         assert_eq!(fixed.len(), self.parameters, "one for each parameter");
         let (first_input, first_result) = (self.first_input(), self.first_result());

@@ -290,7 +290,7 @@ impl<'a> Lowering<'a> {
         sum.unwrap_or_else(|| self.constant(Number::ZERO))
     }
 
-    /// q·node, with q ≥ 0 if the node already contains its size.
+    /// q·node, where q ≥ 0 only gives the sign if the node already contains its size.
     fn scaled(&mut self, node: NodeId, q: Number) -> Register {
         let register = self.registers[&node];
         if q.is_one() || self.products.is_scaled(node) {

@@ -36,7 +36,7 @@ pub enum Instruction {
     NegateMultiplyAdd(Register, Register, Register),
     /// −a·b − c, likewise
     NegateMultiplySubtract(Register, Register, Register),
-    /// f(a, …), as many of the registers as f has arguments
+    /// f(a, …), with as many of the registers as f has arguments
     Call(Function, [Register; 3]),
 }
 

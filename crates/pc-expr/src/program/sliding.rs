@@ -3,8 +3,8 @@
 use crate::program::program::{Instruction, Program, Register};
 use crate::taylor::assembler::Assembler;
 
-/// The derivatives of the functions of surfaces: a program of the inputs of f, and for each of its outputs, as far as they
-/// matter, the number of the surface and the component of (t, y).
+/// The derivatives of the functions of surfaces: a program of the inputs of f, and for each of its relevant outputs the
+/// number of the surface and the component of (t, y).
 #[derive(Clone, Copy, Debug)]
 pub struct Normals<'a> {
     /// The derivatives.
@@ -15,8 +15,8 @@ pub struct Normals<'a> {
 
 impl Program {
     /// The program of the [motion that slides](crate::Sliding) along surfaces, from that of f, whose first outputs are
-    /// ẏ, one for each component of the state. The sides of the surfaces are the parameters at `sides`; f is taken for a
-    /// sum of what they change:
+    /// ẏ, one for each component of the state. The sides of the surfaces are the parameters at `sides`; f is assumed to
+    /// be a sum of the changes at them:
     /// ```text
     /// ẏ = f̄ + Σ_i σ_i D_i,   D_i = (f(all above) − f(i below))/2,   f̄ = f(all above) − Σ_i D_i,
     /// Σ_j (n_i D_j) σ_j = −(g_t + n_i f̄),   n_i = ∂g_i/∂y
@@ -40,7 +40,7 @@ impl Program {
     /// ```
     ///
     /// # Panics
-    /// If the programs do not have the same inputs, or a side is no parameter.
+    /// If the programs do not have the same inputs, or a side is not a parameter.
     pub fn sliding(&self, sides: &[usize], normals: Normals<'_>) -> Program {
         let inputs = (self.state, self.parameters);
         assert_eq!(inputs, (normals.program.state, normals.program.parameters), "the same inputs");

@@ -28,7 +28,7 @@ impl Program {
     /// ```
     ///
     /// # Panics
-    /// If there are fewer outputs than components, or a column is that of no parameter.
+    /// If there are fewer outputs than components, or a column belongs to no parameter.
     pub fn with_variation(&self, columns: &[Option<usize>]) -> Program {
         let (dim, parameters) = (self.state, self.parameters);
         assert!(self.outputs.len() >= dim, "a rate for each component");
@@ -68,7 +68,7 @@ struct Tangent<'a> {
     writer: &'a mut Assembler,
     /// Where the values of the registers are.
     values: &'a [Register],
-    /// The derivatives so far; none where they are 0.
+    /// The derivatives so far; none if they are 0.
     slopes: Vec<Option<Register>>,
 }
 

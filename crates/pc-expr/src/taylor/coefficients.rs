@@ -54,7 +54,7 @@ impl fmt::Debug for TaylorSeries {
 }
 
 impl Clone for TaylorSeries {
-    /// An independent one with the same code, for another thread.
+    /// An independent copy with the same code, for another thread.
     fn clone(&self) -> TaylorSeries {
         TaylorSeries::of(Arc::clone(&self.recurrences), self.zeroth.fork(), self.next.fork(), self.sum)
     }
@@ -193,8 +193,8 @@ impl TaylorSeries {
         &self.memory[self.begin..][..self.recurrences.watched]
     }
 
-    /// The time of an expansion to order p by machine code, in about nanoseconds: (a, b, c) of a + b p + c
-    /// p².
+    /// The time of an expansion to order p by machine code, roughly in nanoseconds: (a, b, c) of a + b p +
+    /// c p².
     pub fn cost(&self) -> [f64; 3] {
         let Recurrences { ref zeroth, ref next, sums, .. } = *self.recurrences;
         let vectors = (sums / LANES) as f64;

@@ -12,14 +12,15 @@ use crate::time_profile::interval::Interval;
 use crate::time_profile::jet::Jet;
 use crate::time_profile::motion::PolynomialMotion;
 
-/// The shortest interval that is resolved, as a part of the whole.
+/// The shortest interval that is resolved, as a fraction of the whole.
 const RESOLVED: f64 = 1e-14;
 /// The most intervals examined: enough for hundreds of roots.
 const MOST: usize = 4096;
-/// The most intervals of the shortest length in which a root is neither excluded nor single: a touch, or a function
-/// that is nothing but rounding.
+/// The most intervals of the shortest length in which a root is neither excluded nor single: where a function only
+/// touches zero, or is nothing but rounding.
 const VAGUE: usize = 64;
-/// Roots, by intervals that may have one, after which the search ends: who looks for the first does not need them all.
+/// The number of intervals with a possible root after which the search ends: a search for the first root does
+/// not need them all.
 const ENOUGH: usize = 32;
 
 /// Separates the roots of the outputs of a program along motions.
@@ -80,7 +81,7 @@ impl RootSeparation {
     /// Leaves out these outputs, and no others, from now on: their roots are not separated.
     ///
     /// # Panics
-    /// If there is no output of such a number.
+    /// If there is no output with such a number.
     pub fn leave_out(&mut self, outputs: impl IntoIterator<Item = usize>) {
         self.left_out.fill(false);
         outputs.into_iter().for_each(|output| self.left_out[output] = true);
@@ -92,8 +93,8 @@ impl RootSeparation {
     }
 
     /// Appends places s, in order from the first to the last of these, between which each output has at most one root along the motion. The
-    /// last of these is one, unless many roots lie before it: then the places end where the next ones begin. Returns whether the
-    /// roots are separated: not those of a function that touches zero, or is zero but for rounding.
+    /// last place is s = 1, unless many roots lie before it: then the places end where the next call begins. Returns whether the roots are
+    /// separated: not those of a function that touches zero, or is zero up to rounding.
     ///
     /// # Panics
     /// If the motion or the parameters are not those of the program.

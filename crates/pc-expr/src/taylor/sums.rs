@@ -1,6 +1,6 @@
 //! Sums of products of coefficients, computed in vectors.
 
-/// The sums in a vector; tables are a multiple of it wide.
+/// The number of sums in a vector; the width of tables is a multiple of it.
 pub(crate) const LANES: usize = 8;
 
 /// Coefficients of orders 1, 2, …: each order is a row that begins with the first factors of all sums,

@@ -44,7 +44,7 @@ impl Interval {
         Interval { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
-    /// 1, −1 or 0 if the whole interval has that sign, zero ends allowed.
+    /// 1, −1 or 0 if the whole interval has that sign; ends may be zero.
     pub(crate) fn sign(self) -> Option<i8> {
         match (self.lo >= 0.0, self.hi <= 0.0) {
             (true, true) => Some(0),
@@ -79,12 +79,12 @@ impl Interval {
         }
     }
 
-    /// The part that is not below `least`, at least a point.
+    /// The part that is not below `least`; at least a point.
     pub(crate) fn from(self, least: f64) -> Interval {
         Interval { lo: self.lo.max(least), hi: self.hi.max(least) }
     }
 
-    /// The part between two numbers, at least a point.
+    /// The part between two numbers; at least a point.
     pub(crate) fn within(self, least: f64, most: f64) -> Interval {
         Interval { lo: self.lo.clamp(least, most), hi: self.hi.clamp(least, most) }
     }
@@ -147,7 +147,7 @@ impl Interval {
     }
 }
 
-/// An interval by its computed ends; where one is NaN, as ∞ − ∞ is, the whole line.
+/// An interval by its computed ends; the whole line if one is NaN, such as ∞ − ∞.
 fn ends(lo: f64, hi: f64) -> Interval {
     Interval {
         lo: if lo.is_nan() { f64::NEG_INFINITY } else { lo },

@@ -11,7 +11,7 @@ const LONGEST: usize = 64;
 pub struct PolynomialMotion<'a> {
     /// t₀.
     pub start: f64,
-    /// c_0, then c_1, …, each as long as the state.
+    /// c_0, then c_1, …, each of the length of the state.
     pub coefficients: &'a [f64],
 }
 

@@ -10,9 +10,9 @@ use crate::program::program::{Instruction, Program, Register};
 pub(crate) struct Motion {
     /// Contains t.
     pub(crate) time: bool,
-    /// Contains components of the state.
+    /// It contains components of the state.
     pub(crate) state: bool,
-    /// Contains t other than in a linear function a t + b with fixed a and b.
+    /// It contains t other than in a linear function a t + b with fixed a and b.
     bent: bool,
 }
 
@@ -52,11 +52,11 @@ impl Watch {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Part {
     pub(crate) watched: Vec<Watch>,
-    /// Whether rises count as places, for functions that others multiply by what may vanish where they turn, and that
-    /// enclosures do not show to bend.
+    /// Whether rises count as places: they do for functions that are multiplied by factors which may vanish where
+    /// they turn, and that enclosures do not show to bend.
     pub(crate) shows_rises: bool,
     code: Vec<(usize, Instruction)>,
-    /// The watched functions that are attended to, and the registers that lead to them.
+    /// The functions that are currently watched, and the registers that lead to them.
     attended: Vec<bool>,
     needed: Vec<bool>,
     /// Jets of constants, time, state and parameters, followed by the results.
@@ -180,7 +180,7 @@ impl Part {
         }
     }
 
-    /// Encloses only these of the watched functions from now on; the others count as constants.
+    /// From now on encloses only these of the watched functions; the others count as constants.
     pub(crate) fn attend_to(&mut self, functions: &[bool]) {
         self.attended.clear();
         self.attended.extend_from_slice(functions);
@@ -217,7 +217,7 @@ impl Part {
         }
     }
 
-    /// What the watched functions are where the part was enclosed last.
+    /// The watched functions where the part was last enclosed.
     pub(crate) fn jets(&self) -> impl Iterator<Item = Jet> + '_ {
         self.watched.iter().zip(&self.attended).map(|(&watch, &is_attended)| match watch {
             _ if !is_attended => Jet::constant(0.0),
@@ -226,7 +226,7 @@ impl Part {
         })
     }
 
-    /// What a register is there.
+    /// The value of a register there.
     pub(crate) fn at(&self, register: usize) -> Jet {
         self.registers[register]
     }

@@ -9,23 +9,23 @@ use super::part::Part;
 
 /// The pieces of a window over which the range of a function is first estimated.
 const PIECES: u32 = 32;
-/// A function that is neither monotonic on a piece nor bends one way may vary there by this part of its range
-/// without closer examination.
+/// A function that is neither monotonic on a piece nor bends one way may vary there by this fraction of its
+/// range without closer examination.
 const FLAT: f64 = 1.0 / 64.0;
 /// The same for a function with one of the two properties: it has one turn or one inflection there.
 const TURN: f64 = 0.25;
-/// A rise or fall is a piece on which a monotonic function changes by at least this part of its range.
+/// A rise or fall is a piece on which a monotonic function changes by at least this fraction of its range.
 const RISE: f64 = 2.0 / PIECES as f64;
-/// Turns and inflections within this part of the range of the last one do not count.
+/// Turns and inflections within this fraction of the range from the last one do not count.
 const SWING: f64 = 1e-3;
 /// The rounding of a value, with a margin.
 const ROUNDING: f64 = 1e-12;
-/// The shortest piece, as a part of a window.
+/// The shortest piece, as a fraction of a window.
 const SHORTEST: f64 = 1e-13;
 /// The most evaluations in one query.
 const MOST: u32 = 20_000;
-/// With this many shortest pieces without a jump, the function turns faster than floating-point times
-/// resolve: finding a jump takes some forty evaluations.
+/// If this many of the shortest pieces contain no jump, the function turns faster than floating-point
+/// times resolve: finding a jump takes some forty evaluations.
 const NOISE: u32 = MOST / 4;
 
 /// A place where a function of time changes its behaviour.
@@ -44,22 +44,23 @@ pub(crate) enum Kind {
     Sharp,
     /// A local extremum.
     Turn,
-    /// An inflection; at its rate there the function crosses its range in this time.
+    /// An inflection; at its rate there, the function would cross its range in this time.
     Bend(f64),
-    /// A rise or fall, perhaps with an inflection; so steep the function crosses its range in this time.
+    /// A rise or fall, perhaps with an inflection; at its steepest, the function would cross its range in
+    /// this time.
     Rise(f64),
     /// A possible extremum or inflection.
     Unsure,
 }
 
 impl Kind {
-    /// The kind where rises are no places.
+    /// The kind if rises do not count as places.
     fn without_rises(self) -> Kind {
         if let Kind::Rise(_) = self { Kind::Unsure } else { self }
     }
 }
 
-/// What is known of one function so far.
+/// What is known about one function so far.
 #[derive(Clone, Debug)]
 struct Track {
     /// Its values over the window where they are finite, and how much it varies there.
@@ -98,8 +99,8 @@ impl Sign {
     }
 }
 
-/// The features of watched functions along a window, found as far as queried. Its buffers serve for later
-/// windows, too, as there is one at each step.
+/// The features of watched functions along a window, found as far as queried. Its buffers are reused for
+/// later windows, since there is one at each step.
 #[derive(Clone, Debug)]
 pub(crate) struct Scan {
     /// From where the features are kept.

@@ -2,7 +2,7 @@
 //!
 //! A barrier such as exp(−((x − a)/w)²) is invisible from afar, and 1/(1 + ((x − a)/w)²) nearly so: a motion that
 //! is carried over it in one step never feels it. Along the polynomial of a step such functions are enclosed by
-//! interval arithmetic [Moore 1966], as functions of time are. Most steps need one enclosure: it shows that the
+//! interval arithmetic [Moore 1966], like functions of time. Most steps need one enclosure: it shows that the
 //! function hardly changes, or that it has no plateau from which to rise. Fields without such functions need none.
 
 use super::interval::Interval;
@@ -18,10 +18,10 @@ use crate::program::program::{Instruction, Program, Register};
 const LONGEST: usize = 256;
 /// A function that is never 0 and changes by less than this factor hides nothing.
 const FACTOR: f64 = 10.0;
-/// Nor does one of the range from −1 to 1 that changes by less than this.
+/// Nor does a function with the range from −1 to 1 that changes by less than this.
 const CHANGE: f64 = 0.5;
 
-/// What shows that a function hides nothing in an interval.
+/// The evidence that a function hides nothing in an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
     /// It keeps its size, or only rises or falls: an exponential has no plateau.
@@ -31,7 +31,7 @@ enum Kind {
     Reciprocal { divisor: usize, least: f64 },
     /// It hardly changes.
     Bounded,
-    /// Nothing: of time and state.
+    /// There is no such evidence: a function of time and state.
     Moving,
 }
 
@@ -44,7 +44,7 @@ impl Kind {
         }
     }
 
-    /// Whether a function hides nothing where its jet is the given one, and registers are those of `part`.
+    /// Whether a function hides nothing if its jet is the given one, and registers are those of `part`.
     fn is_quiet(self, jet: &Jet, part: &Part) -> bool {
         let keeps_size = |Interval { lo, hi }| lo > 0.0 && hi < FACTOR * lo || hi < 0.0 && lo > FACTOR * hi;
         match self {
@@ -88,8 +88,8 @@ pub struct SteepFunctions {
 }
 
 impl SteepFunctions {
-    /// Those of rates computed by these programs, whose states begin with `dim` components of y, for these values of
-    /// the parameters; none if there are none.
+    /// The steep functions of rates computed by these programs, whose states begin with `dim` components of y, for
+    /// these values of the parameters; none if there are none.
     pub fn of(programs: &[&Program], dim: usize, parameters: &[f64]) -> Option<SteepFunctions> {
         let followed = |program: &&Program| Followed::of(program, dim, parameters);
         let parts: Vec<Followed> = programs.iter().filter_map(followed).collect();
@@ -106,19 +106,19 @@ impl SteepFunctions {
         !moving.is_empty() && !is_followed(&Part::new(program, &parameters, moving), dim)
     }
 
-    /// The same of times that are counted from `origin`.
+    /// The same for times that are counted from `origin`.
     #[must_use]
     pub fn since(self, origin: f64) -> SteepFunctions {
         SteepFunctions { origin: self.origin + origin, ..self }
     }
 
-    /// The same of states of `len` components that begin with those of y.
+    /// The same for states of `len` components that begin with those of y.
     #[must_use]
     pub fn in_states_of(self, len: usize) -> SteepFunctions {
         SteepFunctions { dim: len, ..self }
     }
 
-    /// Those of the first `len` components of the state alone; none if there are none.
+    /// Those that depend only on the first `len` components of the state; none if there are none.
     #[must_use]
     pub fn of_components(mut self, len: usize) -> Option<SteepFunctions> {
         self.parts.retain(|followed| followed.watched.part.reads_only(len));
@@ -135,7 +135,7 @@ impl SteepFunctions {
     /// The times between `t` and `to`, in order, at which values and rates at these two times may not show what a
     /// function does in between, along the motion.
     ///
-    /// Where there are thousands, the list ends at one of them; with `enough`, the remaining time is examined coarsely.
+    /// If there are thousands, the list ends at one of them; with `enough`, the remaining time is examined coarsely.
     pub fn surprises(
         &mut self,
         (t, to): (f64, f64),
@@ -173,7 +173,7 @@ impl SteepFunctions {
 struct Followed {
     watched: Watched,
     kinds: Vec<Kind>,
-    /// Which of them may hide something where they were looked at last.
+    /// Which of them may hide something where they were last examined.
     loud: Vec<bool>,
 }
 
@@ -237,8 +237,8 @@ fn changes_faster(instruction: &Instruction, motions: &[Motion]) -> bool {
     }
 }
 
-/// The kind of a function of the state whose values, whatever the state, are that far apart that it may have a peak
-/// between plateaus.
+/// The kind of a function of the state whose possible values are so far apart that it may have a peak between
+/// plateaus.
 fn kind(instruction: &Instruction, ranges: &[Interval]) -> Option<Kind> {
     let range = |register: Register| ranges[register.index()];
     // A divisor that is never 0 and may be much larger than its least value.

@@ -38,7 +38,7 @@ impl Surprises {
         (self.until, self.noise) = (None, false);
     }
 
-    /// Records what a scan finds.
+    /// Records the findings of a scan.
     pub(crate) fn add(
         &mut self,
         Watched { part, scan }: &mut Watched,
@@ -68,8 +68,8 @@ pub(crate) struct Watched {
     pub(crate) scan: Scan,
 }
 
-/// The features between `t` and `to` of each function that has a sharp one, rises or falls steeply, or turns
-/// without bending one way throughout.
+/// The features between `t` and `to` of each function that has a sharp feature, rises or falls steeply, or
+/// turns without bending one way throughout.
 fn choose<'a>(
     features: impl Iterator<Item = &'a Feature> + Clone,
     (t, to): (f64, f64),

@@ -7,15 +7,15 @@ use crate::error::MechError;
 use crate::numeric::singular_values::SingularValues;
 use crate::system::system::System;
 
-/// A part of the velocities this small is rounding: the motion is the same without it.
+/// A fraction of the velocities this small is rounding: the motion is the same without it.
 const AT_REST: f64 = 1e-9;
 
-/// The distance from either end of a step, as a part of it, at which the slope of the determinant is
-/// estimated.
+/// The distance from either end of a step, as a fraction of it, at which the slope of the
+/// determinant is estimated.
 const SLOPE: f64 = 1e-4;
 
-/// A determinant that falls to this part of its values at both ends of a step vanishes between them: a step
-/// that resolves the motion contains no such dip otherwise.
+/// A determinant that falls to this fraction of its values at both ends of a step vanishes between them: a
+/// step that resolves the motion contains no such dip otherwise.
 const VANISHES: f64 = 1e-6;
 
 /// The number of halvings or golden sections of a step: they end at about 1e-9 of it.
@@ -65,8 +65,8 @@ impl Chart {
         }
     }
 
-    /// The chart of a system whose quasi-velocities, all of them in their order, are changed by the matrix A:
-    /// it watches det A a where they are defined by ẋ, else det A.
+    /// The chart of a system whose quasi-velocities, all of them in order, are changed by the matrix A: it
+    /// watches det A a if they are defined by ẋ, else det A.
     ///
     /// # Errors
     /// [`MechError`] for a symbol without a value.
@@ -150,7 +150,7 @@ impl Chart {
         self.last.push(value);
     }
 
-    /// The determinant on the line from one end of a step to the other, at the part `s` of it.
+    /// The determinant on the line from one end of a step to the other, at the fraction `s` of it.
     fn along(&mut self, s: f64, from: (f64, &[f64]), to: (f64, &[f64]), parameters: &[f64]) -> f64 {
         let mut x = std::mem::take(&mut self.between);
         for (x, (a, b)) in x.iter_mut().zip(from.1.iter().zip(to.1)) {
@@ -198,7 +198,7 @@ impl Chart {
     }
 
     /// Whether a motion with these velocities, after such a passage, is at rest in the undetermined
-    /// direction: it then continues uniquely. False where the columns are not those of ẋ.
+    /// direction: it then continues uniquely. False if the columns are not those of ẋ.
     pub(crate) fn rests(
         &mut self,
         passage: Passage,

@@ -20,7 +20,7 @@ pub(crate) const LONGEST_ELIMINATION: usize = 16 * 15 * 20 / 6;
 impl<'g> Equations<'g> {
     /// Compiles the equations, their Jacobian and the observables: integrals, energy, outputs.
     ///
-    /// Accelerations are solved for in the program, unless there are many quasi-velocities of which most are
+    /// Accelerations are solved for in the program, unless there are many quasi-velocities, most of them
     /// coupled with each other: then M is factorised in numbers at each call.
     ///
     /// # Errors
@@ -77,7 +77,7 @@ impl FirstOrder<'_> {
         Ok(Motion { switches: switches.map(Box::new), ..motion })
     }
 
-    /// The same without what several pieces need.
+    /// The same without the parts for functions of several pieces.
     pub(crate) fn compile_piece(
         &self,
         options: &CompileOptions,

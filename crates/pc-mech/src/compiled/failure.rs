@@ -68,7 +68,7 @@ impl EvaluationFailure {
 /// Checks that all values are finite.
 ///
 /// # Errors
-/// [`EvaluationFailure::Expr`] for the first that is not on the way to them.
+/// [`EvaluationFailure::Expr`] for the first intermediate value that is not.
 pub(crate) fn check_finite(
     values: &[f64],
     evaluator: &Evaluator,

@@ -44,13 +44,13 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) rank: usize,
     /// M, k × k; without entries for a tree, which is eliminated joint after joint.
     pub(crate) mass: Matrix<Expr<'g>>,
-    /// M w = r of a tree, where M and r are not written out.
+    /// M w = r of a tree, if M and r are not written out.
     pub(crate) tree: Option<Rc<TreeEquations<'g>>>,
-    /// p, if it is not M w.
+    /// p, if it differs from M w.
     pub(crate) implicit: Option<Implicit<'g>>,
     /// r, in t and y.
     pub(crate) right: Vec<Expr<'g>>,
-    /// g, in t, y and w, as long as the state.
+    /// g, in t, y and w, one per component of the state.
     pub(crate) rates: Vec<Expr<'g>>,
     /// Symbols by whose powers the unknowns are collected.
     pub(crate) collected_by: Vec<Expr<'g>>,
@@ -180,13 +180,13 @@ impl<'g> Equations<'g> {
     }
 
     /// Inverse dynamics: the generalised forces that have to be added to Q for accelerations η̇, whose
-    /// [symbols](crate::System::accelerations) they contain, M η̇ − r; length k. Of a large tree from body to
-    /// body, in O(N).
+    /// [symbols](crate::System::accelerations) they contain, M η̇ − r; length k. For a large tree it is
+    /// computed from body to body, in O(N).
     pub fn inverse_dynamics(&self) -> Vec<Expr<'g>> {
         self.written_first_order().balance().into_iter().map(|left| -left).collect()
     }
 
-    /// The system, for a tree solved joint after joint if that takes fewer operations.
+    /// The system; that of a tree is solved joint after joint if that takes fewer operations.
     pub(crate) fn shortest_first_order(&self, elimination: TreeElimination) -> FirstOrder<'g> {
         let Some(tree) = self.system.tree.as_ref().filter(|_| elimination != TreeElimination::Whole) else {
             return self.first_order();
@@ -302,8 +302,8 @@ impl<'a, 'g> Linearised<'a, 'g> {
         })
     }
 
-    /// The nonzero components of ẏ′ with their places when each symbol of `direction` changes at the rate
-    /// beside it.
+    /// The nonzero components of ẏ′ with their places when each symbol of `direction` changes at the
+    /// given rate.
     fn nonzero_along(&self, direction: &[(Expr<'g>, Expr<'g>)]) -> SparseColumn<'g> {
         let graph = self.graph;
         // Along the full state every row changes.
@@ -338,7 +338,7 @@ impl<'a, 'g> Linearised<'a, 'g> {
         rates.into_iter().map(total).filter(|(_, total)| !total.is_zero()).collect()
     }
 
-    /// ẏ′ when each symbol of `direction` changes at the rate beside it.
+    /// ẏ′ when each symbol of `direction` changes at the given rate.
     pub(crate) fn along(&self, direction: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
         let mut all = vec![Expr::ZERO; self.coupling.len()];
         self.nonzero_along(direction).into_iter().for_each(|(place, rate)| all[place] = rate);

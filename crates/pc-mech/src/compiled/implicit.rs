@@ -11,7 +11,7 @@ use crate::compiled::point::Point;
 const MOST_STEPS: usize = 200;
 /// The most halvings of a step before the iteration ends.
 const HALVINGS: i32 = 60;
-/// A residual this small against its terms is accepted as a solution.
+/// A residual this small relative to its terms is accepted as a solution.
 const ENOUGH: f64 = 1e-12;
 /// A residual this small consists of a few roundings, which no step can reduce.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -27,8 +27,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// So |F| falls, w stays in the domain of p, and p approaches r on a nearly straight line, which keeps w away
 /// from the boundary of the domain until the end.
 ///
-/// Every solution starts from the same guess, so that w depends on (t, y) only, to the last bit; only where
-/// that fails, from the last solution.
+/// Every solution starts from the same guess, so that w depends on (t, y) only, to the last bit; only if
+/// that fails, it starts from the last solution.
 #[derive(Clone, Debug)]
 pub(crate) struct Newton {
     /// From (t, (y, w)): the nonzero entries of the lower triangle of M, then p, then r.

@@ -140,8 +140,8 @@ impl InMomenta {
         &mut self.inner
     }
 
-    /// The time dependence through functions of t alone: that of the motion of (x, η) refers to other
-    /// variables.
+    /// The time dependence through functions of t alone: the other time dependence of the motion of
+    /// (x, η) refers to other variables.
     pub(crate) fn time_dependence(&self) -> TimeDependence {
         match self.inner.time_dependence() {
             TimeDependence::Known(profile) => TimeDependence::Known(profile).with_unknown(),
@@ -176,7 +176,7 @@ impl InMomenta {
     }
 
     /// The observables, not finite where momenta determine no quasi-velocities; without accelerations unless
-    /// these are `solved` for.
+    /// `solved`.
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
         match self.read(t, y) {
             Ok(()) => self.inner.watch(t, &self.state, values, solved),

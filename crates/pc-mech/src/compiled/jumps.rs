@@ -6,8 +6,9 @@ use pc_expr::{Expr, ExprError, RateJump};
 use crate::compiled::first_order::FirstOrder;
 
 impl<'g> FirstOrder<'g> {
-    /// The [jumps](discontinuities) of r − M w or r − p and of the rates g that the state or the time passes. A state
-    /// whose rate is zero changes by events alone, which have their own rule, and passes none.
+    /// The [jumps](discontinuities) of r − M w or r − p and of the rates g through which the state or the time
+    /// passes. A state whose rate is zero changes by events alone, which have their own rule, and passes through
+    /// none.
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`] for a symbol that is neither state nor declared parameter.
@@ -35,14 +36,14 @@ impl<'g> FirstOrder<'g> {
         Ok(found.into_iter().map(rate_jump).collect())
     }
 
-    /// What changes along a motion by its rates.
+    /// The variables that change along a motion by its rates.
     fn moving(&self) -> Vec<Expr<'g>> {
         let flowing = self.state.iter().zip(&self.rates).filter(|(_, rate)| !rate.is_zero());
         // In momenta, velocities are unknowns: functions of the state that change along the motion.
         flowing.map(|(&symbol, _)| symbol).chain(self.unknowns.iter().copied()).collect()
     }
 
-    /// What changes along a motion.
+    /// The variables that change along a motion.
     pub(crate) fn passing(&self) -> Vec<Expr<'g>> {
         [&[self.time], &self.varying[..], &self.moving()[..]].concat()
     }

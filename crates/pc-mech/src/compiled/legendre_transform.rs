@@ -168,8 +168,8 @@ impl LegendreTransform {
     }
 
     /// The conversion for `system`, whose momenta are called `momenta`; η are the first unknowns of
-    /// `equations`, which are in (t, x, y). If these are not linear, η is the solution next to that of the
-    /// linear equations `nearby`.
+    /// `equations`, which are in (t, x, y). If these are not linear, η is the solution nearest to that of
+    /// the linear equations `nearby`.
     ///
     /// # Errors
     /// As [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
@@ -207,8 +207,8 @@ impl LegendreTransform {
         })
     }
 
-    /// Replaces each of the columns, as long as the equations of η, by the solution with the matrix M =
-    /// ∂²L/∂η∂η, bordered by the constraints if there are any, at the last state converted into
+    /// Replaces each of the columns, with one entry per equation of η, by the solution with the matrix
+    /// M = ∂²L/∂η∂η, bordered by the constraints if there are any, at the last state converted into
     /// quasi-velocities. Closed expressions have no such matrix.
     pub(crate) fn solve_last(&mut self, columns: &mut [f64]) {
         match &mut self.quasi_velocities {
@@ -223,7 +223,7 @@ impl LegendreTransform {
         &mut self.parameters
     }
 
-    /// (x, y) of the state (x, η), length n + k both; first-order states follow and stay.
+    /// (x, y) of the state (x, η), length n + k both; first-order states follow unchanged.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError); [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
@@ -246,14 +246,14 @@ impl LegendreTransform {
             .map_err(|failure| self.error(failure, t, state))
     }
 
-    /// (x, η) of the state (x, y), length n + k both; first-order states follow and stay. Where L is not
-    /// quadratic, Newton's method finds it from the [guess](crate::Canonical::with_guess).
+    /// (x, η) of the state (x, y), length n + k both; first-order states follow unchanged. Where L is
+    /// not quadratic, Newton's method finds it from the [guess](crate::Canonical::with_guess).
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError);
     /// [`EvaluationError::LegendreNotSolved`](crate::EvaluationError::LegendreNotSolved),
     /// [`EvaluationError::SingularMassMatrix`](crate::EvaluationError::SingularMassMatrix) or
-    /// [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) where no η is found.
+    /// [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) if no η is found.
     pub fn to_quasi_velocities(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut result = state.to_vec();
         self.to_quasi_velocities_in(t, state, &mut result)?;

@@ -8,11 +8,10 @@ use crate::compiled::elimination::pivots::PivotPartition;
 
 /// The machine code of f, for callers that manage memory themselves, and the meaning of its outputs.
 ///
-/// [`entry`](MachineCode::entry) writes ẏ, then the pivots of M and the numbers they are compared with, as
-/// far as these change with the state. Its parameters are the
-/// [`code_parameters`](crate::Motion::code_parameters): their values and results that depend on them alone.
-/// [`is_regular`](MachineCode::is_regular) decides whether ẏ can be trusted. Valid as long as the motion it
-/// came from, or a clone made since.
+/// [`entry`](MachineCode::entry) writes ẏ, then the pivots of M and the numbers they are compared with, if
+/// they change with the state. Its parameters are the [`code_parameters`](crate::Motion::code_parameters):
+/// their values and results that depend on them alone. [`is_regular`](MachineCode::is_regular) decides
+/// whether ẏ can be trusted. Valid as long as the motion it came from, or a clone made since.
 #[derive(Clone, Debug)]
 pub struct MachineCode {
     entry: Entry,

@@ -5,7 +5,8 @@ use pc_expr::Pattern;
 use crate::compiled::elimination::dense_ldl::DenseLdl;
 use crate::compiled::failure::EvaluationFailure;
 
-/// The factors of a symmetric matrix, M = L D Lᵀ, with pivoting where that meets a vanishing minor of a regular M.
+/// The factors of a symmetric matrix, M = L D Lᵀ, with pivoting if elimination meets a vanishing minor of a
+/// regular M.
 ///
 /// ```
 /// let mut factors = pc_mech::MassFactors::new(2);
@@ -27,7 +28,7 @@ pub struct MassFactors {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the matrix is singular: its pivot number {index} (from 0) is {pivot}")]
 pub struct SingularMatrix {
-    /// The row of the pivot that vanishes; the first that is not finite where one is.
+    /// The row of the pivot that vanishes, or of the first entry that is not finite.
     pub index: usize,
     /// The pivot.
     pub pivot: f64,

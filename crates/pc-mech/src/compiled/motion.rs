@@ -45,9 +45,9 @@ pub struct Motion {
     pub(super) signals: Signals,
     /// The conditions under which the state determines velocities.
     pub(super) charts: Vec<Chart>,
-    /// How far the constraints are from losing rank, and the motion across such a place.
+    /// How far the constraints are from losing rank, and the motion across a place where they do.
     pub(super) watch: Watch,
-    /// Where f jumps, if it has derivatives.
+    /// Where f jumps, if derivatives were compiled.
     pub(super) jumps: Vec<RateJump>,
     /// f on one side of each surface, if it has several pieces.
     pub(super) switches: Option<Box<Switches>>,
@@ -78,7 +78,7 @@ pub(crate) struct InMomenta {
     pub(super) quasi_velocities: usize,
     /// ẏ from (t, (x, η, z, η̇)).
     pub(super) transport: Evaluator,
-    /// The derivatives by x and z and, if they are compiled, by the parameters and by t.
+    /// The derivatives with respect to x and z and, if compiled, to the parameters and t.
     pub(super) jacobian: Option<Slopes>,
     pub(super) parameter_jacobian: Option<Slopes>,
     pub(super) time_derivative: Option<Slopes>,
@@ -93,8 +93,8 @@ pub(crate) struct InMomenta {
     pub(super) of_inner: Vec<f64>,
 }
 
-/// Derivatives by symbols q from (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q and (−∂p/∂q, ∂g/∂q) one after the
-/// other; then those of ∂ẏ/∂η and of M.
+/// Derivatives with respect to symbols q from (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q and (−∂p/∂q, ∂g/∂q)
+/// one after the other; then those of ∂ẏ/∂η and of M.
 #[derive(Clone, Debug)]
 pub(super) struct Slopes {
     pub(super) symbols: usize,
@@ -267,8 +267,8 @@ impl Motion {
         self.watch(t, y, values, true);
     }
 
-    /// The observables of the equations as they stand, also where the motion slides along a surface: on the side of the
-    /// signs that y has there, be it by rounding.
+    /// The observables of the equations as they stand, even where the motion slides along a surface: on the side given
+    /// by the signs at y, which may be due to rounding.
     ///
     /// # Panics
     /// As [`observe`](Motion::observe).
@@ -278,8 +278,8 @@ impl Motion {
         values
     }
 
-    /// Writes the observables; without accelerations unless these are to be `solved` for: those that contain
-    /// one are then not finite.
+    /// Writes the observables; without accelerations unless `solved`: those that contain one are then not
+    /// finite.
     pub(crate) fn watch(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         assert_eq!(values.len(), self.observable_names.len(), "number of observables");
@@ -307,8 +307,8 @@ impl Motion {
         }
     }
 
-    /// The motion of a system that does not [lead](VectorField::leads) past a place where velocities and the
-    /// quasi-velocities defined by them do not determine each other.
+    /// The motion of a system. It does not [lead](VectorField::leads) past a place where velocities and the
+    /// quasi-velocities defined by them no longer determine each other.
     ///
     /// # Errors
     /// [`MechError`] if the frame contains a symbol that is neither a coordinate nor a parameter.
@@ -316,8 +316,8 @@ impl Motion {
         Ok(Motion { charts: Chart::of(system)?.into_iter().collect(), ..self })
     }
 
-    /// The motion in other quasi-velocities η' = A η + A_0, with A for all those of the system in their order;
-    /// nor does it lead past a place where η' do not determine η.
+    /// The motion in other quasi-velocities η' = A η + A_0, with A for all those of the system in order; it
+    /// also does not lead past a place where η' do not determine η.
     ///
     /// # Errors
     /// As there.
@@ -329,8 +329,8 @@ impl Motion {
         Ok(Motion { charts: Chart::of_change(system, change)?.into_iter().collect(), ..self })
     }
 
-    /// The motion in independent quasi-velocities of a system; nor does it lead past a place where this square
-    /// matrix, by which constraints determine the others, is singular.
+    /// The motion in independent quasi-velocities of a system; it also does not lead past a place where this
+    /// square matrix, by which constraints determine the others, is singular.
     ///
     /// # Errors
     /// As there.
@@ -382,7 +382,7 @@ impl Motion {
         }
     }
 
-    /// The motion with accelerations and reactions by `schur`, if that takes fewer operations or is chosen.
+    /// The motion with accelerations and reactions from `schur`, if that takes fewer operations or is chosen.
     pub(crate) fn by_joints(mut self, schur: Schur) -> Motion {
         self.form = match self.form {
             Form::Staged(staged)
@@ -431,8 +431,8 @@ impl Motion {
     }
 
     /// Operations of one evaluation of the right-hand side, kinematics included; without those of the
-    /// factorisation where M is factorised in numbers, and with those of one iteration where y = ∂L/∂η is solved
-    /// for η by Newton's method.
+    /// factorisation if M is factorised in numbers, and with those of one iteration if y = ∂L/∂η is solved for η
+    /// by Newton's method.
     pub fn cost(&self) -> Cost {
         match &self.form {
             Form::Unrolled(unrolled) => unrolled.cost(self.names.len()),
@@ -441,7 +441,7 @@ impl Motion {
         }
     }
 
-    /// The machine code of f; none where f is more than one program of (t, y, p), reads tables, or is interpreted.
+    /// The machine code of f; none if f is more than one program of (t, y, p), reads tables, or is interpreted.
     pub fn machine_code(&mut self) -> Option<MachineCode> {
         match &mut self.form {
             Form::Unrolled(unrolled) if self.signals.is_empty() => unrolled.machine_code(self.names.len()),
@@ -459,7 +459,7 @@ impl Motion {
     }
 
     /// The pivots of M that do not depend on the state, for the current parameters, as [`MachineCode::is_regular`]
-    /// takes them. None where M is factorised in numbers.
+    /// takes them. None if M is factorised in numbers.
     pub fn fixed_pivots(&mut self) -> Option<&[f64]> {
         match &mut self.form {
             Form::Unrolled(unrolled) => Some(unrolled.fixed_pivots(self.names.len(), &self.parameters)),

@@ -1,4 +1,4 @@
-//! How far a state is off the constraints, and how it is moved there.
+//! How far a state is off the constraints, and how it is moved onto them.
 
 use pc_expr::Failure;
 
@@ -40,7 +40,7 @@ impl Motion {
     }
 
     /// Moves a state to the constraints alone, with the coordinates and the quasi-velocities of these indices
-    /// left as they are: the others follow by the shortest way in the kinetic metric.
+    /// left as they are: the others follow by the shortest path in the kinetic metric.
     ///
     /// # Errors
     /// A [`Failure`] where no such state exists, or the other components cannot reach it.
@@ -72,8 +72,8 @@ impl Motion {
     }
 
     /// Moves the η of a state onto the constraints, and leaves its x as they are. The quasi-velocities of the indices
-    /// `held` change only as far as the constraints on them alone demand, the others then follow, both by the shortest
-    /// way in the kinetic metric.
+    /// `held` change only as far as the constraints on them alone demand; the others then follow, both by the shortest
+    /// path in the kinetic metric.
     ///
     /// # Errors
     /// A [`Failure`] where no such velocities are found.

@@ -2,7 +2,7 @@
 
 use pc_expr::Backend;
 
-/// The parts to compile besides the right-hand side, and for which kernel. Each derivative takes time to
+/// The parts to compile besides the right-hand side, and the kernel. Each derivative takes time to
 /// derive, above all the Jacobian of a large system.
 ///
 /// ```
@@ -33,8 +33,8 @@ pub struct CompileOptions {
     pub(crate) elimination: TreeElimination,
 }
 
-/// The method that solves for accelerations of [bodies joined by joints](crate::Tree). The numbers are the same but
-/// for rounding.
+/// The method that solves for accelerations of [bodies joined by joints](crate::Tree). The numbers are the same up
+/// to rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TreeElimination {
     /// By joints if that takes fewer operations, as for all large trees.
@@ -74,19 +74,19 @@ impl CompileOptions {
         CompileOptions { backend, ..self }
     }
 
-    /// Whether to have ∂f/∂y, which Newton iterations of implicit methods need.
+    /// Compile ∂f/∂y, which Newton iterations of implicit methods need.
     #[must_use]
     pub fn jacobian(self, jacobian: bool) -> CompileOptions {
         CompileOptions { jacobian, ..self }
     }
 
-    /// Whether to have products (∂f/∂y) v, which take about as long as f itself.
+    /// Compile products (∂f/∂y) v, which take about as long as f itself.
     #[must_use]
     pub fn jvp(self, jvp: bool) -> CompileOptions {
         CompileOptions { jvp, ..self }
     }
 
-    /// Whether to have ∂f/∂p for the parameters p.
+    /// Compile ∂f/∂p for the parameters p.
     #[must_use]
     pub fn parameter_jacobian(self, parameter_jacobian: bool) -> CompileOptions {
         CompileOptions { parameter_jacobian, ..self }
@@ -98,7 +98,8 @@ impl CompileOptions {
         CompileOptions { elimination, ..self }
     }
 
-    /// Whether to have ∂f/∂t, which Rosenbrock's methods take; under constraints in momenta with the Jacobian only.
+    /// Compile ∂f/∂t, which Rosenbrock's methods need; under constraints in momenta only together with the
+    /// Jacobian.
     #[must_use]
     pub fn time_derivative(self, time_derivative: bool) -> CompileOptions {
         CompileOptions { time_derivative, ..self }

@@ -2,7 +2,7 @@
 
 /// Time t, state y and parameters p: the arguments of every program of a motion.
 ///
-/// To some programs y is the state with the unknowns behind it.
+/// For some programs y is the state followed by the unknowns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Point<'a> {
     pub(crate) t: f64,

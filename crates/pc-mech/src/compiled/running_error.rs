@@ -1,7 +1,7 @@
 //! Bounds of the rounding errors of functions.
 //!
-//! The bound is an expression, compiled with its function, as a projection compares with it at each state of
-//! a motion; a numerical weight, which identifies zeros at a few points of a derivation, is in
+//! The bound is an expression, compiled with its function, because a projection compares with it at each
+//! state of a motion; a numerical weight, which identifies zeros at a few points of a derivation, is in
 //! `pc-expr/src/identity/running_error.rs`.
 
 use std::ops::{Add, Mul, Neg};
@@ -21,7 +21,7 @@ const UNIT: f64 = 2.0 * f64::EPSILON;
 const TINY: f64 = 1e-300;
 
 /// The threshold of numbers with fewer digits, whose spacing is constant, in the units of errors. It is
-/// fourfold, as factors of so small a number round again.
+/// fourfold, since factors of so small a number round again.
 const SPACING: f64 = 4.0 * f64::MIN_POSITIVE;
 
 /// Functions with bounds of their rounding errors, compiled.
@@ -82,7 +82,7 @@ impl Measured {
         &self.values[..self.values.len() / 2]
     }
 
-    /// A bound of the rounding error of the function number `place`; not finite where a part of it has no
+    /// A bound of the rounding error of the function number `place`; not finite if a part of it has no
     /// derivative.
     pub(crate) fn error(&self, place: usize) -> f64 {
         UNIT * self.values[self.values.len() / 2 + place]

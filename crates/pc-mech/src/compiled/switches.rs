@@ -17,14 +17,14 @@ use crate::system::signals::Signals;
 
 /// Motions with more surfaces are not held.
 const MOST: usize = 256;
-/// Relative difference of rates above which they are not a sum of what surfaces change.
+/// Relative difference above which rates are not a sum of the changes at surfaces.
 const ADDS_UP: f64 = 1e-9;
-/// A surface that is reached within this part of the time is reached.
+/// A surface that will be reached within this fraction of the time counts as reached.
 const AT_ONCE: f64 = 1e-9;
 
 impl<'g> FirstOrder<'g> {
-    /// The motion held on its pieces; none if it has a single one, or if a surface contains unknowns that are solved for
-    /// in numbers.
+    /// The motion held on its pieces; none if it has a single piece, or if a surface contains unknowns that are solved
+    /// for in numbers.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -88,7 +88,7 @@ impl<'g> FirstOrder<'g> {
     }
 }
 
-/// The functions of surfaces, with the signs of those before them in place of sides.
+/// The functions of surfaces, with the signs of the preceding functions in place of sides.
 fn written_out<'g>(graph: &'g Graph, surfaces: &[Surface<'g>]) -> Vec<String> {
     let mut signs: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
     let written = surfaces.iter().map(|surface| {
@@ -100,8 +100,8 @@ fn written_out<'g>(graph: &'g Graph, surfaces: &[Surface<'g>]) -> Vec<String> {
 }
 
 impl<'g> FirstOrder<'g> {
-    /// The motion of a system on sides, for sides between −1 and 1, with the observables of this one; none if they change
-    /// with neither sides nor what is solved for.
+    /// The motion of a system on sides between −1 and 1, with the observables of this one; none if these depend neither
+    /// on sides nor on solved unknowns.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -199,11 +199,12 @@ impl Switches {
         self.sides.as_ref().filter(|sides| sides.contains(&0.0)).cloned()
     }
 
-    /// Writes the observables where the motion slides along a surface at (t, y); false where it does not, or where none of
+    /// Writes the observables where the motion slides along a surface at (t, y); false if it does not, or where none of
     /// them changes from one side to the other.
     ///
-    /// They are those of Filippov's combination: of a body that friction holds, no acceleration, and the friction that
-    /// holds it. It slides if f leads back to the surface from both sides, and reaches it in a time that is rounding.
+    /// They are those of Filippov's combination: for a body held by friction, no acceleration, and the friction that
+    /// holds it. It slides if f leads back to the surface from both sides and reaches it within a time at the level
+    /// of rounding.
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> bool {
         if self.observing.is_none() {
             return false;
@@ -353,7 +354,7 @@ impl Switches {
         self.motion.expand(t, y, &[], order)
     }
 
-    /// The series of the motion on the sides held, with its derivatives by `columns`.
+    /// The series of the motion on the sides held, with its derivatives with respect to `columns`.
     ///
     /// # Errors
     /// As [`Motion::expand_varied`](VectorField::expand_varied).
@@ -371,7 +372,7 @@ impl Switches {
         self.motion.expand_varied(columns, t, all, &[], order)
     }
 
-    /// Takes the sides of the signs of the functions, unless f is held.
+    /// Takes the sides from the signs of the functions, unless f is held.
     fn take_sides(&mut self, t: f64, y: &[f64]) {
         if self.sides.is_some() {
             return;
@@ -385,10 +386,11 @@ impl Switches {
         }
     }
 
-    /// The series of the motion along the surfaces whose sides are 0, with its derivatives by `columns`.
+    /// The series of the motion along the surfaces whose sides are 0, with its derivatives with respect to
+    /// `columns`.
     ///
     /// # Errors
-    /// As [`Sliding::of`], and where f is not a sum of what these surfaces change.
+    /// As [`Sliding::of`]; also if f is not a sum of the changes at these surfaces.
     fn expand_sliding(
         &mut self,
         sides: &[f64],
@@ -424,7 +426,7 @@ impl Switches {
         Ok(series)
     }
 
-    /// The program of the motion along surfaces, out of so many; none if that of f is not one.
+    /// The program of the motion along some of this many surfaces; none if f is not a program.
     fn program_along(&self, surfaces: &[usize], len: usize) -> Option<Program> {
         let program = self.motion.program_of_rates()?;
         let (dim, first) = (program.state_len(), self.motion.parameters.len() - len);

@@ -12,12 +12,12 @@ use crate::compiled::motion::{Form, Motion, Switches};
 use crate::compiled::point::Point;
 use crate::error::{EvaluationError, FrameError, MechError};
 
-/// The square of a long step takes this often to be a rounding.
+/// The most repetitions of a projection: after this many, even a long step has shrunk to rounding.
 const MOST_RETURNS: usize = 4;
 
 impl Motion {
-    /// Projects to unit quaternions, then to the constraints by the shortest way in the kinetic metric, then along them
-    /// to the integrals.
+    /// Projects to unit quaternions, then to the constraints by the shortest path in the kinetic metric, then along
+    /// them to the integrals.
     pub(super) fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.quaternions.normalise(y);
         if let Some(surface) = &mut self.surface {
@@ -358,7 +358,8 @@ impl VectorField for Motion {
     }
 }
 
-/// Whether a held motion has answered: where it has no value beyond a surface, the motion on the other side may have one.
+/// Whether a held motion has given a value: beyond a surface it may have none, but the motion on the other
+/// side may have one.
 fn is_written(outcome: &Result<(), Failure>) -> bool {
     outcome.as_ref().err().is_none_or(|failure| !failure.is_recoverable())
 }
@@ -415,7 +416,7 @@ impl Motion {
 }
 
 impl Motion {
-    /// ∂f/∂t, as long as the state; of inputs that tables give as the parameters they are.
+    /// ∂f/∂t, one number per component; inputs given by tables count as constant parameters.
     ///
     /// # Errors
     /// As [`rhs`](VectorField::rhs), and where it was not [compiled](crate::CompileOptions::time_derivative).
@@ -430,10 +431,10 @@ impl Motion {
         outcome.map_err(|failure| self.failure(failure, t, y))
     }
 
-    /// ẏ = f(t, y), as long as the state.
+    /// ẏ = f(t, y), one number per component.
     ///
     /// # Errors
-    /// Where f is not defined, as [`rhs`](VectorField::rhs).
+    /// As for [`rhs`](VectorField::rhs), if f is not defined there.
     pub fn rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut rates = vec![0.0; y.len()];
         self.rhs(t, y, &mut rates)?;

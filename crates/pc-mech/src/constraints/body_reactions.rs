@@ -29,8 +29,8 @@ impl<'g> BodyReaction<'g> {
         self.turns
     }
 
-    /// The force λ_α f_α of the constraint of that index, with the symbol λ_α, in terms of (t, x, η); as long as the
-    /// position. None if it is not determined.
+    /// The force λ_α f_α of the constraint of that index, with the symbol λ_α, in terms of (t, x, η), with the
+    /// length of the position. None if it is not determined.
     pub fn force(&self, constraint: usize) -> Option<&[Expr<'g>]> {
         self.forces.as_ref()?.get(constraint).map(Vec::as_slice)
     }
@@ -42,7 +42,7 @@ impl<'g> BodyReaction<'g> {
 }
 
 impl<'g> System<'g> {
-    /// The bodies of which it was built, in order, with their velocities.
+    /// The bodies from which it was built, in order, with their velocities.
     pub fn bodies(&self) -> &[BodyVelocity<'g>] {
         &self.bodies.list
     }
@@ -56,10 +56,10 @@ impl<'g> Multipliers<'g> {
     /// The force on a body is determined by this if ṙ can be varied independently of the velocities of all
     /// other bodies, of its own ω, and of other velocities in the kinetic energy: if the rank of all these
     /// derivatives is that of ∂ṙ/∂η plus that of the others. It is determined up to a part normal to all ṙ
-    /// that the coordinates allow, which is left out: that part belongs to the supports behind the
+    /// that the coordinates allow; this part is left out, since it belongs to the supports implied by the
     /// coordinates. The same holds for torques, with ω.
     ///
-    /// Where the choice of coordinates ties velocities together, as the angle of a rod does for two masses on
+    /// If the choice of coordinates ties velocities together, as the angle of a rod does for two masses on
     /// it, the forces between them are not reactions of constraints, and share the load in a way that virtual
     /// work leaves undetermined.
     ///
@@ -132,7 +132,7 @@ impl<'a, 'g> Velocities<'a, 'g> {
         rank(&self.blocks.concat()) == rank(&self.blocks[b]) + rank(&others)
     }
 
-    /// z_α with J z_α the least forces J F_α = C_α: (JᵀJ) z_α = C_α, J all blocks. None if they do not determine
+    /// z_α with (JᵀJ) z_α = C_α, J being all blocks: J z_α are the least forces. None if they do not determine
     /// all velocities.
     fn of_reactions(&self, coefficients: &Matrix<Expr<'g>>) -> Option<Vec<Vec<Expr<'g>>>> {
         let (graph, rows, k) = (self.graph(), self.blocks.concat(), coefficients.columns());

@@ -7,17 +7,17 @@ use crate::constraints::multipliers::Multipliers;
 use crate::equations::poincare::Equations;
 use crate::error::{ConstraintError, MechError};
 
-/// Up to this many choices are compared by their equations.
+/// At most this many choices are compared by their equations.
 const MOST_TRIED: usize = 20;
 /// Equations are compared only for at most this many constraints and a Lagrangian of at most this many
 /// operations.
 const MOST_SOLVED: usize = 3;
 const LONGEST_TRIED: u32 = 1000;
-/// A choice is regular if its determinant, in the kinetic metric, is at least this part of the largest: the motion
-/// then stays away from singular equations for a while.
+/// A choice is regular if its determinant, in the kinetic metric, is at least this fraction of the largest: the
+/// motion then stays away from singular equations for a while.
 const REGULAR: f64 = 0.5;
-/// The part of the largest pivot that the shortest one may have: equations lose a digit by it. (Few choices
-/// are derived for a second reason: forms made earlier in a graph influence later ones.)
+/// The shortest pivot must be at least this fraction of the largest: equations may lose a digit. (There is
+/// a second reason to derive few choices: forms made earlier in a graph influence later ones.)
 const PIVOT: f64 = 0.1;
 
 /// C at a state, its rows scaled to length one and its columns divided by the roots of the masses,
@@ -31,8 +31,8 @@ impl<'g> Multipliers<'g> {
     /// [independent](Multipliers::in_independent_velocities) ones.
     ///
     /// # Errors
-    /// [`ConstraintError::NotIndependent`] if their number is wrong, one is not the system's, or they do not determine
-    /// the others at the values `at` of time, coordinates, quasi-velocities and parameters.
+    /// [`ConstraintError::NotIndependent`] if their number is wrong, one does not belong to the system, or they do not
+    /// determine the others at the values `at` of time, coordinates, quasi-velocities and parameters.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System};
@@ -86,7 +86,7 @@ impl<'g> Multipliers<'g> {
     /// eliminated with the pivot that is shortest in print among those of at least a tenth of the largest.
     ///
     /// # Errors
-    /// Those of [`dependent_at`](Multipliers::dependent_at).
+    /// The errors of [`dependent_at`](Multipliers::dependent_at).
     pub fn shortest<E>(
         &self,
         at: &[(Expr<'g>, f64)],

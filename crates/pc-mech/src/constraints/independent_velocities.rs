@@ -96,8 +96,8 @@ impl<'g> Multipliers<'g> {
         Ok(system.frame().eliminated(&dependent, matrix, graph.substitute(&values, &zeros))?)
     }
 
-    /// The system with the dependent quasi-velocities [solved for](Multipliers::solved_for) put in, and these structure
-    /// coefficients.
+    /// The system with the dependent quasi-velocities [solved for](Multipliers::solved_for) and substituted, and with
+    /// these structure coefficients.
     ///
     /// Its equations (9) are the equations of motion if the constraints are integrable and `structure` is that of the
     /// velocities they allow. If they are not, the terms of the eliminated momenta are missing, as in (32), and have
@@ -162,7 +162,7 @@ impl<'g> Multipliers<'g> {
         Ok(LeastSquares::of(&square).is_ok_and(|square| square.reciprocal_condition() > WELL))
     }
 
-    /// The reactions λ in terms of (t, x) and independent quasi-velocities, each given with its acceleration: with the
+    /// The reactions λ in terms of (t, x) and independent quasi-velocities, each given with its acceleration. With the
     /// dependent ones [solved for](Multipliers::solved_for), from their rows of M η̇ = r + Cᵀ λ,
     ///
     ///   C_αD λ_α = (M η̇ − r)_D,

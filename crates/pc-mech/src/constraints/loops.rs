@@ -14,7 +14,7 @@ impl<'g> Multipliers<'g> {
     /// The same equations derived in an empty graph, for a [system](crate::System) that is a tree.
     ///
     /// # Errors
-    /// As for [`with_multipliers`](crate::System::with_multipliers), by which they were made before.
+    /// As for [`with_multipliers`](crate::System::with_multipliers), which made the original equations.
     pub(crate) fn in_graph<'n>(
         &self,
         tree: &TreeSystem<'g>,

@@ -20,13 +20,13 @@ use crate::system::system::System;
 ///
 /// of a system whose quasi-velocities are bound by C η + c_0 = 0: conditions on velocities, or the
 /// derivatives C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is
-/// the reaction conjugate to the condition, with the power −λ_α c_α0. Of [nonlinear](Constraint::nonlinear)
-/// conditions g(t, x, η) = 0, C is ∂g/∂η and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
+/// the reaction conjugate to the condition, with the power −λ_α c_α0. For
+/// [nonlinear](Constraint::nonlinear) conditions g(t, x, η) = 0, C is ∂g/∂η and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
 ///
-/// All k quasi-velocities are components of the state. At each evaluation those are taken as independent that
-/// determine the others best, so only positions where the constraints themselves are singular are singular; the rates
-/// do not depend on the choice. Its [projection](pc_expr::VectorField::project) corrects numerical drift from the
-/// constraints.
+/// All k quasi-velocities are components of the state. At each evaluation those that determine the others best are
+/// taken as independent, so the only singular positions are those where the constraints themselves are singular; the
+/// rates do not depend on the choice. Its [projection](pc_expr::VectorField::project) corrects numerical drift from
+/// the constraints.
 ///
 /// ```
 /// use pc_mech::{Constraint, Graph, System, VectorField};
@@ -57,7 +57,7 @@ pub struct Multipliers<'g> {
     pub(crate) right: Vec<Expr<'g>>,
     /// The symbols λ, length m.
     pub(crate) reactions: Vec<Expr<'g>>,
-    /// Constraints that follow from these, checked along the way.
+    /// Constraints that follow from these, which are checked but not imposed.
     pub(super) followers: Vec<Constraint<'g>>,
     /// The number of independent constraints, which come first almost everywhere.
     pub(super) rank: usize,
@@ -75,7 +75,7 @@ impl<'g> System<'g> {
     /// [`ConstraintError::TooMany`] if no velocity is left free; [`FrameError::OfState`](crate::FrameError::OfState)
     /// for one on first-order states; [`ConstraintError::Dependent`] for one that follows from those before it, or
     /// contradicts them; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) if the constraints leave
-    /// velocities without inertia; [`ConstraintError::Jumps`] for one that is another one where the motion passes.
+    /// velocities without inertia; [`ConstraintError::Jumps`] for one that changes at a place that the motion passes.
     pub fn with_multipliers(&self, constraints: &[Constraint<'g>]) -> Result<Multipliers<'g>, MechError> {
         let graph = self.graph();
         let (k, m) = (self.quasi_velocities.len(), constraints.len());
@@ -182,11 +182,11 @@ impl<'g> Multipliers<'g> {
         lagrange.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())
     }
 
-    /// The equations with constraints that follow from the present ones. Those that do so only where these
-    /// hold replace them where these are nearly dependent, as the bars of an overconstrained mechanism take
-    /// turns in carrying the load; there the single reactions are undetermined, and NaN. A
-    /// [projection](pc_expr::VectorField::project) of the compiled motion to a state where one of them does
-    /// not vanish is refused, as [`ConstraintError::Departed`].
+    /// The equations with further constraints that follow from the present ones. Those that follow only
+    /// where the present ones hold replace them where these are nearly dependent, as the bars of an
+    /// overconstrained mechanism take turns in carrying the load; the single reactions are then
+    /// undetermined, and NaN. A [projection](pc_expr::VectorField::project) of the compiled motion to a
+    /// state where one of them does not vanish is refused, as [`ConstraintError::Departed`].
     #[must_use]
     pub fn followed_by(self, followers: &[Constraint<'g>]) -> Multipliers<'g> {
         Multipliers { followers: followers.to_vec(), ..self }
@@ -237,8 +237,8 @@ impl<'g> Multipliers<'g> {
         Ok(motion.on_surface(names, whole.surface(&first_order)?))
     }
 
-    /// The same equations with spare constraints after the others: followers that are independent of these
-    /// off the constraints.
+    /// The same equations with spare constraints after the others: followers that are independent of them
+    /// away from the constraints.
     fn with_spare(&self) -> Multipliers<'g> {
         let (system, mut whole) = (&self.equations.system, self.clone());
         let graph = system.graph();
@@ -264,7 +264,8 @@ impl<'g> Multipliers<'g> {
         whole
     }
 
-    /// The change between (x, η) and (x, y) with the momenta of all quasi-velocities, where the constraints hold:
+    /// The conversion between (x, η) and (x, y) with the momenta of all quasi-velocities, where the
+    /// constraints hold:
     ///
     ///   ∂L/∂η − Cᵀ μ = y,   C η + c_0 = 0
     ///
@@ -348,8 +349,8 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The indices of the quasi-velocities that are taken as dependent wherever the others determine them; none where
-    /// no choice was made.
+    /// The indices of the quasi-velocities that are taken as dependent wherever the others determine them; none if no
+    /// choice was made.
     pub fn dependent(&self) -> &[usize] {
         self.dependent.as_deref().unwrap_or_default()
     }

@@ -11,7 +11,7 @@ use crate::equations::poincare::Equations;
 use crate::error::{MechError, ShapeError};
 
 /// The product of the operations of a right-hand side and the length of the state beyond which the Jacobian
-/// has some ten thousand operations: too long to be read, and minutes of work for compilers.
+/// has some ten thousand operations: too long to read, and minutes of work for compilers.
 const LONG_JACOBIAN: usize = 30_000;
 
 /// Longer equations are left out of the comment at the head of a file.
@@ -68,9 +68,9 @@ impl<'g> Equations<'g> {
         })
     }
 
-    /// Whether derivatives of the right-hand side are too long to be written out, as
+    /// Whether derivatives of the right-hand side are too long to be written out, in which case
     /// [`emit`](Equations::emit) does not: those of a [directional](SourceFunction::directional) function
-    /// would take compilers minutes, too.
+    /// would also take compilers minutes.
     ///
     /// # Errors
     /// As for [`emit`](Equations::emit).
@@ -135,8 +135,8 @@ impl<'g> Equations<'g> {
         if short { lines } else { Vec::new() }
     }
 
-    /// The table of a right-hand side whose Jacobian would be too long as statements: its operations, those
-    /// of the mass matrix and of the energy.
+    /// The table for a right-hand side whose Jacobian would be too long as statements: its operations, with
+    /// those of the mass matrix and of the energy.
     fn shared(
         &self,
         writer: &Writer<'_, 'g>,
@@ -296,7 +296,7 @@ impl<'g> Equations<'g> {
     }
 }
 
-/// Whether the Jacobian of the right-hand side is too long to be read.
+/// Whether the Jacobian of the right-hand side is too long to read.
 fn is_long<'g>(system: &FirstOrder<'g>, solved: &Solved<'g>) -> Result<bool, MechError> {
     let inputs = system.inputs(&[]);
     let operations = Program::new(system.graph, &inputs, &solved.motion)?.code().len();

@@ -17,7 +17,7 @@ pub struct EmitOptions {
     pub(super) jacobian: bool,
 }
 
-/// A motion to try.
+/// A motion to try out.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
     pub(super) t: f64,
@@ -100,7 +100,7 @@ pub(super) enum Extent {
     QuasiVelocitiesSquared,
     Integrals,
     Outputs,
-    /// This many.
+    /// A fixed number of values.
     Count(usize),
 }
 

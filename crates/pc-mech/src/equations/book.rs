@@ -24,7 +24,7 @@ impl<'g> Equations<'g> {
     }
 
     /// The right sides of the [balance](Equations::balance) as they are written, in the graph of a page; none for
-    /// those that are not polynomials, which are written as they [are](Equations::right_hand_side).
+    /// those that are not polynomials, which are written [unchanged](Equations::right_hand_side).
     pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
         sums_of_products(&self.system, self.right_hand_side(), &self.system.quasi_velocities, page)
     }

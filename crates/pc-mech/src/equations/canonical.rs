@@ -247,8 +247,8 @@ impl<'g> Canonical<'g> {
         self.check_closed().map(|()| self.quasi_velocities.as_slice())
     }
 
-    /// H(t, x, y), or y_s η_s − L where the equations are not [closed](Canonical::is_closed): its derivatives by
-    /// t, x and y at fixed η are those of H, since ∂/∂η_s (y_r η_r − L) = 0 at the solution.
+    /// H(t, x, y), or y_s η_s − L where the equations are not [closed](Canonical::is_closed): its derivatives
+    /// with respect to t, x and y at fixed η are those of H, since ∂/∂η_s (y_r η_r − L) = 0 at the solution.
     pub fn hamiltonian(&self) -> Expr<'g> {
         self.hamiltonian
     }
@@ -282,7 +282,7 @@ impl<'g> Canonical<'g> {
     }
 
     /// The right sides of the [balance](Canonical::balance) as they are written, in the graph of a page; none for
-    /// those that are not polynomials, which are written as they [are](Canonical::right_hand_side).
+    /// those that are not polynomials, which are written [unchanged](Canonical::right_hand_side).
     pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
         sums_of_products(&self.system, &self.right, &self.momenta, page)
     }
@@ -291,8 +291,8 @@ impl<'g> Canonical<'g> {
     /// those of [`Equations`](crate::Equations) are.
     ///
     /// Where they are not [closed](Canonical::is_closed), each evaluation solves y = ∂L/∂η for η to rounding, from the
-    /// same [guess](Canonical::with_guess), so that it depends on (t, x, y) only; from the last solution where the
-    /// guess does not converge. It fails, recoverably, with
+    /// same [guess](Canonical::with_guess), so that it depends on (t, x, y) only; if the guess does not converge, it
+    /// starts from the last solution. It fails, recoverably, with
     /// [`EvaluationError::LegendreNotSolved`](crate::EvaluationError::LegendreNotSolved) where neither converges, and
     /// with [`EvaluationError::SingularMassMatrix`](crate::EvaluationError::SingularMassMatrix) where a pivot of M =
     /// ∂²L/∂η∂η vanishes.
@@ -303,7 +303,7 @@ impl<'g> Canonical<'g> {
         self.observed_first_order()?.compile(&options.into(), LONGEST_ELIMINATION)
     }
 
-    /// Compiles the change between quasi-velocities and momenta.
+    /// Compiles the conversion between quasi-velocities and momenta.
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`](pc_expr::ExprError::UnboundSymbol) for a symbol that is neither state nor

@@ -6,7 +6,7 @@ use crate::equations::poincare::Equations;
 use crate::error::MechError;
 
 impl<'g> Equations<'g> {
-    /// `values` as functions of t, (x, η), the parameters and, after these, the symbols in `more`, to be evaluated now and then.
+    /// `values` as functions of t, (x, η), the parameters and, after these, the symbols in `more`, for occasional evaluation.
     ///
     /// # Errors
     /// [`MechError`] for a value that contains another symbol.

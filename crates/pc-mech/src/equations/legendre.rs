@@ -26,7 +26,7 @@ pub(crate) enum Inverse<'g> {
         /// L_0
         lagrangian_at_rest: Expr<'g>,
     },
-    /// In numbers.
+    /// It is computed in numbers.
     Implicit {
         /// A quasi-velocity in which L is not quadratic.
         quasi_velocity: Expr<'g>,

@@ -52,7 +52,7 @@ impl<'g> System<'g> {
     ///   d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s,   s, r = 1..`free`, m = 1..k.
     ///
     /// The constraints are substituted after differentiation, so that all k momenta count. The
-    /// [system](Equations::system) of the result has the free quasi-velocities only. With `free` = k these
+    /// [system](Equations::system) of the result has only the free quasi-velocities. With `free` = k these
     /// are the equations (9).
     ///
     /// # Errors

@@ -71,7 +71,7 @@ pub enum ConstraintError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// A constraint whose condition on velocities jumps along the motion, so that velocities do.
+    /// A constraint whose condition on velocities jumps along the motion, and with it the velocities.
     #[error("the condition of `{constraint}` on velocities jumps at {}: velocities jump there", at(place))]
     Jumps {
         /// Its name.
@@ -82,7 +82,7 @@ pub enum ConstraintError {
     /// Quasi-velocities that were chosen as independent but do not determine the others.
     #[error("{} cannot be the independent quasi-velocities: {why}", quoted(chosen))]
     NotIndependent {
-        /// Those chosen.
+        /// The chosen quasi-velocities.
         chosen: Vec<String>,
         /// Why not.
         why: String,

@@ -46,19 +46,20 @@ pub enum EvaluationError {
         /// The derivative.
         what: &'static str,
     },
-    /// Equations of variation of a motion of several pieces, whose deviations jump from one to the next.
+    /// Equations of variation of a motion of several pieces, whose deviations jump from one piece to the
+    /// next.
     #[error(
-        "deviations from this motion jump where it passes through {}: integrate them as sensitivities by the start, which do so",
+        "deviations from this motion jump where it passes through {}: integrate them as sensitivities to the start, which jump there",
         .surfaces.join(" = 0 or ") + " = 0"
     )]
     Pieces {
         /// The functions that vanish where the pieces meet.
         surfaces: Vec<String>,
     },
-    /// A motion whose equations are not one program, so that no Taylor series is known.
+    /// A motion whose equations are not a single program, so that no Taylor series is known.
     #[error("Taylor's method needs equations that are solved in expressions: {because}")]
     NoSeries {
-        /// Why its equations are not one.
+        /// Why they are not a single program.
         because: &'static str,
     },
     /// The failure of another vector field.

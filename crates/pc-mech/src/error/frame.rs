@@ -12,10 +12,10 @@ pub enum FrameError {
         /// The quasi-velocity, or velocity of a coordinate.
         velocity: String,
     },
-    /// b or b_0 jumps, so that a quasi-velocity or a velocity does.
+    /// b or b_0 jumps, and with it a quasi-velocity or a velocity.
     #[error("the frame jumps by {} at {}: velocities or quasi-velocities jump there", approximately(*size), at(place))]
     Jumps {
-        /// By how much an entry jumps.
+        /// The size of the jump of an entry.
         size: f64,
         /// Names and values of a place.
         place: Vec<(String, f64)>,

@@ -24,7 +24,7 @@ pub enum IntegralError {
         /// Its rate of change.
         rate: f64,
     },
-    /// A function to be kept that a motion keeps only where it does not jump.
+    /// A function to be kept that may jump, and is constant only between jumps.
     #[error("`{name}` cannot be kept: it may jump along the motion, to another value than that at the start")]
     Jumps {
         /// The integral.

@@ -45,7 +45,7 @@ pub enum LagrangianError {
     /// L jumps where the motion passes, so that its force there is an impulse.
     #[error("the Lagrangian jumps by {} at {}: its force there is an impulse", approximately(*size), at(place))]
     Jumps {
-        /// By how much.
+        /// The size of the jump.
         size: f64,
         /// Names and values of a place.
         place: Vec<(String, f64)>,
@@ -59,7 +59,7 @@ pub enum LagrangianError {
     MomentumJumps {
         /// The quasi-velocity.
         quasi_velocity: String,
-        /// By how much.
+        /// The size of the jump.
         size: f64,
         /// Names and values of a place.
         place: Vec<(String, f64)>,

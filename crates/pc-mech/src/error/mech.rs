@@ -91,7 +91,7 @@ impl MechError {
 }
 
 impl From<Failure> for MechError {
-    /// The error of a [`Motion`](crate::Motion); of other vector fields, their message.
+    /// The error of a [`Motion`](crate::Motion); for other vector fields, their message.
     fn from(failure: Failure) -> MechError {
         let own = failure.cause().downcast_ref::<MechError>();
         own.cloned().unwrap_or_else(|| EvaluationError::NotEvaluated { cause: failure.to_string() }.into())

@@ -41,7 +41,7 @@ pub enum TreeError {
         what: &'static str,
         /// Number of names.
         found: usize,
-        /// The number of those of the joint.
+        /// The number that the joint has.
         expected: usize,
     },
     /// A part of a body that is not constant.

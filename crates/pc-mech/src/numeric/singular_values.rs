@@ -10,7 +10,7 @@ use crate::error::{MatrixError, MechError};
 pub struct SingularValues {
     /// U, rows × rows.
     pub left: Matrix<f64>,
-    /// The diagonal of Σ, in descending order, as many as the lesser of rows and columns.
+    /// The diagonal of Σ, in descending order, as many as the smaller number of rows or columns.
     pub values: Vec<f64>,
     /// V, columns × columns.
     pub right: Matrix<f64>,

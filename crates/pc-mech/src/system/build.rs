@@ -13,7 +13,7 @@ use crate::system::system::System;
 use crate::tree::system::TreeSystem;
 use crate::tree::tree::Tree;
 
-/// What the parts of a description add up to.
+/// The sum of the parts of a description.
 struct Sums<'g> {
     /// The terms of L(t, x, η).
     lagrangian: Vec<Expr<'g>>,
@@ -31,8 +31,8 @@ impl<'g> SystemBuilder<'g> {
     /// [`MechError::Algebra`] for velocities that are not affine in η, a frame that is not closed, or brackets that are
     /// needed, contradict it, or violate Jacobi's identity; [`FrameError::OfVelocities`] for a frame that contains
     /// velocities; [`LagrangianError::SignalInMomentum`]; [`LagrangianError::Jumps`], [`LagrangianError::MomentumJumps`] and
-    /// [`FrameError::Jumps`] for what an impulse would follow from; [`FrameError::OfState`] for a frame or a body placed by
-    /// first-order states; [`BodyError::OfVelocities`](crate::BodyError::OfVelocities) and
+    /// [`FrameError::Jumps`] for anything that would cause an impulse; [`FrameError::OfState`] for a frame or a body placed
+    /// by first-order states; [`BodyError::OfVelocities`](crate::BodyError::OfVelocities) and
     /// [`BodyError::AngularVelocityNotAffine`](crate::BodyError::AngularVelocityNotAffine) of bodies;
     /// [`MatrixError::NotSkew`](crate::MatrixError::NotSkew) and
     /// [`ForceError::NotAQuasiVelocity`](crate::ForceError::NotAQuasiVelocity) of forces; [`MechError::Expr`] for what
@@ -104,7 +104,7 @@ impl<'g> SystemBuilder<'g> {
         Ok(frame)
     }
 
-    /// c_rs^m (5), those given or those of the frame.
+    /// c_rs^m (5), as given or from the frame.
     fn structure_of(&self, frame: &Frame<'g>) -> Result<StructureCoefficients<'g>, MechError> {
         let near = self.near_parameters();
         match &self.structure {
@@ -177,7 +177,8 @@ impl<'g> SystemBuilder<'g> {
         Ok(())
     }
 
-    /// That neither momenta nor the frame depend on what is a table in time, for then its rates would be needed.
+    /// Checks that neither momenta nor the frame depend on a function of time given by a table, since its
+    /// rates would then be needed.
     fn check_signals(
         &self,
         frame: &Frame<'g>,
@@ -204,7 +205,7 @@ fn three_components<'g>(acceleration: &[Expr<'g>]) -> Result<[Expr<'g>; 3], Mech
     Ok(std::array::from_fn(|i| acceleration[i]))
 }
 
-/// That a system has what moves the joints of a tree.
+/// Checks that a system has the coordinates and quasi-velocities of the joints of a tree.
 ///
 /// # Errors
 /// [`TreeError::NotOfTheSystem`]
@@ -221,11 +222,11 @@ fn check_named<'g>(tree: &Tree<'g>, frame: &Frame<'g>, eta: &[Expr<'g>]) -> Resu
     Ok(())
 }
 
-/// That b and b_0 are functions of time and coordinates: a quasi-velocity or velocity in them would be taken for a
-/// constant.
+/// Checks that b and b_0 are functions of time and coordinates: a quasi-velocity or velocity in them would be
+/// taken for a constant.
 ///
 /// # Errors
-/// [`FrameError::OfVelocities`] naming the first that stands there.
+/// [`FrameError::OfVelocities`] naming the first that occurs.
 fn of_position<'g>(frame: &Frame<'g>, velocities: &[Expr<'g>]) -> Result<(), MechError> {
     let entries = [&frame.b().nonzero_entries(), frame.b0()].concat();
     let velocities = SymbolPlaces::of(velocities);

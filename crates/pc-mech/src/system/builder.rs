@@ -184,8 +184,8 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Gives values of symbols near which the system is regular, such as the start of a motion; used where an identity
-    /// can only be tested numerically.
+    /// Gives values of symbols near which the system is regular, such as the start of a motion; they are used where an
+    /// identity can only be tested numerically.
     #[must_use]
     pub fn near(mut self, values: impl IntoIterator<Item = (Expr<'g>, f64)>) -> Self {
         self.near.centre.extend(values);
@@ -205,7 +205,7 @@ impl<'g> SystemBuilder<'g> {
         self.lagrangian(t)
     }
 
-    /// Adds to the potential energy −U, which L has with the opposite sign.
+    /// Adds to the potential energy −U, which enters L with the opposite sign.
     #[must_use]
     pub fn potential(self, v: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>) -> Self {
         self.lagrangian(|t, x, eta| -v(t, x, eta))

@@ -1,7 +1,7 @@
-//! That no impulse follows from energies and frames.
+//! Checks that no impulse follows from energies and frames.
 //!
 //! Where L jumps with the position, or ∂L/∂η or the frame with anything but velocities, d/dt ∂L/∂η or X_s L in (9) is an impulse. Derivatives of the
-//! pieces do not show it: the motion would pass as if nothing were there.
+//! pieces do not show it: the motion would pass as if there were no jump.
 
 use pc_algebra::{Frame, Jump, Neighbourhood};
 use pc_expr::Expr;
@@ -11,14 +11,14 @@ use crate::system::builder::SystemBuilder;
 use crate::system::system::System;
 
 impl<'g> SystemBuilder<'g> {
-    /// Where expressions are regular: near what was said, with the values of the parameters.
+    /// Where expressions are regular: near the given values, with the values of the parameters.
     pub(super) fn near_parameters(&self) -> Neighbourhood<'g> {
         let mut near = self.near.clone();
         near.centre.extend(self.parameters.iter().copied());
         near
     }
 
-    /// That neither L, as a function of the position, nor momenta nor the frame jump.
+    /// Checks that neither L, as a function of the position, nor momenta nor the frame jump.
     ///
     /// # Errors
     /// [`LagrangianError::Jumps`], [`LagrangianError::MomentumJumps`], [`FrameError::Jumps`]
@@ -56,7 +56,7 @@ impl<'g> SystemBuilder<'g> {
 }
 
 impl<'g> System<'g> {
-    /// That a condition on velocities does not jump with position or time.
+    /// Checks that a condition on velocities does not jump with position or time.
     ///
     /// # Errors
     /// [`ConstraintError::Jumps`]

@@ -11,7 +11,7 @@ pub enum Interpolation {
     /// second time and at the last but one, too (C. de Boor, *A Practical Guide to Splines*, ch. IV:
     /// not-a-knot).
     Cubic,
-    /// By the last value before, which holds after the last time, too.
+    /// By the last value before, also after the last time.
     Hold,
 }
 
@@ -129,7 +129,7 @@ impl Table {
         self.interpolation
     }
 
-    /// Its value at t, the one after a jump if t is at one; none outside the times.
+    /// Its value at t, after the jump if there is one at t; none outside the times.
     pub fn at(&self, t: f64) -> Option<f64> {
         let last = self.times.len() - 1;
         let after = self.times.partition_point(|&time| time <= t);
@@ -151,7 +151,7 @@ impl Table {
         Some(u + x * (start + x * ((rise - start) / h - curve + x * curve / h)))
     }
 
-    /// u̇ at t on the piece that goes on from `from`; zero outside the times.
+    /// u̇ at t on the piece that continues from `from`; zero outside the times.
     fn rate(&self, t: f64, from: f64) -> f64 {
         let after = self.times.partition_point(|&time| time <= from);
         let Some(i) = after.checked_sub(1).filter(|_| after < self.times.len()) else { return 0.0 };
@@ -169,7 +169,7 @@ impl Table {
     }
 }
 
-/// The slopes of the spline (not-a-knot): of a parabola through three points, of a line through two.
+/// The slopes of the spline (not-a-knot): those of a parabola through three points, of a line through two.
 fn spline(x: &[f64], u: &[f64]) -> Vec<f64> {
     let n = x.len();
     let h: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -254,7 +254,7 @@ impl Signals {
     }
 
     /// Announces that the values [read](Signals::read) next lie between the break t, or the breaks around it, and the
-    /// next one towards `end`: at a jump those of this side. Returns whether an input has jumped since the last such
+    /// next one towards `end`: at a jump, those on this side. Returns whether an input has jumped since the last such
     /// call.
     pub fn enter(&mut self, t: f64, end: f64) -> bool {
         let next = match end >= t {
@@ -270,7 +270,7 @@ impl Signals {
         before.is_some_and(jumps)
     }
 
-    /// u̇ of the input at this place among the parameters, at a break that of the side that was
+    /// u̇ of the input at this place among the parameters, at a break, that on the side that was
     /// [entered](Signals::enter); zero where no table gives it.
     pub(crate) fn rate(&self, place: usize, t: f64) -> f64 {
         let entered = self.between.filter(|&(from, to)| (from..=to).contains(&t));
@@ -286,8 +286,8 @@ impl Signals {
         (from, self.breaks.get(next).copied().unwrap_or(f64::INFINITY))
     }
 
-    /// Writes the values at t among the parameters; at a jump those of the side that was [entered](Signals::enter), if
-    /// t is at its end. Returns whether one has changed.
+    /// Writes the values at t among the parameters; at a jump, those on the side that was [entered](Signals::enter),
+    /// if t is at its end. Returns whether one has changed.
     ///
     /// # Errors
     /// [`OutsideTable`]

@@ -28,11 +28,11 @@ pub struct System<'g> {
     pub(crate) integrals: Vec<(String, Expr<'g>)>,
     pub(crate) outputs: Vec<(String, Expr<'g>)>,
     pub(crate) bodies: Bodies<'g>,
-    /// The acceleration of gravity, filled up by zeros.
+    /// The acceleration of gravity, padded with zeros.
     pub(crate) gravity: [Expr<'g>; 3],
     /// The quaternions of joints, each of four coordinates.
     pub(crate) unit_quaternions: Vec<[Expr<'g>; 4]>,
-    /// The bodies joined by joints of which it consists, if nothing else in it has inertia.
+    /// The bodies joined by joints, if nothing else in the system has inertia.
     pub(crate) tree: Option<Box<TreeSystem<'g>>>,
 }
 
@@ -86,7 +86,7 @@ impl<'g> System<'g> {
         &self.parameters
     }
 
-    /// The bodies joined by joints, of a system that has no other inertia.
+    /// The bodies joined by joints, for a system that has no other inertia.
     pub fn tree(&self) -> Option<&Tree<'g>> {
         self.tree.as_ref().map(|tree| &tree.tree)
     }
@@ -97,14 +97,14 @@ impl<'g> System<'g> {
         &self.unit_quaternions
     }
 
-    /// The [tree](System::tree), if its equations are too long to be written out whole: they are derived, compiled and
-    /// printed from body to body.
+    /// The [tree](System::tree), if its equations are too long to be written out as a whole; they are then derived,
+    /// compiled and printed from body to body.
     pub fn large_tree(&self) -> Option<&Tree<'g>> {
         self.tree().filter(|tree| tree.is_large())
     }
 
     /// The [acceleration of gravity](crate::SystemBuilder::gravity) of its bodies, along the axes of the world; in a plane the last
-    /// component is zero, and all are of a system without it.
+    /// component is zero, and without gravity all are.
     pub fn gravity(&self) -> [Expr<'g>; 3] {
         self.gravity
     }
@@ -209,7 +209,7 @@ impl<'g> System<'g> {
     /// The same system with its quasi-velocities in another order, a permutation of 0..k.
     ///
     /// # Panics
-    /// If `order` is not one.
+    /// If `order` is not a permutation.
     #[must_use]
     pub fn permuted(&self, order: &[usize]) -> System<'g> {
         assert_eq!(order.len(), self.quasi_velocities.len(), "a permutation of the quasi-velocities");
@@ -278,7 +278,7 @@ impl<'g> System<'g> {
         System { integrals: Vec::new(), outputs: Vec::new(), ..self.clone() }
     }
 
-    /// The same system with the integrals and outputs of another of the same state.
+    /// The same system with the integrals and outputs of another one with the same state.
     #[must_use]
     pub fn observing(&self, other: &System<'g>) -> System<'g> {
         System { integrals: other.integrals.clone(), outputs: other.outputs.clone(), ..self.clone() }

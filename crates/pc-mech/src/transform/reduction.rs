@@ -8,8 +8,8 @@ use crate::system::bodies::velocity::Bodies;
 use crate::system::system::System;
 
 impl<'g> System<'g> {
-    /// The system without the coordinates that its motion does not depend on: neither L, Q and c_rs^m do, nor the
-    /// velocities of the coordinates that are kept.
+    /// The system without the coordinates that its motion does not depend on: L, Q, c_rs^m and the velocities of
+    /// the kept coordinates do not contain them.
     ///
     /// On a group with L invariant, X_s L = 0, and constant c_rs^m no coordinate is left, and the equations (9) are
     /// those of Euler–Poincaré,
@@ -20,7 +20,8 @@ impl<'g> System<'g> {
     /// that contain coordinates left out are left out too. Those coordinates follow by integrating ẋ = b η + b_0 (3).
     ///
     /// # Errors
-    /// [`MechError::Algebra`] if the parts do not fit together, which those of a system that was built do.
+    /// [`MechError::Algebra`] if the parts do not fit together, which cannot happen for a system that was
+    /// built.
     ///
     /// ```
     /// use pc_algebra::{LieGroup, UnitQuaternions};

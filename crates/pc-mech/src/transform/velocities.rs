@@ -18,7 +18,7 @@ pub struct VelocityTransform {
 }
 
 impl System<'_> {
-    /// Compiles the change between quasi-velocities and velocities.
+    /// Compiles the conversion between quasi-velocities and velocities.
     ///
     /// # Errors
     /// [`AlgebraError::DependentOperators`](crate::AlgebraError::DependentOperators) where rank b < k everywhere;

@@ -5,12 +5,12 @@
 //!
 //!   n = J α + H a + n_0,   f = Hᵀ α + M a + f_0,
 //!
-//! with the moment n about its origin and the acceleration a of this. A joint that leaves the component c
-//! free, where the force with the moment n about its origin and the acceleration a of that. A free component
-//! c of a joint, with the force τ, is eliminated as a row of a symmetric matrix Φ = (J H; Hᵀ M) is:
-//!   w_c = (τ − p_c − Σ_{r≠c} Φ_cr A_r)/Φ_cc,   Φ ← Φ − Φ_c Φ_cᵀ/Φ_cc,   p ← p + Φ_c (τ − p_c)/Φ_cc.
+//! with the moment n about its origin and the acceleration a of the origin. A joint that leaves the
+//! component c free, where the force with the moment n about its origin and the acceleration a of that. A
+//! free component c of a joint, with the force τ, is eliminated as a row of a symmetric matrix Φ = (J H; Hᵀ
+//! M) is: w_c = (τ − p_c − Σ_{r≠c} Φ_cr A_r)/Φ_cc, Φ ← Φ − Φ_c Φ_cᵀ/Φ_cc, p ← p + Φ_c (τ − p_c)/Φ_cc.
 //!
-//! This is the elimination M = Lᵀ D L of the mass matrix of all of the tree, in an order in which it does not fill in
+//! This is the elimination M = Lᵀ D L of the mass matrix of the whole tree, in an order in which it does not fill in
 //! (Featherstone 1983; Rodriguez 1987).
 
 use pc_expr::{Expr, Graph, Number};
@@ -72,9 +72,9 @@ impl<'g> Inertia6<'g> {
         mapped
     }
 
-    /// The remaining inertia of a single body, if it resists the direction by a number that is not a rounding
-    /// error of `size`. The pivot of the joint is then at least as large: the inertia of the bodies beyond is
-    /// nonnegative, and the remainder of a sum is at least the sum of the remainders.
+    /// The remaining inertia of a single body, if its resistance to the direction is a number that is not a
+    /// rounding error of `size`. The pivot of the joint is then at least as large: the inertia of the bodies
+    /// beyond is nonnegative, and the remainder of a sum is at least the sum of the remainders.
     fn resisting(&self, graph: &'g Graph, direction: Direction<'g>, size: Expr<'g>) -> Option<Inertia6<'g>> {
         let column = direction.column(graph, self);
         let number = |x: Expr<'g>| x.constant().map(Number::to_f64);
@@ -86,8 +86,8 @@ impl<'g> Inertia6<'g> {
         (tensor(|i, j| self.0[i][j]), tensor(|i, j| self.0[i][j + 3]), tensor(|i, j| self.0[i + 3][j + 3]))
     }
 
-    /// The inertia seen from the parent: rotated to its axes, then about its origin, from which that of the
-    /// link is at `place`.
+    /// The inertia seen from the parent: rotated to its axes, then about its origin; the origin of the link
+    /// is at `place` relative to it.
     ///
     ///   G = Hᵀ − M r̂,   J ← J − H r̂ + r̂ G,   H ← Gᵀ
     fn seen(&self, graph: &'g Graph, turning: &Turning<'g>, place: &Vector<'g>) -> Inertia6<'g> {
@@ -167,7 +167,7 @@ struct Direction<'g> {
     pitch: Expr<'g>,
 }
 
-/// A remainder this small against its terms may be rounding.
+/// A remainder this small relative to its terms may be rounding.
 const ROUNDING: f64 = 1e-12;
 
 impl<'g> Direction<'g> {

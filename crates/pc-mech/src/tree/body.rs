@@ -48,7 +48,7 @@ impl<'g> TreeBody<'g> {
         TreeBody { mass: mass.into(), ..self }
     }
 
-    /// The same body with its mass centre, along body axes from the point of its joint.
+    /// The same body with its mass centre, given along body axes from the point of its joint.
     #[must_use]
     pub fn centre(self, centre: [impl Into<Expr<'g>>; 3]) -> TreeBody<'g> {
         TreeBody { centre: centre.map(Into::into), ..self }

@@ -1,4 +1,4 @@
-//! Forward and inverse dynamics of a tree, a link at a time.
+//! Forward and inverse dynamics of a tree, one link at a time.
 //!
 //! From the root to the tips each link has its angular velocity and its accelerations along its own axes,
 //!
@@ -157,8 +157,8 @@ impl<'g> TreeDynamics<'g> {
         self.articulated.links.iter().enumerate().map(left).collect()
     }
 
-    /// The accelerations of the links for these η̇, or in the reference motion, with the components left out
-    /// there.
+    /// The accelerations of the links for these η̇, or in the reference motion, without the components left
+    /// out there.
     fn motions(&self, unknowns: Option<&[Vec<Expr<'g>>]>) -> (Vec<Acceleration<'g>>, Vec<Vec<Expr<'g>>>) {
         let graph = self.graph;
         let world = Acceleration::new(graph, ZERO, ZERO, self.gravity.map(|g| -g));

@@ -50,7 +50,7 @@ impl<'g> Joint<'g> {
         Joint { kind, place: ZERO, rotation: unit(), names: None }
     }
 
-    /// Holds the body.
+    /// Holds the body fixed.
     pub fn fixed() -> Joint<'g> {
         Joint::of(Kind::Fixed)
     }
@@ -65,7 +65,7 @@ impl<'g> Joint<'g> {
         Joint::of(Kind::Prismatic(axis))
     }
 
-    /// Turns about an axis and slides along it, by the pitch times the angle: a length a radian.
+    /// Turns about an axis and slides along it, by the pitch, a length per radian, times the angle.
     pub fn screw(axis: [f64; 3], pitch: impl Into<Expr<'g>>) -> Joint<'g> {
         Joint::of(Kind::Screw(axis, pitch.into()))
     }
@@ -105,7 +105,7 @@ impl<'g> Joint<'g> {
     /// The same joint with axes that a constant rotation takes to those of the parent.
     ///
     /// # Panics
-    /// If it has not three rows and columns.
+    /// If it does not have three rows and columns.
     #[must_use]
     pub fn rotated(self, rotation: &Matrix<Expr<'g>>) -> Joint<'g> {
         assert_eq!((rotation.rows(), rotation.columns()), (3, 3), "rows and columns of a rotation");

@@ -88,7 +88,7 @@ impl<'a, 'g> Motions<'a, 'g> {
 pub struct JointMotion<'g> {
     /// From the axes of the body to those of its parent, 3 × 3.
     pub rotation: Matrix<Expr<'g>>,
-    /// The place of the origin of the body, along the axes of its parent from the origin of this.
+    /// The place of the origin of the body, along the axes of its parent from the parent's origin.
     pub place: [Expr<'g>; 3],
     /// Its angular velocity relative to the parent, along its axes.
     pub angular_velocity: [Expr<'g>; 3],
@@ -149,8 +149,8 @@ impl<'g> Motions<'_, 'g> {
             .map(|(motion, stand)| matrix_of(&product(self.tree.graph, &motion.rotation, &stand.rotation)))
     }
 
-    /// The motion of the link of a body, the place of its mass centre there, and the velocity of that along
-    /// the axes of the link.
+    /// The motion of the link of a body, the place of its mass centre there, and the velocity of the mass
+    /// centre along the axes of the link.
     fn centre(&self, body: usize) -> (LinkMotion<'g>, Vector<'g>, Vector<'g>) {
         let (graph, stand) = (self.tree.graph, &self.tree.stands[body]);
         let motion = self.of_stand(stand);
@@ -175,7 +175,8 @@ impl<'g> Motions<'_, 'g> {
         Some(scaled(self.tree.bodies[i].mass, &apply(self.tree.graph, &motion.rotation, &velocity)))
     }
 
-    /// r_c × m v_c + I ω of a body: its angular momentum about the origin of the world, along the axes of this.
+    /// r_c × m v_c + I ω of a body: its angular momentum about the origin of the world, along the axes of the
+    /// world.
     pub fn angular_momentum(&self, body: &str) -> Option<[Expr<'g>; 3]> {
         let (graph, i) = (self.tree.graph, self.tree.place_of(body)?);
         let (motion, centre, velocity) = self.centre(i);

@@ -37,7 +37,7 @@ impl<'g> JointReaction<'g> {
 
 impl<'g> System<'g> {
     /// The forces and moments of the joints of a [tree](crate::Tree) on their bodies (Newton's and Euler's
-    /// equations from the tips to the root); none for a system that is not a tree, nor for bodies fixed to
+    /// equations from the tips to the root); none for a system that is not a tree, and for bodies fixed to
     /// others. As [outputs](System::with_more_outputs) they are observed along a motion.
     pub fn joint_reactions(&self) -> Vec<JointReaction<'g>> {
         let Some(tree) = &self.tree else { return Vec::new() };
@@ -45,7 +45,7 @@ impl<'g> System<'g> {
     }
 
     /// The generalised forces on the joints of its [tree](System::tree), k of them: Q + X U without the
-    /// forces and torques on bodies, and without their weight. Without a tree it is Q.
+    /// forces and torques on bodies, and without their weight. Without a tree they are Q.
     pub fn joint_forces(&self) -> Vec<Expr<'g>> {
         self.tree.as_ref().map_or_else(|| self.forces.clone(), |tree| tree.joint_forces(self))
     }

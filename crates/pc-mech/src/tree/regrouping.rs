@@ -46,7 +46,7 @@ impl<'g> Tree<'g> {
 }
 
 impl<'g> MassOnLink<'g> {
-    /// Removes and returns the part that no rotation about an axis moves or changes.
+    /// Removes and returns the part that is invariant under rotation about an axis.
     fn take_about(&mut self, axis: usize) -> MassOnLink<'g> {
         let across = if axis == 2 { 1 } else { 2 };
         let transverse = self.inertia[across][across];

@@ -9,7 +9,8 @@ use crate::tree::link::Link;
 use crate::tree::spatial::Vector;
 use crate::tree::tree::Tree;
 
-/// A system whose inertia is that of a tree: L is its kinetic energy, its weight and a force function U(t, x).
+/// A system whose inertia is that of a tree: L consists of its kinetic energy, its weight and a force
+/// function U(t, x).
 #[derive(Clone, Debug)]
 pub(crate) struct TreeSystem<'g> {
     pub(crate) tree: Tree<'g>,
@@ -23,7 +24,7 @@ pub(crate) struct TreeSystem<'g> {
 impl<'g> TreeSystem<'g> {
     /// The system of a tree with the rest of the Lagrangian; `None` if there is other inertia, if the bodies
     /// do not move as the joints prescribe, if the tree lacks a quasi-velocity, or if gravity depends on the
-    /// place: the world then has no acceleration.
+    /// position, since the world then has no single acceleration.
     pub(crate) fn of(
         tree: Tree<'g>,
         gravity: Vector<'g>,

@@ -16,8 +16,8 @@ use crate::tree::spatial::{
 /// Bodies joined by joints: one or more trees that hang on the world.
 ///
 /// Its coordinates are those of the joints, in the order in which the bodies are declared; its
-/// quasi-velocities are velocities of a body against its parent. The velocities of a body follow from those
-/// of its parent,
+/// quasi-velocities are velocities of a body relative to its parent. The velocities of a body follow from
+/// those of its parent,
 ///
 /// ω = Rᵀ ω_p + ω_joint, v = Rᵀ (v_p + ω_p × r) + v_joint,
 ///
@@ -73,7 +73,7 @@ impl<'g> Tree<'g> {
     /// The tree of bodies, declared in any order.
     ///
     /// # Errors
-    /// [`TreeError`] for two bodies of one name, a parent that there is not, parents in a circle, an axis
+    /// [`TreeError`] for two bodies of one name, a parent that does not exist, parents in a circle, an axis
     /// without a direction, or a list of names that does not fit its joint; [`BodyError`](crate::BodyError)
     /// for a matrix that is not a rotation.
     pub fn new(
@@ -261,7 +261,7 @@ impl<'g> Tree<'g> {
         Ok((coordinates, velocities))
     }
 
-    /// Whether masses and inertias are numbers, none of them negative.
+    /// Whether masses and inertias are nonnegative numbers.
     pub(crate) fn is_definite(&self) -> bool {
         self.is_nowhere_negative(&[])
     }

@@ -62,7 +62,7 @@ impl<'g> Turning<'g> {
         turned.map(|component| graph.keep(component))
     }
 
-    /// R A Rᵀ, of A from the axes of the link.
+    /// R A Rᵀ, for A given along the axes of the link.
     pub(crate) fn matrix_to_parent(&self, graph: &'g Graph, a: &Tensor<'g>) -> Tensor<'g> {
         let turned = match &self.hinge {
             HingeTurning::None => *a,

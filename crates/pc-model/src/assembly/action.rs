@@ -18,7 +18,7 @@ pub struct Action<'g> {
 
 impl<'g> Assembler<'g, '_> {
     /// The action of `[hamilton_jacobi]`. The motion does not use it, so it needs no value at the start, as
-    /// (x − α)²/(2t) has none at t = 0: its names are resolved separately from those that do.
+    /// (x − α)²/(2t) has none at t = 0: its names are resolved separately from those that need one.
     pub(super) fn action(&self) -> Result<Option<Action<'g>>, ModelError> {
         let document = self.model.document();
         let Some(given) = &document.hamilton_jacobi else { return Ok(None) };

@@ -28,7 +28,7 @@ impl Model {
     /// The mechanical system, its expressions in `graph`, and its start state.
     ///
     /// # Errors
-    /// [`ModelError`] at the place in the file that is to blame.
+    /// [`ModelError`] at the place in the file that causes it.
     pub fn assemble<'g>(&self, graph: &'g Graph) -> Result<Assembly<'g>, ModelError> {
         DERIVATIONS.fetch_add(1, Ordering::Relaxed);
         self.parameter_values().check(self.document())?;

@@ -9,7 +9,7 @@ use crate::model::model::Model;
 use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
-/// Assembles a model as expressions of a graph; each part has a file of its own.
+/// Assembles a model as expressions of a graph; each part has its own file.
 pub(super) struct Assembler<'g, 'm> {
     pub(super) model: &'m Model,
     pub(super) graph: &'g Graph,
@@ -27,7 +27,7 @@ impl<'g> Assembler<'g, '_> {
         !self.model.document().tree.is_empty() && self.first_own_quasi_velocity().is_none()
     }
 
-    /// The first quasi-velocity that is neither of a joint nor a velocity x'.
+    /// The first quasi-velocity that is neither that of a joint nor a velocity x'.
     pub(super) fn first_own_quasi_velocity(&self) -> Option<&QuasiVelocity> {
         let document = self.model.document();
         let of_joints: usize = document.tree.iter().map(|body| body.joint.quasi_velocities.len()).sum();

@@ -25,20 +25,21 @@ pub struct Assembly<'g> {
     pub start: Vec<f64>,
     /// The start state as written, where it was moved onto the constraints.
     pub written_start: Option<Vec<f64>>,
-    /// Number of declared quasi-velocities, which come first; of velocities where none is declared.
+    /// Number of declared quasi-velocities, which come first; number of velocities if none is declared.
     pub declared: usize,
     /// The events, in the order in which simultaneous ones are handled.
     pub events: Vec<Event<'g>>,
-    /// The definitions of the text with ẋ = b η + b_0 substituted, as far as they mean the same wherever they
-    /// are used.
+    /// The definitions of the text with ẋ = b η + b_0 substituted, unless they have different meanings in
+    /// different places.
     pub definitions: Vec<(String, Expr<'g>)>,
     /// The quasi-velocities given in addition to those of the text, as linear forms in those of the system.
     pub given: Vec<(Expr<'g>, Expr<'g>)>,
     /// The solution of Hamilton–Jacobi's equation in the text, if there is one.
     pub action: Option<Action<'g>>,
-    /// The bodies whose masses change by time or first-order states: D_t (m v) = F, so that what they lose or take up is at rest.
+    /// The bodies whose masses change with time or first-order states: D_t (m v) = F, so that the mass they
+    /// lose or take up is at rest.
     pub changing_masses: Vec<String>,
-    /// The text, in which errors have their places.
+    /// The text, in which errors are located.
     pub(crate) document: Arc<Document>,
 }
 
@@ -67,10 +68,10 @@ impl<'g> Assembly<'g> {
     }
 
     /// Does some work on this system. If the [limits](crate::Model::limit) are reached, before or during the work,
-    /// this is the error, and names this stage, whatever the work returns.
+    /// the result is an error that names this stage, whatever the work returns.
     ///
     /// # Errors
-    /// [`ErrorKind::Spent`](crate::ErrorKind::Spent), and those of the work.
+    /// [`ErrorKind::Spent`](crate::ErrorKind::Spent), and the errors of the work.
     pub fn stage<T, E: From<ModelError>>(
         &self,
         name: &'static str,
@@ -122,9 +123,10 @@ impl<'g> Assembly<'g> {
         self.placed(self.constraints.quasi_velocities_of(self.system.quasi_velocities(), free))
     }
 
-    /// Whether the motion is proved to keep its energy, that of all velocities where multipliers hold
-    /// constraints, else that of the free ones: dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s vanishes where the
-    /// constraints hold, and these are homogeneous in the velocities, so that their reactions do no work.
+    /// Whether the motion is proved to keep its energy (that of all velocities if multipliers hold
+    /// constraints, else that of the free ones): dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s vanishes where
+    /// the constraints hold, and these are homogeneous in the velocities, so that their reactions do no
+    /// work.
     pub fn keeps_energy(&self) -> bool {
         let (system, graph) = (&self.system, self.system.graph());
         match self.constraints.formulation() {

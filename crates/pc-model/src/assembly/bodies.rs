@@ -11,9 +11,9 @@ use crate::names::stage::Stage;
 
 /// A body for the mechanics.
 pub(super) enum SystemBody<'g> {
-    /// One without orientation.
+    /// A body without orientation.
     Particle(Particle<'g>),
-    /// One that turns.
+    /// A body that turns.
     Rigid(Box<RigidBody<'g>>),
 }
 
@@ -27,7 +27,7 @@ impl<'g> Assembler<'g, '_> {
         self.model.document().bodies.iter().map(|body| self.body(body, eta, x_dot)).collect()
     }
 
-    /// The bodies whose masses change by time or first-order states.
+    /// The bodies whose masses change with time or first-order states.
     pub(super) fn changing_masses(&mut self) -> Result<Vec<String>, ModelError> {
         let changing = [vec![self.graph.symbol("t")], self.scope.states()].concat();
         let mut names = Vec::new();

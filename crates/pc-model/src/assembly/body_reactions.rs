@@ -21,11 +21,11 @@ struct Resultants<'g> {
 
 impl<'g> Assembler<'g, '_> {
     /// The system with the forces and torques of the reactions on bodies substituted in its integrals and
-    /// outputs, and added as outputs if all reactions are to be observed; with the undetermined ones, in
+    /// outputs, and added as outputs if all reactions are to be observed; and the undetermined ones, in
     /// words.
     ///
     /// # Errors
-    /// [`MeaningError::ForceNotDetermined`] if such a one is named.
+    /// [`MeaningError::ForceNotDetermined`] if the model names an undetermined one.
     pub(crate) fn with_resultants(
         &self,
         system: System<'g>,

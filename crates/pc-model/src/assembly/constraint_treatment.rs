@@ -24,7 +24,7 @@ pub struct ConstraintTreatment<'g> {
     combinations: usize,
     redundant: Vec<Redundant>,
     undetermined: Vec<String>,
-    /// The velocities chosen as independent; none where the choice is free.
+    /// The velocities chosen as independent; none if the choice is free.
     independent: Vec<Expr<'g>>,
     derived: Derived<'g>,
 }
@@ -46,7 +46,7 @@ pub enum ConstraintFormulation<'g> {
     Free,
     /// Each makes a quasi-velocity of the system vanish: equations (30) of the others.
     Vanishing(Box<Constrained<'g>>),
-    /// Any others: multipliers.
+    /// Any other constraints: multipliers.
     Multipliers(Box<MultiplierFormulation<'g>>),
 }
 
@@ -112,12 +112,12 @@ impl<'g> ConstraintTreatment<'g> {
         ConstraintTreatment { independent, derived: Derived::default(), ..self }
     }
 
-    /// The velocities chosen as independent; none where the choice is free.
+    /// The velocities chosen as independent; none if the choice is free.
     pub fn asked_for(&self) -> &[Expr<'g>] {
         &self.independent
     }
 
-    /// The multipliers in the integrated equations; none where independent velocities were chosen.
+    /// The multipliers in the integrated equations; none if independent velocities were chosen.
     pub fn held(&self) -> Option<&Multipliers<'g>> {
         match &self.formulation {
             ConstraintFormulation::Multipliers(held) if self.independent.is_empty() => {
@@ -147,8 +147,8 @@ impl<'g> ConstraintTreatment<'g> {
         })
     }
 
-    /// Checks that no choice is requested where constraints make quasi-velocities of the model vanish, or
-    /// nothing binds.
+    /// Checks that no choice is requested if constraints make quasi-velocities of the model vanish, or no
+    /// constraint binds.
     fn check_no_choice(&self, free: &[Expr<'g>]) -> Result<(), NonholoError> {
         let is_other = |chosen: &[Expr<'g>]| {
             chosen.len() != free.len() || !chosen.iter().all(|chosen| free.contains(chosen))
@@ -166,7 +166,7 @@ impl<'g> ConstraintTreatment<'g> {
         ConstraintTreatment { undetermined, ..self }
     }
 
-    /// The equations with multipliers, unless nothing binds.
+    /// The equations with multipliers, unless no constraint binds.
     pub fn multipliers(&self) -> Option<&Multipliers<'g>> {
         self.multipliers.as_ref()
     }
@@ -181,8 +181,8 @@ impl<'g> ConstraintTreatment<'g> {
         &self.classified
     }
 
-    /// The number of combinations of the nonholonomic constraints that are integrable though no single
-    /// constraint is: see
+    /// The number of combinations of the nonholonomic constraints that are integrable although no
+    /// single constraint is: see
     /// [`ConstraintClassification`](pc_nonholo::ConstraintClassification::integrable_combinations).
     pub fn integrable_combinations(&self) -> usize {
         self.combinations
@@ -192,7 +192,7 @@ impl<'g> ConstraintTreatment<'g> {
     /// constraints are regular.
     ///
     /// # Errors
-    /// [`NonholoError`]; constraints that could be classified there give none.
+    /// [`NonholoError`]; it does not occur for constraints that could be classified there.
     pub fn combinations_found(
         &self,
         at: &[(Expr<'g>, f64)],
@@ -225,9 +225,9 @@ impl<'g> ConstraintTreatment<'g> {
         &self.undetermined
     }
 
-    /// The system in a frame in which the constraints make quasi-velocities vanish: that of the model if it is one,
-    /// else the one that is best at the values `at` of time and state. None if there are no constraints, only
-    /// integrable ones held by multipliers, or some that are not affine in the velocities.
+    /// The system in a frame in which the constraints make quasi-velocities vanish: that of the model if it is such
+    /// a frame, else the one that is best at the values `at` of time and state. None if there are no constraints,
+    /// only integrable ones held by multipliers, or some that are not affine in the velocities.
     ///
     /// # Errors
     /// [`NonholoError`] if there is no such frame.
@@ -249,8 +249,8 @@ impl<'g> ConstraintTreatment<'g> {
 
     /// The symbols λ of the reactions with their values in the frame of
     /// [`constrained`](ConstraintTreatment::constrained), functions of time, coordinates and free quasi-velocities, or
-    /// of all where constraints are not affine in them; none where integrable constraints are held by multipliers.
-    /// They contain the symbols of the accelerations where that is shorter.
+    /// of all where constraints are not affine in them; none if integrable constraints are held by multipliers.
+    /// They contain the symbols of the accelerations if that is shorter.
     ///
     /// # Errors
     /// As there.
@@ -283,8 +283,8 @@ impl<'g> ConstraintTreatment<'g> {
 
     /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Under constraints held by
     /// multipliers they use the requested independent quasi-velocities, or those whose equations are shortest among
-    /// those regular at `at`, and observables have the reactions substituted. Where a constraint is not affine in the
-    /// velocities, those of all of them, with the reactions substituted.
+    /// those regular at `at`, and observables have the reactions substituted. If a constraint is not affine in the
+    /// velocities, they are the equations of all velocities, with the reactions substituted.
     ///
     /// # Errors
     /// [`NonholoError`] if they cannot be derived.

@@ -166,7 +166,7 @@ impl<'g> Assembler<'g, '_> {
         trial.check(start)
     }
 
-    /// The equations with multipliers, and the observed reactions; `None` if nothing binds.
+    /// The equations with multipliers, and the observed reactions; `None` if no constraint binds.
     fn attach_reactions(
         &self,
         trial: &Trial<'_, 'g>,
@@ -190,8 +190,8 @@ impl<'g> Assembler<'g, '_> {
         Ok(Some(Reacting { system, multipliers, undetermined }))
     }
 
-    /// The cheapest formulation: without the quasi-velocities that vanish, if every constraint states just
-    /// that of one, otherwise with multipliers.
+    /// The cheapest formulation: without the quasi-velocities that vanish, if every constraint just says
+    /// that one vanishes, otherwise with multipliers.
     fn choose(
         &self,
         Reacting { system, multipliers, undetermined }: Reacting<'g>,
@@ -240,7 +240,8 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// Checks that constraints declared nonlinear are: affine ones have more forms and Frobenius' test.
+    /// Checks that constraints declared nonlinear are nonlinear: affine ones have more forms and Frobenius'
+    /// test.
     fn check_nonlinear(&self, system: &System<'g>, constraints: &[Constraint<'g>]) -> Result<(), ModelError> {
         for constraint in constraints.iter().filter(|constraint| constraint.is_nonlinear()) {
             let what = match constraint.coefficients(system) {
@@ -296,7 +297,7 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// Whether the text declares it not affine in the velocities.
+/// Whether the text declares it as not affine in the velocities.
 fn is_called_nonlinear(constraint: &document::Constraint) -> bool {
     constraint.kind.as_ref().is_some_and(|kind| kind.value == ConstraintKind::Nonlinear)
 }

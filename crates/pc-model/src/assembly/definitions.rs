@@ -11,7 +11,7 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::Expression;
 use crate::names::stage::Stage;
 
-/// A coefficient smaller than this part of the largest of its row is not a pivot.
+/// A coefficient smaller than this fraction of the largest of its row is not a pivot.
 const SMALL: f64 = 1e-3;
 
 /// The completion of the definitions to a frame: symbols of quasi-velocities, their definitions in x', and
@@ -24,15 +24,15 @@ struct Completion<'g> {
 }
 
 impl<'g> Assembler<'g, '_> {
-    /// The frame of η = a x' + a_0, and the quasi-velocities that complete those declared where they are fewer than the
-    /// coordinates.
+    /// The frame of η = a x' + a_0, and the quasi-velocities that complete the declared ones if these are fewer than
+    /// the coordinates.
     ///
     /// The definitions, the constraints on velocities that contain x', and the time derivatives of those on
-    /// positions are to determine x'. If all constraints are on velocities, they complete the frame, as
-    /// quasi-velocities that vanish. If some are on positions, velocities x' complete it, provided that its
-    /// matrix is then regular everywhere, and the constraints have multipliers, for which other independent
-    /// velocities are taken wherever the η do not determine x'; otherwise the constraints complete it, and it
-    /// is singular only where the η do not determine x'.
+    /// positions must together determine x'. If all constraints are on velocities, they complete the frame,
+    /// as quasi-velocities that vanish. If some are on positions, velocities x' complete it, provided that
+    /// its matrix is then regular everywhere, and the constraints have multipliers, for which other
+    /// independent velocities are taken wherever the η do not determine x'; otherwise the constraints
+    /// complete it, and it is singular only where the η do not determine x'.
     pub(super) fn frame_of_definitions(
         &mut self,
         time: Expr<'g>,
@@ -141,7 +141,8 @@ impl<'g> Assembler<'g, '_> {
     }
 
     /// Velocities x' that complete the rows of definitions to a matrix whose determinant depends on
-    /// parameters only, if there are such: those without a pivot after an elimination with such pivots.
+    /// parameters only, if such velocities exist: those without a pivot after an elimination with such
+    /// pivots.
     fn regular_completion(&self, rows: &[Vec<Expr<'g>>], at: &[(Expr<'g>, f64)]) -> Option<Completion<'g>> {
         let graph = self.graph;
         let parameters: Vec<Expr<'g>> = self.model.parameters().map(|(name, _)| graph.symbol(name)).collect();
@@ -207,7 +208,7 @@ impl<'g> Assembler<'g, '_> {
         completion
     }
 
-    /// The first definition that depends on those before it: it may contain no velocity.
+    /// The first definition that depends on the preceding ones; it may contain no velocity at all.
     fn dependent(
         &self,
         rows: &[Vec<Expr<'g>>],

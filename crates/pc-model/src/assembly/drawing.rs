@@ -15,7 +15,7 @@ pub type Spot<'g> = [Expr<'g>; 3];
 /// A shape that follows the motion, by functions of (t, x, η).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape<'g> {
-    /// A dot, with a label of its own.
+    /// A dot, with its own label.
     Point {
         /// Its place.
         at: Spot<'g>,
@@ -155,7 +155,7 @@ fn resolved<'g>(scope: &mut Scope<'g, '_>, draw: &Draw) -> Result<Shape<'g>, Mod
     })
 }
 
-/// Two expressions are a place in a plane.
+/// A place; two expressions give one in a plane.
 fn spot<'g>(scope: &mut Scope<'g, '_>, place: &[Expression], stage: Stage) -> Result<Spot<'g>, ModelError> {
     let mut at = [Expr::ZERO; 3];
     for (value, expression) in at.iter_mut().zip(place) {
@@ -176,8 +176,8 @@ fn rotation<'g>(
     Ok(Matrix::from_fn(3, 3, |i, j| values[3 * i + j]))
 }
 
-/// For each body a rod from its joint to the joints on it, or to its mass centre if there are none, and the
-/// mass centre.
+/// For each body, a rod from its joint to the joints on it, or to its mass centre if there are none, and
+/// the mass centre.
 fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
     let Some(tree) = assembly.system.tree() else { return Vec::new() };
     let (motions, graph) = (tree.motions(), assembly.system.graph());
@@ -201,7 +201,7 @@ fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
 }
 
 impl<'g> Shape<'g> {
-    /// Its functions, in an order that depends on its kind only.
+    /// Its functions, in an order that depends only on its kind.
     pub fn functions(&self) -> Vec<Expr<'g>> {
         match self {
             Shape::Point { at, .. } | Shape::Trace { at } | Shape::Text { at, .. } => at.to_vec(),

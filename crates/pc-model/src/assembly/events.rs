@@ -136,7 +136,7 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// Whether a constraint states just that this quasi-velocity vanishes.
+/// Whether a constraint just says that this quasi-velocity vanishes.
 fn vanishes<'g>(constraints: &ConstraintTreatment<'g>, eta: Expr<'g>) -> bool {
     let constraints = constraints.multipliers().map_or(&[][..], |multipliers| multipliers.constraints());
     constraints.iter().any(|constraint| constraint.expression() == eta)

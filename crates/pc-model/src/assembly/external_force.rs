@@ -6,15 +6,15 @@ use crate::model::model::Model;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no external force can act on `{name}`; one can on {}", known.join(", "))]
 pub struct NotForced {
-    /// The name asked for.
+    /// The requested name.
     pub name: String,
-    /// The quasi-velocities; the coordinates where none is declared.
+    /// The quasi-velocities; the coordinates if none is declared.
     pub known: Vec<String>,
 }
 
 impl Model {
     /// Declares that a force computed outside, such as that of a controller, acts on a quasi-velocity; on a
-    /// coordinate where no quasi-velocity is declared. The system then has an [external
+    /// coordinate if no quasi-velocity is declared. The system then has an [external
     /// force](pc_mech::System::external_forces), and a motion one more input: zero until it is set, or [given
     /// by a function](pc_mech::Motion::forced).
     ///
@@ -36,7 +36,7 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`NotForced`] with the names there are.
+    /// [`NotForced`] with the existing names.
     pub fn external_force(&mut self, on: &str) -> Result<(), NotForced> {
         let known = self.forceable();
         if !known.iter().any(|known| known == on) {

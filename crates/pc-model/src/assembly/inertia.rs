@@ -7,10 +7,10 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::document::{Document, Joint, JointKind, TreeBody};
 
-/// A velocity beside which the potential energy is small.
+/// A velocity so large that the potential energy is small in comparison.
 const FAST: f64 = 1e6;
 
-/// What is left of a kinetic energy that vanishes, as a part of the terms.
+/// The rounding left of a vanishing kinetic energy, as a fraction of its terms.
 const ROUNDING: f64 = 1e-12;
 
 /// A motion of a joint along or about a direction.
@@ -42,7 +42,7 @@ impl<'g> Assembly<'g> {
         Ok(())
     }
 
-    /// Whether L is the same at η_s = ±v and, twice, at η = 0, at the start and beside it.
+    /// Whether L is the same at η_s = ±v and at η = 0, both at the start and near it.
     fn is_free_of_inertia(&self, eta: Expr<'g>) -> bool {
         let (system, coordinates) = (&self.system, self.system.frame().coordinates());
         let velocities = system.quasi_velocities();
@@ -95,7 +95,7 @@ fn fault(body: &TreeBody, number: usize) -> MeaningError {
     }
 }
 
-/// How quasi-velocity `number` moves a body, and along or about what.
+/// How quasi-velocity `number` moves a body, and along or about which direction.
 fn direction(joint: &Joint, number: usize) -> (Way, String) {
     let vector = |[x, y, z]: [f64; 3]| format!("({x}, {y}, {z})");
     let axis = |place: usize| joint.axes.get(place).map_or_else(String::new, |&axis| vector(axis));

@@ -3,7 +3,7 @@
 //!
 //! With as many coordinates as quasi-velocities, RᵀR has to be a multiple of 1 everywhere, which the
 //! mechanics checks. Redundant coordinates, such as nine direction cosines, may give a rotation on the
-//! surface of the motion only, which is known by the start and the operators X_s along it.
+//! surface of the motion only, which is known from the start and the operators X_s along it.
 
 use pc_algebra::Frame;
 use pc_mech::Expr;

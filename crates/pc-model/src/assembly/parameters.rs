@@ -89,7 +89,7 @@ impl Parameters {
         &self.values
     }
 
-    /// The tables of inputs, with their places.
+    /// The tables of inputs, with their indices.
     pub fn tables(&self) -> Vec<(usize, &Arc<Table>)> {
         let all = self.formulas.iter().enumerate();
         all.filter_map(|(place, formula)| match formula {
@@ -99,7 +99,7 @@ impl Parameters {
         .collect()
     }
 
-    /// Gives number `place` a value, which replaces its expression. Those that are expressions in it follow.
+    /// Gives number `place` a value, which replaces its expression. Values that are expressions in it follow.
     ///
     /// # Panics
     /// If there is no such parameter.
@@ -109,10 +109,10 @@ impl Parameters {
         self.follow();
     }
 
-    /// Gives all of them values, which replace their expressions. Tables are still read.
+    /// Gives all values, which replace the expressions. Tables are still read.
     ///
     /// # Panics
-    /// Unless there are as many.
+    /// Unless their number is right.
     pub fn set_all(&mut self, values: &[f64]) {
         self.values.copy_from_slice(values);
         for formula in &mut self.formulas {

@@ -15,7 +15,7 @@ use crate::names::stage::Stage;
 /// The greatest remainder of a unit vector that depends on others: rounding.
 const DEPENDENT: f64 = 1e-9;
 
-/// Velocities that differ by less than this part of those that they follow from are equal.
+/// Velocities that differ by less than this fraction of those that they follow from are equal.
 const OFF: f64 = 1e-8;
 
 /// The given start.
@@ -34,7 +34,7 @@ pub(super) struct Given {
 /// first-order states.
 ///
 /// # Errors
-/// [`ModelError`] where one is not a number.
+/// [`ModelError`] if one is not a number.
 pub(crate) fn start(model: &Model, graph: &Graph) -> Result<Vec<f64>, ModelError> {
     let parameters: Vec<(Expr<'_>, f64)> =
         model.parameters().map(|(name, value)| (graph.symbol(name), value)).collect();
@@ -106,7 +106,7 @@ impl<'g> Assembler<'g, '_> {
     ///
     /// # Errors
     /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`]
-    /// where those that complete the definitions are left open.
+    /// if those that complete the definitions are left open.
     pub(super) fn start_state(
         &self,
         frame: &Frame<'g>,
@@ -234,7 +234,7 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// Linear equations, each orthogonal to those before it and of length one.
+/// Linear equations, each of length one and orthogonal to the preceding ones.
 #[derive(Default)]
 struct Equations {
     rows: Vec<(Vec<f64>, f64)>,
@@ -253,7 +253,8 @@ impl Equations {
         (missing.abs() > OFF * value.abs().max(length * self.largest(row))).then_some(value - missing)
     }
 
-    /// The largest of the unknowns that a row contains, as far as they are known: what is small beside it is so in any unit.
+    /// The largest of the unknowns that a row contains, as far as they are known: a value that is small in
+    /// comparison is small in any unit.
     fn largest(&self, row: &[f64]) -> f64 {
         let known = self.solution(row.len()).into_iter().zip(row).filter(|&(_, &entry)| entry != 0.0);
         known.fold(0.0, |largest, (value, _)| largest.max(value.abs()))

@@ -17,7 +17,7 @@ const COLUMNS: &str = "a file has a line of names, then lines of numbers, with c
 /// The table of an input; `None` for a constant.
 ///
 /// # Errors
-/// [`ModelError`] at the entry that is wrong, or whose file is.
+/// [`ModelError`] at the entry that is wrong, or whose file is wrong.
 pub(crate) fn of(document: &Document, input: &Input) -> Result<Option<Table>, ModelError> {
     match &input.value {
         InputValue::Constant(_) => Ok(None),
@@ -29,7 +29,7 @@ pub(crate) fn of(document: &Document, input: &Input) -> Result<Option<Table>, Mo
     }
 }
 
-/// The error that the motion starts outside a table.
+/// The error for a motion that starts outside a table.
 pub(crate) fn not_at_start(document: &Document, name: &Name, table: &Table) -> ModelError {
     let (from, to) = (table.times().first(), table.times().last());
     let [from, to] = [from, to].map(|t| t.copied().unwrap_or(f64::NAN));

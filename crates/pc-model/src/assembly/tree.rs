@@ -87,8 +87,8 @@ impl<'g> Assembler<'g, '_> {
         Err(self.model.document().error(&place, MeaningError::NotARotation { defect, determinant }))
     }
 
-    /// Makes the length of quaternions 1 at the start, where it differs from 1 by the rounding of what is written; `start`
-    /// begins with the values of the coordinates.
+    /// Makes the length of quaternions 1 at the start, if it differs from 1 by the rounding of the written numbers;
+    /// `start` begins with the values of the coordinates.
     pub(super) fn normalise_quaternions(&self, start: &mut [f64]) -> Result<(), ModelError> {
         let document = self.model.document();
         let mut first = 0;

@@ -7,14 +7,16 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
 
-/// A start whose distance from a constraint, as a displacement of a coordinate or velocity, is less than this part of it is off by
-/// the rounding of its digits. Small coordinates may be as far off as larger ones of the constraint, and as 1.
+/// A start whose distance from a constraint, as a displacement of a coordinate or velocity, is less than this fraction of it is
+/// off by the rounding of its digits. Small coordinates may be as far off as larger ones of the constraint, and as a coordinate of
+/// size 1.
 const OFF: f64 = 1e-8;
 
-/// Where all coordinates of a constraint are smaller than this, they are in small units: 1 is no measure of them.
+/// If all coordinates of a constraint are smaller than this, they are in small units, and 1 is not a measure
+/// for them.
 const SMALL: f64 = 1e-2;
 
-/// A coordinate may be this far off, times [`OFF`], in any case: it is the rounding of numbers of order one, such as cos(π/2).
+/// A coordinate may always be this far off, times [`OFF`]: this is the rounding of numbers of order one, such as cos(π/2).
 const LEAST: f64 = 1e-7;
 
 /// The indices of the components of the start that are not moved to the constraints.
@@ -95,7 +97,7 @@ impl<'g> Trial<'_, 'g> {
     /// Checks that the constraints and their rates have values.
     ///
     /// # Errors
-    /// [`MeaningError::NotFinite`] at the first that has none.
+    /// [`MeaningError::NotFinite`] at the first that has no value.
     pub(super) fn check_finite(&self, state: &[f64]) -> Result<(), ModelError> {
         for constraint in self.constraints {
             let value = self.value(constraint.velocity(self.system), state);
@@ -142,7 +144,7 @@ impl<'g> Trial<'_, 'g> {
     /// Checks that all constraints are satisfied.
     ///
     /// # Errors
-    /// [`MeaningError::OffConstraint`] at the first that is not.
+    /// [`MeaningError::OffConstraint`] at the first that is not satisfied.
     pub(super) fn check(&self, state: &[f64]) -> Result<(), ModelError> {
         let off =
             |constraint: &Constraint<'g>| Some((constraint.name().to_owned(), self.off(constraint, state)?));

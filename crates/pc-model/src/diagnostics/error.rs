@@ -35,12 +35,12 @@ impl Diagnostic {
     }
 }
 
-/// Names of files and keys may have ends of lines in them, and what controls terminals.
+/// Names of files and keys may contain line ends and control characters for terminals.
 fn on_one_line(text: &str) -> String {
     text.replace(is_hidden, "\u{fffd}")
 }
 
-/// The text, cut where somebody chose names of a thousand letters.
+/// The text, shortened in case of names with a thousand letters.
 fn clipped(text: &str) -> String {
     match text.char_indices().nth(500) {
         Some((cut, _)) => format!("{}…", &text[..cut]),
@@ -84,7 +84,7 @@ impl ModelError {
         self.0.position
     }
 
-    /// Place, message and help apart.
+    /// Place, message and help, separately.
     pub fn diagnostic(&self) -> &Diagnostic {
         &self.0.diagnostic
     }

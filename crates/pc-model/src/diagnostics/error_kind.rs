@@ -23,7 +23,7 @@ pub enum ErrorKind {
     /// The file is not TOML.
     #[error("not valid TOML: {message}")]
     Toml {
-        /// What the TOML parser says.
+        /// The message of the TOML parser.
         message: String,
         /// A correction.
         help: &'static str,
@@ -37,11 +37,11 @@ pub enum ErrorKind {
     /// The limits of its derivation are reached.
     #[error("{stage}: {what} ({nodes} expressions were made)")]
     Spent {
-        /// What is spent.
+        /// Which limit.
         what: Spent,
-        /// What was being made.
+        /// The stage of the work.
         stage: &'static str,
-        /// How many expressions there were.
+        /// The number of expressions.
         nodes: usize,
     },
     /// Nothing in the file.
@@ -58,7 +58,7 @@ pub enum ErrorKind {
     UnknownSection {
         /// Its name.
         name: String,
-        /// A section with nearly that name.
+        /// A section with a similar name.
         nearest: Option<&'static str>,
     },
     /// An entry before the first section.
@@ -72,15 +72,15 @@ pub enum ErrorKind {
     UnknownKey {
         /// Its key.
         key: String,
-        /// The entries there are.
+        /// The existing entries.
         allowed: &'static [&'static str],
-        /// The one with nearly that name.
+        /// The one with a similar name.
         nearest: Option<&'static str>,
     },
     /// A value of the wrong type.
     #[error("expected {expected}, found {found}")]
     WrongType {
-        /// The type that is right, in words.
+        /// The expected type, in words.
         expected: &'static str,
         /// The type of the value given, in words.
         found: &'static str,
@@ -92,7 +92,7 @@ pub enum ErrorKind {
     WrongLength {
         /// What the list should hold, in words.
         expected: &'static str,
-        /// How many it holds.
+        /// The number of its elements.
         found: usize,
         /// How the entry could be written.
         example: &'static str,
@@ -120,15 +120,15 @@ pub enum ErrorKind {
     OfOtherJoints {
         /// Its key.
         key: String,
-        /// What would go with it, or in its place.
+        /// What would belong to it, or replace it.
         example: &'static str,
     },
-    /// A body that is no part of a tree.
+    /// A body that is not part of a tree.
     #[error("no body with a joint is called `{name}`")]
     NotInTree {
         /// The name.
         name: String,
-        /// The bodies there are.
+        /// The existing bodies.
         known: Vec<String>,
     },
     /// Bodies that hang on each other.
@@ -137,7 +137,7 @@ pub enum ErrorKind {
         /// The bodies, each on the next and the last on the first.
         bodies: Vec<String>,
     },
-    /// A statement of how something moves that a joint moves.
+    /// A statement about the motion of a coordinate that belongs to a joint.
     #[error("the joint of `{body}` says how `{name}` moves")]
     OfJoint {
         /// The name.
@@ -175,7 +175,7 @@ pub enum ErrorKind {
         /// The label.
         label: String,
     },
-    /// A name with a meaning of its own.
+    /// A name with a fixed meaning.
     #[error("the name `{name}` is reserved")]
     Reserved {
         /// The name.
@@ -186,9 +186,9 @@ pub enum ErrorKind {
     NameTaken {
         /// The name.
         name: String,
-        /// What it names first.
+        /// What it named first.
         first: Role,
-        /// On which line.
+        /// The line of the first.
         line: usize,
     },
     /// A key of `brackets` that is not a pair.
@@ -226,21 +226,21 @@ pub enum ErrorKind {
     /// A number outside the range of its entry.
     #[error("expected {expected}, found {found}")]
     OutOfRange {
-        /// What would make sense, in words.
+        /// The valid values, in words.
         expected: &'static str,
         /// As written.
         found: String,
         /// How the entry could be written.
         example: &'static str,
     },
-    /// A word that is not among those possible.
+    /// A word that is not among the choices.
     #[error("`{found}` is not one of the choices")]
     UnknownChoice {
         /// As written.
         found: String,
         /// The choices.
         allowed: Vec<&'static str>,
-        /// The one with nearly that name.
+        /// The one with a similar name.
         nearest: Option<&'static str>,
     },
     /// Wrong text of an expression.
@@ -252,7 +252,7 @@ pub enum ErrorKind {
     /// Something that the program cannot do yet.
     #[error("{what} not supported yet")]
     Unsupported {
-        /// What, with its verb: `events are`.
+        /// The feature, with its verb: `events are`.
         what: &'static str,
     },
 }
@@ -435,7 +435,7 @@ fn reserved(name: &str) -> String {
     format!("{meaning}; choose another name, such as `{name}_1`")
 }
 
-/// A form of a letter that names do not have, with the one that they have: the sign of micro is not the letter μ.
+/// A form of a letter that is not used in names, with the form that is: the sign of micro is not the letter μ.
 fn plain_letter(form: char) -> Option<(char, char)> {
     let plain = match form {
         'ϑ' => 'θ',

@@ -13,7 +13,7 @@ pub enum MeaningError {
     UnknownName {
         /// The name.
         name: String,
-        /// The names there are.
+        /// The existing names.
         known: Vec<String>,
     },
     /// A name that is declared further below.
@@ -27,7 +27,7 @@ pub enum MeaningError {
     NotACoordinate {
         /// The name.
         name: String,
-        /// The coordinates there are.
+        /// The existing coordinates.
         coordinates: Vec<String>,
     },
     /// A force on something that is neither a quasi-velocity nor a coordinate.
@@ -43,7 +43,7 @@ pub enum MeaningError {
     NotReset {
         /// The name.
         name: String,
-        /// What it is, in words.
+        /// Its kind, in words.
         what: &'static str,
         /// The names that can be reset.
         known: Vec<String>,
@@ -55,7 +55,7 @@ pub enum MeaningError {
         name: String,
         /// The place, in words.
         place: &'static str,
-        /// What can be used.
+        /// The names that can be used.
         allowed: &'static str,
     },
     /// d() of something that contains velocities, where accelerations are not allowed.
@@ -91,7 +91,7 @@ pub enum MeaningError {
     NotNonlinear {
         /// Its name.
         constraint: String,
-        /// What it does instead, in words.
+        /// Its actual property, in words.
         what: &'static str,
     },
     /// A force or torque of a reaction on a body that virtual work does not determine.
@@ -128,7 +128,7 @@ pub enum MeaningError {
         /// The forms that it has.
         help: &'static str,
     },
-    /// A coordinate without kinematics, where others have them.
+    /// A coordinate without kinematics, though others have them.
     #[error("[kinematics] does not say what `{coordinate}'` is")]
     KinematicsMissing {
         /// The coordinate.
@@ -159,7 +159,7 @@ pub enum MeaningError {
         "the definitions of the quasi-velocities are linearly dependent: their matrix is singular everywhere"
     )]
     DependentDefinitions,
-    /// Velocities that neither definitions nor constraints determine where the motion starts.
+    /// Velocities that neither definitions nor constraints determine at the start.
     #[error(
         "at the start the definitions of the quasi-velocities and the constraints leave {} undetermined",
         listed(velocities)
@@ -179,7 +179,7 @@ pub enum MeaningError {
         coordinate: String,
         /// The velocity given.
         given: f64,
-        /// What the others say it is.
+        /// Its value according to the others.
         found: f64,
     },
     /// Components of the start that are to be kept but have to move for a constraint.
@@ -187,7 +187,7 @@ pub enum MeaningError {
     StartHeld {
         /// The constraint.
         constraint: String,
-        /// What is kept.
+        /// The components that are kept.
         held: Vec<String>,
     },
     /// A constraint declared holonomic that is not.
@@ -215,7 +215,7 @@ pub enum MeaningError {
     Contradictory {
         /// Its name.
         constraint: String,
-        /// The constraints that keep it constant; none if it is so by itself.
+        /// The constraints that keep it constant; none if it is constant by itself.
         others: Vec<String>,
         /// Its value.
         residual: f64,
@@ -233,7 +233,7 @@ pub enum MeaningError {
     UnknownAlgebra {
         /// The name.
         name: String,
-        /// The names there are.
+        /// The existing names.
         known: Vec<&'static str>,
     },
     /// An algebra whose dimension is not the number of quasi-velocities.
@@ -285,7 +285,7 @@ pub enum MeaningError {
         /// The pair.
         pair: [String; 2],
     },
-    /// A frame of which a combination vanishes, so that it says nothing of brackets along that.
+    /// A frame with a vanishing combination, so that it does not determine brackets along that combination.
     #[error(
         "the frame does not determine the brackets of the quasi-velocities: {}",
         acts_as_zero(combination, |s| names[s - 1].clone())
@@ -341,8 +341,8 @@ pub enum MeaningError {
     /// An axis without direction.
     #[error("the axis has length 0")]
     ZeroAxis,
-    /// A matrix that is no rotation.
-    #[error("these nine entries are no rotation: R·Rᵀ differs from 1 by {}, and the determinant is {}", rounded(*defect), rounded(*determinant))]
+    /// A matrix that is not a rotation.
+    #[error("these nine entries are not a rotation: R·Rᵀ differs from 1 by {}, and the determinant is {}", rounded(*defect), rounded(*determinant))]
     NotARotation {
         /// The largest entry of R Rᵀ − 1.
         defect: f64,
@@ -351,13 +351,13 @@ pub enum MeaningError {
     },
     /// The matrix of a body in redundant coordinates, at the start.
     #[error(
-        "the matrix of `{body}` is no rotation at the start: its columns are not orthogonal and of one length, by {}",
+        "the matrix of `{body}` is not a rotation at the start: its columns are not orthogonal and of one length, by {}",
         rounded(*defect)
     )]
     NotARotationAtTheStart {
         /// The body.
         body: String,
-        /// How much RᵀR misses a multiple of the unit matrix.
+        /// The deviation of RᵀR from a multiple of the unit matrix.
         defect: f64,
     },
     /// The same along the motion.
@@ -369,7 +369,8 @@ pub enum MeaningError {
     NotARotationAlong {
         /// The body.
         body: String,
-        /// The largest component of the rates of RᵀR along the operators, less a multiple of the unit matrix.
+        /// The largest component of the rates of RᵀR along the operators, minus a multiple of the unit
+        /// matrix.
         defect: f64,
     },
     /// The quaternion of a joint at the start.
@@ -380,7 +381,7 @@ pub enum MeaningError {
         /// Its length.
         length: f64,
     },
-    /// A body that moves by itself without mass.
+    /// A body without mass that moves by itself.
     #[error("`{body}` can move, and neither it nor what hangs on it has mass or inertia")]
     Massless {
         /// The body.
@@ -417,7 +418,7 @@ pub enum MeaningError {
     /// An invalid table of an input.
     #[error("{what}")]
     BadTable {
-        /// What is wrong.
+        /// The reason.
         what: String,
         /// A correction.
         help: &'static str,
@@ -425,7 +426,7 @@ pub enum MeaningError {
     /// d() of an input, an acceleration or a reaction.
     #[error("the rate of the {what} `{name}` is not known")]
     UnknownRate {
-        /// Which of these.
+        /// Which of these it is.
         what: &'static str,
         /// Its name.
         name: String,
@@ -448,8 +449,8 @@ pub enum MeaningError {
         /// Whether a velocity moves no mass there.
         is_massless: bool,
     },
-    /// A tolerance of what is no component of the state.
-    #[error("`{name}` is no component of the state")]
+    /// A tolerance for something that is not a component of the state.
+    #[error("`{name}` is not a component of the state")]
     UnknownComponent {
         /// The name.
         name: String,
@@ -461,7 +462,7 @@ pub enum MeaningError {
     UnknownIntegral {
         /// The name.
         name: String,
-        /// The integrals there are.
+        /// The existing integrals.
         known: Vec<String>,
     },
     /// A function to be kept that is not an integral.
@@ -469,12 +470,12 @@ pub enum MeaningError {
     NotAnIntegral {
         /// The integral.
         name: String,
-        /// When it was seen to change.
+        /// The time at which it was seen to change.
         t: f64,
         /// Its rate of change.
         rate: f64,
     },
-    /// Anything else that the derivation refuses.
+    /// Any other refusal by the derivation.
     #[error("{message}")]
     Derivation {
         /// Why.

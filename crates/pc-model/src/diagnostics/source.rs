@@ -7,7 +7,7 @@ use std::ops::Range;
 pub struct Source {
     name: String,
     text: String,
-    /// Where the first byte that is not UTF-8 stood, and that byte.
+    /// The place of the first byte that is not UTF-8, and that byte.
     damage: Option<(usize, u8)>,
 }
 
@@ -77,7 +77,7 @@ impl Source {
         Position { line, column: before[start..].chars().count() + 1 }
     }
 
-    /// The line on which `span` begins and under it carets below the part of it that `span` covers.
+    /// The line on which `span` begins, with carets below the part that `span` covers.
     pub(crate) fn excerpt(&self, span: Range<usize>) -> String {
         let start = self.text.floor_char_boundary(span.start);
         let line_start = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
@@ -97,7 +97,7 @@ impl Source {
     }
 }
 
-/// The character as it may be sent to a terminal.
+/// The character in a form that is safe for a terminal.
 fn visible(c: char) -> char {
     if c.is_control() && c != '\t' { char::REPLACEMENT_CHARACTER } else { c }
 }

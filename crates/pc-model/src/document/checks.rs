@@ -1,4 +1,4 @@
-//! Conditions between the sections: one meaning for a name, something that moves, an energy.
+//! Conditions between the sections: each name has one meaning, something moves, and there is an energy.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -9,7 +9,7 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::contents::Document;
 use crate::document::expression::Name;
 
-/// The energy is given by `[lagrangian]` or `[bodies]`.
+/// Checks that the energy is given by `[lagrangian]` or `[bodies]`.
 pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {
     if !document.bodies.is_empty() || !document.tree.is_empty() {
         return Ok(());
@@ -24,7 +24,7 @@ pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {
     }
 }
 
-/// Gravity acts on something.
+/// Checks that gravity acts on something.
 pub(super) fn require_bodies(document: &Document) -> Result<(), ModelError> {
     match &document.gravity {
         Some(gravity) if document.bodies.is_empty() && document.tree.is_empty() => {
@@ -36,7 +36,7 @@ pub(super) fn require_bodies(document: &Document) -> Result<(), ModelError> {
     }
 }
 
-/// Something moves: a coordinate, or a quasi-velocity.
+/// Checks that something moves: a coordinate, or a quasi-velocity.
 pub(super) fn require_motion(document: &Document) -> Result<(), ModelError> {
     if document.coordinates.is_empty() && document.quasi_velocities.is_empty() {
         return Err(document.source.error(&document.end(), ErrorKind::NothingMoves));
@@ -44,7 +44,7 @@ pub(super) fn require_motion(document: &Document) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Tolerances are those of components of the state.
+/// Checks that tolerances belong to components of the state.
 pub(super) fn check_tolerances(document: &Document) -> Result<(), ModelError> {
     let Some(given) = &document.simulation.atol else { return Ok(()) };
     let known = document.start_names();
@@ -95,7 +95,7 @@ impl Document {
     }
 }
 
-/// A name has one meaning only.
+/// Checks that a name has only one meaning.
 pub(super) fn check_names(document: &Document) -> Result<(), ModelError> {
     let mut names = document.declared_names();
     names.sort_by_key(|(name, _)| name.place.span.start);

@@ -108,7 +108,7 @@ pub enum InputValue {
 /// A column of a file of comma-separated numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableFile {
-    /// Its path, from where the model's file is.
+    /// Its path, relative to the model's file.
     pub file: Located<String>,
     /// The column of the values.
     pub column: Located<String>,
@@ -125,7 +125,7 @@ pub struct QuasiVelocity {
     pub name: Name,
     /// Its definition by the velocities of the coordinates.
     pub is: Option<Expression>,
-    /// Its start value; 0 where it is left out.
+    /// Its start value; 0 if it is left out.
     pub start: Option<Expression>,
 }
 
@@ -134,7 +134,7 @@ pub struct QuasiVelocity {
 pub struct State {
     /// Its name.
     pub name: Name,
-    /// Its start value; 0 where it is left out.
+    /// Its start value; 0 if it is left out.
     pub start: Option<Expression>,
     /// ż
     pub rate: Expression,
@@ -199,7 +199,7 @@ pub struct Lagrangian {
     pub place: Place,
     /// Kinetic energy.
     pub kinetic: Option<Expression>,
-    /// Potential energy; 0 where it is left out.
+    /// Potential energy; 0 if it is left out.
     pub potential: Option<Expression>,
     /// The Lagrangian itself.
     pub lagrangian: Option<Expression>,
@@ -298,18 +298,18 @@ pub struct Simulation {
     pub method: Option<Located<Method>>,
     /// Form of the equations.
     pub form: Option<Located<Variables>>,
-    /// The quasi-velocities of the form `hamel`, by linear forms in the velocities.
+    /// The quasi-velocities of the form `hamel`, as linear forms in the velocities.
     pub hamel: Vec<NamedExpression>,
-    /// The velocities that are to be independent; the program's choice where there are none.
+    /// The velocities that are to be independent; the program's choice if there are none.
     pub independent: Vec<Located<String>>,
     /// Integrals, or `energy`, to whose values at the start the motion is projected.
     pub project: Vec<Located<String>>,
 }
 
 impl Simulation {
-    /// The rows of a table, unless others are given.
+    /// The default number of rows of a table.
     pub const ROWS: usize = 201;
-    /// The relative tolerance, unless another is given.
+    /// The default relative tolerance.
     pub const RELATIVE_TOLERANCE: f64 = 1e-9;
 
     /// The start time; 0 if it is left out.

@@ -15,13 +15,13 @@ pub struct Draw {
     pub shape: DrawnShape,
 }
 
-/// A place by two or three expressions.
+/// A place, given by two or three expressions.
 pub type DrawnPlace = Vec<Expression>;
 
-/// A shape, by expressions.
+/// A shape, given by expressions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DrawnShape {
-    /// A dot of the same size from near and far.
+    /// A dot whose size does not depend on the distance.
     Point {
         /// Its place.
         at: DrawnPlace,
@@ -156,7 +156,7 @@ const LINES: &[usize] = &{
     lengths
 };
 
-/// Two expressions in a plane, three in space.
+/// A place: two expressions in a plane, three in space.
 fn place(item: &Item<'_>) -> Result<DrawnPlace, ModelError> {
     item.list(&[2, 3], "2 or 3 expressions", AT)
 }

@@ -66,7 +66,7 @@ fn check_parents(document: &Document) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Checks that a moving body has mass, or one that hangs on it, unless `[lagrangian]` gives more energy.
+/// Checks that a moving body, or one that hangs on it, has mass, unless `[lagrangian]` gives more energy.
 fn check_masses(document: &Document) -> Result<(), ModelError> {
     if document.lagrangian.as_ref().is_some_and(|own| own.kinetic.is_some() || own.lagrangian.is_some()) {
         return Ok(());

@@ -14,13 +14,13 @@ pub struct TreeBody {
     pub name: Name,
     /// The section's header.
     pub place: Place,
-    /// The body it hangs on; the world where it is left out.
+    /// The body it hangs on; the world if left out.
     pub parent: Option<Located<String>>,
     /// The joint by which it hangs there.
     pub joint: Joint,
-    /// Its mass; 0 where it is left out.
+    /// Its mass; 0 if left out.
     pub mass: Option<Expression>,
-    /// The mass centre in body axes, from the joint; the joint itself where it is left out.
+    /// The mass centre in body axes, from the joint; the joint itself if left out.
     pub center: Option<[Expression; 3]>,
     /// Inertia about the mass centre, in body axes.
     pub inertia: Option<Inertia>,
@@ -31,7 +31,7 @@ pub struct TreeBody {
 }
 
 impl TreeBody {
-    /// The body it hangs on, none where this is the world.
+    /// The body it hangs on, none for the world.
     pub fn parent(&self) -> Option<&str> {
         self.parent.as_ref().map(|parent| parent.value.as_str()).filter(|parent| *parent != WORLD)
     }
@@ -48,9 +48,9 @@ pub struct Joint {
     pub axes: Vec<[f64; 3]>,
     /// The advance of a screw per radian.
     pub pitch: Option<Expression>,
-    /// Its place, in the axes of the body it hangs on, from the origin of that; the origin if left out.
+    /// Its place, in the axes of the body it hangs on, from that body's origin; the origin if left out.
     pub at: Option<[Expression; 3]>,
-    /// From the joint's axes to those of the body it hangs on; none where they are parallel.
+    /// From the joint's axes to those of the body it hangs on; none if they are parallel.
     pub rotation: Option<JointRotation>,
     /// The names of its coordinates.
     pub coordinates: Vec<Name>,
@@ -166,7 +166,7 @@ impl JointKind {
 pub enum JointRotation {
     /// The rows of the matrix.
     Matrix(Box<[Expression; 9]>),
-    /// Turns about axes, 0 to 2, each about the axes as turned by those before it.
+    /// Turns about axes, 0 to 2, each about an axis as turned by the preceding ones.
     Turns(Vec<(usize, Expression)>),
 }
 
@@ -192,7 +192,7 @@ impl Point {
         Point { components: Self::ENDS.map(component).to_vec(), name, body, at }
     }
 
-    /// The body it belongs to, none where this is the world.
+    /// The body it belongs to, none for the world.
     pub fn body(&self) -> Option<&str> {
         Some(self.body.value.as_str()).filter(|body| *body != WORLD)
     }

@@ -23,7 +23,7 @@ impl Document {
     /// The document of a model file.
     ///
     /// # Errors
-    /// The first thing in the file that is not part of a model.
+    /// The first error in the file, if it is not a model.
     pub fn parse(source: Source) -> Result<Self, ModelError> {
         deep(|| Document::parsed(source))
     }

@@ -150,7 +150,7 @@ impl<'a> Item<'a> {
         Name { text: self.key.into(), place: Place { entry: self.place.entry.clone(), span } }
     }
 
-    /// The key as a label, which need not be a name, but has no hidden characters.
+    /// The key as a label, which need not be a name but must have no hidden characters.
     pub(super) fn new_label(&self) -> Result<Name, ModelError> {
         if self.key.contains(is_hidden) {
             return Err(self.key_error(ErrorKind::HiddenInLabel { label: self.key.into() }));
@@ -220,7 +220,7 @@ impl<'a> Item<'a> {
         Located { value, place: self.place.clone() }
     }
 
-    /// The value as a table of its own.
+    /// The value as a separate table.
     pub(super) fn table(&self, expected: &'static str, example: &str) -> Result<Table<'a>, ModelError> {
         match self.value {
             DeValue::Table(entries) => Ok(Table { source: self.source, place: self.place.clone(), entries }),

@@ -35,7 +35,7 @@ fn kind(source: &Source, error: &Error, span: &Range<usize>) -> ErrorKind {
     ErrorKind::Toml { message: message.into(), help: help(source, message, span) }
 }
 
-/// The probable intention of the line at `span`.
+/// What the line at `span` probably means.
 fn help(source: &Source, message: &str, span: &Range<usize>) -> &'static str {
     let text = source.text();
     let start = text[..text.floor_char_boundary(span.start)].rfind('\n').map_or(0, |newline| newline + 1);
@@ -64,7 +64,7 @@ fn help(source: &Source, message: &str, span: &Range<usize>) -> &'static str {
     }
 }
 
-/// Whether a value is a number whose digits a comma parts.
+/// Whether a value is a number with a decimal or thousands comma.
 fn is_decimal_comma(value: &str) -> bool {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let value = value.split('#').next().unwrap_or_default().trim();

@@ -1,4 +1,4 @@
-//! The sections of bodies, also of those on joints, and of points of bodies.
+//! The sections of bodies, including those on joints, and of points of bodies.
 
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
@@ -142,8 +142,9 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
     Ok(Joint { place: item.place(), kind, axes, pitch, at, rotation, coordinates, quasi_velocities })
 }
 
-/// The components of a direction. One that is rounding beside the largest is 0, as cos(π/2) is where a program
-/// writes the axes of its drawing: of parallel axes a loop must not restrict what they leave free.
+/// The components of a direction. A component that is rounding relative to the largest is set to 0, such as
+/// cos(π/2) in axes written by a program: a loop must not restrict the directions that parallel axes leave
+/// free.
 pub(super) fn direction(item: &Item<'_>, example: &'static str) -> Result<[f64; 3], ModelError> {
     let components = item.parts(&[3], "3 numbers", example)?;
     let mut direction = [0.0; 3];
@@ -184,7 +185,7 @@ fn without_effect(part: &Item<'_>, kind: JointKind) -> ModelError {
     part.key_error(ErrorKind::OfOtherJoints { key: part.key().to_owned(), example })
 }
 
-/// The names listed in an entry, or the usual ones.
+/// The names listed in an entry, or the default ones.
 fn names(list: Option<&Item<'_>>, body: &Item<'_>, usual: Vec<String>) -> Result<Vec<Name>, ModelError> {
     let Some(list) = list else {
         return usual.into_iter().map(|name| body.derived_name(name)).collect();

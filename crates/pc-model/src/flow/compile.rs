@@ -16,8 +16,8 @@ use crate::model::model::Model;
 const PROGRAM: &str = "the program of the equations";
 
 impl Model {
-    /// Compiles the motion of this model and tries it at the start, which is returned with it: (x, η) with the free
-    /// quasi-velocities if constraints make the others vanish, with all otherwise.
+    /// Compiles the motion of this model and evaluates it at the start, which is returned with it: (x, η) with the
+    /// free quasi-velocities if constraints make the others vanish, with all otherwise.
     ///
     /// # Errors
     /// [`ModelError`] if it cannot be evaluated there.
@@ -36,8 +36,8 @@ impl Model {
         }
     }
 
-    /// Compiles the equations with multipliers and tries them at the start (x, η, z) with all η, which is
-    /// returned with them.
+    /// Compiles the equations with multipliers and evaluates them at the start (x, η, z) with all η,
+    /// which is returned with them.
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be evaluated there.
@@ -60,8 +60,8 @@ impl Model {
         self.started(compiled, (&names, || equations.kept(&names)), t_start, start)
     }
 
-    /// Compiles equations of motion of this model in any independent quasi-velocities, and tries them at the start (x,
-    /// η, z), which is returned with them.
+    /// Compiles equations of motion of this model in any independent quasi-velocities, and evaluates them at the start
+    /// (x, η, z), which is returned with them.
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be evaluated there.
@@ -75,7 +75,7 @@ impl Model {
         self.document().stage(equations.system().graph(), PROGRAM, compile)
     }
 
-    /// Compiles canonical equations of this model and tries them at the start (x, y).
+    /// Compiles canonical equations of this model and evaluates them at the start (x, y).
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be evaluated there.
@@ -92,7 +92,8 @@ impl Model {
         })
     }
 
-    /// Compiles the canonical equations of this model with multipliers, and tries them at the start (x, y).
+    /// Compiles the canonical equations of this model with multipliers, and evaluates them at the start (x,
+    /// y).
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be evaluated there.
@@ -109,7 +110,8 @@ impl Model {
         })
     }
 
-    /// The names of the kept integrals, without those of the text that a system with fewer coordinates lacks.
+    /// The names of the kept integrals, without those of the text that are missing in a system with fewer
+    /// coordinates.
     fn kept_of(&self, system: &System<'_>) -> Vec<String> {
         let is_written =
             |name: &String| self.document().integrals.iter().any(|known| known.name.text == *name);
@@ -117,7 +119,7 @@ impl Model {
         self.kept().iter().filter(|name| is_there(name) || !is_written(name)).cloned().collect()
     }
 
-    /// The derivative by external forces is part of the Jacobian under them.
+    /// With external forces, the derivative with respect to them is part of the Jacobian.
     fn options(&self) -> CompileOptions {
         CompileOptions::default()
             .parameter_jacobian(self.differentiates_by_parameters() || !self.external.is_empty())

@@ -1,10 +1,10 @@
-//! Where the reset of an event leads under constraints.
+//! The state after the reset of an event under constraints.
 
 use pc_expr::{Failure, VectorField};
 use pc_mech::{Motion, Multipliers};
 
-/// A value of a reset that constraints change by more than this, absolute or relative, whichever is larger, is changed
-/// by more than rounding.
+/// A value of a reset that constraints change by more than this, absolute or relative, whichever is larger, has
+/// changed by more than rounding.
 const OFF: f64 = 1e-8;
 /// The factor by which a reset may increase the distance of a state from the constraints.
 const LENGTHENED: f64 = 10.0;
@@ -44,11 +44,11 @@ impl ConstrainedResets {
         self.motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
     }
 
-    /// Moves to the constraints a state (x, η, z) of which a reset has set the components `places`; `before` is the
+    /// Moves a state (x, η, z) onto the constraints after a reset has set the components `places`; `before` is the
     /// state before it.
     ///
     /// Velocities that are set stay as they are, and the others follow. If more are set than the constraints leave
-    /// free, all move to the nearest that are allowed. Coordinates stay: the state is at the event, and rounding must
+    /// free, all move to the nearest values allowed. Coordinates stay: the state is at the event, and rounding must
     /// not move it back.
     ///
     /// # Errors

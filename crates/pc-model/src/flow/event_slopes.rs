@@ -8,8 +8,8 @@ use crate::diagnostics::error::ModelError;
 use crate::flow::reading::inputs;
 use crate::model::model::Model;
 
-/// For each event the derivatives of its function, and of the values its reset writes, by (t, y, p), where y
-/// = (x, η, z) with the free η, of which the others are functions.
+/// For each event the derivatives of its function, and of the values that its reset writes, by (t, y, p),
+/// where y = (x, η, z) with the free η; the other η are functions of these.
 #[derive(Clone, Debug)]
 pub(super) struct EventSlopes {
     dim: usize,
@@ -99,7 +99,7 @@ impl<'a> Slopes<'a> {
         self.row(0)
     }
 
-    /// `of` the derivatives of each component that the reset writes, with its index in the state.
+    /// The derivatives in `of`, for each component that the reset writes, with its index in the state.
     pub(super) fn resets(&self, of: impl Fn(Row<'a>) -> f64) -> impl Iterator<Item = (usize, f64)> {
         self.compiled.places.iter().enumerate().map(move |(i, &place)| (place, of(self.row(i + 1))))
     }

@@ -26,7 +26,7 @@ pub struct FlowEvents {
     slopes: Option<EventSlopes>,
     /// The indices of inputs with tables.
     tables: Vec<usize>,
-    /// What constraints that multipliers hold make of resets.
+    /// The effect on resets of constraints that multipliers hold.
     constraints: Option<ConstrainedResets>,
     /// Storage for (x, η, z) with all η.
     room: Vec<f64>,
@@ -43,7 +43,7 @@ struct Reset {
 #[error("these events were not compiled with their derivatives")]
 struct NoSlopes;
 
-/// The error of sensitivities by a function of time.
+/// The error for sensitivities to a function of time.
 #[derive(Debug, thiserror::Error)]
 #[error("there is no derivative by parameter {parameter} (from 0): it is an input with a table")]
 struct OfTable {
@@ -52,7 +52,7 @@ struct OfTable {
 
 impl FlowEvents {
     /// The events of a model whose states are read in this way; `watch` is the motion of all quasi-velocities
-    /// where there are multipliers.
+    /// if there are multipliers.
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be compiled.
@@ -140,7 +140,7 @@ impl FlowEvents {
         Ok((ahead - behind) / length)
     }
 
-    /// Whether there are none.
+    /// Whether there are no events.
     pub fn is_empty(&self) -> bool {
         self.events.is_empty()
     }

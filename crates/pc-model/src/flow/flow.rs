@@ -12,7 +12,7 @@ use crate::flow::reading::Reading;
 use crate::model::model::Model;
 use crate::variables::Variables;
 
-/// Equations of motion of a model, compiled and tried at the start, with the columns of a table.
+/// Equations of motion of a model, compiled and evaluated at the start, with the columns of a table.
 #[derive(Clone, Debug)]
 pub struct Flow {
     /// The vector field.
@@ -30,7 +30,7 @@ impl Flow {
     /// The equations in these variables.
     ///
     /// # Errors
-    /// [`ModelError`] if there are none, or nothing can be evaluated at the start.
+    /// [`ModelError`] if there are none, or they cannot be evaluated at the start.
     pub fn new(model: &Model, assembly: &Assembly<'_>, variables: Variables) -> Result<Flow, ModelError> {
         let refused = |error| assembly.document.derivation_error(error);
         match (variables, assembly.constraints.held()) {
@@ -145,7 +145,8 @@ impl Flow {
         })
     }
 
-    /// The names of the numbers of each [row](Flow::row). They depend on the form: a reduced one has fewer coordinates.
+    /// The names of the numbers of each [row](Flow::row). They depend on the form: a reduced form has fewer
+    /// coordinates.
     pub fn columns(&self) -> Vec<String> {
         self.names.iter().chain(self.motion.observable_names()).cloned().collect()
     }
@@ -173,8 +174,8 @@ impl Flow {
         row
     }
 
-    /// The rates of all quasi-velocities of the system when its state moves at these rates; none where the state
-    /// itself has quasi-velocities of the system, with their rates.
+    /// The rates of all quasi-velocities of the system when its state moves at these rates; none if the state
+    /// itself contains quasi-velocities of the system, with their rates.
     pub fn rates_of_quasi_velocities(&mut self, t: f64, state: &[f64], rates: &[f64]) -> Option<Vec<f64>> {
         self.reading.rates(t, state, rates)
     }
@@ -182,7 +183,7 @@ impl Flow {
     /// The state for coordinates and all quasi-velocities of the system; those that are not free are ignored.
     ///
     /// # Errors
-    /// [`MechError`] where the quasi-velocities have no momenta.
+    /// [`MechError`] if the quasi-velocities have no momenta.
     pub fn state_of(&mut self, t: f64, all: &[f64]) -> Result<Vec<f64>, MechError> {
         self.reading.write(t, all)
     }

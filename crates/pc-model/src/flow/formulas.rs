@@ -12,11 +12,11 @@ use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
 impl<'g> Assembly<'g> {
-    /// The parameters that follow others, by their places, each as a function of those that follow none.
-    /// `model` is the one assembled here.
+    /// The parameters that follow others, by their indices, each as a function of those that follow
+    /// none. `model` is the one assembled here.
     ///
     /// # Errors
-    /// [`ModelError`] for an expression that means nothing; it would not have been assembled.
+    /// [`ModelError`] for an expression without a meaning, which would not have been assembled.
     pub fn parameter_formulas(&self, model: &Model) -> Result<Vec<(usize, Expr<'g>)>, ModelError> {
         let (graph, document) = (self.system.graph(), model.document());
         let mut scope = Scope::new(graph, document);
@@ -33,7 +33,7 @@ impl<'g> Assembly<'g> {
     }
 
     /// The start of a form in its coordinates, quasi-velocities and first-order states: functions of
-    /// parameters as far as the text gives them so, numbers where they are numbers there, follow from
+    /// parameters if the text gives them as such; numbers if they are numbers there, follow from
     /// velocities, or were moved onto constraints.
     ///
     /// # Errors

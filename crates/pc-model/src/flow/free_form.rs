@@ -8,7 +8,7 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::variables::Variables;
 
-/// A definition of a quasi-velocity of which only this part is independent of those before it is dependent.
+/// A definition of a quasi-velocity is dependent if only this fraction is independent of the preceding ones.
 const DEPENDENT: f64 = 1e-6;
 
 /// A system whose equations (9) are the equations of motion, with the relation between its quasi-velocities and those
@@ -23,7 +23,7 @@ pub struct FreeForm<'g> {
     pub values: Vec<Expr<'g>>,
     /// The quasi-velocities of the system as functions of time, coordinates and the independent ones.
     pub definitions: Vec<Expr<'g>>,
-    /// A of η' = A η, k × k; none where the quasi-velocities are those of the model.
+    /// A of η' = A η, k × k; none if the quasi-velocities are those of the model.
     pub(crate) matrix: Option<Matrix<Expr<'g>>>,
 }
 
@@ -89,7 +89,7 @@ impl<'g> Assembly<'g> {
         Ok((self.placed(form.system.poincare())?, form))
     }
 
-    /// The system with reactions substituted where they are observed.
+    /// The system with observed reactions substituted.
     fn observed(&self, free: System<'g>) -> Result<System<'g>, ModelError> {
         match self.constraints.formulation() {
             ConstraintFormulation::Multipliers(_) => Ok(free.observing(self.equations()?.system())),
@@ -199,7 +199,7 @@ impl<'g> Assembly<'g> {
     }
 
     /// Determinants, functions of time, coordinates and parameters, that vanish where the state of a form
-    /// does not determine velocities, as `within_chart` watches them; none for a matrix of more than four
+    /// does not determine velocities; `within_chart` watches them; none for a matrix of more than four
     /// rows, whose determinant is not a short expression.
     pub fn chart_determinants(&self, form: &FreeForm<'g>) -> Vec<Option<Expr<'g>>> {
         let (graph, frame, all) = (self.system.graph(), self.system.frame(), self.system.quasi_velocities());
@@ -222,10 +222,10 @@ impl<'g> Assembly<'g> {
         determinants.filter(|value| !value.as_ref().is_some_and(is_fixed)).collect()
     }
 
-    /// A motion of a form that does not go on past a place where its state does not determine velocities.
+    /// A motion of a form that does not continue past a place where its state does not determine velocities.
     ///
     /// # Errors
-    /// [`ModelError`], none for a form of this system.
+    /// [`ModelError`], which does not occur for a form of this system.
     pub(crate) fn within_chart(&self, motion: Motion, form: &FreeForm<'g>) -> Result<Motion, ModelError> {
         let all = self.system.quasi_velocities();
         if form.system.frame().coordinates() != self.system.frame().coordinates() {
@@ -288,8 +288,8 @@ fn short_determinant<'g>(graph: &'g Graph, square: &Matrix<Expr<'g>>) -> Option<
     Some(factors.into_iter().fold(rest, |product, factor| product * factor))
 }
 
-/// Rows of derivatives in units of the quasi-velocities in which the largest of each column is 1: r' + r φ' does not depend on r'
-/// however small r is.
+/// Rows of derivatives in units of the quasi-velocities in which the largest of each column is 1: r' + r φ' does not depend on
+/// r', however small r is.
 fn in_alike_units(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let largest = |s: usize| rows.iter().fold(0.0f64, |most, row| most.max(row[s].abs()));
     let unit = |s: usize| Some(largest(s)).filter(|&most| most > 0.0).unwrap_or(1.0);

@@ -10,13 +10,13 @@ use crate::flow::flow::Flow;
 use crate::model::model::Model;
 use crate::variables::Variables;
 
-/// A start of which a projection moves each component by at most this part satisfies the constraints up to the rounding of its
-/// digits; a tenth of the distance at which a model is refused.
+/// If a projection moves each component of a start by at most this fraction, the start satisfies the constraints up to the
+/// rounding of its digits; it is a tenth of the distance at which a model is refused.
 const ON_CONSTRAINTS: f64 = 1e-9;
-/// A component may also move by this part of the largest: the rounding of the projection.
+/// A component may also move by this fraction of the largest: the rounding of the projection.
 const ROUNDING: f64 = 1e-14;
 
-/// The equations of a model compiled once, for models of which only numbers are different.
+/// The equations of a model compiled once, for models that differ only in numbers.
 #[derive(Debug)]
 pub struct Prototype {
     flow: Mutex<Flow>,
@@ -27,7 +27,7 @@ pub struct Prototype {
 }
 
 impl Prototype {
-    /// As [`of`](Prototype::of); none too where the model has no equations of motion.
+    /// As [`of`](Prototype::of); also none if the model has no equations of motion.
     pub fn new(model: &Model, variables: Variables) -> Option<Prototype> {
         let prototype = |assembly: &Assembly<'_>| {
             Ok(Prototype::of(model, assembly, variables, Flow::new(model, assembly, variables)?))
@@ -35,9 +35,9 @@ impl Prototype {
         model.derived(prototype).unwrap_or_else(|_: ModelError| None)
     }
 
-    /// The prototype of a flow of the model in these variables. None where the equations may depend on the start or on
-    /// the values of the parameters: momenta solved for velocities near the start, constraints left out
-    /// because they follow from others; or where the start has to be solved for.
+    /// The prototype of a flow of the model in these variables. None if the equations may depend on the start or on
+    /// the values of the parameters (momenta solved for velocities near the start, or constraints left out because
+    /// they follow from others), or if the start has to be solved for.
     pub fn of(model: &Model, assembly: &Assembly<'_>, variables: Variables, flow: Flow) -> Option<Prototype> {
         let own =
             variables == Variables::QuasiVelocities && !model.projects_start() && !model.derives_start();

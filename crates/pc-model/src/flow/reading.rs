@@ -17,7 +17,7 @@ pub(super) struct Reading {
     /// The indices of the free ones.
     pub(super) free: Vec<usize>,
     pub(super) parameters: Vec<f64>,
-    /// From momenta to quasi-velocities, if the state has momenta.
+    /// The conversion of momenta to quasi-velocities, if the state has momenta.
     pub(super) transform: Option<LegendreTransform>,
     /// Storage for a state in quasi-velocities.
     pub(super) room: Vec<f64>,
@@ -89,7 +89,7 @@ impl Reading {
         self.change.is_some()
     }
 
-    /// Whether a state already is (x, η, z) with all η.
+    /// Whether a state is already (x, η, z) with all η.
     pub(super) fn is_plain(&self) -> bool {
         let all = self.quasi_velocities.program().outputs_len();
         self.transform.is_none() && self.change.is_none() && self.free.iter().copied().eq(0..all)
@@ -109,7 +109,7 @@ impl Reading {
     /// (x, η, z) with all η of a state.
     ///
     /// # Errors
-    /// [`MechError`] where momenta have no quasi-velocities.
+    /// [`MechError`] if no quasi-velocities have the momenta.
     pub(super) fn read(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut all = Vec::new();
         self.read_in(t, state, &mut all)?;
@@ -135,7 +135,7 @@ impl Reading {
         outcome
     }
 
-    /// Writes to `all` the (x, η, z) with all η for one with the free ones.
+    /// Writes to `all` the (x, η, z) with all η, from one with the free η.
     pub(super) fn complete(&mut self, t: f64, free: &[f64], all: &mut Vec<f64>) {
         let n = self.coordinates;
         all.clear();
@@ -145,10 +145,10 @@ impl Reading {
         all.extend_from_slice(&free[n + self.free.len()..]);
     }
 
-    /// The state of an (x, η, z) with all η.
+    /// The state that belongs to an (x, η, z) with all η.
     ///
     /// # Errors
-    /// [`MechError`] where the quasi-velocities have no momenta.
+    /// [`MechError`] if the quasi-velocities have no momenta.
     pub(super) fn write(&mut self, t: f64, all: &[f64]) -> Result<Vec<f64>, MechError> {
         let (coordinates, rest) = all.split_at(self.coordinates);
         let (eta, states) = rest.split_at(self.quasi_velocities.program().outputs_len());

@@ -6,8 +6,8 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::flow::flow::Flow;
 use crate::model::model::Model;
 
-/// The step of a central difference, as a part of the size of a parameter, that is accurate to ten digits:
-/// truncation and rounding errors are equal.
+/// The step of a central difference, as a fraction of the size of a parameter, that is accurate to ten
+/// digits: truncation and rounding errors are equal.
 fn step(value: f64) -> f64 {
     let size = if value == 0.0 { 1.0 } else { value.abs() };
     f64::EPSILON.cbrt() * size
@@ -19,9 +19,9 @@ impl Flow {
     /// have parameters. No equation is derived for it.
     ///
     /// # Errors
-    /// [`ModelError`] where the model has no start for nearby values of the parameter, for example because the start
-    /// does not follow constraints that depend on it; for an input with a table; for a parameter that others are
-    /// expressions in.
+    /// [`ModelError`] if the model has no start for nearby values of the parameter, for example because the start
+    /// does not follow constraints that depend on it; for an input with a table; and for a parameter that follows
+    /// others.
     ///
     /// # Panics
     /// If there is no such parameter.

@@ -8,12 +8,14 @@ use crate::flow::flow::Flow;
 /// The absolute tolerance of components of ordinary scale.
 pub const ORDINARY_TOLERANCE: f64 = 1e-12;
 
-/// Of the largest component: the rounding of its terms in the rates of the others, which no step can be shorter for.
+/// The tolerance relative to the largest component: the rounding of its terms in the rates of the others,
+/// against which shorter steps do not help.
 const LEAST: f64 = 1e-16;
 
-/// A start value below this part of the largest may be nothing but its rounding, such as cos(π/2), and counts as zero.
+/// A start value below this fraction of the largest may be nothing but its rounding, such as cos(π/2), and
+/// counts as zero.
 const ZERO: f64 = 1e-13;
-/// So may a rate below this part of the largest.
+/// So may a rate below this fraction of the largest.
 const AT_REST: f64 = 1e-9;
 
 impl Flow {
@@ -21,9 +23,9 @@ impl Flow {
     /// ```text
     /// atolᵢ = min(1e-12, max(rtol sᵢ, 1e-16 s)),      sᵢ = |yᵢ| or τ |ẏᵢ|,      s = max |yᵢ|,      τ = s / max |ẏᵢ|
     /// ```
-    /// at the start: sᵢ is |yᵢ|, or τ |ẏᵢ| of a component that starts at zero, or s where that rests, too. So a component that
-    /// begins at 1e-9 has digits as one that begins at 1, in whatever units, as far as rounding beside larger ones leaves them. Where
-    /// the whole state starts at zero, τ is the time span.
+    /// at the start: sᵢ is |yᵢ|, or τ |ẏᵢ| for a component that starts at zero, or s if that one is also at rest. So a component that
+    /// begins at 1e-9 has as many digits as one that begins at 1, in whatever units, as far as rounding relative to larger ones
+    /// allows. Where the whole state starts at zero, τ is the time span.
     pub fn absolute_tolerances(
         &mut self,
         given: &AbsoluteTolerance,
@@ -35,7 +37,7 @@ impl Flow {
     }
 }
 
-/// The absolute tolerance of each component of a motion where none is given: that of [`Flow::absolute_tolerances`].
+/// The default absolute tolerance of each component of a motion, as in [`Flow::absolute_tolerances`].
 pub fn absolute_tolerances(
     field: &mut impl VectorField,
     start: &[f64],
@@ -78,7 +80,7 @@ fn largest(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Those of a start with these rates over a time of 10, at rtol 1e-9.
+    /// The tolerances for a start with these rates over a time of 10, at rtol 1e-9.
     fn tolerances<const N: usize>(start: [f64; N], rates: [f64; N]) -> Vec<f64> {
         let scales = scales(&start, &rates, 10.0);
         let least = LEAST * largest(&scales);

@@ -7,11 +7,11 @@ use crate::diagnostics::error::ModelError;
 use crate::variables::Variables;
 
 impl<'g> Assembly<'g> {
-    /// The system of the quasi-velocities of the state; for momenta where multipliers hold constraints, that of
+    /// The system of the quasi-velocities of the state; for momenta, if multipliers hold constraints, that of
     /// independent ones.
     ///
     /// # Errors
-    /// [`ModelError`] at the constraint that there are no independent velocities under.
+    /// [`ModelError`] at the constraint under which there are no independent velocities.
     pub fn system_in(&self, variables: Variables) -> Result<System<'g>, ModelError> {
         Ok(match variables {
             Variables::QuasiVelocities if self.constraints.held().is_some() => self.system.without_observed(),
@@ -24,7 +24,7 @@ impl<'g> Assembly<'g> {
     /// M η̇ = r in the quasi-velocities of the state, or those of its momenta; without the reactions of multipliers.
     ///
     /// # Errors
-    /// [`ModelError`] at the constraint that there are no independent velocities under.
+    /// [`ModelError`] at the constraint under which there are no independent velocities.
     pub fn equations_in(&self, variables: Variables) -> Result<Equations<'g>, ModelError> {
         match (variables, self.constraints.held()) {
             (_, Some(held)) => Ok(held.equations().clone()),
@@ -33,8 +33,8 @@ impl<'g> Assembly<'g> {
         }
     }
 
-    /// The canonical equations of the momenta of the [system](Assembly::system_in) in these variables, η looked for
-    /// from their start where they are not closed.
+    /// The canonical equations of the momenta of the [system](Assembly::system_in) in these variables, with the η
+    /// solved for from their start if the equations are not closed.
     ///
     /// # Errors
     /// [`ModelError`] if there are none.
@@ -51,8 +51,8 @@ impl<'g> Assembly<'g> {
         canonical.map_err(|error| self.document.derivation_error(error))
     }
 
-    /// The change between the quasi-velocities of the state and its momenta; from momenta to quasi-velocities
-    /// that satisfy the constraints, where multipliers hold these and momenta are integrated.
+    /// The conversion between the quasi-velocities of the state and its momenta; if multipliers hold the
+    /// constraints and momenta are integrated, it gives quasi-velocities that satisfy the constraints.
     ///
     /// # Errors
     /// [`ModelError`] if there is none.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::diagnostics::error::Diagnostic;
 use crate::diagnostics::source::{Place, Source};
 
-/// Something in a URDF file that is wrong, or cannot be part of a model.
+/// An element of a URDF file that is wrong, or cannot be part of a model.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{rendered}")]
 pub struct UrdfError {

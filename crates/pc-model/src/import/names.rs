@@ -6,12 +6,12 @@ use pc_expr::parse::{FUNCTIONS, is_name};
 
 use crate::import::robot::{Joint, Kind, Link};
 
-/// What the names of the coordinates and velocities of a body add to its own, where its joint has several of them.
+/// The suffixes of the coordinates and velocities of a body, if its joint has several of them.
 const PLANAR: [&str; 3] = ["x'", "y'", "φ'"];
 const FLOATING: [&str; 6] = ["v1", "v2", "v3", "ω1", "ω2", "ω3"];
 const OF_COORDINATES: [&str; 8] = ["x", "y", "z", "φ", "q0", "q1", "q2", "q3"];
 
-/// The names of a robot: those of links and joints, changed where they are not names of the language or are taken.
+/// The names of a robot: those of links and joints, changed if they are not names of the language or are taken.
 pub(crate) struct Names<'a> {
     /// The names of the bodies of links.
     bodies: HashMap<&'a str, String>,
@@ -59,7 +59,7 @@ impl<'a> Names<'a> {
         &self.bodies[link]
     }
 
-    /// The coordinate of a joint, if it has one alone.
+    /// The coordinate of a joint, if it has exactly one.
     pub(crate) fn coordinate(&self, joint: &Joint) -> Option<&str> {
         self.coordinates.get(joint.name.as_str()).map(String::as_str)
     }
@@ -84,7 +84,8 @@ impl<'a> Names<'a> {
     }
 }
 
-/// The name, with invalid characters replaced, and longer where it or what begins with it, `NAME_ENDING`, is taken.
+/// The name, with invalid characters replaced, and extended if it, or a name `NAME_ENDING` that begins with
+/// it, is taken.
 fn unused(name: &str, endings: &[&str], taken: &mut HashSet<String>) -> String {
     let mut own: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if !is_name(&own) {

@@ -10,9 +10,9 @@ use crate::import::names::Names;
 use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Pose, Robot};
 use crate::import::urdf;
 
-/// The text of the model of a robot in URDF, and what was left out of it, a line each.
+/// The text of the model of a robot in URDF, and what was left out of it, one line each.
 ///
-/// Bodies have the names of links, coordinates those of joints, changed where they are not names of
+/// Bodies have the names of links, coordinates those of joints, changed if they are not names of
 /// the language; the root link is fixed, or free if `floats`. Limits and meshes become comments.
 ///
 /// # Errors
@@ -101,7 +101,8 @@ impl<'a> Tree<'a> {
         Ok(Tree { source, robot, order, names })
     }
 
-    /// An error unless everything that moves has mass, or follows what has: a joint that mimics another needs none of its own.
+    /// An error unless everything that moves has mass, or follows something with mass: a joint that mimics
+    /// another needs no mass of its own.
     fn check_masses(&self) -> Result<(), UrdfError> {
         let mut carries: HashSet<&str> = HashSet::new();
         for (link, joint) in self.order.iter().rev() {
@@ -127,7 +128,7 @@ impl<'a> Tree<'a> {
         Ok(())
     }
 
-    /// The start values of joints that follow others, which are 0 themselves.
+    /// The start values of joints that follow others; the others start at 0.
     fn starts(&self) -> Result<Vec<(&'a Joint, f64)>, UrdfError> {
         let mut starts = Vec::new();
         for first in
@@ -312,7 +313,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// An angle, as a multiple of a quarter turn where it is one to the digits of a file.
+/// An angle, as a multiple of a quarter turn if it is one up to the digits of a file.
 fn angle(angle: f64) -> String {
     let quarters = (angle / std::f64::consts::FRAC_PI_2).round();
     if quarters != 0.0 && (angle - quarters * std::f64::consts::FRAC_PI_2).abs() <= 1e-10 {
@@ -335,7 +336,7 @@ fn list(numbers: &[f64]) -> String {
     format!("[{}]", numbers.join(", "))
 }
 
-/// R I Rᵀ, with R the rotation of the inertial's origin: only the three moments where the products
+/// R I Rᵀ, with R the rotation of the inertial's origin: only the three moments if the products
 /// vanish.
 fn along_axes_of_the_link(inertial: &Inertial) -> Vec<f64> {
     let [xx, yy, zz, xy, yz, xz] = inertial.inertia;

@@ -13,8 +13,8 @@ use crate::diagnostics::source::Place;
 use crate::document::{AlgebraDefinition, Bracket, Constraint, Document};
 
 impl Document {
-    /// Does some work in a graph. If its budget is spent before or during the work, that is the error,
-    /// whatever the work returns.
+    /// Does some work in a graph. If its budget is spent before or during the work, the result is that
+    /// error, whatever the work returns.
     pub(crate) fn stage<T>(
         &self,
         graph: &Graph,
@@ -134,7 +134,7 @@ impl Document {
         self.source.error(place, kind)
     }
 
-    /// The place where an integral is requested to be kept; its definition if that is not in the file.
+    /// The place where an integral is requested to be kept; its definition if the request is not in the file.
     pub(crate) fn kept_place(&self, name: &str) -> Place {
         let written = self.simulation.project.iter().find(|written| written.value == name);
         let integral = || self.integrals.iter().find(|integral| integral.name.text == name);

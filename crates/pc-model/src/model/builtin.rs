@@ -7,7 +7,7 @@ use crate::document::Document;
 /// A model that comes with the library.
 #[derive(Clone, Copy, Debug)]
 pub struct Builtin {
-    /// Its name, which works wherever a model file does.
+    /// Its name, which can be given in place of a model file.
     pub name: &'static str,
     /// Its text.
     pub text: &'static str,
@@ -73,7 +73,7 @@ pub const BUILTIN: &[Builtin] = models![
     "appell-hamel",
 ];
 
-/// Models of bodies on joints that come with the library, too: larger ones, whose equations fill pages.
+/// Further models that come with the library, of bodies on joints: larger ones, whose equations fill pages.
 pub const TREES: &[Builtin] = models![
     "puma-560",
     "four-bar-loop",
@@ -84,7 +84,7 @@ pub const TREES: &[Builtin] = models![
     "stewart-platform",
 ];
 
-/// Classics that come with the library, too: motions that books are written about.
+/// Further models that come with the library: classical motions about which books are written.
 pub const CLASSICS: &[Builtin] = models![
     "foucault-pendulum",
     "kapitza-pendulum",
@@ -120,7 +120,7 @@ impl Builtin {
     /// Its document.
     ///
     /// # Errors
-    /// [`ModelError`], which the tests exclude.
+    /// [`ModelError`], which the tests rule out.
     pub fn document(&self) -> Result<Document, ModelError> {
         Document::parse(Source::new(format!("{}.toml", self.name), self.text))
     }

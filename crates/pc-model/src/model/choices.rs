@@ -5,10 +5,10 @@ use crate::model::given::GivenQuasiVelocity;
 use crate::model::model::Model;
 
 impl Model {
-    /// Gives a quasi-velocity in addition to those of the text, by a linear form in the velocities x' and
-    /// quasi-velocities of the model, for equations in [given ones](crate::Variables::Given). Where fewer are given
+    /// Gives a quasi-velocity in addition to those of the text, as a linear form in the velocities x' and
+    /// quasi-velocities of the model, for equations in [given ones](crate::Variables::Given). If fewer are given
     /// than there are independent ones, quasi-velocities of the model complete them, each time the one that is least
-    /// determined so far at the start. Each is an output too.
+    /// determined so far at the start. Each is also an output.
     ///
     /// ```
     /// use pc_mech::Graph;
@@ -39,7 +39,7 @@ impl Model {
         Ok(())
     }
 
-    /// Forgets the quasi-velocities that `[simulation]` of the text or calls before this one give.
+    /// Removes the quasi-velocities given by `[simulation]` of the text or by earlier calls.
     pub fn give_no_quasi_velocities(&mut self) {
         self.given.clear();
     }

@@ -17,7 +17,7 @@ pub struct GivenQuasiVelocity {
 }
 
 impl GivenQuasiVelocity {
-    /// The quasi-velocity of a name and a text.
+    /// The quasi-velocity with a name and the text of its definition.
     ///
     /// # Errors
     /// [`ModelError`] if the name is invalid or taken, or the text is not an expression.

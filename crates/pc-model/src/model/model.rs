@@ -20,7 +20,7 @@ pub struct Model {
     /// The indices of start values that stay unmoved.
     held_starts: Vec<usize>,
     observes_reactions: bool,
-    /// Whether motions and events are to be differentiated by parameters.
+    /// Whether motions and events are to be differentiated with respect to parameters.
     by_parameters: bool,
     by_time: bool,
     /// The names of the integrals to be kept.
@@ -39,9 +39,9 @@ pub struct Model {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{name}` is not a parameter of this model; its parameters are {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") })]
 pub struct UnknownParameter {
-    /// The name asked for.
+    /// The requested name.
     pub name: String,
-    /// The parameters there are.
+    /// The existing parameters.
     pub known: Vec<String>,
 }
 
@@ -49,9 +49,9 @@ pub struct UnknownParameter {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{name}` is not an integral of this model; there are {}", known.join(", "))]
 pub struct UnknownIntegral {
-    /// The name asked for.
+    /// The requested name.
     pub name: String,
-    /// The integrals there are.
+    /// The existing integrals.
     pub known: Vec<String>,
 }
 
@@ -115,7 +115,7 @@ impl Model {
     /// expressions in it follow; one that is itself an expression becomes a number.
     ///
     /// # Errors
-    /// [`UnknownParameter`] with the parameters there are.
+    /// [`UnknownParameter`] with the existing parameters.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), UnknownParameter> {
         let known =
             |&(place, (known, _)): &(usize, (&str, f64))| known == name && !self.parameters.is_table(place);
@@ -137,7 +137,7 @@ impl Model {
         self.parameters.set(place, value);
     }
 
-    /// The place of number `place` of the parameters and inputs in the file.
+    /// The place in the file of number `place` of the parameters and inputs.
     pub(crate) fn parameter_place(&self, place: usize) -> Place {
         let parameters = self.document.parameters.iter().map(|p| &p.name);
         let mut names = parameters.chain(self.document.inputs.iter().map(|input| &input.name));
@@ -164,7 +164,7 @@ impl Model {
     /// Keeps an integral, or `energy`, at its value at the start, by projection.
     ///
     /// # Errors
-    /// [`UnknownIntegral`] with the integrals there are.
+    /// [`UnknownIntegral`] with the existing integrals.
     pub fn keep(&mut self, name: &str) -> Result<(), UnknownIntegral> {
         let integrals = self.document.integrals.iter().map(|integral| integral.name.text.as_str());
         let known: Vec<&str> = integrals.chain(["energy"]).collect();
@@ -201,8 +201,8 @@ impl Model {
         self.observes_reactions = yes;
     }
 
-    /// Sets whether sensitivities are needed: motions are then compiled with their derivatives by the parameters, and
-    /// events with theirs by time, state and parameters.
+    /// Sets whether sensitivities are needed: motions are then compiled with their derivatives with respect to the
+    /// parameters, and events with theirs by time, state and parameters.
     pub fn differentiate_by_parameters(&mut self, yes: bool) {
         self.by_parameters = yes;
     }

@@ -9,9 +9,9 @@ use crate::model::model::Model;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{name}` has no start value in this model; {} have", known.join(", "))]
 pub struct UnknownStart {
-    /// The name asked for.
+    /// The requested name.
     pub name: String,
-    /// The coordinates, quasi-velocities and first-order states; velocities x' where no quasi-velocity is declared.
+    /// The coordinates, quasi-velocities and first-order states; velocities x' if no quasi-velocity is declared.
     pub known: Vec<String>,
 }
 
@@ -23,7 +23,7 @@ pub struct UnknownStart {
     list(starts)
 )]
 pub struct UnknownValue {
-    /// The name asked for.
+    /// The requested name.
     pub name: String,
     /// The parameters, and inputs without a table.
     pub parameters: Vec<String>,
@@ -39,7 +39,7 @@ impl Model {
     /// Gives a parameter, an input without a table, or what has a start value another value than that of the file.
     ///
     /// # Errors
-    /// [`UnknownValue`] with the names there are.
+    /// [`UnknownValue`] with the existing names.
     pub fn set_value(&mut self, name: &str, value: f64) -> Result<(), UnknownValue> {
         if self.set(name, value).is_ok() || self.set_start(name, value).is_ok() {
             return Ok(());
@@ -62,7 +62,7 @@ impl Model {
         self.document().start_names()
     }
 
-    /// These absolute tolerances, and those of the text where none is given.
+    /// These absolute tolerances, completed by those of the text.
     ///
     /// # Errors
     /// [`UnknownStart`] for a name that has no start value.
@@ -78,7 +78,7 @@ impl Model {
     /// Gives a coordinate or quasi-velocity another start value than that of the file.
     ///
     /// # Errors
-    /// [`UnknownStart`] with the names there are.
+    /// [`UnknownStart`] with the existing names.
     pub fn set_start(&mut self, name: &str, value: f64) -> Result<(), UnknownStart> {
         let known = self.start_names();
         match known.iter().position(|known| known == name) {
@@ -90,11 +90,11 @@ impl Model {
         }
     }
 
-    /// Holds the value of a coordinate or quasi-velocity fixed where the start is [moved onto the
+    /// Holds the value of a coordinate or quasi-velocity fixed when the start is [moved onto the
     /// constraints](Model::project_start): the others follow.
     ///
     /// # Errors
-    /// [`UnknownStart`] with the names there are.
+    /// [`UnknownStart`] with the existing names.
     pub fn hold_start(&mut self, name: &str) -> Result<(), UnknownStart> {
         let mut known = self.start_names();
         known.truncate(known.len() - self.document().states.len()); // constraints do not move first-order states
@@ -114,14 +114,14 @@ impl Model {
     }
 
     /// Whether quasi-velocities may follow from start velocities of coordinates that are given with them:
-    /// [`start`](Model::start) does not have their values then.
+    /// [`start`](Model::start) then does not have their values.
     pub fn derives_start(&self) -> bool {
         let document = self.document();
         !document.quasi_velocities.is_empty() && !document.start_velocities.is_empty()
     }
 
-    /// Whether velocities that have no start value may follow from constraints: [`start`](Model::start) does not have their values
-    /// then.
+    /// Whether velocities that have no start value may follow from constraints: [`start`](Model::start) then does not have their
+    /// values.
     pub fn completes_start(&self) -> bool {
         let document = self.document();
         let n = document.coordinates.len();
@@ -136,12 +136,12 @@ impl Model {
         !document.constraints.is_empty() && !given.iter().enumerate().all(|(s, &given)| given || is_set(s))
     }
 
-    /// The start state (x, η, z) with the declared η, or (x, x', z) where none is: the values of
+    /// The start state (x, η, z) with the declared η, or (x, x', z) if none is: the values of
     /// [`start_names`](Model::start_names) for the current parameters, whether or not they satisfy the constraints,
     /// and 0 where none is given.
     ///
     /// # Errors
-    /// [`ModelError`] where a start value is not a number.
+    /// [`ModelError`] if a start value is not a number.
     pub fn start(&self) -> Result<Vec<f64>, ModelError> {
         self.parameter_values().check(self.document())?;
         start::start(self, &self.graph())

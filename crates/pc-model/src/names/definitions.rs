@@ -10,7 +10,7 @@ use crate::names::scope::{Context, Scope};
 use crate::names::stage::Stage;
 
 impl<'g> Scope<'g, '_> {
-    /// Resolves the definitions that are not used: they may contain everything that an output may.
+    /// Resolves the definitions that are not used: they may contain everything that an output may contain.
     pub(crate) fn look_at_unused(&mut self) -> Result<(), ModelError> {
         let used: BTreeSet<usize> = self.definitions.keys().map(|&(_, place)| place).collect();
         for place in (0..self.document.definitions.len()).filter(|place| !used.contains(place)) {

@@ -133,7 +133,7 @@ pub(crate) fn hung<'g>(body: &document::TreeBody, joint: Joint<'g>) -> TreeBody<
     }
 }
 
-/// The rotation by an angle about the axis of that number, exact for quarters of a turn.
+/// The rotation by an angle about the axis of that number, exact for quarter turns.
 fn about<'g>(axis: usize, angle: Expr<'g>) -> Matrix<Expr<'g>> {
     let (cos, sin) = match angle.constant().and_then(|angle| quarters(angle.to_f64())) {
         None => (angle.cos(), angle.sin()),
@@ -157,13 +157,13 @@ fn about<'g>(axis: usize, angle: Expr<'g>) -> Matrix<Expr<'g>> {
     })
 }
 
-/// An entry of a matrix of rotation, exact where it is 0 or ±1 up to rounding, as that of quarters of a turn is.
+/// An entry of a rotation matrix, made exact if it is 0 or ±1 up to rounding, as for quarter turns.
 fn entry_of_rotation(entry: Expr<'_>) -> Expr<'_> {
     let near = |entry: f64| [0, 1, -1].into_iter().find(|&unit| (entry - f64::from(unit)).abs() <= ROUNDING);
     entry.constant().and_then(|value| near(value.to_f64())).map_or(entry, Expr::from)
 }
 
-/// The number of quarters of a turn in an angle, 0 to 3, if it is a multiple up to rounding: π is rounded,
+/// The number of quarter turns in an angle, 0 to 3, if it is a multiple up to rounding: π is rounded,
 /// and its sine is not 0.
 fn quarters(angle: f64) -> Option<u8> {
     let count = (angle / FRAC_PI_2).round();

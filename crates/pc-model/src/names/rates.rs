@@ -49,7 +49,7 @@ impl<'g> Scope<'g, '_> {
         }
     }
 
-    /// d(f) = ∂f/∂t + x_i' ∂f/∂x_i + ż ∂f/∂z, and accelerations where f contains velocities.
+    /// d(f) = ∂f/∂t + x_i' ∂f/∂x_i + ż ∂f/∂z, and accelerations if f contains velocities.
     pub(super) fn total_derivative(
         &mut self,
         expression: &Expression,

@@ -160,7 +160,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         self.written.push(Written { value, place: expression.place(span), text, context });
     }
 
-    /// The written parts without branches of `step` that are not taken at these values, neither there nor
+    /// The written parts, without branches of `step` that are not taken at these values, either there or
     /// around every use of their definition.
     pub(crate) fn taken(&self, values: &[(Expr<'g>, f64)]) -> Vec<&Written<'g>> {
         let is_taken = |branch: &Branch<'g>| {

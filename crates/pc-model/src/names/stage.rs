@@ -28,7 +28,7 @@ pub(crate) enum Stage {
     Dynamics,
     /// An event: everything but accelerations.
     Event,
-    /// A function that is asked for: everything but accelerations.
+    /// A requested function: everything but accelerations.
     Function,
     /// A shape that is drawn: everything but accelerations.
     Drawing,

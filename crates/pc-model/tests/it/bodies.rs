@@ -304,7 +304,7 @@ fn a_matrix_of_redundant_coordinates_is_a_rotation_at_the_start_and_after() {
     assert_eq!(refusal.category(), Category::Inconsistent);
     assert_eq!(
         refusal.to_string(),
-        r#"m.toml:29:14: [bodies.b] rotation: the matrix of `b` is no rotation at the start: its columns are not orthogonal and of one length, by 4.94285e-10
+        r#"m.toml:29:14: [bodies.b] rotation: the matrix of `b` is not a rotation at the start: its columns are not orthogonal and of one length, by 4.94285e-10
     rotation = ["r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"]
                  ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
   help: give the start with all digits or as expressions, or the body its `angular_velocity`"#

@@ -5,11 +5,11 @@ use pc_mech::{Constraint, Expr, Graph, System};
 use crate::classification::positions::{Place, Positions, norm};
 use crate::error::NonholoError;
 
-/// A unit vector with a remainder below this may depend on others: the root of a rounding error.
+/// A unit vector whose remainder is below this, the root of a rounding error, may depend on others.
 const DEPENDENT: f64 = 1e-7;
 
-/// The remainder of coefficients that depend on others where conditions on positions hold, relative to the
-/// remainder a hundredth of the size of the system away: rounding.
+/// The remainder that rounding leaves of coefficients that depend on others where conditions on positions
+/// hold, relative to their remainder at a distance of a hundredth of the size of the system.
 const VANISHES: f64 = 1e-8;
 
 /// The remainder, in units of displacements, of a condition on positions that follows from others.
@@ -33,7 +33,7 @@ pub struct Redundant {
 /// X_0 f. Dependence at almost all states is found exactly. An overconstrained mechanism has conditions that
 /// are dependent only where all of them hold: if the start shows this, it is tested numerically at places
 /// around it that satisfy all conditions on positions, and a condition is redundant if it vanishes near the
-/// start wherever those before it do.
+/// start wherever the preceding ones do.
 ///
 /// ```
 /// use pc_mech::{Constraint, Graph, System};
@@ -66,14 +66,14 @@ pub struct Binding {
 
 impl Binding {
     /// Sorts the constraints of a system; positions come first: a condition on velocities may follow from
-    /// them, but never the other way round. [Nonlinear](Constraint::nonlinear) ones bind, and no other
-    /// follows from them.
+    /// them, but never the other way round. [Nonlinear](Constraint::nonlinear) constraints bind, and no
+    /// other follows from them.
     ///
-    /// `at` are values of time and coordinates where the motion starts, and may be of more.
+    /// `at` are values of time and coordinates where the motion starts, and possibly of other symbols.
     ///
     /// # Errors
-    /// [`NonholoError::Contradictory`] for one that no velocity satisfies together with others;
-    /// [`ConstraintError::NotAffine`](pc_mech::ConstraintError::NotAffine).
+    /// [`NonholoError::Contradictory`] for a constraint that no velocity satisfies together with
+    /// others; [`ConstraintError::NotAffine`](pc_mech::ConstraintError::NotAffine).
     pub fn new<'g>(
         system: &System<'g>,
         constraints: &[Constraint<'g>],
@@ -121,8 +121,8 @@ struct Found<'a, 'g> {
     constraints: &'a [Constraint<'g>],
     rows: Rows<'g>,
     redundant: Vec<Redundant>,
-    /// Constraints on velocities that, at almost all states, no velocity satisfies together with others, and
-    /// those others.
+    /// Constraints on velocities that, at almost all states, no velocity satisfies together with others,
+    /// with those others.
     open: Vec<(usize, Vec<String>)>,
 }
 
@@ -229,7 +229,7 @@ impl<'g> Found<'_, 'g> {
     }
 
     /// Keeps constraints that are independent where all hold, and conditions on positions that do not follow
-    /// from those before them.
+    /// from preceding ones.
     fn drop_dependent(&mut self, looked: &Looked, start: &Place) -> Result<(), NonholoError> {
         let rows = std::mem::take(&mut self.rows);
         let first_open = rows.places.len();
@@ -256,7 +256,7 @@ impl<'g> Found<'_, 'g> {
         Ok(())
     }
 
-    /// Drops a constraint whose coefficients C depend on those `kept`, if c_0 does.
+    /// Drops a constraint whose coefficients C depend on those `kept`, if c_0 also does.
     fn settle(
         &mut self,
         a: usize,
@@ -317,7 +317,7 @@ struct Looked {
 
 impl Looked {
     /// Whether a constraint depends on others where conditions on positions hold: the remainder of its
-    /// coefficients then vanishes against that around, in any units.
+    /// coefficients is then negligible relative to the remainder nearby, in any units.
     fn depends(&self, on: &[usize], index: usize, part: Part) -> bool {
         let left = |places: &[Vec<Vec<f64>>]| {
             let left = places.iter().map(|place| {
@@ -340,7 +340,7 @@ fn are_independent(whole: &[Vec<f64>]) -> bool {
     whole.iter().all(|whole| span.add(&whole[..whole.len() - 1]) > DEPENDENT)
 }
 
-/// The span of vectors, by an orthonormal basis.
+/// The span of vectors, as an orthonormal basis.
 #[derive(Default)]
 struct Span(Vec<Vec<f64>>);
 

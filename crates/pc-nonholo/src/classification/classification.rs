@@ -11,14 +11,15 @@ use crate::error::NonholoError;
 pub enum Kind {
     /// It binds positions, f(t, x) = 0.
     Position,
-    /// It binds velocities, but with the others it can be written f(t, x) = const: holonomic in disguise.
+    /// It binds velocities, but together with the others it can be written f(t, x) = const: holonomic in
+    /// disguise.
     Integrable,
-    /// It binds velocities and leaves all positions within reach.
+    /// It binds velocities but leaves all positions within reach.
     Nonholonomic {
-        /// The largest component along it of the commutators of the velocities allowed, where it was tried.
+        /// The largest component along it of the commutators of the allowed velocities, where it was tested.
         residual: f64,
     },
-    /// It binds velocities and is not affine in them. Frobenius' test is for those that are.
+    /// It binds velocities and is not affine in them. Frobenius' test does not apply to it.
     Nonlinear,
 }
 
@@ -43,13 +44,13 @@ impl<'g> ConstraintClassification<'g> {
     /// Positions come first: a condition on velocities may follow from them, but never the other way round.
     ///
     /// [Nonlinear](Constraint::nonlinear) constraints come last and count neither for the rank nor for the test of the
-    /// others; one that restricts no velocity at almost all states is not tested for redundancy.
+    /// others; a constraint that restricts no velocity at almost all states is not tested for redundancy.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///
     /// # Errors
-    /// [`NonholoError::Contradictory`] for one that no velocity satisfies together with others; errors of
-    /// [`System::with_multipliers`] and [`Adapted::new`](crate::Adapted::new).
+    /// [`NonholoError::Contradictory`] for a constraint that no velocity satisfies together with others;
+    /// errors of [`System::with_multipliers`] and [`Adapted::new`](crate::Adapted::new).
     pub fn new(
         system: &System<'g>,
         constraints: &[Constraint<'g>],
@@ -71,7 +72,7 @@ impl<'g> ConstraintClassification<'g> {
         Ok(ConstraintClassification { multipliers: Some(multipliers), kinds, combinations, redundant })
     }
 
-    /// The equations of motion with multipliers, unless nothing binds.
+    /// The equations of motion with multipliers, unless no constraint binds.
     pub fn multipliers(&self) -> Option<&Multipliers<'g>> {
         self.multipliers.as_ref()
     }
@@ -82,10 +83,10 @@ impl<'g> ConstraintClassification<'g> {
     }
 
     /// The number of combinations of the nonholonomic constraints, with coefficients that are functions of time and
-    /// coordinates, that are integrable though no single constraint is
+    /// coordinates, that are integrable although no single constraint is
     /// ([`IntegrableCombination`](crate::IntegrableCombination) finds them): the l + m dimensions of all velocities, l
-    /// of them allowed, less those of the least involutive family of fields that contains the allowed ones, less the
-    /// integrable constraints.
+    /// of them allowed, minus those of the least involutive family of fields that contains the allowed ones, minus the
+    /// number of integrable constraints.
     pub fn integrable_combinations(&self) -> usize {
         self.combinations
     }

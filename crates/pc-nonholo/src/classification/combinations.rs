@@ -29,7 +29,7 @@ impl<'g> IntegrableCombination<'g> {
     /// Finds combinations in closed form among the `count` independent ones that constraints of these `kinds`
     /// [have](crate::ConstraintClassification::integrable_combinations): with coefficients that are constant, or
     /// functions of time and coordinates, or constant for the values of the parameters. They are independent of each
-    /// other, and proved. None is found where there are not as many quasi-velocities as coordinates.
+    /// other, and proved. None is found unless there are as many quasi-velocities as coordinates.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///
@@ -124,7 +124,7 @@ fn forms<'g>(system: &System<'g>, reach: &Reach<'g>) -> Option<Vec<Form<'g>>> {
 
 struct Search<'a, 'g> {
     system: &'a System<'g>,
-    /// The indices of the constraints without an integral of their own.
+    /// The indices of the constraints that have no integral by themselves.
     nonholonomic: Vec<usize>,
     reach: &'a Reach<'g>,
     /// (x, t)
@@ -136,7 +136,7 @@ impl<'g> Search<'_, 'g> {
         self.system.graph()
     }
 
-    /// The forms for the values of the parameters.
+    /// The forms for the present values of the parameters.
     fn bound(&self, forms: &[Form<'g>]) -> Vec<Form<'g>> {
         let numbers = self.system.numbers();
         let bind = |form: &Form<'g>| Form {

@@ -14,7 +14,7 @@ const SATISFIED: f64 = 1e-11;
 /// The relative variation of coordinates.
 const VARIED: f64 = 0.01;
 
-/// Coordinates smaller than this part of the largest are varied as if they were that large.
+/// Coordinates smaller than this fraction of the largest are varied as if they were that large.
 const LEAST: f64 = 0.1;
 
 /// Conditions f(t, x) = 0 on the positions of a system, possibly dependent on each other.
@@ -28,7 +28,7 @@ pub(crate) struct Positions<'g> {
     parameters: Vec<(Expr<'g>, f64)>,
 }
 
-/// A time and the coordinates at it.
+/// A time with its coordinates.
 #[derive(Clone, Debug)]
 pub(crate) struct Place {
     pub(crate) t: f64,
@@ -44,7 +44,7 @@ impl Place {
         Place { t: vary(self.t), x: self.x.iter().map(|&x| vary(x)).collect() }
     }
 
-    /// The largest of the coordinates, up to 1; 1 where all are zero.
+    /// The largest of the coordinates, up to 1; 1 if all are zero.
     fn scale(&self) -> f64 {
         let largest = self.x.iter().fold(0.0f64, |size, x| size.max(x.abs()));
         if largest == 0.0 { 1.0 } else { largest.min(1.0) }
@@ -81,7 +81,7 @@ impl<'g> Positions<'g> {
         ))
     }
 
-    /// The lengths of the ∂f/∂x at a place, 1 where one vanishes.
+    /// The lengths of the ∂f/∂x at a place, 1 if one vanishes.
     fn sizes(&self, place: &Place) -> Option<Vec<f64>> {
         let values = self.evaluate(&self.values, place)?;
         let length = |row: &[f64]| row.iter().fold(0.0f64, |size, entry| size.hypot(*entry));

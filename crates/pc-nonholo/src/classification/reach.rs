@@ -57,7 +57,7 @@ pub(crate) fn affine<'g>(
 /// quasi-velocities `independent`.
 ///
 /// # Errors
-/// [`MechError::Algebra`] of constraints that are dependent everywhere.
+/// [`MechError::Algebra`] for constraints that are dependent everywhere.
 fn allowed<'g>(
     system: &System<'g>,
     independent: &[usize],

@@ -22,11 +22,11 @@ impl<'g> Adapted<'g> {
     /// sides C η + c_0 of its constraints, each called by the name of its constraint.
     ///
     /// The dependent ones are those that the constraints determine best at the values `at` of time, coordinates,
-    /// quasi-velocities and parameters; where a constraint is that a quasi-velocity vanishes, that one. The frame is
-    /// singular where these are not determined.
+    /// quasi-velocities and parameters; if a constraint says that a quasi-velocity vanishes, it is that one. The
+    /// frame is singular where these are not determined.
     ///
     /// # Errors
-    /// [`NonholoError::Nonlinear`]; [`NonholoError::Mech`], of which
+    /// [`NonholoError::Nonlinear`]; [`NonholoError::Mech`]; its
     /// [`ConstraintError::Singular`](pc_mech::ConstraintError::Singular) says that the constraints are dependent at
     /// `at`.
     pub fn new(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Adapted<'g>, NonholoError> {
@@ -42,11 +42,11 @@ impl<'g> Adapted<'g> {
         Ok(Adapted { system: system.in_quasi_velocities(names, &definitions)?, free })
     }
 
-    /// The system with free quasi-velocities of these names, as many as there are, that are orthonormal in the kinetic
+    /// The system with free quasi-velocities that have these names (one for each) and are orthonormal in the kinetic
     /// metric: their mass matrix is the unit matrix, l × l.
     ///
     /// # Errors
-    /// [`NonholoError::Mech`], those of [`System::in_orthonormal_frame`].
+    /// [`NonholoError::Mech`], with the errors of [`System::in_orthonormal_frame`].
     pub fn orthonormal<S: AsRef<str>>(&self, names: &[S]) -> Result<Adapted<'g>, NonholoError> {
         if names.len() != self.free {
             let (what, found) = ("the list of names", names.len());
@@ -89,7 +89,7 @@ pub(crate) fn affine(multipliers: &Multipliers<'_>, form: &'static str) -> Resul
 /// The indices of the quasi-velocities that the constraints leave independent, as [`Adapted::new`] chooses them.
 ///
 /// # Errors
-/// Those of [`Multipliers::dependent_at`].
+/// The errors of [`Multipliers::dependent_at`].
 pub(crate) fn independent<'g>(
     multipliers: &Multipliers<'g>,
     at: &[(Expr<'g>, f64)],

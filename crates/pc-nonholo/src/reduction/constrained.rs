@@ -53,11 +53,11 @@ impl<'g> Constrained<'g> {
         &self.equations
     }
 
-    /// The system of the free quasi-velocities with the constraints put into L; the terms that this loses are added to
-    /// its forces. Its equations are (32), and in momenta (34).
+    /// The system of the free quasi-velocities with the constraints substituted into L; the terms lost by this are
+    /// added to its forces. Its equations are (32), and in momenta (34).
     ///
     /// # Errors
-    /// [`NonholoError::Mech`] if the parts do not fit together, which they do.
+    /// [`NonholoError::Mech`] if the parts do not fit together, which cannot happen.
     pub fn free_system(&self) -> Result<System<'g>, NonholoError> {
         Ok(self.system.constrained(self.equations.right_hand_side().len())?)
     }

@@ -143,10 +143,10 @@ impl<'g> Voronets<'g> {
     }
 
     /// The system of the independent velocities whose equations (9) are (35): its Lagrangian is θ + U, and the terms
-    /// that putting the constraints in loses are added to the forces.
+    /// lost by substituting the constraints are added to the forces.
     ///
     /// # Errors
-    /// [`NonholoError::Mech`] if the parts do not fit together, which they do.
+    /// [`NonholoError::Mech`] if the parts do not fit together, which cannot happen.
     pub fn system(&self) -> Result<System<'g>, NonholoError> {
         let (system, graph) = (self.held(), self.graph());
         let v = system.quasi_velocities();

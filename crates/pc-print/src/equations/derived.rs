@@ -15,7 +15,7 @@ pub struct Derived<'g> {
     pub vanishing: Vec<Expr<'g>>,
     /// The constraints with their kinds.
     pub constraints: Vec<(Constraint<'g>, Kind)>,
-    /// The definitions of the vanishing quasi-velocities in velocities, where they are known.
+    /// The definitions of the vanishing quasi-velocities in terms of velocities, if they are known.
     pub definitions: Vec<(Expr<'g>, Expr<'g>)>,
     /// The quasi-velocities that are not those of the model, each with its definition.
     pub quasi_velocities: Vec<(Expr<'g>, Expr<'g>)>,
@@ -154,7 +154,7 @@ impl<'g> Derived<'g> {
     }
 }
 
-/// A remark on the energy of equations in independent velocities, where it is not the `energy` of a run.
+/// A remark on the energy of equations in independent velocities, if it differs from the `energy` of a run.
 pub fn energy_remark(assembly: &Assembly<'_>) -> Option<&'static str> {
     let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else { return None };
     let mut constraints = held.multipliers.constraints().iter();

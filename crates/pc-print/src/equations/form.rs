@@ -49,7 +49,7 @@ impl Form {
         })
     }
 
-    /// The one of this [`name`](Form::name).
+    /// The form with this [`name`](Form::name).
     pub fn named(name: &str) -> Option<Form> {
         Form::ALL.into_iter().find(|form| form.name() == name)
     }

@@ -24,7 +24,7 @@ impl Operations {
         Operations::counted(system, system.quasi_velocities(), &rates)
     }
 
-    /// The operations of the canonical equations; where they are not closed, with the quasi-velocities given.
+    /// The operations of the canonical equations; if they are not closed, for given quasi-velocities.
     ///
     /// # Errors
     /// As [`of`](Operations::of).

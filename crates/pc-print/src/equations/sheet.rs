@@ -1,7 +1,7 @@
 //! All printed expressions of equations, in the graph of a page.
 //!
-//! A page has a graph of its own, in which expressions keep their form and are not merged into the one that
-//! is cheapest to compute.
+//! A page has its own graph, in which expressions keep their form and are not merged into the form that is
+//! cheapest to compute.
 
 use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
 use pc_expr::{Function, Given, Graph};
@@ -58,7 +58,7 @@ pub enum Balance<'p> {
         accelerations: Vec<Expr<'p>>,
         /// r in the form that is computed.
         right: Vec<Expr<'p>>,
-        /// r as sums of products of quasi-velocities, where it is a polynomial.
+        /// r as sums of products of quasi-velocities, if it is a polynomial.
         written: Vec<Expr<'p>>,
     },
     /// ẏ = r.
@@ -69,12 +69,12 @@ pub enum Balance<'p> {
         rates: Vec<Expr<'p>>,
         /// y = ∂L/∂η as functions of η.
         of_velocities: Vec<Expr<'p>>,
-        /// η as functions of y; none where the equations are not closed, and η in them stands for the
+        /// η as functions of y; none if the equations are not closed; η in them then stands for the
         /// solution of y = ∂L/∂η.
         velocities: Option<Vec<Expr<'p>>>,
         /// r in the form that is computed.
         right: Vec<Expr<'p>>,
-        /// r as sums of products of momenta, where it is a polynomial.
+        /// r as sums of products of momenta, if it is a polynomial.
         written: Vec<Expr<'p>>,
     },
 }
@@ -207,8 +207,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         if self.page.size(&products) > longest { right.to_vec() } else { products }
     }
 
-    /// The energy; as ½ M_rs η_r η_s and what is left at rest, if it is long otherwise, and that is shorter beside the printed
-    /// `mass` matrix.
+    /// The energy; if long, as ½ M_rs η_r η_s plus the rest, when that is shorter given the printed `mass` matrix.
     fn energy(&self, equations: &Equations<'g>, mass: &Matrix<Expr<'p>>) -> Expr<'p> {
         let (graph, eta) = (self.system.graph(), self.system.quasi_velocities());
         let energy = equations.energy();
@@ -236,7 +235,8 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         if is_long && beside(divided) < beside(whole) { divided } else { whole }
     }
 
-    /// Each ẋ_i with its value, sines and cosines merged where that is shorter: the rates of links by the law of sines.
+    /// Each ẋ_i with its value, with sines and cosines merged if that is shorter: for links this gives the
+    /// law of sines.
     fn rates(&self, values: &[Expr<'g>]) -> Vec<(Expr<'p>, Expr<'p>)> {
         let (graph, x) = (self.system.graph(), self.system.frame().coordinates());
         let plain = self.all(values);
@@ -251,7 +251,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         self.system.frame().coordinates().iter().map(|x| self.rate(x)).zip(shorter).collect()
     }
 
-    /// The brackets, with the components along the `vanishing` quasi-velocities as far as the form has them.
+    /// The brackets, with the components along the `vanishing` quasi-velocities if the form has them.
     fn brackets(&self, derived: &Derived<'g>, vanishing: &[Expr<'g>]) -> Brackets<'p> {
         let system = self.system;
         let is_within = system.structure().operators() == system.quasi_velocities().len();

@@ -1,7 +1,7 @@
 //! The equations of large trees of bodies, from body to body.
 //!
-//! Written out whole, they are longer than a page and grow with the number of bodies; from body to body each
-//! has the same few equations, with its own rotation, place and mass.
+//! Written out in full, they are longer than a page and grow with the number of bodies; from body to body
+//! each has the same few equations, with its own rotation, place and mass.
 
 use std::fmt::Write as _;
 

@@ -9,7 +9,7 @@ use crate::equations::operations::Operations;
 use crate::equations::sheet::{Balance, Bracket, Sheet};
 use crate::layout::layout::Layout;
 
-/// The equations for programs. Where canonical equations are not closed, there are no
+/// The equations for programs. If canonical equations are not closed, there are no
 /// `quasi_velocities_of_momenta`, and the quasi-velocities stand for the solution of `momenta` =
 /// `momenta_of_velocities`.
 pub(crate) fn page(

@@ -71,13 +71,13 @@ struct Latex<'a, 'p> {
     plain: Written,
 }
 
-/// Left sides of more columns have lines of their own: all right sides of a display begin behind the longest
+/// Left sides with more columns have separate lines: all right sides of a display begin behind the longest
 /// of the others.
 const LONG_LEFT: usize = 24;
 /// Columns before the continuation of a line.
 const HANGING: usize = 6;
 
-/// A line whose brackets open and close in it, which may therefore grow with their contents.
+/// A line in which all brackets open and close, so that they may grow with their contents.
 pub(crate) fn whole(line: String) -> String {
     match (line.matches("\\Bigl(").count(), line.matches("\\Bigr)").count()) {
         (1, 1) => line.replace("\\Bigl(", "\\left(").replace("\\Bigr)", "\\right)"),
@@ -181,8 +181,8 @@ impl<'p> Latex<'_, 'p> {
         }
     }
 
-    /// The two sides in as many lines as needed: the right side begins behind a short left side, or in a line
-    /// of its own.
+    /// The two sides on as many lines as needed: the right side begins after a short left side, or on a
+    /// separate line.
     fn equation(&self, left: Terms, right: Terms) -> String {
         let width: usize = left.iter().map(|(_, width)| width + 1).sum();
         let joined = |lines: Terms, before: &str| {
@@ -204,7 +204,7 @@ impl<'p> Latex<'_, 'p> {
         format!("  & {left} \\\\\n    &\\quad = {right}")
     }
 
-    /// Terms in lines, each with its columns.
+    /// Terms on lines, each with its columns.
     fn flowed(&self, terms: Terms, begin: usize) -> Terms {
         let mut lines = Terms::new();
         for (term, width) in terms {

@@ -15,7 +15,7 @@ const MINUS: &str = "<mo>−</mo>";
 const EQUALS: &str = "<mo>=</mo>";
 const THIN: &str = "<mspace width=\"0.17em\"/>";
 
-/// Left sides of more columns have lines of their own.
+/// Left sides with more columns have separate lines.
 const LONG_LEFT: usize = 24;
 /// Columns before the continuation of a line.
 const HANGING: usize = 6;
@@ -91,8 +91,8 @@ pub(crate) fn row(left: &str, right: &str) -> String {
     format!("<mtr><mtd>{left}</mtd><mtd>{EQUALS}</mtd><mtd>{right}</mtd></mtr>")
 }
 
-/// The two sides in as many rows as needed: the right side begins behind a short left side, or in a row of
-/// its own.
+/// The two sides in as many rows as needed: the right side begins after a short left side, or in a
+/// separate row.
 pub(crate) fn equation(left: Terms, right: Terms, width: usize) -> Vec<String> {
     let columns: usize = left.iter().map(|(_, width)| width + 1).sum();
     if columns <= LONG_LEFT {

@@ -5,9 +5,9 @@ use crate::words::lines::columns;
 /// The layout of a page of equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// Columns of a line.
+    /// The width of a line, in columns.
     pub width: usize,
-    /// Whether equations of text end after their first line.
+    /// Whether equations in text end after their first line.
     pub brief: bool,
     /// Whether definitions of the model are written out.
     pub inline: bool,
@@ -25,7 +25,7 @@ const WIDEST_PADDED: usize = 24;
 const DEEPEST: usize = 32;
 /// The indentation of a continuation line without room under its equals sign.
 const HANGING: usize = 4;
-/// Left sides of more columns have lines of their own.
+/// Left sides with more columns have separate lines.
 const LONG_LEFT: usize = 60;
 
 impl Layout {

@@ -63,7 +63,7 @@ pub(crate) enum Row<'p> {
     Equation { left: Expr<'p>, right: Expr<'p> },
     /// [X_r, X_s] = Σ c X_m
     Bracket(Bracket<'p>),
-    /// X_s = Σ b_is ∂/∂x_i, by the name of η_s; X_0 without one.
+    /// X_s = Σ b_is ∂/∂x_i, with the name of η_s; X_0 without a name.
     Operator { quasi_velocity: Option<String>, components: Vec<(Expr<'p>, Expr<'p>)> },
     /// Q_s = value, by the name of η_s.
     Force { quasi_velocity: String, value: Expr<'p> },
@@ -97,8 +97,8 @@ pub(crate) struct Parts<'p> {
 }
 
 impl<'p> Parts<'p> {
-    /// The parts of a sheet, with names for long expressions; with `entries` the mass matrix is a part, which
-    /// shortens left sides.
+    /// The parts of a sheet, with names for long expressions; with `entries` the mass matrix is a part of its
+    /// own, which shortens left sides.
     pub(crate) fn new(sheet: &Sheet<'p>, layout: &Layout, page: &'p Graph, entries: bool) -> Parts<'p> {
         let mut given: Vec<Given<'p>> = if layout.inline { Vec::new() } else { sheet.definitions.clone() };
         let mut parts = sheet.parts(page, entries);

@@ -34,7 +34,7 @@ pub struct Display {
 pub struct DisplayedPart {
     /// The heading.
     pub title: &'static str,
-    /// The formulas, where there are any.
+    /// The formulas, if there are any.
     pub display: Option<Display>,
     /// Notes on them.
     pub notes: Vec<String>,
@@ -47,7 +47,7 @@ pub struct DisplayedEquations {
     pub name: String,
     /// Its parts.
     pub parts: Vec<DisplayedPart>,
-    /// The whole in plain text instead, where it is written from body to body.
+    /// The whole in plain text instead, if it is written from body to body.
     pub plain: Option<Display>,
     /// The cost of a right-hand side, line by line.
     pub operations: Vec<String>,
@@ -68,12 +68,12 @@ pub struct DisplayedTheory {
     pub latex: Option<String>,
 }
 
-/// Formulas that belong together, with the results on them.
+/// Formulas that belong together, with the results about them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplayedEntry {
     /// Its name.
     pub name: Option<String>,
-    /// A `math` element, where there are formulas.
+    /// A `math` element, if there are formulas.
     pub mathml: Option<String>,
     /// The verdict on them, in words: proved, disproved, open.
     pub verdict: Option<String>,
@@ -88,9 +88,8 @@ pub struct DisplayedEntry {
 /// The data of the derivation: the operators X_s = b_is ∂/∂x_i of the frame and their brackets (5), T, U and
 /// L, forces.
 ///
-/// U = L where all quasi-velocities vanish, T = L − U; if the frame itself moves, the terms of other degree
-/// than 0 in the quasi-velocities are more than T, and only L is shown. For a large tree of bodies L is
-/// longer than a page and is left out.
+/// U = L where all quasi-velocities vanish, T = L − U; if the frame itself moves, L − U is more than the
+/// kinetic energy, and only L is shown. For a large tree of bodies L is longer than a page and is left out.
 ///
 /// # Errors
 /// [`ModelError`] if a limit is reached.
@@ -162,7 +161,7 @@ fn in_order(system: &System<'_>, paper: &Graph) {
     }
 }
 
-/// X_0 = ∂/∂t + b_i0 ∂/∂x_i where the frame moves, and X_s.
+/// X_0 = ∂/∂t + b_i0 ∂/∂x_i if the frame moves, and X_s.
 fn operators<'p>(system: &System<'_>, paper: &'p Graph) -> Vec<Row<'p>> {
     let (frame, graph) = (system.frame(), system.graph());
     let one = |expression: Expr<'_>| graph.typeset(&[expression], paper)[0];

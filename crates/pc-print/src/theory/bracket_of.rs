@@ -14,7 +14,7 @@ use crate::theory::ground::{NONLINEAR, placed};
 /// constraints it is the almost-Poisson bracket of the independent momenta.
 ///
 /// # Errors
-/// [`ModelError`] at the place in `f` or `g`, or of the model, that leaves no bracket: the velocities have to be functions of
+/// [`ModelError`] at the place in `f`, `g` or the model that rules out a bracket: the velocities have to be functions of
 /// the momenta in closed form, and the constraints affine in the velocities.
 pub fn bracket_of<'g>(
     model: &Model,

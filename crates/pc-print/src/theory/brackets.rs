@@ -7,7 +7,7 @@ use crate::language::mathml;
 use crate::theory::description::{Entry, Section, Side, Verdict};
 use crate::theory::ground::Ground;
 
-/// The most monomials among which Casimirs are searched; these take some tenths of a second.
+/// The most monomials among which Casimirs are searched; a search takes some tenths of a second.
 const MOST_MONOMIALS: usize = 300;
 
 /// The most variables of a bracket whose rank is computed.
@@ -75,7 +75,7 @@ pub(crate) fn brackets<'g>(ground: &Ground<'_, 'g>, bracket: Option<&PoissonBrac
     section(entries)
 }
 
-/// (z_i, z_j) = … for i < j, where it is not zero.
+/// (z_i, z_j) = … for i < j, if it is not zero.
 fn nonzero<'g>(bracket: &PoissonBracket<'g>) -> Vec<Entry<'g>> {
     let (z, tensor) = (bracket.variables(), bracket.tensor());
     let pairs = (0..z.len()).flat_map(|i| (i + 1..z.len()).map(move |j| (i, j)));
@@ -85,7 +85,7 @@ fn nonzero<'g>(bracket: &PoissonBracket<'g>) -> Vec<Entry<'g>> {
 
 const JACOBI: &str = "Jacobi's identity";
 
-/// The bracket (12) of operators that close is Poisson's where their brackets satisfy Jacobi's identity.
+/// The bracket (12) of a closed set of operators is a Poisson bracket if theirs satisfy Jacobi's identity.
 fn jacobi_by_frame<'g>(ground: &Ground<'_, 'g>) -> Entry<'g> {
     let (frame, structure) = (ground.free.frame(), ground.free.structure());
     let residuals =
@@ -94,7 +94,7 @@ fn jacobi_by_frame<'g>(ground: &Ground<'_, 'g>) -> Entry<'g> {
     Entry::default().with_on(JACOBI, Verdict::of(Identity::of(worst)))
 }
 
-/// By the first three variables that violate it.
+/// Disproved, by the first three variables that violate it.
 fn jacobi<'g>(ground: &Ground<'_, 'g>, bracket: &PoissonBracket<'g>) -> Entry<'g> {
     if bracket.variables().len() > MOST_VARIABLES {
         return Entry::words("too many variables to test in triples").with_on(JACOBI, Verdict::Open);
@@ -137,8 +137,8 @@ pub(crate) fn casimirs<'g>(
     section(bracket.map_or_else(Vec::new, |bracket| casimir_entries(bracket, canonical, degree)))
 }
 
-/// Those that are polynomials up to a degree, or have sines and cosines of coordinates as coefficients of
-/// momenta.
+/// Casimirs that are polynomials up to a degree, or have sines and cosines of coordinates as coefficients
+/// of momenta.
 fn casimir_entries<'g>(
     bracket: &PoissonBracket<'g>,
     canonical: Option<&Canonical<'g>>,

@@ -5,7 +5,7 @@ use pc_mech::{Expr, Identity, Style};
 use crate::language::latex::in_text;
 use crate::language::mathml;
 
-/// What can be said of the motions of a model without integrating them: momenta and their brackets, Casimirs, integrals and
+/// The analysis of the motions of a model without integrating them: momenta and their brackets, Casimirs, integrals and
 /// the displacements to which they belong, invariant measure, Chaplygin's multiplier, Hamilton–Jacobi's equation, steady
 /// motions, Routh's reduction. Each claim is proved, disproved or open.
 #[derive(Clone, Debug)]
@@ -14,7 +14,7 @@ pub struct Theory<'g> {
     pub(crate) sections: Vec<Section<'g>>,
 }
 
-/// A part of it.
+/// A part of the description.
 #[derive(Clone, Debug)]
 pub(crate) struct Section<'g> {
     /// Its name for programs.
@@ -26,7 +26,7 @@ pub(crate) struct Section<'g> {
     pub(crate) entries: Vec<Entry<'g>>,
 }
 
-/// Formulas that belong together, with the results on them.
+/// Formulas that belong together, with the results about them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Entry<'g> {
     pub(crate) name: Option<String>,
@@ -41,19 +41,19 @@ pub(crate) struct Entry<'g> {
     pub(crate) spectrum: Vec<(f64, f64)>,
 }
 
-/// Whether something holds.
+/// Whether a claim holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Verdict {
     /// For all values of the parameters.
     Proved,
     /// For the present values of the parameters.
     ProvedHere,
-    /// In numbers this part of the terms of an identity is left.
+    /// In numbers this fraction of the terms of an identity is left.
     Disproved {
-        /// From 0 to 1.
+        /// The fraction, from 0 to 1.
         margin: f64,
     },
-    /// Of the stability of a motion from which others depart.
+    /// For the stability of a motion from which others depart.
     Unstable {
         /// The largest real part of an eigenvalue.
         growth: f64,
@@ -62,11 +62,12 @@ pub(crate) enum Verdict {
     Open,
 }
 
-/// A side of a formula, in each style; expressions are written once all expressions of the page are known.
+/// A side of a formula, in each style; expressions are written as soon as all expressions of the page are
+/// known.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Side<'g> {
     pub(crate) expression: Option<Expr<'g>>,
-    /// As in a book.
+    /// Text as in a book.
     pub(crate) book: String,
     pub(crate) latex: String,
     /// In the expression language, if possible.

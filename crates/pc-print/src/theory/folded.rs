@@ -1,7 +1,7 @@
 //! Long formulas on several lines.
 
-/// The formula in lines of at most `width` characters, as far as it can be broken before a sign of a sum, in
-/// as few brackets as possible. The formula stays complete.
+/// The formula in lines of at most `width` characters, as far as it can be broken before a sign of a sum,
+/// inside as few brackets as possible. The formula stays complete.
 pub(crate) fn folded(formula: &str, width: usize) -> Vec<String> {
     broken(formula, width, usize::MAX)
 }
@@ -35,7 +35,7 @@ fn broken(formula: &str, width: usize, deepest: usize) -> Vec<String> {
     lines
 }
 
-/// The places of ` + ` and ` - `, except at the beginning, with the number of brackets around them.
+/// The positions of ` + ` and ` - `, except at the beginning, with the number of brackets around them.
 fn signs(text: &[char]) -> Vec<(usize, usize)> {
     let (mut depth, mut places) = (0usize, Vec::new());
     for (i, &c) in text.iter().enumerate() {

@@ -63,7 +63,7 @@ impl<'a, 'g> Ground<'a, 'g> {
     }
 }
 
-/// The same of a model without its equations.
+/// The same for a model without its equations.
 pub(crate) fn placed<T>(assembly: &Assembly<'_>, found: Result<T, AnalysisError>) -> Result<T, ModelError> {
     found.or_else(|error| match error {
         AnalysisError::Nonholo(error) => assembly.placed(Err(error)),

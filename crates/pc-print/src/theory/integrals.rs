@@ -67,7 +67,7 @@ fn say_what_jumps<'g>(integrals: &mut Integrals<'g>, assembly: &Assembly<'g>) {
     integrals.jump(&assembly.system, assembly.events.iter().map(|event| event.resets.as_slice()), projected);
 }
 
-/// The energy of all velocities, which a run observes, in the independent ones of the equations.
+/// The energy of all velocities, which a run observes, in terms of the independent ones of the equations.
 fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Option<Expr<'g>> {
     let (all, free) = (assembly.system.quasi_velocities(), equations.system().quasi_velocities());
     let values = assembly.quasi_velocities_of(free).ok()?;

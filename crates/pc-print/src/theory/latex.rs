@@ -55,7 +55,7 @@ fn lines(entry: &Entry<'_>) -> Vec<String> {
     lines
 }
 
-/// Left = right, in as many lines as needed, with `end` behind it.
+/// Left = right, on as many lines as needed, followed by `end`.
 fn formula(left: &str, right: &str, end: &str) -> Vec<String> {
     let parts = folded_outside(right, WIDTH);
     let line = |(j, part): (usize, &String)| {

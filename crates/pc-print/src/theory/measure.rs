@@ -83,7 +83,7 @@ pub(crate) fn multiplier<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {
     ])
 }
 
-/// Chaplygin's reducing multiplier of a model; none also where the equations are not Voronets' in independent
+/// Chaplygin's reducing multiplier of a model; also none if the equations are not Voronets' in independent
 /// coordinates, or have no closed form.
 pub fn reducing_multiplier<'g>(assembly: &Assembly<'g>) -> Option<ReducingMultiplier<'g>> {
     ReducingMultiplier::of(&voronets(assembly)?).ok()?

@@ -10,7 +10,7 @@ use crate::language::latex::whole;
 use crate::layout::layout::Layout;
 use crate::theory::description::{Section, Side, Theory};
 
-/// Writes all expressions of a page in their order, with the definitions of the model for expressions of
+/// Writes all expressions of a page in order, using the definitions of the model for expressions of
 /// equal value.
 pub(crate) fn write<'g>(theory: &mut Theory<'g>, assembly: &Assembly<'g>) {
     let graph = assembly.system.graph();

@@ -5,7 +5,8 @@
 pub struct TheoryOptions {
     /// The largest degree in the velocities of the integrals sought, at least 1.
     pub degree: u32,
-    /// Functions of the place by which their coefficients may be multiplied, in the language of the model.
+    /// Functions of the coordinates by which their coefficients may be multiplied, in the language of the
+    /// model.
     pub functions: Vec<String>,
 }
 

@@ -10,7 +10,7 @@ use crate::theory::{action, brackets, integrals, json, latex, measure, names, ro
 use crate::words::visible::{visible, visible_json};
 
 impl<'g> Theory<'g> {
-    /// What can be said of the motions of a model.
+    /// The analysis of the motions of a model.
     ///
     /// # Errors
     /// [`ModelError`] if the equations cannot be derived, or a function cannot be read.

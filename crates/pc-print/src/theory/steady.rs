@@ -9,7 +9,7 @@ use crate::theory::description::{Entry, Section, Verdict};
 use crate::theory::ground::Ground;
 use crate::words::words::short;
 
-/// The remainder that Newton's method leaves of a zero.
+/// The remainder that Newton's method leaves in place of a zero.
 const ZERO: f64 = 1e-9;
 
 /// The most members of families that are listed.

@@ -1,11 +1,12 @@
 //! Linear combinations and columns of text.
 
-/// The linear combination with those coefficients and elements, as `2*X1 - X3`; `0` if all coefficients are.
+/// The linear combination with those coefficients and elements, as `2*X1 - X3`; `0` if all coefficients are
+/// 0.
 pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String {
     combined(terms).join(" ")
 }
 
-/// The terms of the combination, all but the first with their sign and a space before them.
+/// The terms of the combination, all except the first with their sign and a space before them.
 pub(crate) fn combined(terms: impl IntoIterator<Item = (String, String)>) -> Vec<String> {
     let mut sum: Vec<String> = Vec::new();
     for (coefficient, element) in terms.into_iter().filter(|(coefficient, _)| coefficient != "0") {
@@ -48,7 +49,7 @@ fn outside_of_brackets(text: &str) -> String {
     text.chars().filter(is_outside).collect()
 }
 
-/// Whether it is a quotient with more than numbers.
+/// Whether it is a quotient of more than numbers.
 fn is_quotient(text: &str) -> bool {
     outside_of_brackets(text).contains('/') && text.chars().any(char::is_alphabetic)
 }

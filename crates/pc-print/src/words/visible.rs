@@ -26,13 +26,13 @@ pub fn one_line(text: &str) -> Cow<'_, str> {
     Cow::Owned(line.trim().to_owned())
 }
 
-/// Text of several lines, as it may be sent to a terminal.
+/// Text of several lines, safe for a terminal.
 pub fn visible(text: &str) -> Cow<'_, str> {
     let acts = |c: char| is_hidden(c) && !matches!(c, '\n' | '\t');
     if text.contains(acts) { Cow::Owned(text.replace(acts, "\u{fffd}")) } else { Cow::Borrowed(text) }
 }
 
-/// JSON on several lines, as it may be sent to a terminal: the same value, with invisible characters escaped.
+/// JSON on several lines, safe for a terminal: the same value, with invisible characters escaped.
 pub fn visible_json(value: &Value) -> String {
     let mut text = String::new();
     for c in format!("{value:#}").chars() {

@@ -18,7 +18,7 @@ pub fn small(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") }
 }
 
-/// The items, comma-separated, in lines of at most `width` characters where they fit.
+/// The items, comma-separated, on lines of at most `width` characters if they fit.
 pub fn wrapped(items: impl IntoIterator<Item = String>, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for item in items {
@@ -34,7 +34,7 @@ pub fn wrapped(items: impl IntoIterator<Item = String>, width: usize) -> Vec<Str
     lines
 }
 
-/// `name = value` for each, comma-separated, in lines of at most `width` characters.
+/// `name = value` for each, comma-separated, on lines of at most `width` characters.
 pub fn assignments<'a>(pairs: impl IntoIterator<Item = (&'a str, f64)>, width: usize) -> Vec<String> {
     wrapped(pairs.into_iter().map(|(name, value)| format!("{name} = {}", short(value, 10))), width)
 }

@@ -35,7 +35,7 @@ def changes(
     limit_time: float | None = None,
     verify: bool = True,
 ) -> dict[str, Any]:
-    """What a model is changed by before it is derived, as the native part takes it."""
+    """The changes to a model before it is derived, in the form that the native part takes."""
     return {
         "parameters": [(name, float(value)) for name, value in (parameters or {}).items()],
         "start": [(name, float(value)) for name, value in (start or {}).items()],
@@ -94,7 +94,8 @@ class Model:
     def from_urdf(cls, path: str | os.PathLike[str], *, floating: bool = False) -> Model:
         """The model of a robot in URDF, macros expanded: links are bodies on joints.
 
-        Its text, which names what was left out in warnings, can be written to a file and gone on with.
+        Its text, which names what was left out in warnings, can be written to a file and edited
+        further.
 
         Parameters
         ----------
@@ -175,7 +176,7 @@ class Model:
 
     @property
     def simulation(self) -> Mapping[str, Any]:
-        """What the text says of a run; None where it says nothing."""
+        """The settings of a run in the text; None for those it does not have."""
         return MappingProxyType(self._core.simulation())
 
     def check(self, **settings: Any) -> Check:
@@ -223,7 +224,7 @@ class Model:
         return Equations(self, self._form(form), width, inline, settings)
 
     def _rewritten(self, text: str) -> Model:
-        """The model of another text, whose tables stand beside the same file."""
+        """The model of another text, whose tables are beside the same file."""
         return Model(text, self.name)
 
     def _changed(self, settings: Mapping[str, Any]) -> _native.ModelCore:
@@ -288,7 +289,7 @@ class Model:
         cyclic: str | None = None,
         **settings: Any,
     ) -> Linearization:
-        """The motions near a state to first order: matrices, eigenvalues and modes, as of ``pc linearize``.
+        """The motions near a state to first order: matrices, eigenvalues and modes, as in ``pc linearize``.
 
         Parameters
         ----------
@@ -298,7 +299,8 @@ class Model:
         hold : sequence of str
             Components of the state that keep their start values while a steady state is looked for.
         cyclic : str, optional
-            ``"keep"`` cyclic coordinates that rest, or ``"drop"`` all; else they are kept at an equilibrium and dropped of a motion.
+            ``"keep"`` cyclic coordinates that rest, or ``"drop"`` all; by default they are kept at
+            an equilibrium and dropped for a motion.
         **settings
             As for :meth:`system`.
 

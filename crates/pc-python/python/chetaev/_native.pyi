@@ -1,4 +1,4 @@
-"""The native part of the package; what it returns is shaped by the rest."""
+"""The native part of the package; the rest of the package shapes what it returns."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, TypedDict, final

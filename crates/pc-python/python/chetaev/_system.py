@@ -118,7 +118,7 @@ class System(_native.SystemCore):
         return Values(self, "start")
 
     def settings(self) -> dict[str, Any]:
-        """What :meth:`Model.system` was given, with the values that have been set since."""
+        """The arguments of :meth:`Model.system`, with the values that have been set since."""
         values = {kind: dict(self._settings[kind]) for kind in ("parameters", "start")}
         return {**self._settings, **values}
 
@@ -152,9 +152,8 @@ class System(_native.SystemCore):
     def reactions(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
         """The reaction of each constraint, by its name.
 
-        Together they add to the force Q_s the sum of each times the derivative of its constraint by η_s.
-        """
-        if not self._model.constraints:
+        Together they add to the force Q_s the sum of each times the derivative of its constraint with
+        respect to η_s. """ if not self._model.constraints:
             return {}
         system = self
         if not self._settings.get("reactions"):
@@ -198,7 +197,8 @@ class System(_native.SystemCore):
         sensitivities: Sequence[str] = (),
         limit_time: float | None = None,
     ) -> dict[str, Any]:
-        """What is wished of an integration, as the native part takes it; None is that of the text, or else the default."""
+        """The options of an integration, in the form that the native part takes; None stands for
+        that of the text, or else the default."""
         import numpy as np
 
         if times is not None and (t_end is not None or samples is not None):
@@ -242,8 +242,8 @@ class System(_native.SystemCore):
     ) -> Motion:
         """Integrates the motion from the start.
 
-        What is not given is that of the text, else the default of ``pc run``: the numbers are those of that program, bit by bit.
-        Ctrl-C ends it.
+        What is not given comes from the text, else from the defaults of ``pc run``: the numbers are those of that program, bit
+        by bit. Ctrl-C ends it.
 
         Parameters
         ----------
@@ -348,8 +348,8 @@ class System(_native.SystemCore):
     def stepper(self, **settings: Any) -> Stepper:
         """The motion from the start, step by step under inputs that a controller chooses.
 
-        A step takes some microseconds. Events of the text occur in it, with their resets. The equations are the ones that the
-        system was compared with the second derivation by; steps are not compared again.
+        A step takes some microseconds. Events of the text occur in it, with their resets. The equations are those of the
+        system that were compared with the second derivation; steps are not compared again.
 
         Parameters
         ----------
@@ -402,7 +402,7 @@ class System(_native.SystemCore):
         threads : int, optional
             Threads, as many as cores unless given.
         progress : bool
-            Whether to show progress, by tqdm where it is installed.
+            Whether to show progress, with tqdm where it is installed.
         **settings
             ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`. The first member, one in the middle and the last are
             compared with a second derivation unless ``verify=False``.

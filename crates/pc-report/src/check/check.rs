@@ -30,7 +30,7 @@ pub struct Check<'g> {
     pub(super) algebra: String,
     pub(super) mass_rank: usize,
     negative_energy: bool,
-    /// What is said of masses that change in time.
+    /// Remarks on masses that change in time.
     changing_masses: Option<String>,
     /// The number of its rows.
     free: usize,
@@ -42,9 +42,9 @@ pub struct Check<'g> {
     constraints: Vec<(String, String)>,
     pub(super) classified: Vec<ClassifiedConstraint>,
     redundant: Vec<Redundant>,
-    /// Their number.
+    /// The number of integrable combinations.
     integrable_combinations: usize,
-    /// Those that are found.
+    /// The combinations that are found.
     combinations: Vec<IntegrableCombination<'g>>,
     start_residual: f64,
     pub(super) integrals: Integrals<'g>,
@@ -58,7 +58,7 @@ impl<'g> Check<'g> {
     /// The properties of an assembled model with its equations in independent quasi-velocities.
     ///
     /// # Errors
-    /// [`ModelError`] if something of it cannot be derived.
+    /// [`ModelError`] if some part cannot be derived.
     pub fn new(
         model: &Model,
         assembly: &Assembly<'g>,
@@ -243,7 +243,7 @@ impl<'g> Check<'g> {
     }
 }
 
-/// The algebra of the operators in words, for the values of the parameters if it depends on them.
+/// The algebra of the operators in words, for the present values of the parameters if it depends on them.
 fn algebra(system: &System<'_>) -> String {
     let (always, bound) = (system.structure(), system.with_parameters_bound());
     match bound.structure().are_constant() && !always.are_constant() {

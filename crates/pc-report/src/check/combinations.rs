@@ -5,7 +5,8 @@ use pc_nonholo::IntegrableCombination;
 use pc_print::{columns, combination};
 use serde_json::{Value, json};
 
-/// A formula of more columns than a line has is put on a line of its own; one of more than this is left out.
+/// A formula that does not fit on a line is put on a separate line; one with more columns than this is left
+/// out.
 const WIDEST: usize = 100;
 
 /// μ_1 φ_1 + …

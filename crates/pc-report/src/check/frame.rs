@@ -6,7 +6,7 @@ use pc_mech::{StructureCoefficients, Style};
 use pc_print::{recognised, wrapped};
 use serde_json::{Value, json};
 
-/// The variables of the functions that constraints of a frame are.
+/// The variables of the functions that the constraints of a frame keep constant.
 fn of(of_time: bool) -> &'static str {
     if of_time { "f(x, t)" } else { "f(x)" }
 }
@@ -26,7 +26,7 @@ pub(super) fn constraints(frame: &FrameFacts<'_>) -> Option<String> {
     })
 }
 
-/// The holonomic quasi-velocities, in lines of `width` characters; none if the frame leaves it open.
+/// The holonomic quasi-velocities, in lines of `width` characters; none if the frame does not decide it.
 pub(super) fn holonomic(frame: &FrameFacts<'_>, width: usize) -> Vec<String> {
     if frame.lagrangian && !frame.holonomy.is_empty() {
         return vec!["all, the velocities of the coordinates".to_owned()];
@@ -65,7 +65,7 @@ pub(super) fn objects(frame: &FrameFacts<'_>) -> (Value, Value) {
     (constraints, json!(holonomic))
 }
 
-/// The algebra of the operators in words; `constant` states when they form one.
+/// The algebra of the operators in words; `constant` states when they form an algebra.
 pub(super) fn algebra(structure: &StructureCoefficients<'_>, constant: &str) -> String {
     if let Some(name) = recognised(structure) {
         return format!("{name}, {constant}");

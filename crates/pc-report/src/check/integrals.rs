@@ -5,7 +5,7 @@ use pc_mech::{Identity, Style};
 use pc_print::{columns, short};
 use serde_json::{Value, json};
 
-/// A formula of more columns is not printed after the verdict.
+/// A formula with more columns is not printed after the verdict.
 const WIDEST: usize = 100;
 
 /// The origin of an integral, in words.

@@ -6,10 +6,10 @@ use pc_model::Assembly;
 use pc_print::{columns, combination, reducing_multiplier};
 use serde_json::{Value, json};
 
-/// A formula of more columns is not printed.
+/// A formula with more columns is not printed.
 const WIDEST: usize = 80;
 
-/// The results on it.
+/// The results about the measure.
 #[derive(Clone, Debug)]
 pub(super) struct Measure<'g> {
     /// `None` if a constraint is not affine in the velocities.

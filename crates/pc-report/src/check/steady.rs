@@ -41,7 +41,7 @@ fn motion_object(steady: &NearbySteadyMotion) -> Value {
     })
 }
 
-/// Why there is no motion to describe; none where one is found.
+/// Why there is no motion to describe; none if one was found.
 fn missing(search: &SteadySearch) -> Option<String> {
     Some(match search {
         SteadySearch::NotAutonomous => "not looked for: the equations depend on time".to_owned(),
@@ -57,7 +57,7 @@ fn missing(search: &SteadySearch) -> Option<String> {
     })
 }
 
-/// The lines to print; none where no steady motion is to be expected.
+/// The lines to print; none if no steady motion is expected.
 pub(super) fn lines(search: &SteadySearch, width: usize) -> Vec<String> {
     match search {
         SteadySearch::NotAutonomous => Vec::new(),
@@ -74,7 +74,7 @@ pub(super) fn verdict(search: &SteadySearch) -> String {
     }
 }
 
-/// The distance of the motion from the start; NaN if none is found.
+/// The distance of the motion from the start; NaN if none was found.
 pub(super) fn distance(search: &SteadySearch) -> f64 {
     match search {
         SteadySearch::Found(steady) => steady.distance,
@@ -82,7 +82,7 @@ pub(super) fn distance(search: &SteadySearch) -> f64 {
     }
 }
 
-/// The motion as JSON; null if none is found.
+/// The motion as JSON; null if none was found.
 pub(super) fn object(search: &SteadySearch) -> Value {
     match search {
         SteadySearch::Found(steady) => motion_object(steady),
@@ -90,10 +90,10 @@ pub(super) fn object(search: &SteadySearch) -> Value {
     }
 }
 
-/// The remainder that Newton's method leaves of a zero.
+/// The remainder that Newton's method leaves in place of a zero.
 const ZERO: f64 = 1e-9;
 
-/// Six digits; the remainder that Newton's method leaves of a zero is printed as zero.
+/// Six digits; the remainder that Newton's method leaves in place of a zero is printed as zero.
 fn rounded(value: f64) -> String {
     if value.abs() <= ZERO { "0".to_owned() } else { short(value, 6) }
 }

@@ -17,7 +17,7 @@ pub enum PictureError {
     /// The file could not be encoded.
     #[error("cannot encode the picture: {message}")]
     Encode {
-        /// What the encoder says.
+        /// The message of the encoder.
         message: String,
     },
 }

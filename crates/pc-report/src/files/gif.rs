@@ -13,7 +13,7 @@ const SCALE: f32 = 1.0;
 const RATE: f64 = 25.0;
 /// Duration of a frame at this rate, in hundredths of a second.
 const DELAY: u16 = 4;
-/// Most frames of a film: longer motions are shown faster.
+/// The most frames of a film: longer motions are shown faster.
 const MOST: usize = 250;
 /// Speed of the choice of colours, from 1 (best) to 30; 1 takes ten times as long, and lines on
 /// white look the same.
@@ -28,7 +28,7 @@ pub fn frames(times: &[f64]) -> Vec<usize> {
     (0..=intervals).map(|i| nearest(times, time(i))).collect()
 }
 
-/// The number of the time that is nearest.
+/// The index of the nearest time.
 pub fn nearest(times: &[f64], time: f64) -> usize {
     let distance = |&i: &usize| (times[i] - time).abs();
     (0..times.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)

@@ -51,7 +51,7 @@ impl Glyphs {
         f64::from(self.face.glyph_hor_advance(glyph).unwrap_or(0))
     }
 
-    /// Draws the outline, y up.
+    /// Draws the outline, with y pointing up.
     pub(super) fn outline(&self, glyph: GlyphId, builder: &mut impl OutlineBuilder) {
         // A space has no outline.
         let _ = self.face.outline_glyph(glyph, builder);

@@ -16,7 +16,7 @@ use ttf_parser::{GlyphId, OutlineBuilder};
 use crate::files::error::PictureError;
 use crate::files::glyphs::Glyphs;
 
-/// Most characters of a font: their codes are one byte, without 0.
+/// The most characters of a font: their codes are one byte, without 0.
 const CODES: usize = 255;
 
 /// The page.
@@ -40,7 +40,7 @@ pub fn pdf(drawing: &Drawing) -> Result<Vec<u8>, PictureError> {
     Ok(file.end())
 }
 
-/// The content stream of the page, y down.
+/// The content stream of the page, with y pointing down.
 fn content(drawing: &Drawing, fonts: &mut Fonts<'_>) -> String {
     let mut content = format!("1 0 0 -1 0 {} cm 1 j\n", drawing.height);
     for shape in &drawing.shapes {
@@ -204,7 +204,7 @@ impl OutlineBuilder for Outline {
     }
 }
 
-/// A file as far as it is written, with the offset of each object; number 0 is not used, 1 to 3 are
+/// A file as written so far, with the offset of each object; number 0 is not used, 1 to 3 are
 /// for the page.
 struct File {
     bytes: Vec<u8>,

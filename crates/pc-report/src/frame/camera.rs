@@ -1,29 +1,30 @@
-//! Where a scene is looked at from: a plane motion from across its plane, any other from above one side of it.
+//! The viewpoint of a scene: for a plane motion it is perpendicular to its plane, for any other above one
+//! side.
 
 use crate::scene::{Scene, SceneShape};
 
-/// Turn about the vertical, and tilt, of the view in space.
+/// The turn about the vertical, and the tilt, of a view in space.
 const YAW: f64 = -0.6;
 const PITCH: f64 = 0.35;
-/// Part of the room that is filled.
+/// The fraction of the space that is filled.
 const FILLED: f64 = 0.85;
 /// Distance of the eye, in sizes of the scene.
 const DISTANCE: f64 = 4.0;
-/// What counts as nothing beside the size of the scene.
+/// The length that counts as zero relative to the size of the scene.
 const NOTHING: f64 = 1e-6;
 
 /// A point on the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Seen {
-    /// Its place, y down.
+    /// Its place, with y pointing down.
     pub(super) at: [f64; 2],
-    /// How far behind the middle it is.
+    /// Its distance behind the middle.
     pub(super) depth: f64,
-    /// How long a unit is there.
+    /// The length of a unit there.
     pub(super) scale: f64,
 }
 
-/// The view of a scene on paper of a width and a height.
+/// The view of a scene on paper of a given width and height.
 #[derive(Clone, Debug)]
 pub(super) struct Camera {
     middle: [f64; 3],
@@ -37,7 +38,8 @@ pub(super) struct Camera {
     paper: [f64; 2],
 }
 
-/// The box in which all moves, without and with what the shapes themselves take up, and how discs stand across the axes.
+/// The box of all motion, without and with the extent of the shapes themselves, and the orientation of discs
+/// relative to the axes.
 struct Bounds {
     low: [f64; 3],
     high: [f64; 3],
@@ -82,7 +84,7 @@ impl Bounds {
     }
 }
 
-/// How far a shape extends about its first point.
+/// The extent of a shape about its first point.
 fn reach(shape: &SceneShape, numbers: &[f32]) -> f64 {
     let reach = match shape {
         SceneShape::Disc => f64::from(numbers[6]).abs(),
@@ -103,7 +105,8 @@ pub(super) fn length(a: [f64; 3]) -> f64 {
 }
 
 impl Camera {
-    /// Up is against gravity, else the third axis, else the second of a motion in a plane across the third.
+    /// Up is opposite to gravity; without gravity it is the third axis, or the second for a motion in a plane
+    /// perpendicular to the third.
     pub(super) fn of(scene: &Scene, paper: [f64; 2]) -> Camera {
         let Bounds { low, high, least, most, across } = Bounds::of(scene);
         let is_known = [0, 1, 2].map(|k| low[k].is_finite());
@@ -136,7 +139,7 @@ impl Camera {
         Camera { middle, extent, size, axes: [right, away, up], signs: [handed, sign], is_plane, paper }
     }
 
-    /// Where a point of space is on paper.
+    /// The point on paper of a point in space.
     pub(super) fn project(&self, p: [f64; 3]) -> Seen {
         let [right, away, up] = self.axes;
         let from_middle = |k: usize| p[k] - self.middle[k];

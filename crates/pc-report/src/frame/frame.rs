@@ -7,12 +7,12 @@ use crate::scene::{Scene, SceneShape};
 
 /// Height of the letters of title and clock.
 const LETTERS: f64 = 14.0;
-/// Where they stand.
+/// Their position.
 const EDGE: f64 = 12.0;
 
 impl Scene {
-    /// Frame number `number` on paper of this width and height, with the title and the time; the last one, if there are
-    /// not so many. It shows what the player of [`animation`](crate::animation) shows before the view is turned.
+    /// Frame number `number` on paper of this width and height, with the title and the time; the last one if there are
+    /// fewer. It shows what the player of [`animation`](crate::animation) shows before the view is turned.
     pub fn drawing(&self, title: &str, number: usize, [width, height]: [f64; 2]) -> Drawing {
         let mut drawing = Drawing { width, height, shapes: Vec::new() };
         let Some(last) = self.times.len().checked_sub(1) else { return drawing };
@@ -47,7 +47,7 @@ impl Scene {
 }
 
 impl SceneShape {
-    /// Whether it is in a colour of its own.
+    /// Whether it has its own colour.
     fn has_colour(&self) -> bool {
         match self {
             SceneShape::Point(_)

@@ -1,4 +1,4 @@
-//! What is drawn of a shape.
+//! The drawing of a shape.
 
 use std::f64::consts::TAU;
 
@@ -12,17 +12,17 @@ const DOT: f64 = 5.5;
 const LETTERS: f64 = 12.0;
 /// Corners of a circle.
 const CORNERS: usize = 48;
-/// Windings of a spring, and how far they stand out.
+/// The number of windings of a spring, and their width.
 const WINDINGS: usize = 22;
 const WINDING: f64 = 8.0;
 /// Length of axes, in sizes of the scene.
 const AXIS: f64 = 0.12;
 
-/// The corners of the faces of a box: the bits of a number are the ends of its edges.
+/// The corners of the faces of a box: the bits of each number choose the ends of its edges.
 const FACES: [[usize; 4]; 6] =
     [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
 
-/// Draws a shape with its numbers, in the colour of its own; `trace` has the points where it was.
+/// Draws a shape with its numbers, in its own colour; `trace` has its previous points.
 pub(super) fn draw(
     drawing: &mut Drawing,
     camera: &Camera,
@@ -79,7 +79,7 @@ pub(super) fn draw(
     }
 }
 
-/// An area on white of which so much is seen, with its edge.
+/// An area on white with a given opacity, with its edge.
 fn outlined(drawing: &mut Drawing, mut corners: Vec<[f64; 2]>, ink: Ink, part: f64) {
     let pale = ink.colour().map(|c| (255.0 - part * (255.0 - f64::from(c))).round() as u8);
     drawing.filled(corners.clone(), Ink::Mixed(pale));
@@ -95,7 +95,7 @@ fn circle(middle: Seen, radius: f64) -> Vec<[f64; 2]> {
     (0..CORNERS).map(corner).collect()
 }
 
-/// The points of the rim of a disc across a normal.
+/// The points of the rim of a disc perpendicular to a normal.
 fn rim(middle: [f64; 3], normal: [f64; 3], radius: f64) -> impl Iterator<Item = [f64; 3]> {
     let n = unit(normal);
     let a = unit(cross(n, if n[0].abs() > 0.9 { [0.0, 1.0, 0.0] } else { [1.0, 0.0, 0.0] }));
@@ -123,7 +123,7 @@ fn turned(at: [f64; 3], rotation: &[f32], v: [f64; 3]) -> [f64; 3] {
     })
 }
 
-/// A line that goes to and fro across the way between two points.
+/// A zigzag line between two points.
 fn windings(camera: &Camera, from: [f64; 3], to: [f64; 3]) -> Vec<[f64; 2]> {
     let [start, end] = [camera.project(from).at, camera.project(to).at];
     let way = [end[0] - start[0], end[1] - start[1]];

@@ -6,7 +6,7 @@ use pc_print::{DisplayedEquations, Form, Layout, displayed_equations};
 use crate::page::formulas;
 use crate::page::html::{lines, paragraph, text};
 
-/// Equations that take more bytes are left to `pc derive`, so that a page stays below a megabyte.
+/// Equations of more bytes are left to `pc derive`, so that a page stays below a megabyte.
 const LONGEST: usize = 120_000;
 
 /// Poincaré's equations, then the other forms.

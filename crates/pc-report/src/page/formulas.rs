@@ -6,8 +6,8 @@ use pc_print::{Display, DisplayedPart};
 
 use crate::page::html::{lines, text};
 
-/// The lines of a formula kept together: paper breaks between such parts, and a part longer than a page would
-/// be cut.
+/// The lines of a formula kept together: page breaks fall between such parts, and a part longer than a page
+/// would be cut.
 const LINES: usize = 10;
 
 /// A formula in a box that scrolls separately; browsers let the keyboard reach such boxes.
@@ -37,7 +37,7 @@ pub(super) fn source(latex: &str) -> String {
     )
 }
 
-/// Parts under headings of a level.
+/// Parts under headings of one level.
 pub(super) fn parts(list: &[DisplayedPart], level: u8) -> String {
     list.iter().map(|part| self::part(part, level)).collect()
 }

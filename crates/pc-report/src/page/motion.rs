@@ -11,7 +11,7 @@ const MOST_CHARTS: usize = 8;
 /// Points of a curve.
 const MOST_POINTS: usize = 1500;
 
-/// Charts by kind, the most telling pairs of columns over each other, then the summary.
+/// Charts by kind, the most informative pairs of columns over each other, then the summary.
 pub(super) fn motion(record: &Record, pairs: &[(String, String)]) -> String {
     let mut shown = String::new();
     if let Some(remark) = &record.remark {

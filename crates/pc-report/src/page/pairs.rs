@@ -1,4 +1,4 @@
-//! The pairs of columns of a motion that tell most over each other.
+//! The most informative pairs of columns of a motion, one over the other.
 
 use pc_model::Assembly;
 

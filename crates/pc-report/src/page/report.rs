@@ -13,12 +13,12 @@ use crate::page::{equations, formulas, motion, theory};
 use crate::record::Record;
 use crate::scene::Scene;
 
-/// Columns of a line of a formula.
+/// The width of a line of a formula, in columns.
 const WIDTH: usize = 92;
 /// Texts of more lines are folded until opened.
 const LONG_TEXT: usize = 40;
 
-/// All that is known of an assembled model, and of its motion if there is one, as one page for a browser. The same
+/// Everything known about an assembled model, and about its motion if there is one, as one page for a browser. The same
 /// model gives the same bytes.
 ///
 /// # Errors

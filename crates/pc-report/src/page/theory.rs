@@ -9,7 +9,7 @@ use crate::picture::plane;
 /// Formulas of more bytes are left to `pc theory`.
 const LONGEST: usize = 60_000;
 
-/// Parts of more bytes, too, so that a page stays below a megabyte.
+/// Parts of more bytes are left out too, so that a page stays below a megabyte.
 const LONGEST_PART: usize = 90_000;
 
 /// Each part under a heading.

@@ -23,14 +23,14 @@ impl Axis {
         self.from + (value - self.low) / (self.high - self.low) * (self.to - self.from)
     }
 
-    /// The axis widened about its middle to this length of values per point.
+    /// The axis, widened about its middle to this length in values per point.
     pub(crate) fn widened_to(&self, per_point: f64) -> Axis {
         let half = per_point * (self.to - self.from).abs() / 2.0;
         let middle = f64::midpoint(self.low, self.high);
         Axis { low: middle - half, high: middle + half, ..*self }
     }
 
-    /// The length of values per point.
+    /// The length in values per point.
     pub(crate) fn per_point(&self) -> f64 {
         (self.high - self.low) / (self.to - self.from).abs()
     }
@@ -129,7 +129,7 @@ pub(crate) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     (low <= high).then_some((low, high))
 }
 
-/// The range of some values, a little widened; one about a constant.
+/// The range of some values, slightly widened; for a constant, a range about it.
 pub(crate) fn widened(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let Some((low, high)) = range(values) else { return (0.0, 1.0) };
     if is_still(low, high) {

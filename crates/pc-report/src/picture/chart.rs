@@ -213,7 +213,7 @@ impl Panel {
     }
 }
 
-/// From −π to π, a little widened.
+/// From −π to π, slightly widened.
 const ANGLES: (f64, f64) = (-1.03 * std::f64::consts::PI, 1.03 * std::f64::consts::PI);
 
 /// The number of labels along a length.

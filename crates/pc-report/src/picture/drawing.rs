@@ -11,7 +11,7 @@ pub struct Drawing {
     pub shapes: Vec<Shape>,
 }
 
-/// Something that is painted.
+/// A shape to be painted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A line through points.
@@ -21,7 +21,7 @@ pub enum Shape {
         /// Its colour and width.
         ink: Ink,
     },
-    /// A rectangle that is filled.
+    /// A filled rectangle.
     Area {
         /// Its upper left corner.
         from: [f64; 2],
@@ -30,7 +30,7 @@ pub enum Shape {
         /// Its colour.
         ink: Ink,
     },
-    /// An area within corners, filled.
+    /// A filled area with these corners.
     Filled {
         /// The corners.
         corners: Vec<[f64; 2]>,
@@ -41,7 +41,7 @@ pub enum Shape {
     Text {
         /// Its beginning, its middle, or its end, on its base line.
         at: [f64; 2],
-        /// The point of the text at that place.
+        /// Which point of the text is at that place.
         anchor: Anchor,
         /// Height of the font.
         size: f64,
@@ -52,7 +52,7 @@ pub enum Shape {
     },
 }
 
-/// The point of a text that is given.
+/// Which point of a text its position refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// Its beginning.
@@ -78,9 +78,9 @@ pub enum Ink {
     Event,
     /// The curve with this number.
     Curve(usize),
-    /// Rods and springs of what moves.
+    /// Rods and springs of a mechanism.
     Rod,
-    /// This red, green and blue.
+    /// A colour by its red, green and blue.
     Mixed([u8; 3]),
 }
 
@@ -121,7 +121,7 @@ impl Ink {
         }
     }
 
-    /// Lengths of a dash and of the gap behind it, of a line that is not solid.
+    /// The lengths of a dash and of the following gap, for a line that is not solid.
     pub fn dash(self) -> Option<[f64; 2]> {
         (self == Ink::Event).then_some([2.0, 3.0])
     }

@@ -11,14 +11,14 @@ use crate::record::{Columns, Kind, Record, Samples, UnknownColumn};
 
 /// The decimal logarithm of the smallest drift that is drawn: less is rounding.
 const FLOOR: f64 = -17.0;
-/// The greatest ratio of two lengths drawn to the same scale: beyond, the shorter one is invisible.
+/// The greatest ratio of two lengths drawn to the same scale: beyond it, the shorter one is invisible.
 const MOST_UNEQUAL: f64 = 6.0;
 
 /// The requested parts of a motion.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
-    /// Columns over time; `drift(NAME)` is the relative drift of NAME, `error(NAME)` its estimated error, where that is known.
-    /// Where neither columns nor pairs are given, all.
+    /// Columns over time; `drift(NAME)` is the relative drift of NAME, `error(NAME)` its estimated error, if that is known. If
+    /// neither columns nor pairs are given, all columns.
     pub columns: Vec<String>,
     /// Pairs of columns, the second over the first.
     pub pairs: Vec<(String, String)>,
@@ -64,7 +64,7 @@ pub(crate) fn panels(record: &Record, wanted: &Wanted) -> Result<Vec<Panel>, Unk
     Ok(panels)
 }
 
-/// The chosen columns, those of a kind in panels by scale, drifts apart.
+/// The chosen columns: those of one kind in panels by scale, drifts separately.
 fn chosen(record: &Record, samples: &Samples, wanted: &Wanted) -> Result<Vec<Panel>, UnknownColumn> {
     let mut drifts: Vec<(String, Vec<f64>)> = Vec::new();
     let mut kinds: Vec<Columns> = Vec::new();
@@ -98,7 +98,7 @@ fn chosen(record: &Record, samples: &Samples, wanted: &Wanted) -> Result<Vec<Pan
     Ok(panels)
 }
 
-/// The panels of columns of a kind: integrals by their drift, others by their values.
+/// The panels of columns of one kind: integrals with their drift, others with their values.
 pub(crate) fn of_kind(record: &Record, columns: &Columns, wrapped: &[String]) -> Vec<Panel> {
     match columns.kind {
         Kind::Conserved => {
@@ -164,7 +164,7 @@ fn known_errors(record: &Record) -> &[(String, Vec<f64>)] {
     errors.map_or(&[], |columns| &columns.list)
 }
 
-/// log₁₀ of errors at the rows; one that is 0 is not drawn.
+/// log₁₀ of errors at the rows; an error of 0 is not drawn.
 fn errors(record: &Record, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     let times = &record.rows.times;
     let curve = |(name, values): &(String, Vec<f64>)| {
@@ -175,7 +175,7 @@ fn errors(record: &Record, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     (!curves.is_empty()).then(|| over_time(record, title(Kind::Errors), Scale::Decades, curves))
 }
 
-/// One column over another.
+/// The curve of one column over another.
 pub(crate) fn portrait(
     samples: &Samples,
     (x, y): (&str, &str),

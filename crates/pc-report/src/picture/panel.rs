@@ -5,15 +5,15 @@
 pub struct Panel {
     /// The title.
     pub title: String,
-    /// The name of the axis to the right, and its scale.
+    /// The name of the horizontal axis, and its scale.
     pub across: (String, Scale),
-    /// The name of the axis up, if there is one for all curves, and its scale.
+    /// The name of the vertical axis, if there is one for all curves, and its scale.
     pub up: (String, Scale),
-    /// The range to the right, where it is not that of the contents.
+    /// The horizontal range, if it is not that of the contents.
     pub span: Option<(f64, f64)>,
-    /// Whether a length to the right is as long as the same length up.
+    /// Whether both axes have the same scale.
     pub equal: bool,
-    /// Values to the right at which events occurred.
+    /// Horizontal values at which events occurred.
     pub events: Vec<f64>,
     /// The contents.
     pub content: Content,
@@ -37,7 +37,7 @@ pub enum Content {
     Curves(Vec<Curve>),
     /// From, to and height of each bar.
     Bars(Vec<[f64; 3]>),
-    /// A colour for each value: column by column the values of rows.
+    /// A colour for each value; the values are listed column by column.
     Cells {
         /// Middles of the columns.
         columns: Vec<f64>,
@@ -58,7 +58,7 @@ pub struct Curve {
 }
 
 impl Panel {
-    /// Curves over something.
+    /// Curves over a common quantity.
     pub fn over(across: &str, title: impl Into<String>, scale: Scale, curves: Vec<Curve>) -> Panel {
         Panel {
             title: title.into(),

@@ -11,18 +11,18 @@ use crate::record::{Record, UnknownColumn};
 const WIDTH: f64 = 960.0;
 const TITLE: f64 = 46.0;
 const REMARK: f64 = 22.0;
-/// For a panel over time: its heading, the area within the axes, the numbers below.
+/// The heights of a panel over time: its heading, the area within the axes, the numbers below.
 const HEADING: f64 = 30.0;
 const WITHIN: f64 = 180.0;
 const BELOW: f64 = 36.0;
-/// The area within the axes of a panel without time.
+/// The height of the area within the axes of a panel without time.
 const SQUARE: f64 = 340.0;
 const EDGE: f64 = 14.0;
 /// Sizes of texts.
 const LARGE: f64 = 17.0;
 const HEADLINE: f64 = 13.0;
 const SMALL: f64 = 11.0;
-/// More curves than this have no names.
+/// If there are more curves than this, their names are left out.
 const MOST_NAMES: usize = 9;
 /// The most points of a curve.
 const MOST_POINTS: usize = 12_000;

@@ -5,7 +5,7 @@ const TOLERANCE: f64 = 0.05;
 /// The width within which only the ends and extremes of a curve are visible.
 const COLUMN: f64 = 1.0;
 
-/// Fewer points with the same appearance: at most `most`, or up to twice as many for a curve full of turns.
+/// Fewer points with the same appearance: at most `most`, or up to twice as many for a curve with many turns.
 pub(super) fn simplified(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     let onwards = points.windows(2).all(|pair| pair[0][0] <= pair[1][0])
         || points.windows(2).all(|pair| pair[0][0] >= pair[1][0]);
@@ -21,7 +21,7 @@ pub(super) fn simplified(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     }
 }
 
-/// Of points in the same column the first, the lowest, the highest and the last.
+/// For points in the same column, the first, the lowest, the highest and the last.
 fn extremes(points: &[[f64; 2]], width: f64) -> Vec<[f64; 2]> {
     let mut kept = Vec::new();
     for column in points.chunk_by(|a, b| (a[0] / width).floor() == (b[0] / width).floor()) {

@@ -1,4 +1,4 @@
-//! Drawings as SVG: on a page, in its colours; or in a file of their own.
+//! Drawings as SVG: on a page, in its colours, or in a separate file.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use crate::picture::drawing::{Anchor, Drawing, Ink, Shape};
 const FONT: &str = "DejaVu Sans, Verdana, sans-serif";
 
 impl Drawing {
-    /// A file of its own, on white.
+    /// A separate file, on white.
     pub fn svg(&self) -> String {
         let Drawing { width, height, .. } = self;
         let mut svg = format!(
@@ -61,7 +61,7 @@ impl Drawing {
         svg + "</svg>\n"
     }
 
-    /// An element of a page, in its colours, with a title and a description of these ids.
+    /// An element of a page, in its colours, with a title and a description that have these ids.
     pub(crate) fn inline(&self, id: &str, title: &str, description: &str) -> String {
         let Drawing { width, height, .. } = self;
         let mut svg = format!(

@@ -22,12 +22,12 @@ pub struct Compared {
 
 impl Compared {
     /// Integrates the motions of two models, and compares them at the times of the first. Where they
-    /// differ, both are integrated once more at smaller tolerances: these tell two motions from
-    /// errors of integration.
+    /// differ, both are integrated once more at smaller tolerances: this tells different motions
+    /// from errors of integration.
     ///
     /// # Errors
-    /// [`CompareError`] where there is nothing to compare, and any error of a run; the failure of a
-    /// motion is none, it is compared as far as it goes.
+    /// [`CompareError`] where there is nothing to compare, and any error of a run; a motion that
+    /// fails is not an error: it is compared as far as it goes.
     pub fn of(
         models: [&Model; 2],
         wishes: [&Wishes; 2],

@@ -8,7 +8,7 @@ use crate::motion::run::{Ending, Run};
 /// The column that nearly every two motions share.
 const ENERGY: &str = "energy";
 
-/// What is compared, and how closely.
+/// What to compare, and how closely.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Question {
     /// The difference allowed.
@@ -24,23 +24,23 @@ pub struct Question {
 pub struct Comparison {
     /// The difference allowed.
     pub allowance: Allowance,
-    /// How many times are compared.
+    /// The number of times at which they are compared.
     pub rows: usize,
     /// The last of these times.
     pub until: f64,
     /// The difference of each column that is compared.
     pub differences: Vec<Difference>,
-    /// Columns of the first alone.
+    /// Columns that only the first has.
     pub only_first: Vec<String>,
-    /// Those of the second alone.
+    /// Columns that only the second has.
     pub only_second: Vec<String>,
     /// How the ends differ, in words.
     pub ends: Option<String>,
 }
 
 impl Comparison {
-    /// Compares two runs at the times that both have. Where `finer` has both once more, at smaller tolerances, twice the changes by
-    /// these are allowed besides: errors of integration, which may have grown along the motion.
+    /// Compares two runs at the times that both have. If `finer` has both runs at smaller tolerances, twice the resulting changes
+    /// are allowed in addition: errors of integration, which may have grown along the motion.
     ///
     /// # Errors
     /// [`CompareError`] where there is nothing to compare, or names are unknown.
@@ -103,7 +103,7 @@ impl Comparison {
     }
 }
 
-/// Until each time, twice what smaller tolerances change in both columns; infinite from where they have other rows.
+/// Up to each time, twice the change of both columns at smaller tolerances; infinite from where the rows differ.
 fn uncertain(columns: [&[f64]; 2], finer: [&[f64]; 2]) -> Vec<f64> {
     let rows = columns[0].len().min(columns[1].len());
     let change = |i: usize| -> f64 {

@@ -38,8 +38,8 @@ impl Allowance {
 }
 
 impl Difference {
-    /// The difference of the values (t, a, b); until each time errors of integration move them by as much as `uncertain` says, or
-    /// by nothing where it has no more.
+    /// The difference of the values (t, a, b). Up to each time, errors of integration change them by as much as `uncertain` says,
+    /// and by nothing beyond its last entry.
     pub fn new(
         name: String,
         values: &[(f64, f64, f64)],

@@ -11,7 +11,7 @@ pub enum CompareError {
     /// One model in one form.
     #[error("there is one motion only: give another model, or two forms as in `--form poincare,canonical`")]
     OneMotion,
-    /// More forms than models.
+    /// More forms than models were given.
     #[error("--form: {count} forms are given for two motions; give one or two")]
     Forms {
         /// How many.
@@ -23,12 +23,12 @@ pub enum CompareError {
     /// The motions begin at different times.
     #[error("the motions begin at t = {first} and t = {second}: `t_start` in [simulation] must be the same")]
     Starts {
-        /// That of the first.
+        /// The start time of the first.
         first: f64,
-        /// That of the second.
+        /// The start time of the second.
         second: f64,
     },
-    /// There is nothing to be compared.
+    /// There is nothing to compare.
     #[error(
         "no column but the energy is in both motions: the first has {}, the second {}; say what corresponds, as in `--map \
          \"r=sqrt(x^2+y^2)\"`",
@@ -37,7 +37,7 @@ pub enum CompareError {
     NothingShared {
         /// The columns of the first.
         first: Vec<String>,
-        /// Those of the second.
+        /// The columns of the second.
         second: Vec<String>,
     },
     /// A column that is not in both motions.

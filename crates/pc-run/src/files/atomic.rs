@@ -73,7 +73,7 @@ pub(super) fn fill(
     written
 }
 
-/// Gives a file the owner and mode of the one that it replaces; false where this is not permitted.
+/// Gives a file the owner and mode of the one that it replaces; false if this is not permitted.
 #[cfg(unix)]
 fn take_after(made: &File, old: &Metadata) -> io::Result<bool> {
     use std::os::unix::fs::{MetadataExt, fchown};

@@ -12,7 +12,7 @@ use tempfile::{Builder, NamedTempFile};
 
 const SUFFIX: &str = ".part";
 const CHANCE: usize = 6;
-/// Longest part of the name of the file; most systems allow 255 bytes for the whole.
+/// The longest part of the name of the file; most systems allow 255 bytes for the whole.
 const LONGEST: usize = 200;
 
 /// A new file beside `file`, locked.

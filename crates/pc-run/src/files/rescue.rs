@@ -11,9 +11,9 @@ use crate::files::kept::Kept;
 use crate::files::place::Place;
 
 impl Place {
-    /// Puts a result at its place, or else in the directory of temporary files, or else, if
-    /// `is_lines` says that single lines are of use, the part that could be written beside the
-    /// file.
+    /// Puts a result at its place, or else in the directory of temporary files; failing that, if
+    /// `is_lines` says that single lines are of use, keeps the part that could be written beside
+    /// the file.
     ///
     /// # Errors
     /// [`FileError::Write`] that says where it is.
@@ -44,7 +44,7 @@ impl Place {
     }
 }
 
-/// Most bytes of the name.
+/// The most bytes of the name.
 const LONGEST: usize = 100;
 
 /// Writes the result to a new file in the directory of temporary files, if that is possible.

@@ -8,11 +8,12 @@ use pc_verify::{Second, Slope, VerifyError};
 use crate::error::RunError;
 use crate::observer::Observer;
 
-/// Weights of the components in the direction in which A and C are compared, in turn: none is a sum of others.
+/// Weights of the components in the direction in which A and C are compared, used in turn: none is a sum of
+/// others.
 const WEIGHTS: [f64; 5] = [1.0, -0.77, 0.59, -0.91, 0.68];
 
-/// Compares the matrices that are about to leave: A and C along a direction of all components of the
-/// reduced state, B and D along each input. Says where that could not be done.
+/// Compares the matrices before they are returned: A and C along a direction of all components of
+/// the reduced state, B and D along each input. Says where this is not possible.
 ///
 /// # Errors
 /// [`RunError::Verify`] if the derivations disagree.

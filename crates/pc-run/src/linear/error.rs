@@ -19,7 +19,7 @@ pub enum LinearError {
     /// `--vary` of something that is neither parameter nor start value.
     #[error("--vary: {0}")]
     Varied(UnknownValue),
-    /// A name that is no component of the state.
+    /// A name that is not a component of the state.
     #[error("{option}: there is no component `{name}` of the state here; there are {}", known.join(", "))]
     Component {
         /// The option.
@@ -123,7 +123,7 @@ pub enum LinearError {
 }
 
 impl LinearError {
-    /// From an error of the analysis that concerns no name of the command line.
+    /// An error of the analysis that concerns no name of the command line.
     pub(crate) fn of(error: AnalysisError, of_linearization: bool) -> LinearError {
         match error {
             AnalysisError::DependsOnTime => LinearError::DependsOnTime { of_linearization },

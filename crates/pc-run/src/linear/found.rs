@@ -16,11 +16,11 @@ use crate::observer::Observer;
 use crate::table::csv::{field, header};
 use crate::table::file::TableFile;
 
-/// Columns of a line after its number.
+/// Width of a line after its number, for wrapping.
 const WIDTH: usize = 92;
 const LABEL: usize = 4;
 
-/// The largest value that Newton's method may leave of a zero.
+/// The largest value that Newton's method may leave in place of a zero.
 const ZERO: f64 = 1e-9;
 
 /// Where equilibria are looked for.

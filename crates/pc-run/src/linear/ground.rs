@@ -60,8 +60,8 @@ impl<'g> Ground<'g> {
         Ok(Ground { assembly, equations, linearizer, start })
     }
 
-    /// The same, with what to know of the equations said, and compared with a second derivation where
-    /// that is wanted.
+    /// The same, with remarks on the equations, which are compared with a second derivation if
+    /// requested.
     ///
     /// # Errors
     /// As for [`new`](Ground::new), and [`RunError::Verify`].
@@ -80,9 +80,8 @@ impl<'g> Ground<'g> {
         Ok(ground)
     }
 
-    /// For each component of the state its place among the start values of the model; none where
-    /// other parameters or starts may lead to other equations, or where the start has to be solved
-    /// for.
+    /// For each component of the state its place among the start values of the model; none if other
+    /// parameters or starts may lead to other equations, or if the start has to be solved for.
     pub(crate) fn places(&self, model: &Model) -> Option<Vec<usize>> {
         let is_fixed = self.assembly.constraints.redundant().is_empty();
         let follows = model.derives_start() || model.completes_start() || model.projects_start();
@@ -95,7 +94,7 @@ impl<'g> Ground<'g> {
     }
 
     /// The stability of a steady state, as `pc check` judges it: by the second variation and by integrals too where the
-    /// first approximation does not decide, and without cyclic coordinates. None where nothing is steady.
+    /// first approximation does not decide, and without cyclic coordinates. None if the state is not steady.
     pub(crate) fn stability(&self, linear: &Linearization) -> Option<Stability> {
         let verdict = linear.spectrum.verdict();
         if !linear.is_steady || verdict != Verdict::Undecided {

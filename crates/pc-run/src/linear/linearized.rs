@@ -31,7 +31,7 @@ pub struct Linearized {
 }
 
 impl Linearized {
-    /// The linearization of a model at the chosen state; where it is to be verified, equations and
+    /// The linearization of a model at the chosen state; if it is to be verified, equations and
     /// matrices are compared with a second derivation.
     ///
     /// # Errors

@@ -10,10 +10,10 @@ use crate::linear::error::LinearError;
 use crate::linear::ground::{Ground, placed};
 use crate::linear::state::{At, Cyclic, StateChoice};
 
-/// Which cyclic coordinates are kept if nothing is said of them.
+/// Which cyclic coordinates are kept by default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CyclicChoice {
-    /// All at an equilibrium, none of a motion.
+    /// All at an equilibrium, none for a motion.
     OfState,
     /// None: the number of components is the same for all values of a parameter.
     None,
@@ -55,13 +55,13 @@ pub(crate) fn near(
 pub(crate) struct Varied {
     t: f64,
     state: StateChoice,
-    /// Compiled once, with the place of each component of the state among the start values; none where other values may
-    /// lead to other equations.
+    /// The compiled equations, with the place of each component of the state among the start values; none if other
+    /// values may lead to other equations.
     common: Option<(Mutex<Linearizer>, Vec<usize>)>,
 }
 
 impl Varied {
-    /// Those of a model, which is known with the values that it has.
+    /// Linearizations near a model, which begins with its own values.
     pub(crate) fn of(model: &Model, ground: &Ground<'_>, state: &StateChoice) -> Varied {
         let places = ground.places(model);
         Varied {
@@ -71,10 +71,11 @@ impl Varied {
         }
     }
 
-    /// That of the model with other values.
+    /// The linearization of the model with other values.
     ///
     /// # Errors
-    /// [`RunError`]; of a model whose equations depend on the values, at the place in the file that is to blame.
+    /// [`RunError`]; if the equations of the model depend on the values, at the place in the file that causes
+    /// it.
     pub(crate) fn linearization(&self, model: &Model) -> Result<Linearization, RunError> {
         let Some((linearizer, places)) = &self.common else {
             let graph = model.graph();
@@ -93,7 +94,7 @@ impl Varied {
         found.map_err(|error| LinearError::of(error, true).into())
     }
 
-    /// The most components that a linearization has, those at the start of the model as it is.
+    /// The most components that a linearization has: those at the unchanged start of the model.
     ///
     /// # Errors
     /// [`RunError`] where the parts of the equations are not defined there.

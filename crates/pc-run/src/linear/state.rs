@@ -1,4 +1,4 @@
-//! The state about which equations are linearized, as it is chosen.
+//! The choice of the state about which equations are linearized.
 
 /// The kind of state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,7 +16,7 @@ impl At {
     /// All of them.
     pub const ALL: [At; 3] = [At::Steady, At::Rest, At::Start];
 
-    /// In a word.
+    /// Its name in options and output.
     pub fn word(self) -> &'static str {
         match self {
             At::Steady => "steady",
@@ -29,7 +29,7 @@ impl At {
 /// Which cyclic coordinates are components of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cyclic {
-    /// Those that rest.
+    /// Those that are at rest.
     Keep,
     /// None.
     Drop,
@@ -39,7 +39,7 @@ impl Cyclic {
     /// All of them.
     pub const ALL: [Cyclic; 2] = [Cyclic::Keep, Cyclic::Drop];
 
-    /// In a word.
+    /// Its name in options and output.
     pub fn word(self) -> &'static str {
         match self {
             Cyclic::Keep => "keep",
@@ -48,14 +48,14 @@ impl Cyclic {
     }
 }
 
-/// The state, and what of it.
+/// The state, and which components of it to keep.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StateChoice {
     /// The kind of state.
     pub at: At,
     /// Components that keep their start values while a steady state is looked for.
     pub hold: Vec<String>,
-    /// The cyclic coordinates that are kept; else those of an equilibrium and of the start, none of
-    /// a motion and where values are varied.
+    /// The cyclic coordinates that are kept; by default all at an equilibrium and at the start,
+    /// none for a motion and where values are varied.
     pub cyclic: Option<Cyclic>,
 }

@@ -8,14 +8,14 @@ use pc_print::{columns, eigenvalues_in_words, one_line, stability_in_words};
 
 use pc_print::{labelled, short, small, wrapped};
 
-/// Columns of a line after its label.
+/// Width of a line after its label, for wrapping.
 const WIDTH: usize = 84;
 const LABEL: usize = 13;
 
-/// The largest value that Newton's method may leave of a zero.
+/// The largest value that Newton's method may leave in place of a zero.
 const ZERO: f64 = 1e-9;
 
-/// Six digits; 0 for what Newton's method leaves of a zero.
+/// Six digits; 0 for what Newton's method leaves in place of a zero.
 pub(crate) fn rounded(value: f64) -> String {
     if value.abs() <= ZERO { "0".to_owned() } else { short(value, 6) }
 }
@@ -138,7 +138,7 @@ fn matrix(text: &mut String, name: &str, matrix: &Matrix<f64>, rows: &[String], 
     *text += &aligned(&table);
 }
 
-/// Cells in columns, the first to the left, the others to the right.
+/// Cells in columns, the first aligned to the left, the others to the right.
 pub(crate) fn aligned(table: &[Vec<String>]) -> String {
     let count = table.first().map_or(0, Vec::len);
     let width = |j: usize| table.iter().map(|row| columns(&row[j])).max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Checkpoints of a run: written during the integration, and resumed from.
+//! Checkpoints of a run: written during the integration, and read to resume it.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -48,15 +48,15 @@ pub(crate) struct Checkpoints {
     place: Place,
     every: NonZeroU64,
     identity: Identity,
-    /// The checkpoint to begin at, if not the start.
+    /// The checkpoint to begin at; the start if there is none.
     from: Option<Checkpoint>,
 }
 
 impl Checkpoints {
-    /// None, those in a file to write, or from a file to continue from.
+    /// No checkpoints, those written to a file, or those continued from a file.
     ///
     /// # Errors
-    /// [`CheckpointFileError`]; [`FileError::Place`] where no file can be.
+    /// [`CheckpointFileError`]; [`FileError::Place`] if the file cannot be written.
     pub(crate) fn new(
         files: &CheckpointFiles,
         model: &Model,
@@ -100,7 +100,8 @@ impl Checkpoints {
         Ok(())
     }
 
-    /// Integrates the motion of `flow` from its start or from the checkpoint, with its derivatives, if any are wanted.
+    /// Integrates the motion of `flow` from its start or from the checkpoint, with its derivatives, if any
+    /// are requested.
     ///
     /// # Errors
     /// [`FileError::Write`] if the file cannot be written at the beginning; later failures are only

@@ -6,18 +6,18 @@ use pc_mech::Expr;
 use pc_model::{Assembly, Flow, Model, ModelError, Prototype, Variables};
 use pc_report::dropped;
 
-/// The equations of a model in one form, compiled, with what to know of them.
+/// The equations of a model in one form, compiled, with remarks on them.
 #[derive(Clone)]
 pub struct Derived {
     /// The equations, with the values that the model has.
     pub flow: Flow,
-    /// What other values make no difference to; none where they may.
+    /// The equations as a prototype for other values; none if other values may change more than numbers.
     pub prototype: Option<Arc<Prototype>>,
-    /// What to know of the equations.
+    /// Remarks on the equations.
     pub(crate) facts: Facts,
 }
 
-/// What to know of equations after they are compiled.
+/// Facts about equations after they are compiled.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Facts {
     /// The constraints that were dropped, each with the reason.

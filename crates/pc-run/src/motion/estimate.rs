@@ -11,12 +11,12 @@ use crate::plan::Plan;
 use crate::plan::tolerances::Tolerances;
 use pc_print::short;
 
-/// An error of this part of the largest values has grown to the size of the motion …
+/// An error of this fraction of the largest values has grown to the size of the motion …
 const GROWN: f64 = 0.1;
 /// … if it is more than these absolute tolerances.
 const TOLERANCES: f64 = 10.0;
 
-/// What is known of the global errors of a motion, which the table has row by row.
+/// A summary of the global errors of a motion, which the table has row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// The method of the companion.
@@ -101,8 +101,8 @@ fn why(estimate: &ErrorEstimate, flow: &Flow) -> String {
     }
 }
 
-/// The time of the first row in which |errors| of the coordinates, of the velocities or of the first-order states exceed a tenth of
-/// their largest values, and `negligible`; not one of `others`.
+/// The time of the first row, other than the rows `others`, in which |errors| of the coordinates, of the velocities or of the
+/// first-order states exceed a tenth of their largest values and `negligible`.
 fn grown(table: &Table, negligible: f64, others: &[usize]) -> Option<f64> {
     let kinds = [table.coordinates(), table.quasi_velocities(), table.states()];
     let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();

@@ -9,10 +9,10 @@ use crate::motion::table::Table;
 use crate::observer::Observer;
 use crate::plan::Plan;
 
-/// Most numbers in memory.
+/// The most numbers in memory.
 const MOST_NUMBERS: usize = 4_000_000;
 
-/// Fewest points of a motion, unless its steps would have more than the most points of a step.
+/// The fewest points of a motion, unless its steps would then have more than the most points of a step.
 const FEWEST: usize = 2000;
 const MOST_POINTS: usize = 60;
 
@@ -26,12 +26,12 @@ fn points(method: Method) -> usize {
     }
 }
 
-/// The relative difference up to which an integrator takes two times for the same.
+/// The relative difference up to which an integrator takes two times as equal.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
-/// The time at which a table of inputs is read at an end `t` of a step that contains `inside`: at a
-/// break after `inside` the last number before the break, at one before it the break itself. So a
-/// jump shows both of its values.
+/// The time at which a table of inputs is read at an end `t` of a step that contains `inside`: for
+/// a break after `inside` it is the last number before the break, for one before `inside` the break
+/// itself. So a jump shows both of its values.
 fn side(breaks: &[f64], t: f64, inside: f64) -> f64 {
     let near = ROUNDINGS * t.abs();
     let first = breaks.partition_point(|&time| time < t - near);
@@ -43,8 +43,8 @@ fn side(breaks: &[f64], t: f64, inside: f64) -> f64 {
 }
 
 /// The states at the ends of steps and between them, with those before and after events and jumps
-/// of inputs, as a table; none where they do not reach as far as `reached`. The motion is
-/// integrated again, so that its rows do not depend on this.
+/// of inputs, as a table; none if they do not reach as far as `reached`. The motion is integrated
+/// again, so that its rows do not depend on this.
 pub(crate) fn table(
     flow: &mut Flow,
     (plan, options): (&Plan, &Options),

@@ -1,4 +1,4 @@
-//! Everything that the numbers of a motion, or of other work on a model, depend on: stored with what is interrupted, so that only the
+//! Everything that the numbers of a motion, or of other work on a model, depend on: stored with interrupted work, so that only the
 //! same command continues it.
 
 use pc_model::Model;
@@ -10,7 +10,7 @@ use crate::plan::Plan;
 /// Names and values in the order of their importance.
 pub(crate) type Identity = Vec<(String, String)>;
 
-/// Of the motion of a model.
+/// The identity of the motion of a model.
 pub(crate) fn of_motion(model: &Model, plan: &Plan) -> Identity {
     let most = plan.max_steps.map(|most| ("--max-steps", most.to_string()));
     let parameters: Vec<&str> = model.parameters().map(|(name, _)| name).collect();
@@ -38,7 +38,8 @@ fn given(atol: &AbsoluteTolerance) -> String {
     if given.is_empty() { "by scale".to_owned() } else { given.join(",") }
 }
 
-/// Of some work on a model: version, parameters, start, what the work itself depends on, and the text of the model.
+/// The identity of other work on a model: version, parameters, start, what the work itself depends on, and
+/// the text of the model.
 pub(crate) fn of_work(model: &Model, own: impl IntoIterator<Item = (&'static str, String)>) -> Identity {
     let entry = |name: &str, value: String| (name.to_owned(), value);
     let mut identity = vec![entry("pc", env!("CARGO_PKG_VERSION").to_owned())];

@@ -28,7 +28,7 @@ use crate::plan::Wishes;
 use crate::plan::memory;
 use crate::plan::tolerances::{Tolerances, note_largest};
 
-/// What a run has besides its rows; nothing by default.
+/// The parts of a run besides its rows; none by default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Besides {
     /// Whether the equations are compared with a second derivation, at the start and, where this is
@@ -36,7 +36,7 @@ pub struct Besides {
     pub verify: bool,
     /// Whether the run has the motion between its rows, with the points that smooth curves need.
     pub fine: bool,
-    /// Whether the observer is told what to know of the equations.
+    /// Whether the observer is told the remarks on the equations.
     pub remarks: bool,
     /// Whether the table has the errors of its columns.
     pub estimate: bool,
@@ -45,7 +45,7 @@ pub struct Besides {
 }
 
 impl Besides {
-    /// What a motion has that is to be shown: it is verified, and has the points of smooth curves.
+    /// For a motion to be shown: it is verified, and has the points of smooth curves.
     pub fn shown() -> Besides {
         Besides { verify: true, fine: true, remarks: true, ..Besides::default() }
     }
@@ -99,7 +99,7 @@ impl Run {
         integrated((model, &model.assemble(&graph)?), plan.form, || Ok(plan), besides, None, observer)
     }
 
-    /// The same of equations that have been derived, with the values that the model has. They are
+    /// The same for equations that have been derived, with the values that the model has. They are
     /// derived again only to be verified, or where a lost integral or inertia is to be explained.
     ///
     /// # Errors
@@ -136,10 +136,10 @@ fn integrated(
     Integration { model, assembly: Some(assembly), facts, flow, plan, besides, observer }.run(stream)
 }
 
-/// A motion that is about to be integrated.
+/// A motion to be integrated.
 struct Integration<'r, 'g> {
     model: &'r Model,
-    /// None where it has not been derived for this run.
+    /// None if it has not been derived for this run.
     assembly: Option<&'r Assembly<'g>>,
     facts: Facts,
     flow: Flow,
@@ -250,7 +250,7 @@ impl Integration<'_, '_> {
         })
     }
 
-    /// Does something with the assembled model, which is assembled for it where it has not been.
+    /// Does something with the assembled model, which is assembled first if necessary.
     fn assembled<T>(&self, work: impl FnOnce(&Assembly<'_>) -> T) -> Result<T, RunError> {
         match self.assembly {
             Some(assembly) => Ok(work(assembly)),
@@ -339,8 +339,8 @@ impl Integration<'_, '_> {
     }
 
     /// The events whose functions are zero at the start and go on in the direction of the event:
-    /// this is no passage. The sides are those at the end of the first step, or of the part of it
-    /// before an event. None are known of a motion that was resumed.
+    /// this is not a passage. The sides are those at the end of the first step, or of the part of
+    /// it before an event. None are known for a motion that was resumed.
     fn passed_at_start(&mut self, steps: &StepStates) -> Vec<usize> {
         let Integration { flow, plan, besides, .. } = self;
         let Some((t, y)) = steps.iter().next().filter(|_| besides.checkpoints.resume.is_none()) else {
@@ -404,7 +404,7 @@ fn names_of_events(flow: &Flow) -> Vec<String> {
     flow.events.events().iter().map(|event| event.name().to_owned()).collect()
 }
 
-/// The start values as the text or the wishes have them.
+/// The start values, from the text or the options.
 fn written_start(model: &Model) -> Vec<(String, f64)> {
     model.start().map(|values| model.start_names().into_iter().zip(values).collect()).unwrap_or_default()
 }

@@ -9,6 +9,7 @@ pub struct LostIntegral {
     pub start: f64,
     /// The largest change from it.
     pub drift: f64,
-    /// The scale of its terms: of the energy, the largest kinetic energy or the range of the rest, whichever is larger.
+    /// The scale of its terms: for the energy, the largest kinetic energy or the range of the rest, whichever
+    /// is larger.
     pub scale: f64,
 }

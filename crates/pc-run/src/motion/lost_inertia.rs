@@ -4,14 +4,15 @@ use pc_algebra::Matrix;
 use pc_mech::SingularValues;
 use pc_model::{Assembly, Flow, Variables};
 
-/// A mass matrix that is this near to a singular one, against that of the start, is why steps get short.
+/// If the mass matrix is this near to a singular one, compared with that at the start, it is the reason for
+/// short steps.
 const VANISHES: f64 = 1e-6;
 
-/// The most velocities for which the mass matrix is written out to say this.
+/// The most velocities for which the mass matrix is computed to find this.
 const MOST_VELOCITIES: usize = 12;
 
-/// The velocity in whose direction the mass matrix is nearly singular at `state`, and its least part of the inertia that it
-/// has at the start: the least singular value of D M D with D² = 1/diag M at the start, there and here.
+/// The velocity in whose direction the mass matrix is nearly singular at `state`, and the fraction of its inertia that
+/// is left: the ratio of the least singular value of D M D there to that at the start, with D² = 1/diag M at the start.
 pub(crate) fn lost_inertia(
     assembly: &Assembly<'_>,
     flow: &mut Flow,

@@ -1,4 +1,4 @@
-//! Integrals that are proved to be kept, and that a computed motion has lost all the same.
+//! Integrals that are proved to be kept, but that a computed motion has lost.
 
 use pc_expr::Weighed;
 use pc_mech::{Expr, Neighbourhood};
@@ -9,17 +9,18 @@ use crate::motion::lost::LostIntegral;
 use crate::motion::table::Table;
 use crate::plan::tolerances::Tolerances;
 
-/// The part of its scale by which an integral may drift.
+/// The fraction of its scale by which an integral may drift.
 const MOST: f64 = 1e-3;
 
-/// A drift of so many units in the last place of the terms of an integral is rounding, as under a large constant in the
-/// energy, or beside an equilibrium.
+/// A drift of this many units in the last place of the terms of an integral is rounding, as with a large constant in
+/// the energy, or beside an equilibrium.
 const ROUNDINGS: f64 = 1e3;
 
-/// A drift that errors of so many tolerances in each component make is what was asked for.
+/// A drift is within what was asked for if errors of this many tolerances in each component can cause it.
 const TOLERANCES: f64 = 100.0;
 
-/// The integrals that have drifted too far at these states of the motion, if they are kept; the energy may be.
+/// The integrals that would have drifted too far at these states of the motion if they are conserved; the
+/// energy may be one.
 ///
 /// Beside its scale, the tolerances of the components are a measure of its drift: with E = e^{2γt} (p² + x²)/2 of a damped
 /// motion, the absolute tolerance of what has long come to rest is multiplied by e^{γt}.
@@ -73,8 +74,8 @@ pub(crate) fn lost(
 }
 
 /// The larger of the largest kinetic energy and the range of the rest, from energies with and without velocities:
-/// constants are no part of it. Infinite where nothing is known, as constraints that are not affine may leave no motion
-/// at rest.
+/// constants do not count. Infinite if nothing is known, since constraints that are not affine may allow no state of
+/// rest.
 fn scale_of_energy(flow: &mut Flow, place: usize, states: &[(f64, &[f64])]) -> f64 {
     let (mut kinetic, mut least, mut most) = (0.0f64, f64::INFINITY, f64::NEG_INFINITY);
     for (t, y) in states {
@@ -111,7 +112,7 @@ fn contributions(flow: &mut Flow, place: usize, t: f64, y: &[f64]) -> f64 {
     sum
 }
 
-/// Σ |I(y with one component in error by so many tolerances) − I(y)|
+/// Σ |I(y with an error of this many tolerances in one component) − I(y)|
 fn effect_of_errors(flow: &mut Flow, place: usize, (t, y): (f64, &[f64]), errors: Vec<f64>) -> f64 {
     let whole = flow.motion.observe(t, y)[place];
     let mut wrong = y.to_vec();
@@ -125,8 +126,8 @@ fn effect_of_errors(flow: &mut Flow, place: usize, (t, y): (f64, &[f64]), errors
     sum
 }
 
-/// What rounding may do to an integral: some units in the last place of its largest term, those of the energy being
-/// the terms of the Lagrangian. Infinite where these cannot be evaluated.
+/// The possible effect of rounding on an integral: some units in the last place of its largest term; the terms of
+/// the energy are those of the Lagrangian. Infinite where these cannot be evaluated.
 fn rounding(assembly: &Assembly<'_>, flow: &mut Flow, name: &str, states: &[(f64, &[f64])]) -> f64 {
     let system = &assembly.system;
     let declared = system.integrals().iter().find(|(known, _)| known == name);

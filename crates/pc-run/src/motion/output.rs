@@ -39,7 +39,7 @@ impl Rows for Table {
 }
 
 impl Run {
-    /// Writes the table, with parameters, events and summary where the format has room for them.
+    /// Writes the table, with parameters, events and summary if the format has room for them.
     ///
     /// # Errors
     /// [`FileError::Write`], which says where the table was kept; an existing file is then

@@ -1,4 +1,4 @@
-//! What a person may want to know of the equations.
+//! Remarks on the equations, for the user.
 
 use pc_mech::{Constraint, Expr};
 use pc_model::{Assembly, ConstraintFormulation, Variables};
@@ -32,8 +32,9 @@ pub fn say_dropped(assembly: &Assembly<'_>, observer: &dyn Observer) {
     }
 }
 
-/// A remark on equations in the `free` velocities, which were chosen as independent, or on those in
-/// all velocities, of which nonlinear constraints are integrals; none where there is no choice.
+/// A remark on equations in the `free` velocities, which were chosen as independent, or on
+/// equations in all velocities, which have nonlinear constraints as integrals; none if there is no
+/// choice.
 pub fn choice(assembly: &Assembly<'_>, free: &[Expr<'_>]) -> Option<String> {
     let ConstraintFormulation::Multipliers(_) = assembly.constraints.formulation() else { return None };
     if let Some(held) = assembly.constraints.nonlinear() {
@@ -85,7 +86,7 @@ pub fn say_moved(assembly: &Assembly<'_>, observer: &dyn Observer) {
     }
 }
 
-/// Says which masses change in time, and how what they lose moves.
+/// Says which masses change in time, and how the mass that they lose moves.
 pub fn say_changing_masses(assembly: &Assembly<'_>, observer: &dyn Observer) {
     if let Some(remark) = changing_masses(assembly) {
         observer.remark(&remark);

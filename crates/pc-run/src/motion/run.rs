@@ -25,18 +25,18 @@ pub struct Run {
     pub state: Vec<String>,
     /// Their absolute tolerances.
     pub tolerances: Tolerances,
-    /// What is said of components that never exceed theirs.
+    /// Remarks on components that never exceed theirs.
     pub never_exceeded: Vec<String>,
-    /// The table as far as it was reached.
+    /// The table, as far as the motion was integrated.
     pub table: Table,
-    /// The states of the rows; none where these were written as they were computed.
+    /// The states of the rows; none if these were written as they were computed.
     pub trajectory: Trajectory,
     /// The motion between its rows too, with the points that pictures need, where that was
     /// requested.
     pub fine: Option<Table>,
-    /// What is known of the global errors, where they were requested.
+    /// A summary of the global errors, if they were requested.
     pub estimate: Option<Estimate>,
-    /// The constraints that are held, with the largest residual of each at the output times.
+    /// The constraints that are kept by projection, with the largest residual of each at the output times.
     pub constraints: Vec<(String, f64)>,
     /// The constraints that were dropped, each with the reason.
     pub dropped: Vec<(String, String)>,
@@ -57,7 +57,7 @@ pub struct Run {
     pub ending: Ending,
     /// An integral that is proved to be kept, and is not: the motion is wrong.
     pub lost: Option<LostIntegral>,
-    /// Of a motion that failed, the velocity that has lost its inertia, and what is left of it.
+    /// If the motion failed: the velocity that has lost its inertia, and what is left of it.
     pub lost_inertia: Option<(String, f64)>,
     /// The result of the second derivation, if it was made.
     pub verification: Option<Verification>,
@@ -70,16 +70,16 @@ pub struct Run {
 /// How a run ended.
 #[derive(Debug)]
 pub enum Ending {
-    /// At its end.
+    /// It reached its end time.
     Completed,
-    /// By a terminal event.
+    /// A terminal event ended it.
     Event {
         /// Its name.
         name: String,
     },
-    /// By Ctrl-C.
+    /// Ctrl-C ended it.
     Interrupted,
-    /// By the time limit.
+    /// The time limit ended it.
     Ended(Spent),
     /// A row could not be written.
     Unwritten,
@@ -88,7 +88,7 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// In a word.
+    /// The word for it in output.
     pub fn word(&self) -> &'static str {
         match self {
             Ending::Completed => "completed",
@@ -111,7 +111,7 @@ impl Run {
         }
     }
 
-    /// The error of a run that the observer or a limit of time has ended.
+    /// The error of a run that the observer or a time limit has ended.
     pub fn stopped(&self) -> Option<RunError> {
         let t = self.statistics.current_time;
         match self.ending {

@@ -1,4 +1,4 @@
-//! `pc run --sensitivities`: derivatives of the columns of a motion by parameters.
+//! `pc run --sensitivities`: derivatives of the columns of a motion with respect to parameters.
 
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
@@ -14,7 +14,7 @@ use pc_verify::Slope;
 
 use crate::error::RunError;
 
-/// Derivatives by parameters that are integrated with a motion, with the results.
+/// Derivatives with respect to parameters that are integrated with a motion, with the results.
 pub(crate) struct Derivatives {
     parameters: Vec<usize>,
     names: Vec<String>,
@@ -24,7 +24,8 @@ pub(crate) struct Derivatives {
 }
 
 impl Derivatives {
-    /// The derivatives by these parameters of the motion of a model, whose start may depend on them.
+    /// The derivatives of the motion of a model with respect to these parameters, on which its start may
+    /// depend.
     ///
     /// # Errors
     /// [`RunError::Model`] where the start has no derivative.
@@ -43,7 +44,7 @@ impl Derivatives {
         Ok(Derivatives { parameters: parameters.to_vec(), names, wanted, matrices: Vec::new() })
     }
 
-    /// Integrates the motion as far as possible; the error says why not further. `output` sees each
+    /// Integrates the motion as far as possible; the error says why it ended. `output` sees each
     /// output and may stop it.
     pub(crate) fn follow(
         &mut self,
@@ -80,7 +81,7 @@ impl Derivatives {
         self.take(solved)
     }
 
-    /// Takes the derivatives of what was reached.
+    /// Takes the derivatives as far as they were reached.
     fn take(
         &mut self,
         solved: Result<SensitivitySolution, Box<SolveFailure<SensitivitySolution>>>,
@@ -91,7 +92,7 @@ impl Derivatives {
         (Solution { trajectory: trajectory.motion().clone(), occurrences, ending, slides }, error)
     }
 
-    /// The rates (∂f/∂y) ∂y/∂p + ∂f/∂p at the last output, which the integration is made of; none where the field has no derivatives
+    /// The rates (∂f/∂y) ∂y/∂p + ∂f/∂p at the last output, which the integration is made of; none if the field has no derivatives
     /// of its own.
     pub(crate) fn slopes(&self, flow: &mut Flow, t: f64, state: &[f64]) -> Vec<Slope> {
         let (motion, dim) = (&mut flow.motion, state.len());

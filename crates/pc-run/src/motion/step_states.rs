@@ -1,10 +1,10 @@
 //! Some of the states at the ends of steps, however many these are.
 
-/// The most states of the first steps, and of the others.
+/// The most states kept of the first steps, and of the others.
 const MOST: usize = 64;
 
-/// The first states of a motion, then every so many of the others that they stay few. Rows may all come at the same
-/// phase of an oscillation; steps do not, and are dense where a motion is fast.
+/// The first states of a motion, then every n-th of the others, with n large enough that they stay few. Rows may
+/// all come at the same phase of an oscillation; steps do not, and are dense where a motion is fast.
 #[derive(Clone, Debug)]
 pub(crate) struct StepStates {
     first: Vec<(f64, Vec<f64>)>,

@@ -50,8 +50,7 @@ impl<'s, 'p> Streamed<'s, 'p> {
         })
     }
 
-    /// Integrates the motion as far as possible, without its states; the error says why not
-    /// further.
+    /// Integrates the motion as far as possible, without its states; the error says why it ended.
     pub(crate) fn follow(
         &mut self,
         flow: &mut Flow,

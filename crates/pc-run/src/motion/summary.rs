@@ -76,7 +76,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
 
 const WORK: &str = "work";
 
-/// What the method `auto` chose, or a remark where DOP853 met a stiff motion.
+/// The choices of the method `auto`, or a remark if DOP853 met a stiff motion.
 fn chosen(run: &Run) -> Vec<String> {
     let (plan, work) = (&run.plan, &run.statistics);
     let times = |n: u64| if n == 1 { "once".to_owned() } else { format!("{n} times") };
@@ -117,7 +117,7 @@ fn work_done(run: &Run) -> String {
 
 /// Up to this number, all occurrences of an event are listed.
 const FEW: usize = 5;
-/// What is said of an event whose function is zero at the start and goes beyond.
+/// The remark on an event whose function is zero at the start and goes beyond.
 const AT_START: &str = "   (zero at the start and beyond it from there on, which is no passage)";
 
 fn events(run: &Run) -> Vec<String> {
@@ -188,7 +188,7 @@ fn drifts(run: &Run) -> Vec<String> {
 /// Rows that are named one by one.
 const FEW_ROWS: usize = 3;
 
-/// The estimated global errors of the state at the last row where they are known, and what is to be said of them.
+/// The estimated global errors of the state at the last row where they are known, with remarks.
 fn errors(run: &Run) -> Vec<String> {
     let Some(estimate) = &run.estimate else { return Vec::new() };
     let by = format!("by a companion: {}, rtol {}", estimate.method, short(estimate.rtol, 2));

@@ -19,7 +19,7 @@ pub struct Table {
     errors: usize,
     /// One row after the other.
     values: Vec<f64>,
-    /// A record of the rows that were written as they were computed: `values` then has only the
+    /// A record of the rows, if they were written as they were computed: `values` then has only the
     /// last one.
     streamed: Option<Streamed>,
 }
@@ -118,7 +118,7 @@ impl Table {
         }
     }
 
-    /// No rows yet; the columns are those of the flow that is to give them.
+    /// No rows yet; the columns are those of the flow that will give them.
     pub(crate) fn of(flow: &Flow) -> Table {
         Table::empty(flow, Vec::new())
     }
@@ -200,13 +200,13 @@ impl Table {
         self.conserved().end..self.columns.len() - self.derivatives - self.errors
     }
 
-    /// The numbers of the columns that are derivatives by parameters.
+    /// The numbers of the columns that are derivatives with respect to parameters.
     pub fn derivatives(&self) -> std::ops::Range<usize> {
         let start = self.outputs().end;
         start..start + self.derivatives
     }
 
-    /// The numbers of the columns that are errors, in the order of the columns whose errors they are.
+    /// The numbers of the columns that are errors, in the order of the columns that they belong to.
     pub fn errors(&self) -> std::ops::Range<usize> {
         self.derivatives().end..self.columns.len()
     }
@@ -222,7 +222,7 @@ impl Table {
         self.column(j).fold(0.0, |largest, value| value.abs().max(largest))
     }
 
-    /// Appends columns of errors, whose values `errors` finds from the number of a row and the row.
+    /// Appends columns of errors, whose values `errors` computes from the number of a row and the row.
     pub(crate) fn append_errors(
         &mut self,
         names: Vec<String>,

@@ -27,10 +27,11 @@ pub fn checked<'g>(
     Ok(check.compared(second))
 }
 
-/// Compares equations that are about to leave in some form with a second derivation, and says where it could not be done.
+/// Compares equations with a second derivation before they are returned in some form, and says where this is
+/// not possible.
 ///
 /// # Errors
-/// [`RunError::Verify`] if the derivations disagree: nothing is to leave then.
+/// [`RunError::Verify`] if the derivations disagree: nothing is returned then.
 pub fn vouched(
     model: &Model,
     assembly: &Assembly<'_>,
@@ -44,7 +45,7 @@ pub fn vouched(
     Ok(())
 }
 
-/// As [`vouched`]; returns why equations could not be compared.
+/// As [`vouched`]; returns the reason if equations could not be compared.
 ///
 /// # Errors
 /// [`RunError::Verify`] if the derivations disagree.
@@ -67,9 +68,9 @@ pub struct Verification {
     form: &'static str,
     /// Where it was compared, with the results.
     outcomes: Vec<(&'static str, Result<Agreement, VerifyError>)>,
-    /// Of derivatives, with differences.
+    /// The comparison of derivatives with differences.
     derivatives: Vec<Result<Agreement, VerifyError>>,
-    /// Of states after events, with the names of these.
+    /// The comparison of states after events, with the names of the events.
     resets: Vec<(String, Result<Agreement, VerifyError>)>,
 }
 
@@ -93,7 +94,8 @@ impl Verification {
     /// Compares at one state.
     ///
     /// # Errors
-    /// [`RunError::Verify`] if the derivations disagree. It is not an error if the second cannot be made, or a state is singular.
+    /// [`RunError::Verify`] if the derivations disagree. It is not an error if the second derivation cannot
+    /// be made, or a state is singular.
     pub fn compare(
         &mut self,
         flow: &Flow,
@@ -171,7 +173,7 @@ impl Verification {
         Ok(())
     }
 
-    /// The comparison of states after events in words.
+    /// The comparison of states after events, in words.
     fn of_resets(&self) -> Vec<String> {
         let is_known = self.resets.iter().any(|(_, outcome)| outcome.is_ok());
         let unknown =
@@ -184,7 +186,7 @@ impl Verification {
             .collect()
     }
 
-    /// The comparison of derivatives in words.
+    /// The comparison of derivatives, in words.
     fn of_derivatives(&self) -> Option<String> {
         let known: Vec<&Agreement> =
             self.derivatives.iter().filter_map(|outcome| outcome.as_ref().ok()).collect();
@@ -198,7 +200,7 @@ impl Verification {
         }
     }
 
-    /// The comparison in words.
+    /// The comparison, in words.
     pub fn lines(&self) -> Vec<String> {
         if let Err(error) = &self.second {
             return vec![error.to_string()];

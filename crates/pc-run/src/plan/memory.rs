@@ -7,8 +7,8 @@ use pc_model::Flow;
 use crate::error::RunError;
 use crate::plan::Plan;
 
-/// Copies of the states while a checkpoint is written: those of the last checkpoint, the current
-/// ones, and the bytes.
+/// The number of copies of the states while a checkpoint is written: those of the last checkpoint,
+/// the current ones, and the bytes.
 const CHECKPOINTED: u64 = 3;
 
 /// Numbers in memory for each row until the table is written.

@@ -1,4 +1,4 @@
-//! The plan of a run: from what is wished, else from the text of the model, else the defaults.
+//! The plan of a run: from the options, else the text of the model, else the defaults.
 
 use pc_model::document::AbsoluteTolerance;
 use pc_model::{Flow, Model, UnknownParameter, Variables};
@@ -8,9 +8,9 @@ use crate::error::RunError;
 use crate::plan::Wishes;
 use crate::plan::tolerances::Tolerances;
 
-/// Tolerances that are much smaller.
+/// The factor for much smaller tolerances.
 const FINER: f64 = 1e-2;
-/// Rounding is no smaller in a few operations.
+/// The rounding of a few operations is no smaller.
 const LEAST: f64 = 1e-14;
 
 /// Time span, rows, method, tolerances and limit of the steps of a run.
@@ -40,7 +40,7 @@ pub struct Plan {
     pub accumulation: Option<f64>,
     /// Method.
     pub method: Method,
-    /// The parameters, by their numbers, by which the motion is to be differentiated.
+    /// The numbers of the parameters with respect to which the motion is differentiated.
     pub sensitivities: Vec<usize>,
     /// The deadline of all work on the model.
     pub deadline: Deadline,
@@ -107,7 +107,7 @@ impl Plan {
         Tolerances::new(&self.atol, flow, (self.t_start, self.t_end), self.rtol)
     }
 
-    /// Method, tolerances, the limit of steps and that of time for the integrator.
+    /// Method, tolerances, and the limits of steps and time for the integrator.
     pub fn options(&self, tolerances: &Tolerances) -> Options {
         let mut options = Options::new(self.method)
             .relative_tolerance(self.rtol)
@@ -128,7 +128,8 @@ impl Plan {
         }
     }
 
-    /// The same at tolerances of a hundredth of those of a run: what this changes are errors of integration.
+    /// The same at tolerances of a hundredth of those of a run: what this changes is the error of
+    /// integration.
     pub fn finer(&self, tolerances: &Tolerances) -> Plan {
         let rtol = (self.rtol * FINER).max(LEAST);
         Plan { rtol, atol: tolerances.times(FINER), ..self.clone() }

@@ -7,7 +7,8 @@ use serde_json::{Map, Value, json};
 
 use pc_print::small;
 
-/// What starts at zero in the text and stays below this part of the largest component is the rounding of others.
+/// A component that starts at zero in the text and stays below this fraction of the largest component is the
+/// rounding of others.
 const ROUNDING: f64 = 1e-14;
 
 /// The absolute tolerance of each component of the state.
@@ -24,7 +25,7 @@ impl Tolerances {
         Tolerances { names: flow.motion.names().to_vec(), values }
     }
 
-    /// For the integrator.
+    /// The tolerances as the integrator takes them.
     pub(crate) fn tolerance(&self) -> Tolerance {
         Tolerance::each(self.values.clone())
     }
@@ -39,13 +40,13 @@ impl Tolerances {
         state.iter().zip(&self.values).map(|(value, tolerance)| rtol * value.abs() + tolerance).collect()
     }
 
-    /// This part of each.
+    /// The tolerances multiplied by `part`.
     pub(crate) fn times(&self, part: f64) -> AbsoluteTolerance {
         let each = self.names.iter().cloned().zip(self.values.iter().map(|value| part * value));
         AbsoluteTolerance { all: None, each: each.collect() }
     }
 
-    /// The commonest, then the others with their names.
+    /// The most common one, then the others with their names.
     pub(crate) fn in_words(&self) -> String {
         let others = self.others().map(|(name, value)| format!(", {} for {name}", rounded(value)));
         format!("{}{}", rounded(self.commonest()), others.collect::<String>())
@@ -61,7 +62,7 @@ impl Tolerances {
     }
 
     /// A line for each component that never exceeds its tolerance, from the start of the text and the largest magnitude of each:
-    /// nothing is known of its digits.
+    /// none of its digits is known to be right.
     pub(crate) fn never_exceeded(&self, start: &[(String, f64)], largest: &[f64]) -> Vec<String> {
         let rounding = ROUNDING * largest.iter().fold(0.0, |most, value| value.max(most));
         let starts = |name: &String| start.iter().any(|(known, value)| known == name && *value != 0.0);

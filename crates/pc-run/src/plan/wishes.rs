@@ -1,10 +1,10 @@
-//! What whoever asks for a run says of it; the text of the model and the defaults say the rest.
+//! The options of a run; the text of the model and the defaults supply the rest.
 
 use pc_model::Variables;
 use pc_model::document::AbsoluteTolerance;
 use pc_solve::Method;
 
-/// What is wished of a run; nothing by default.
+/// The options of a run; none by default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wishes {
     /// Form of the equations.
@@ -29,6 +29,6 @@ pub struct Wishes {
     pub accumulation: Option<f64>,
     /// Method.
     pub method: Option<Method>,
-    /// The names of the parameters by which the motion is differentiated.
+    /// The names of the parameters with respect to which the motion is differentiated.
     pub sensitivities: Vec<String>,
 }

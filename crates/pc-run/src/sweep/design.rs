@@ -6,7 +6,7 @@ use super::error::SweepError;
 use super::law::{Law, Random};
 use super::values::Vary;
 
-/// What is varied, and how: a grid, or members that are drawn.
+/// What is varied, and how: a grid, or randomly drawn members.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Variation {
     /// The quantities of a grid, all of whose combinations are members.
@@ -15,7 +15,7 @@ pub struct Variation {
     pub random: Vec<Random>,
     /// The number of members that are drawn; none for a grid.
     pub samples: Option<u64>,
-    /// The seed of what is drawn.
+    /// The seed of the random draws.
     pub seed: u64,
 }
 
@@ -40,7 +40,7 @@ enum Values {
     Grid(Vec<Vary>),
     /// Independent draws from the stream of the member, in order.
     Random { laws: Vec<Law>, seed: u64 },
-    /// Those of each member one after the other.
+    /// The values of each member, one member after the other.
     Listed(Vec<f64>),
 }
 

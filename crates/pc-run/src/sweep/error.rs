@@ -78,12 +78,12 @@ pub enum SweepError {
         path: PathBuf,
     },
     /// There is no shard to be merged.
-    #[error("there are no shards to put together: give the files that `pc sweep --shard` has left")]
+    #[error("there are no shards to put together: give the files that `pc sweep --shard` has written")]
     NoShards,
     /// Two shards are of different sweeps.
     #[error("{} and {} are not of the same sweep: the first has {what}", path.display(), other.display())]
     OtherShard {
-        /// One of them.
+        /// The path of one of them.
         path: PathBuf,
         /// The other.
         other: PathBuf,
@@ -124,7 +124,7 @@ pub enum SweepError {
     /// The record of a member does not fit the columns.
     #[error(transparent)]
     Misshapen(#[from] Misshapen),
-    /// The finished members cannot be read again.
+    /// The finished members cannot be read back.
     #[error("cannot draw the sweep: its finished members cannot be read")]
     Read(#[source] io::Error),
     /// The requested picture cannot be drawn.

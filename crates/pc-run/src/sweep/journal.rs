@@ -37,11 +37,11 @@ pub trait Records {
     /// The records.
     ///
     /// # Errors
-    /// [`io::Error`] of the file.
+    /// [`io::Error`] from the file.
     fn records(&self) -> io::Result<Box<dyn Iterator<Item = io::Result<Record>> + '_>>;
 
-    /// The file that keeps them if the table cannot be written; none where they stay in their
-    /// shards anyway.
+    /// The file that keeps them if the table cannot be written; none if they stay in their shards
+    /// anyway.
     fn kept(&self) -> Option<&Path>;
 }
 
@@ -52,13 +52,13 @@ pub struct Tally {
     pub done: u64,
     /// The completed ones among them.
     pub completed: u64,
-    /// Those that a terminal event has ended.
+    /// Members that a terminal event has ended.
     pub by_event: u64,
     /// The first few others, with their messages.
     pub others: Vec<(u64, Status, String)>,
 }
 
-/// Most messages that are kept.
+/// The most messages that are kept.
 const MESSAGES: usize = 5;
 
 impl Tally {
@@ -124,7 +124,7 @@ impl Journal {
         Ok(Journal { tally, ..journal })
     }
 
-    /// A journal that is only read, with its header, from which `shard` reads the shard.
+    /// A journal that is only read, with its header, from which `shard` reads which shard it is.
     ///
     /// # Errors
     /// [`SweepError`] if the file is not a journal, or is in use.

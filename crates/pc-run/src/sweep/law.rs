@@ -25,7 +25,7 @@ pub enum Law {
     LogNormal(f64, f64),
 }
 
-/// Why numbers are no distribution.
+/// Why numbers do not give a distribution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LawError {
     /// There is no distribution of this name.
@@ -61,7 +61,7 @@ impl Law {
         }
     }
 
-    /// The values of a member, in the order of the distributions, from the stream of its own.
+    /// The values of a member, in the order of the distributions, from its own stream.
     pub fn draw(laws: &[Law], seed: u64, member: u64) -> Vec<f64> {
         let mut stream = member_stream(seed, member);
         let draw = |law: &Law| match *law {

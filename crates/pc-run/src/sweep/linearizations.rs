@@ -26,13 +26,13 @@ use crate::table::rows::{Column, Kind};
 pub(crate) struct Linearizations {
     members: Members,
     varied: Varied,
-    /// Most eigenvalues of a member.
+    /// The most eigenvalues of a member.
     most: usize,
 }
 
 impl Linearizations {
     /// # Errors
-    /// [`RunError`] if the model as it is cannot be linearized at any state.
+    /// [`RunError`] if the unchanged model cannot be linearized at any state.
     pub(crate) fn new(
         model: Model,
         design: Design,
@@ -53,7 +53,7 @@ impl Linearizations {
         Ok(Linearizations { members: Members::new(model, design, columns), varied, most })
     }
 
-    /// What the numbers depend on beside the model.
+    /// What the numbers depend on besides the model.
     pub(crate) fn depends_on(state: &StateChoice) -> [(&'static str, String); 3] {
         [
             ("--at", state.at.word().to_owned()),
@@ -91,7 +91,7 @@ impl Linearizations {
     }
 }
 
-/// Real and imaginary parts, filled up where there are fewer.
+/// Real and imaginary parts, filled up if there are fewer.
 fn parts(eigenvalues: &[Eigenvalue], most: usize) -> Vec<f64> {
     let mut parts: Vec<f64> = eigenvalues.iter().flat_map(|value| [value.real, value.imaginary]).collect();
     parts.resize(2 * most, f64::NAN);

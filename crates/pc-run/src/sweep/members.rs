@@ -1,4 +1,4 @@
-//! The models of a sweep, with what is known of each before it begins.
+//! The models of a sweep, with what is known of each member before it begins.
 
 use pc_model::Model;
 
@@ -16,17 +16,17 @@ pub(crate) struct Members {
 }
 
 impl Members {
-    /// Those whose rows have these columns.
+    /// The members of a design; their rows have these columns.
     pub(crate) fn new(model: Model, design: Design, columns: Vec<Column>) -> Members {
         Members { model, design, columns }
     }
 
-    /// What stands in a row, beside number, values and status of the member.
+    /// The contents of a row besides number, values and status of the member.
     pub(crate) fn columns(&self) -> &[Column] {
         &self.columns
     }
 
-    /// The record of a member that could not start, before anything is known of it but its values: one row of nothing.
+    /// The record of a member that could not start and of which only the values are known: one empty row.
     pub(crate) fn blank(&self, member: u64) -> Record {
         let words = self.columns.iter().filter(|column| column.kind == Kind::Text).count();
         Record {
@@ -56,23 +56,23 @@ impl Members {
         members.into_iter().map(|member| self.model(&self.blank(member))).collect()
     }
 
-    /// Whether the limit of time has passed.
+    /// Whether the time limit has passed.
     pub(crate) fn is_over(&self) -> bool {
         self.model.budget().deadline().passed().is_some()
     }
 
-    /// The record of a member that ended with an error; none if time was over.
+    /// The record of a member that ended with an error; none if the time limit had passed.
     pub(crate) fn ended(&self, status: Status, message: &str, blank: Record) -> Option<Record> {
         (!self.is_over()).then(|| Record { status, message: line(message), ..blank })
     }
 
-    /// That of a member whose computation panicked.
+    /// The record of a member whose computation panicked.
     pub(crate) fn panicked(&self, member: u64, message: &str) -> Record {
         Record { status: Status::Panicked, message: line(message), ..self.blank(member) }
     }
 }
 
-/// What is wrong, without its place in the file.
+/// The error, without its place in the file.
 pub(crate) fn message(error: &RunError) -> String {
     match error {
         RunError::Model(error) => error.diagnostic().message.clone(),

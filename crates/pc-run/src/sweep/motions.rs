@@ -30,27 +30,28 @@ pub(crate) struct Motions {
     members: Members,
     plan: Plan,
     times: Vec<f64>,
-    /// By the scale of the model itself, so that members in one vector share them.
+    /// The tolerances, by the scale of the model itself, so that members in one vector share them.
     tolerances: Tolerances,
     options: Options,
-    /// Whether all rows are wanted instead of the last, with the drifts.
+    /// Whether all rows are recorded, instead of the last one with the drifts.
     all_rows: bool,
-    /// How many these are.
+    /// The number of these rows.
     rows: usize,
     prototype: Option<Arc<Prototype>>,
-    /// How many came to their end beside others.
+    /// How many were completed beside others.
     beside: AtomicU64,
 }
 
-/// A member before its motion: its equations with what is known of it, or its record; none if time was over.
+/// A member before its motion: its equations with what is known of it, or its record; none if the time limit
+/// had passed.
 type Begun = Result<Box<(Flow, Record)>, Option<Record>>;
 
 impl Motions {
-    /// `all_rows`: whether all rows of the plan are wanted instead of the last; so many members are at work at a time. The model is
-    /// derived unless it has been.
+    /// `all_rows`: whether all rows of the plan are recorded instead of the last; `threads` members
+    /// are in progress at a time. The model is derived unless it has been.
     ///
     /// # Errors
-    /// [`RunError::Rows`] if the rows of these take more memory than they may.
+    /// [`RunError::Rows`] if the rows of the members in progress take more memory than they may.
     pub(crate) fn new(
         model: Model,
         design: Design,
@@ -95,7 +96,7 @@ impl Motions {
         }
     }
 
-    /// The record of a member that came to its end beside others.
+    /// The record of a member that was completed beside others.
     fn completed(&self, begun: Begun, trajectory: &Trajectory) -> Option<Record> {
         let (mut flow, blank) = *begun.ok()?;
         self.beside.fetch_add(1, Ordering::Relaxed);
@@ -107,7 +108,7 @@ impl Motions {
         })
     }
 
-    /// Integrates a member; none if it was stopped on its way, or time was over.
+    /// Integrates a member; none if it was stopped on its way, or the time limit had passed.
     fn integrate(&self, begun: Begun, stop: &Stop<'_>) -> Option<Record> {
         let (mut flow, blank) = match begun {
             Ok(begun) => *begun,
@@ -139,7 +140,7 @@ impl Motions {
         })
     }
 
-    /// The motion of a member, or what is wrong with it.
+    /// The motion of a member, or its error.
     fn flow(&self, model: &Model) -> Result<Flow, String> {
         if let Some(flow) = self.prototype.as_ref().and_then(|known| known.flow(model, self.plan.t_start)) {
             return Ok(flow);
@@ -151,7 +152,8 @@ impl Motions {
         is_alike.then_some(flow).ok_or_else(other)
     }
 
-    /// All rows, or the last one with the drifts; what was `reached` is one more. There is a row in any case.
+    /// All rows, or the last one with the drifts; the end that was `reached` is one more. There is always at
+    /// least one row.
     fn rows_of(&self, flow: &mut Flow, trajectory: &Trajectory, reached: Option<(f64, &[f64])>) -> Vec<f64> {
         let table = Table::new(flow, trajectory);
         let last = reached.map(|(t, y)| std::iter::once(t).chain(flow.row(t, y)).collect::<Vec<f64>>());
@@ -175,7 +177,7 @@ impl Work for Motions {
         self.rows
     }
 
-    /// With the equations that the members are integrated by, be they their own or those of all.
+    /// With the equations by which the members are integrated, their own or those shared by all.
     fn vouched(&self) -> Result<(), RunError> {
         for model in self.members.samples() {
             let graph = model.graph();
@@ -187,7 +189,7 @@ impl Work for Motions {
         Ok(())
     }
 
-    /// As far as that can be, side by side in vectors.
+    /// Side by side in vectors, as far as possible.
     fn records(
         &self,
         ensemble: &Ensemble<'_>,
@@ -225,12 +227,12 @@ struct Columns {
 }
 
 impl Columns {
-    /// Those of the table that the rows come from.
+    /// The columns of the table that the rows come from.
     fn of(table: &Table) -> Columns {
         Columns { names: table.columns().to_vec(), conserved: table.conserved() }
     }
 
-    /// The columns of a member, with the drifts of what should stay constant if these are wanted.
+    /// The columns of a member, with the drifts of what should stay constant, if requested.
     fn in_rows(&self, drifts: bool) -> Vec<Column> {
         let kept = if drifts { &self.names[self.conserved.clone()] } else { &[] };
         let drifts = kept.iter().map(|name| format!("drift({name})"));
@@ -251,10 +253,10 @@ fn written(model: &Model) -> Columns {
 /// What is known before the first member is begun.
 #[derive(Default)]
 struct Begin {
-    /// The table without its rows; none where no member has a motion.
+    /// The table without its rows; none if no member has a motion.
     table: Option<Table>,
     tolerances: Tolerances,
-    /// The equations, where the members differ from the model by numbers alone.
+    /// The equations, if the members differ from the model in numbers only.
     prototype: Option<Arc<Prototype>>,
 }
 
@@ -266,7 +268,8 @@ impl Begin {
     }
 }
 
-/// What is known by the model itself; where it has no motion by the first member that has one. It is the same for each shard.
+/// What is known from the model itself or, if it has no motion, from the first member that has one. It is the
+/// same for each shard.
 fn begun(model: &Model, design: &Design, plan: &Plan) -> Begin {
     if let Ok(derived) = model.derived(|assembly| Derived::of(model, assembly, plan.form)) {
         return Begin::of(&derived, plan);
@@ -287,7 +290,7 @@ fn derived(model: &Model, variables: Variables) -> Result<Flow, ModelError> {
     Flow::new(model, &model.assemble(&graph)?, variables)
 }
 
-/// max |I(t) − I(t_start)| of column `j`, with one row more.
+/// max |I(t) − I(t_start)| of column `j`, including one further row.
 fn drift(table: &Table, more: Option<&[f64]>, j: usize) -> f64 {
     let drift = table.drift(j).absolute;
     match (table.rows().next(), more) {

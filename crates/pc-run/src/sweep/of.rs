@@ -1,6 +1,6 @@
-//! What a sweep finds of each member.
+//! What a sweep computes for each member.
 
-/// What a sweep finds of each member.
+/// What a sweep computes for each member.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SweepOf {
     /// Its motion.
@@ -16,7 +16,7 @@ impl SweepOf {
     /// All of them.
     pub const ALL: [SweepOf; 3] = [SweepOf::Run, SweepOf::Linearize, SweepOf::Check];
 
-    /// In a word.
+    /// Its name in options and output.
     pub fn word(self) -> &'static str {
         match self {
             SweepOf::Run => "run",
@@ -25,7 +25,7 @@ impl SweepOf {
         }
     }
 
-    /// The one of this word.
+    /// The one with this name.
     pub(crate) fn of_word(word: &str) -> Option<SweepOf> {
         SweepOf::ALL.into_iter().find(|of| of.word() == word)
     }

@@ -1,4 +1,5 @@
-//! The table of a sweep as a file, made from its records in memory that does not depend on their number.
+//! The table of a sweep as a file, made from its records in an amount of memory that does not depend on their
+//! number.
 
 use std::io;
 

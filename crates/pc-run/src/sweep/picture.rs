@@ -13,9 +13,9 @@ use crate::sweep::record::Status;
 use crate::sweep::sheet::Sheet;
 use pc_print::short;
 
-/// Most panels unless columns are chosen.
+/// The most panels unless columns are chosen.
 const MOST_PANELS: usize = 8;
-/// Most curves of members over time.
+/// The most curves of members over time.
 const MOST_MEMBERS: usize = 8;
 /// The quantiles that are shown, with their names.
 const QUANTILES: [(f64, &str); 5] =
@@ -46,7 +46,7 @@ pub(crate) fn check(
     }
 }
 
-/// The places of the chosen columns among those of the motion; all but time and drifts if none is
+/// The indices of the chosen columns among those of the motion; all but time and drifts if none is
 /// chosen.
 fn chosen(sheet: &Sheet, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError> {
     let names = sheet.numbers();
@@ -64,12 +64,12 @@ fn chosen(sheet: &Sheet, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError
     wanted.iter().map(place).collect()
 }
 
-/// Whether a number is the time of its row.
+/// Whether number `j` of a row is its time.
 fn is_time(sheet: &Sheet, j: usize) -> bool {
     sheet.of() == SweepOf::Run && j == 0
 }
 
-/// What a curve, a colour or a bar shows of a member.
+/// What a curve, a colour or a bar shows about a member.
 fn shown(of: SweepOf) -> &'static str {
     match of {
         SweepOf::Run => "At the end",
@@ -86,7 +86,7 @@ fn at_the_end(of: SweepOf) -> &'static str {
 /// A member that ended as it should, in the chosen columns.
 struct Member {
     values: Vec<f64>,
-    /// Time, where rows have one, else what stands first; then the columns, of each row.
+    /// For each row, its time, or its first number if rows have no time; then the columns.
     rows: Vec<Vec<f64>>,
 }
 
@@ -248,7 +248,7 @@ fn span(curve: Option<&Curve>) -> Option<(f64, f64)> {
     (first != last).then_some((first.min(last), first.max(last)))
 }
 
-/// A column over time, a curve for each member, or for some evenly chosen ones of many.
+/// A column over time, a curve for each member or, if there are many, for some evenly chosen ones.
 fn paths(finished: &[Member], k: usize, name: &str, label: &dyn Fn(&Member) -> String) -> Panel {
     let count = finished.len().min(MOST_MEMBERS);
     let last = finished.len().saturating_sub(1);
@@ -287,7 +287,7 @@ fn cells(
     }
 }
 
-/// How many members have which value, with the quantiles.
+/// A histogram of the values of the members, with the quantiles.
 fn histogram(finished: &[Member], k: usize, name: &str, of: SweepOf) -> Panel {
     let mut values: Vec<f64> =
         finished.iter().map(|member| member.last(k)).filter(|v| v.is_finite()).collect();
@@ -308,7 +308,7 @@ fn histogram(finished: &[Member], k: usize, name: &str, of: SweepOf) -> Panel {
     }
 }
 
-/// Bars of equal width, 2 r n^(−1/3) where that is reasonable, with the interquartile range r
+/// Bars of equal width, 2 r n^(−1/3) if that is reasonable, with the interquartile range r
 /// [Freedman, Diaconis 1981].
 fn bars(sorted: &[f64]) -> Vec<[f64; 3]> {
     let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else { return Vec::new() };

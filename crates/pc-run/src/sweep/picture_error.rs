@@ -1,6 +1,6 @@
 //! Why a sweep cannot be drawn.
 
-/// Most cells of a panel: a picture has no more points.
+/// The most cells of a panel: a picture has no more points.
 pub(super) const MOST_CELLS: u64 = 250_000;
 
 /// Why a sweep cannot be drawn.
@@ -8,13 +8,13 @@ pub(super) const MOST_CELLS: u64 = 250_000;
 pub enum SweepPlotError {
     /// More quantities are varied than can be drawn.
     #[error(
-        "{varied} values are varied; of a grid over one or two values, or of drawn members, a picture can be made"
+        "{varied} values are varied; a picture can be made of a grid over one or two values, or of random members"
     )]
     Varied {
         /// How many quantities have more than one value.
         varied: usize,
     },
-    /// More members than cells of different colour.
+    /// More members than there are cells for colours.
     #[error(
         "{members} members are more than the {MOST_CELLS} colours that can be told apart; give fewer values"
     )]

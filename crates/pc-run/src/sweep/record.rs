@@ -3,7 +3,7 @@
 /// How a member ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// At its end.
+    /// It reached its end time.
     Completed,
     /// Its integration failed.
     Failed,
@@ -11,7 +11,7 @@ pub enum Status {
     Refused,
     /// Its computation panicked.
     Panicked,
-    /// By a terminal event.
+    /// A terminal event ended it.
     Event,
 }
 
@@ -19,7 +19,7 @@ impl Status {
     const ALL: [Status; 5] =
         [Status::Completed, Status::Failed, Status::Refused, Status::Panicked, Status::Event];
 
-    /// In a word.
+    /// Its name in the table.
     pub fn word(self) -> &'static str {
         match self {
             Status::Completed => "completed",

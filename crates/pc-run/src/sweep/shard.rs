@@ -19,7 +19,7 @@ impl Shard {
     /// As on the command line: `3/8`.
     ///
     /// # Errors
-    /// What would be right.
+    /// The correct form.
     pub fn parse(text: &str) -> Result<Shard, String> {
         let parts =
             text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));

@@ -118,7 +118,7 @@ fn entry<'i>(header: &'i Identity, name: &str) -> Option<&'i str> {
     header.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
 }
 
-/// Which shard it is, and how many members there are in all.
+/// Which shard it is, and the total number of members.
 fn shard(header: &Identity) -> Option<(Shard, u64)> {
     let shard = Shard::parse(entry(header, SHARD)?).ok()?;
     Some((shard, entry(header, MEMBERS)?.parse().ok()?))

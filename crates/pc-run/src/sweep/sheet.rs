@@ -8,7 +8,7 @@ use super::of::SweepOf;
 use super::record::Record;
 use crate::table::rows::{Cell, Column, Kind};
 
-/// A record that is not made of whole rows: names and numbers do not come from one table.
+/// A record that is not made of whole rows: its names and numbers come from different tables.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "member {member} has {} varied values, {} numbers and {} words, which do not fill rows of {}, {} and {}; no table is written, because this is a defect of this program",
@@ -19,7 +19,7 @@ pub struct Misshapen {
     pub member: u64,
     /// Its varied values, its numbers and its words.
     pub found: [usize; 3],
-    /// Those of one row.
+    /// The numbers and words of one row.
     pub columns: [usize; 3],
 }
 
@@ -54,7 +54,7 @@ impl Sheet {
         Sheet { of, columns, varied: varied.len(), results: results.len() }
     }
 
-    /// What each member is.
+    /// What is computed for each member.
     pub(crate) fn of(&self) -> SweepOf {
         self.of
     }

@@ -14,11 +14,11 @@ pub struct Vary {
 /// The values of a varied quantity, at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// From one number to another, this many, evenly spaced.
+    /// This many values from one number to another, evenly spaced.
     Even(f64, f64, u64),
-    /// From one number to another, this many, with a constant ratio.
+    /// This many values from one number to another, with a constant ratio.
     Logarithmic(f64, f64, u64),
-    /// These values.
+    /// The values listed.
     List(Vec<f64>),
 }
 

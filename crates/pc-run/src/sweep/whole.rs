@@ -41,20 +41,21 @@ const WAITING: usize = 64 << 20;
 /// Finished members that may wait for an earlier one.
 const MOST_WAITING: usize = 4096;
 
-/// What is found of each member.
+/// What is computed for each member.
 #[derive(Clone, Debug, Default)]
 pub struct SweepWishes {
-    /// What a sweep finds.
+    /// What a sweep computes.
     pub of: SweepOf,
-    /// How motions are integrated; their rows are wanted where `samples` are, else the last with the drifts.
+    /// How motions are integrated; all their rows are recorded if `samples` are given, else the last one with
+    /// the drifts.
     pub run: Wishes,
     /// The state of linearizations.
     pub state: StateChoice,
-    /// The number of threads; else one for each core. The result is the same for any.
+    /// The number of threads, by default one for each core. The result is the same for any number.
     pub threads: Option<NonZeroUsize>,
 }
 
-/// A sweep that is about to begin.
+/// A sweep to be computed.
 pub struct Sweep {
     title: String,
     deadline: Deadline,
@@ -74,14 +75,14 @@ pub struct Sweep {
 pub struct Swept {
     /// How many were finished before.
     pub before: u64,
-    /// All of them, by how they ended.
+    /// All members, by how they ended.
     pub tally: Tally,
     /// The time it took.
     pub wall: Duration,
 }
 
 impl Sweep {
-    /// The sweep of a model, whose names in `set` are not varied.
+    /// The sweep of a model, in which the names in `set` are not varied.
     ///
     /// # Errors
     /// [`RunError`] if the text of the model is wrong, or the work is not defined for it.
@@ -110,8 +111,8 @@ impl Sweep {
         })
     }
 
-    /// The motions of members in memory, by equations that have been derived: all rows of the plan,
-    /// or else the last of each.
+    /// The motions of members in memory, with equations that have been derived: all rows of the
+    /// plan, or else the last of each.
     ///
     /// # Errors
     /// [`RunError::Rows`] if the rows take more memory than they may.
@@ -131,10 +132,11 @@ impl Sweep {
         Ok(Sweep { title, deadline, work, sheet, threads, members, is_random: false, counts, header })
     }
 
-    /// The records of all members, in their order.
+    /// The records of all members, in order.
     ///
     /// # Errors
-    /// [`SweepError::Ended`] and [`SweepError::Interrupted`] where there are fewer, and if threads cannot be started.
+    /// [`SweepError::Ended`] and [`SweepError::Interrupted`] if there are fewer, and an error if threads
+    /// cannot be started.
     pub fn collect(&self, observer: &dyn Observer) -> Result<Vec<Record>, SweepError> {
         let mut progress = observer.members(0, self.members);
         let mut all = Vec::new();
@@ -179,7 +181,7 @@ impl Sweep {
         self.work.said()
     }
 
-    /// What is to be said of the work that was done, behind the time it took.
+    /// Remarks on the work that was done, after the time it took.
     pub fn done(&self) -> String {
         self.work.done()
     }
@@ -208,7 +210,7 @@ impl Sweep {
         }
     }
 
-    /// Computes the members that the journal does not have.
+    /// Computes the members that are not in the journal.
     ///
     /// # Errors
     /// [`RunError`]; finished members are kept.
@@ -236,7 +238,7 @@ impl Sweep {
         Ok(Swept { before, tally: journal.tally().clone(), wall: start.elapsed() })
     }
 
-    /// The records of the members of a shard at these places, in their order, until `take` breaks.
+    /// The records of the members of a shard at these places, in order, until `take` breaks.
     fn each(
         &self,
         shard: Shard,
@@ -265,7 +267,7 @@ impl Sweep {
     }
 }
 
-/// The work that is asked for, with what it depends on.
+/// The requested work, with what it depends on.
 fn begun(
     wishes: &SweepWishes,
     model: Model,

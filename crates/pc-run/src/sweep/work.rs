@@ -9,13 +9,13 @@ use super::record::Record;
 use super::shard::Shard;
 use crate::error::RunError;
 
-/// What takes the record of a member, given by its place in the shard; none of one that was interrupted on its way or ended by a
-/// limit of time.
+/// Receives the record of a member, given by its place in the shard; none if it was interrupted on its way or ended by a time
+/// limit.
 pub(crate) type Consume<'c> = &'c mut dyn FnMut(u64, Result<Option<Record>, Panicked>) -> ControlFlow<()>;
 
-/// The work of a sweep: one member, one record, of which each row has the same columns.
+/// The work of a sweep: one record per member, whose rows all have the same columns.
 pub(crate) trait Work {
-    /// The models, and what stands in their rows.
+    /// The models, and the contents of their rows.
     fn members(&self) -> &Members;
 
     /// Compares some members with a second derivation of each, before any begins.
@@ -46,7 +46,7 @@ pub(crate) trait Work {
         Vec::new()
     }
 
-    /// What the summary says of the work that was done, behind the time it took.
+    /// Remarks of the summary on the work that was done, after the time it took.
     fn done(&self) -> String {
         String::new()
     }

@@ -8,7 +8,7 @@ use pc_print::one_line;
 use crate::table::rows::{Cell, Rows};
 
 /// A header, then a line for each row, numbers with 17 significant digits, which reproduce them
-/// exactly; text in quotes where it needs them.
+/// exactly; text is quoted if necessary.
 ///
 /// # Errors
 /// [`io::Error`]

@@ -1,4 +1,4 @@
-//! The file of a table, in the format that its name says.
+//! The file of a table, in the format given by its name.
 
 use std::path::Path;
 
@@ -36,7 +36,7 @@ impl Format {
     /// The formats of lists.
     pub const OF_LISTS: &'static [Format] = &[Format::Json, Format::Csv];
 
-    /// How the names of files end.
+    /// The endings of file names.
     pub fn extension(self) -> &'static str {
         match self {
             Format::Csv => "csv",
@@ -72,7 +72,7 @@ impl TableFile {
     /// A file in one of these formats, or a device for those that are written from front to end.
     ///
     /// # Errors
-    /// [`FileError::UnknownExtension`]; [`FileError::Place`] where no file can be.
+    /// [`FileError::UnknownExtension`]; [`FileError::Place`] if the file cannot be written.
     pub fn new(path: &Path, formats: &[Format]) -> Result<TableFile, FileError> {
         let format = format(path, formats)?;
         // Writing the archive needs to seek.

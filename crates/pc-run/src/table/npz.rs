@@ -9,7 +9,7 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 use crate::table::array::Array;
 use crate::table::rows::{Cell, Kind, Rows};
 
-/// The length in numbers from which an entry needs the archive format for more than 4 GiB.
+/// The length, in numbers, from which an entry needs the archive format for more than 4 GiB.
 const LARGE: u64 = (1 << 29) - 1024;
 
 /// The archive has no date, so that the same numbers give the same bytes.

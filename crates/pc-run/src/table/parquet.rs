@@ -12,7 +12,7 @@ use parquet::schema::types::Type;
 
 use crate::table::rows::{self, Cell, Kind, Rows};
 
-/// Most rows in memory.
+/// The most rows in memory.
 const GROUP: usize = 65_536;
 
 /// A column of a group of rows.

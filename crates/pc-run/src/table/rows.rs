@@ -18,7 +18,7 @@ pub enum Kind {
 pub struct Column {
     /// Its name.
     pub name: String,
-    /// What its cells are.
+    /// The kind of its cells.
     pub kind: Kind,
 }
 
@@ -43,7 +43,8 @@ pub enum Cell<'a> {
 /// Takes a row.
 pub type Take<'t> = &'t mut dyn FnMut(&[Cell<'_>]) -> io::Result<()>;
 
-/// A table that can be read as often as a format needs, in memory that does not depend on its length.
+/// A table that can be read as often as a format needs, in an amount of memory that does not depend on its
+/// length.
 pub trait Rows {
     /// Its columns.
     fn columns(&self) -> Vec<Column>;
@@ -54,7 +55,7 @@ pub trait Rows {
     /// Gives each row to `take`.
     ///
     /// # Errors
-    /// [`io::Error`] of `take`, or of what the rows are read from.
+    /// [`io::Error`] from `take`, or from what the rows are read from.
     fn each(&self, take: Take<'_>) -> io::Result<()>;
 
     /// Gives each cell of column `j` to `take`.

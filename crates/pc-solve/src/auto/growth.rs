@@ -53,7 +53,7 @@ impl Growth {
     }
 
     /// Makes one step of the iteration, with f evaluated by `look`, and returns ρ; none until there
-    /// are enough estimates, or where f fails.
+    /// are enough estimates, or if f fails.
     pub(super) fn estimate(&mut self, mut look: impl FnMut(&[f64], &mut [f64]) -> bool) -> Option<f64> {
         let Growth { y, tolerances, direction, state, rates: [here, there], recent, count } = self;
         let norm = |v: &[f64]| {

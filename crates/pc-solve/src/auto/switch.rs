@@ -67,7 +67,7 @@ impl<F: VectorField> fmt::Debug for Auto<F> {
 }
 
 impl<F: VectorField> Auto<F> {
-    /// Starts at y(t0) = y0, as long as `field` has components; the method of the options is
+    /// Starts at y(t0) = y0, one number per component; the method of the options is
     /// ignored, and their choices for implicit equations apply to the BDF formulas.
     ///
     /// # Errors

@@ -47,7 +47,7 @@ pub struct Checkpoint {
     pub(crate) jumped: bool,
     /// S, column-major; empty without sensitivities.
     pub(crate) sensitivities: Vec<f64>,
-    /// Those at the outputs, one matrix after the other.
+    /// S at the outputs, one matrix after the other.
     pub(crate) output_sensitivities: Vec<f64>,
     /// The status of the events, once a motion has begun.
     pub(crate) past: Option<Past>,
@@ -56,7 +56,7 @@ pub struct Checkpoint {
 /// The status of events.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Past {
-    /// For each event.
+    /// The status of each event.
     pub(crate) events: Vec<EventPast>,
     /// The events at the time of the checkpoint that are still to be applied, each with the
     /// magnitude above which its function then differs from zero, and the side it takes next.

@@ -130,7 +130,7 @@ impl Plan<'_> {
     /// Integrates one leg, and adds its outputs and occurrences to the checkpoint `stand` where it
     /// began; returns how the motion ends, if it does.
     ///
-    /// A leg has `every` steps, or more as long as these do not advance the time.
+    /// A leg has `every` steps, or more while these do not advance the time.
     fn leg<S: Stepper, E: Events>(
         &self,
         integration: &mut Integration<S, E>,

@@ -18,7 +18,7 @@ pub(super) struct Foresight {
     pub(super) absolute_tolerance: Tolerance,
     /// Evaluations since the last restart.
     pub(super) evaluations: u64,
-    /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, for k = 0, 1, …, each as long as the state; and work space.
+    /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, for k = 0, 1, …, each of the length of the state; and work space.
     pub(super) polynomial: Vec<f64>,
     pub(super) state: Vec<f64>,
     pub(super) slope: Vec<f64>,

@@ -15,7 +15,7 @@ use crate::settings::options::Options;
 
 impl<F: VectorField> Integration<Cvode<F>> {
     /// Starts at y(t0) = y0 by CVODES, by Adams' formulas unless the method is
-    /// [`Bdf`](crate::Method::Bdf); `y0` is as long as `field` has components.
+    /// [`Bdf`](crate::Method::Bdf); `y0` has one number per component.
     ///
     /// # Errors
     /// As for [`Cvode::new`].

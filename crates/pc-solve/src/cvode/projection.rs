@@ -39,7 +39,7 @@ impl Offset {
     /// change.
     ///
     /// # Errors
-    /// Those of the projection; z is then y.
+    /// The errors of the projection; z is then y.
     pub(crate) fn project(
         &mut self,
         field: &mut impl VectorField,

@@ -138,7 +138,7 @@ impl<F: VectorField> Cvode<F> {
 ///
 /// # Safety
 /// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a
-/// vector of its dimension and one as long as the number of integrals.
+/// vector of its dimension and one with an entry per integral.
 unsafe extern "C" fn integrands<F: VectorField + Quadratures>(
     t: f64,
     y: sys::N_Vector,

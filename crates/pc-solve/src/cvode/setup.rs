@@ -23,7 +23,7 @@ use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
 impl<F: VectorField> Cvode<F> {
-    /// Starts at y(t0) = y0, as long as `field` has components.
+    /// Starts at y(t0) = y0, one number per component.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;

@@ -110,7 +110,7 @@ fn basis(s: f64) -> [f64; 8] {
     factors
 }
 
-/// The derivatives of the basis by t at s, of positive order, for a step of this length.
+/// The derivatives of the basis with respect to t at s, of positive order, for a step of this length.
 fn derivatives(s: f64, order: u32, length: f64) -> [f64; 8] {
     let falling = |power: u32| (0..order).map(|j| f64::from(power) - f64::from(j)).product::<f64>();
     let scale = length.powi(-i32::try_from(order).unwrap_or(i32::MAX));

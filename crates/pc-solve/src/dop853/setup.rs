@@ -73,7 +73,7 @@ pub struct Dop853<F> {
 }
 
 impl<F: VectorField> Dop853<F> {
-    /// Starts at y(t0) = y0, as long as `field` has components, with the tolerances, step lengths
+    /// Starts at y(t0) = y0, one number per component, with the tolerances, step lengths
     /// and limits of the options; their method is ignored.
     ///
     /// # Errors

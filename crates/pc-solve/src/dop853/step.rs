@@ -20,9 +20,9 @@ pub(super) const FIRST: f64 = 1e-6;
 /// that its rates suggest.
 const LEAP: f64 = 30.0;
 
-/// Why a step is rejected.
+/// The reason why a step is rejected.
 enum Refusal {
-    /// The error, more than 1 or NaN.
+    /// The error, which is more than 1 or NaN.
     Error(f64),
     /// A component violates its inequality.
     Inequality,

@@ -24,7 +24,7 @@ pub(super) struct Stiffness {
     clear: u32,
     /// Steps since the start.
     steps: u64,
-    /// When stiffness was first detected, if it was.
+    /// The time when stiffness was first detected, if it was.
     pub(super) seen: Option<f64>,
 }
 

@@ -27,14 +27,14 @@ impl Ensemble<'_> {
     ///
     /// `begin` returns any data of a member and, if lanes can integrate it, its
     /// [field](pc_expr::VectorField::lanes) and its state at t₀. `in_lane` turns its complete
-    /// motion into its result. `alone` integrates members for which there is no lane, or whose
+    /// motion into its result. `alone` integrates members that lanes do not support, or whose
     /// motion was not completed there; it should check [`Stop`] regularly. All are called on the
     /// thread that integrates.
     ///
     /// Lanes are used with [`Method::Auto`](crate::Method::Auto) and
     /// [`Method::Dop853`](crate::Method::Dop853), for fields that do not read time, without
     /// inequalities, a minimum step or a stop time. `begin` has to exclude events and breaks. Lanes use the method of [`Dop853`](crate::Dop853), but with fused multiply-adds, so
-    /// that the last digits differ. By `Auto` a member that turns out to be stiff is integrated
+    /// that the last digits differ. With `Auto` a member that turns out to be stiff is integrated
     /// `alone`; `Dop853` does not look for stiffness here. Each lane does the same operations as it
     /// would alone: results depend neither on the number of threads or lanes nor on the other
     /// members.
@@ -136,7 +136,7 @@ where
     L: Fn(u64, C, Trajectory) -> T,
     A: Fn(u64, C, &Stop<'_>) -> T,
 {
-    /// The kernels for the next member in a lane; none if there is no member left, or to stop.
+    /// The kernels for the next member in a lane; none if there is no member left, or on a request to stop.
     fn prepare(&mut self) -> Option<Arc<Kernels>> {
         while !self.stop.requested()
             && let Some((member, known, field, start)) =

@@ -75,7 +75,7 @@ impl<'a, T> Queue<'a, T> {
         self.finished.notify_all();
     }
 
-    /// Says that a thread ends: nothing may come any more for which [`take`](Queue::take) waits.
+    /// Says that a thread ends: what [`take`](Queue::take) waits for may no longer come.
     pub(super) fn leave(&self) {
         let state = self.state();
         self.finished.notify_all();
@@ -103,7 +103,7 @@ impl<'a, T> Queue<'a, T> {
         Closing(self)
     }
 
-    /// Stops everything if it is dropped by a panic of this thread, which is a worker.
+    /// Stops everything if a panic of this worker thread drops it.
     pub(super) fn breaking(&self) -> Breaking<'_, 'a, T> {
         Breaking(self)
     }

@@ -118,15 +118,16 @@ pub enum InputError {
     #[error("the integration was begun without sensitivities")]
     NoSensitivities,
 
-    /// Derivatives of a motion are requested whose rates jump where it passes a surface, at a time that moves with
-    /// what it is differentiated by.
+    /// Derivatives are requested of a motion whose rates jump where it passes a surface, at a time that depends on
+    /// the variable of differentiation.
     #[error(
-        "{0}: derivatives of the motion jump with it, which they would not show. Make the jump an event that switches a \
+        "{0}: the derivatives of the motion jump with it, and would not show this. Make the jump an event that switches a \
          state, or smooth it, as tanh does"
     )]
     RateJump(RateJump),
 
-    /// Derivatives by parameters are requested, with events whose derivatives by these are unknown.
+    /// Derivatives with respect to parameters are requested, with events whose derivatives with respect to
+    /// these are unknown.
     #[error(
         "an event resets the state, but does not say how its function and its reset depend on the parameters: sensitivities need these derivatives"
     )]
@@ -238,7 +239,7 @@ pub enum InputError {
     /// The target time is the current time.
     #[error("the end time equals the start time, t = {t}")]
     EndIsStart {
-        /// That time.
+        /// The start and end time.
         t: f64,
     },
 
@@ -293,7 +294,7 @@ pub enum InputError {
         highest: u32,
     },
 
-    /// Derivatives by parameters are requested from a vector field that has none.
+    /// Derivatives with respect to parameters are requested from a vector field that has none.
     #[error("the vector field does not provide its derivatives by the parameters")]
     NoParameterJacobian,
 

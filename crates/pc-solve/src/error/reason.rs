@@ -28,13 +28,13 @@ pub enum Reason {
         last: f64,
     },
 
-    /// Many steps together have advanced by almost nothing of what is left.
+    /// Many steps together have advanced by almost none of the time that is left.
     Crawls {
         /// The number of these steps.
         steps: u64,
-        /// By how much they have advanced.
+        /// The time they have advanced.
         by: f64,
-        /// What shrinks them.
+        /// What makes them short.
         cause: Shrinks,
     },
 

@@ -70,7 +70,7 @@ pub struct IntegrationError {
     pub reason: Reason,
     /// End of the last successful internal step.
     pub time: f64,
-    /// The state at [`time`](IntegrationError::time), as long as the field has components.
+    /// The state at [`time`](IntegrationError::time), one number per component of the field.
     pub state: Vec<f64>,
     /// The last failure of the vector field there: its own, or [`NonFinite`](crate::NonFinite) for
     /// a number that is not finite.

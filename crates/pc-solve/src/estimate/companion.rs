@@ -10,12 +10,12 @@ use crate::settings::tolerance::Tolerance;
 const FINER: f64 = 1e-3;
 /// The tolerance of a companion by Taylor's method, whose error then is rounding.
 const BY_SERIES: f64 = 1e-16;
-/// The least tolerance of a companion by other methods: below, steps add more rounding than they save.
+/// The least tolerance of a companion by other methods: below it, steps add more rounding than they save.
 const LEAST: f64 = 1e-15;
 /// A motion at a tolerance up to this is as good as rounding allows, and so is one at [`COARSE`].
 const ROUNDING: f64 = 4e-15;
 const COARSE: f64 = 1e-14;
-/// Steps of a companion for each of the motion, at most.
+/// The most steps of a companion for each step of the motion.
 const MORE_STEPS: u64 = 20;
 
 /// How a motion is integrated a second time, so that the distance of both is the error of the first.
@@ -24,11 +24,11 @@ const MORE_STEPS: u64 = 20;
 /// the companion has to be more accurate by more than a few times.
 /// - A motion that is not stiff, and whose field has a [series](VectorField::series), has one by
 ///   [`Method::Taylor`] at rtol 10⁻¹⁶, or at a thousandth of the tolerance where that is less: its states carry
-///   their rounding along. Of a motion by Taylor's method at such a tolerance the errors of both are rounding,
-///   along different steps, and the distance has their size.
+///   their rounding along. If the motion itself is by Taylor's method at such a tolerance, the errors of both
+///   are rounding, along different steps, and the distance has their size.
 /// - Any other has one at a thousandth of its tolerance, at least 10⁻¹⁵, by [`Method::Auto`], or by
-///   [`Method::Bdf`] where it is by that. Of a motion at rtol below 4·10⁻¹⁵ the companion is no better: at
-///   10⁻¹⁴ both have errors of rounding.
+///   [`Method::Bdf`] if the motion uses that. For a motion at rtol below 4·10⁻¹⁵ the companion is no
+///   better: at 10⁻¹⁴ both have errors of rounding.
 ///
 /// Absolute tolerances change in the same ratio.
 #[derive(Debug, Clone, PartialEq)]

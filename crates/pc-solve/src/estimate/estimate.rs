@@ -45,8 +45,8 @@ pub struct ErrorEstimate {
 }
 
 impl ErrorEstimate {
-    /// The errors of `motion`, which was integrated from y(t0) = y0 with these events and options: the field
-    /// and the events are as they were before it, and `times` those asked for.
+    /// The errors of `motion`, which was integrated from y(t0) = y0 with these events and options; the field
+    /// and the events are as they were before it, and `times` are those requested.
     pub fn of<F: VectorField>(
         motion: &Solution,
         start: (F, f64, &[f64]),
@@ -81,7 +81,7 @@ impl ErrorEstimate {
         &self.companion
     }
 
-    /// Its outputs, of which the first [`len`](ErrorEstimate::len) belong to those of the motion.
+    /// Its outputs; the first [`len`](ErrorEstimate::len) correspond to those of the motion.
     pub fn beside(&self) -> &Trajectory {
         &self.beside.trajectory
     }
@@ -97,15 +97,15 @@ impl ErrorEstimate {
         self.len == 0
     }
 
-    /// The errors of the components at output number `i`, which is less than [`len`](ErrorEstimate::len); where an
-    /// event ended both motions those of the state at the event, whenever it was.
+    /// The errors of the components at output number `i`, which is less than [`len`](ErrorEstimate::len); if an
+    /// event ended both motions, those of the state at the event, whenever it occurred.
     pub fn errors(&self, motion: &Solution, i: usize) -> Vec<f64> {
         let (state, beside) = (motion.trajectory.state(i), self.beside.trajectory.state(i));
         state.iter().zip(beside).map(|(value, beside)| error_of(*value, *beside)).collect()
     }
 
     /// The outputs before which more events occurred in one of the motions than in the other: their errors
-    /// include what events change.
+    /// include the changes by events.
     pub fn beyond_events(&self, motion: &Solution) -> Vec<usize> {
         let direction = motion.trajectory.statistics().first_step.signum();
         let before = |solution: &Solution, i: usize| {
@@ -126,7 +126,8 @@ impl ErrorEstimate {
     }
 }
 
-/// The number of first outputs that two motions have in common: at the same times, or at the event that ended both.
+/// The number of initial outputs that two motions have in common: at the same times, or at the event that
+/// ended both.
 fn comparable(motion: &Solution, beside: &Solution) -> usize {
     let (outputs, others) = (motion.trajectory.times(), beside.trajectory.times());
     let same = outputs.iter().zip(others).take_while(|(t, s)| t == s).count();

@@ -1,8 +1,8 @@
-//! Jumps and poles of functions that change their signs.
+//! Jumps and poles at which functions change their signs.
 //!
 //! A place where a function changes its sign is bracketed to rounding. At the distances d, 8 d, …
-//! from there a continuous function grows, one that jumps stays what it is, and at a pole of order p
-//! it falls by 8ᵖ from each distance to the next, on both sides.
+//! from there a continuous function grows, one that jumps stays nearly constant, and at a pole of
+//! order p it falls by 8ᵖ from each distance to the next, on both sides.
 
 use crate::events::samples::{Look, Sample};
 
@@ -30,8 +30,8 @@ const STEADY: f64 = 1e-3;
 const RESOLVED: f64 = 1e-6;
 
 /// How each function changes its sign between `a` and `b`, close to each other, from the values at
-/// the distances, in multiples of `rounding`, on both sides; on one, where they begin before the
-/// step or a function fails on the other.
+/// the distances, in multiples of `rounding`: on both sides, or on one if the others lie before the
+/// step or a function fails there.
 pub(crate) fn breaks<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     a: &Sample,
     b: &Sample,
@@ -57,8 +57,8 @@ pub(crate) fn breaks<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     kinds
 }
 
-/// The same from the values at the bracket and at growing distances on each side of it, or on one:
-/// where both are empty nothing is known.
+/// The same from the values at the bracket and at growing distances on each side of it, or on one;
+/// if both are empty, nothing is known.
 fn kind((a, before): (f64, &[f64]), (b, after): (f64, &[f64]), largest: f64) -> Break {
     if before.is_empty() && after.is_empty() {
         return Break::None;

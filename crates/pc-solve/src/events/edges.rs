@@ -6,13 +6,14 @@
 
 use crate::events::samples::{Look, SAME, Sample};
 
-/// Distances from a place without a value, in roundings of the time, at which functions are
-/// evaluated on both sides of it.
+/// Distances from a place without a value, in multiples of the rounding of the time, at which
+/// functions are evaluated on both sides of it.
 const BESIDE: f64 = 1.0;
 
 /// Continues the samples after `left` where the functions have failed at a time: by samples on both
-/// sides of it, as of a pole, if these have values; else by samples up to the edge, with the failure
-/// beyond it. At the end of the search, `to`, the values just before it stand for those there.
+/// sides of it, as for a pole, if these have values; else by samples up to the edge, with the
+/// failure beyond it. At the end of the search, `to`, the values just before it stand for those
+/// there.
 pub(super) fn approach<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     left: &Sample,
     samples: &mut Vec<Sample>,

@@ -73,9 +73,9 @@ impl<'a> FnEvents<'a> {
 }
 
 impl<'a> FnEvents<'a> {
-    /// The same events with their derivatives by parameters, for sensitivities: a closure of
-    /// (event, parameter, t, y) that returns ∂g/∂pⱼ and writes ∂R/∂pⱼ to its last argument, as
-    /// [`Events::by_parameter`] does.
+    /// The same events with their derivatives with respect to parameters, for sensitivities: a
+    /// closure of (event, parameter, t, y) that returns ∂g/∂pⱼ and writes ∂R/∂pⱼ to its last
+    /// argument, as [`Events::by_parameter`] does.
     pub fn with_parameter_derivatives(
         self,
         by_parameter: impl FnMut(usize, usize, f64, &[f64], &mut [f64]) -> Result<f64, Failure> + 'a,

@@ -90,7 +90,7 @@ impl Sides {
     }
 
     /// Notes that the functions `events` are at zero, where they have just been located: until a
-    /// reset moves them from there by more than `noise` they are on no side. Those without noise
+    /// reset moves them away by more than `noise`, they are on neither side. Those without noise
     /// have jumped to the sides `beyond`.
     pub(crate) fn arrive(&mut self, events: &[usize], noise: &[f64], beyond: &[f64]) {
         for (&i, &side) in events.iter().zip(beyond) {
@@ -225,7 +225,7 @@ impl Sides {
         }
     }
 
-    /// Moves `left` on until no function is at zero, at most by a small fraction of the way to
+    /// Moves `left` forward until no function is at zero, at most by a small fraction of the way to
     /// `to`.
     fn leave<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
@@ -298,7 +298,7 @@ impl Sides {
         Ok(None)
     }
 
-    /// Samples at which a function is beyond zero that has one sign at all three given samples.
+    /// Samples beyond zero for a function that has the same sign at all three given samples.
     fn hidden<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &self,
         three: [&Sample; 3],
@@ -342,7 +342,7 @@ impl Sides {
 
     /// Locates the first passage, touch or pole between `a`, before it, and `b`, after it: by the
     /// Illinois method with the earliest secant of the functions, and by bisection where that is
-    /// slow. Also returns the functions that change their signs there by a pole, with their sides
+    /// slow. Also returns the functions that change sign there at a pole, with their sides
     /// beyond it.
     fn locate<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &self,
@@ -456,7 +456,7 @@ impl Sides {
     }
 }
 
-/// Other fractions of an interval than one at which functions have no value.
+/// Fractions of an interval to try if functions have no value at the usual one.
 fn beside(fraction: f64) -> [f64; 2] {
     [0.75 * fraction, 0.25 + 0.75 * fraction]
 }

@@ -60,7 +60,7 @@ pub(crate) struct Places {
     unknown: bool,
 }
 
-/// What a method knows of the start of the step ahead.
+/// What a method knows about the start of the step ahead.
 pub(crate) trait Here {
     /// The motion that the method predicts from there; none if it cannot tell before the step.
     ///
@@ -114,7 +114,7 @@ impl Places {
     /// Finds the places in the step ahead; returns whether there are any.
     ///
     /// # Errors
-    /// Those of [`Here`].
+    /// The errors of [`Here`].
     pub(crate) fn look(&mut self, ahead: Ahead, here: &mut impl Here) -> Result<bool, SolveError> {
         let Ahead { t, reach, end, .. } = ahead;
         self.found.clear();
@@ -239,7 +239,7 @@ impl Places {
     }
 }
 
-/// Of two places ahead, the one that comes first from `t`.
+/// The nearer of two places ahead of `t`.
 fn nearer(t: f64, a: Option<f64>, b: Option<f64>) -> Option<f64> {
     match (a, b) {
         (Some(a), Some(b)) => Some(if (b - t).abs() < (a - t).abs() { b } else { a }),

@@ -9,7 +9,7 @@ const PLACES: usize = 16;
 /// its second differences are large, while those of a smooth function vanish at so small a
 /// distance.
 ///
-/// `rates` writes f at a fraction of the way, and the tolerances of the state there; false where f
+/// `rates` writes f at a fraction of the way, and the tolerances of the state there; false if f
 /// fails, which is left to the method.
 pub(crate) fn scatters(
     dim: usize,

@@ -161,8 +161,8 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
         with!(self, projection = projection, jacobian, sparse_jacobian, jvp, parameter_jacobian, vjp)
     }
 
-    /// The same field, declared not to depend on t explicitly, so that an integrator need not
-    /// examine it.
+    /// The same field, declared not to depend on t explicitly, so that an integrator need not check
+    /// this.
     pub fn autonomous(self) -> Self {
         FnField { shape: Shape { autonomous: true, ..self.shape }, ..self }
     }

@@ -12,7 +12,7 @@ use crate::integration::held_sides::write_functions;
 use crate::integration::integration::Integration;
 use crate::integration::stepper::Stepper;
 
-/// Along surfaces steps are looked at in so many times as many parts.
+/// While the motion slides along surfaces, steps are searched in this many times as many parts.
 const ALONG_SURFACES: u32 = 16;
 
 impl<S: Stepper, E: Events> Integration<S, E> {

@@ -21,7 +21,7 @@ pub(crate) struct HeldSides {
 }
 
 impl HeldSides {
-    /// Those of a field at a start, not yet known.
+    /// The sides of a field at a start, not yet known.
     pub(crate) fn of(field: &mut impl VectorField) -> HeldSides {
         let dim = field.dim();
         match field.switching() {
@@ -69,8 +69,8 @@ pub(crate) struct Passage {
     pub(crate) after: Vec<f64>,
 }
 
-/// Writes what an integration looks for zeros of: the functions of surfaces, and 1 − σ² for those along which the motion
-/// slides.
+/// Writes the functions whose zeros an integration looks for: those of the surfaces, and 1 − σ² for those along which
+/// the motion slides.
 pub(crate) fn write_functions(
     field: &mut impl VectorField,
     held: &HeldSides,

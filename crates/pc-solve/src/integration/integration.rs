@@ -31,8 +31,8 @@ use crate::integration::stepper::Stepper;
 /// Others are sampled at the ends of [`samples_per_step`](crate::Options::samples_per_step) equal
 /// parts of the step, again between two of these where divided differences leave doubt, and where
 /// three successive values suggest that a function passes through zero twice. Between two samples
-/// an even number of passages of such a function may be missed; of an odd number one is found, so
-/// that its sign is always known. After a passage the rest of the step is searched anew.
+/// an even number of passages of such a function may be missed; if the number is odd, one is found,
+/// so that its sign is always known. After a passage the rest of the step is searched anew.
 ///
 /// A passage is located to 1e-15 max(|t|, h/1000) in a step of length h, and functions that pass
 /// through zero within 16 times that of each other do so simultaneously: their resets are applied
@@ -89,13 +89,13 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) separation: Option<RootSeparation>,
     /// The sides of the surfaces of the field, whose functions follow those of the events.
     pub(crate) held: HeldSides,
-    /// Of each occurrence so far, if there are columns.
+    /// The time derivatives of each occurrence so far, if there are columns.
     pub(crate) time_derivatives: Vec<Vec<f64>>,
     /// Whether no step has been made since a restart.
     pub(crate) restarted: bool,
     /// Whether the motion has been restarted, by a reset for example.
     pub(crate) jumped: bool,
-    /// How it gets on.
+    /// Its pace.
     pub(crate) pace: Pace,
 }
 
@@ -162,8 +162,8 @@ impl<S: Stepper> Integration<S> {
     ///
     /// Its [sensitivities](crate::Cvode::with_sensitivities), if any, are those of the motion with
     /// its events: they jump at resets. For this, resets are also applied to nearby states, and
-    /// events with resets need [derivatives](Events::by_parameter) by the parameters of the
-    /// sensitivities.
+    /// events with resets need [derivatives](Events::by_parameter) with respect to the parameters
+    /// of the sensitivities.
     ///
     /// # Errors
     /// [`SolveError::Integration`] with [`Reason::Event`](crate::Reason::Event) if an event
@@ -241,8 +241,8 @@ pub(crate) fn directions(events: &impl Events, held: &HeldSides) -> Vec<Directio
 }
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// When occurrences of an event count as accumulated, which is an error; the default is that of
-    /// the [options](crate::Options::accumulation).
+    /// Sets when occurrences of an event count as accumulated, which is an error; the default is
+    /// that of the [options](crate::Options::accumulation).
     pub fn accumulation(mut self, accumulation: Accumulation) -> Self {
         self.engine.limits_mut().accumulation = accumulation;
         self
@@ -280,7 +280,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.into_field()
     }
 
-    /// Leaves the field on the sides of its own functions.
+    /// Returns the field to the sides given by its own functions.
     pub(crate) fn release(&mut self) {
         if let Some(field) = self.engine.field_mut().switching() {
             field.hold(None);

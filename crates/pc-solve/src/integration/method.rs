@@ -10,7 +10,7 @@ pub trait IntegrationMethod<F: VectorField> {
     /// The method once begun.
     type Stepper: Stepper<Field = F>;
 
-    /// Begins at y(t0) = y0; the field is never to be evaluated beyond `stop`, nor beyond the stop
+    /// Begins at y(t0) = y0; the field must never be evaluated beyond `stop`, nor beyond the stop
     /// time of the method.
     ///
     /// # Errors

@@ -1,12 +1,12 @@
-//! Whether an integration gets on.
+//! Whether an integration makes progress.
 //!
 //! Steps may become so short, without any of them failing, that a motion would take years. This
-//! shows long before the limit of steps does: [`STEPS`] steps that advance by less than [`LEAST`] of
-//! what is left would have to be followed by 10¹³ of their kind.
+//! shows long before the limit of steps is reached: [`STEPS`] steps that advance by less than
+//! [`LEAST`] of what is left would have to be followed by 10¹³ steps like them.
 
-/// The number of steps that are looked at together.
+/// The number of steps that are judged together.
 const STEPS: u64 = 10_000;
-/// The least part of the remaining time that they advance.
+/// The least fraction of the remaining time by which they must advance.
 const LEAST: f64 = 1e-9;
 
 /// The steps since a mark.
@@ -25,7 +25,7 @@ pub(crate) struct Crawl {
     pub(crate) steps: u64,
     /// The time by which they advanced.
     pub(crate) by: f64,
-    /// Whether most of them were shortened for what depends on time.
+    /// Whether most of them were shortened because of explicit dependence on time.
     pub(crate) shortened: bool,
 }
 

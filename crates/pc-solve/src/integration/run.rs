@@ -163,8 +163,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(None)
     }
 
-    /// Applies the events at the time where an observer has stopped the integration; returns how it
-    /// ends, if it does.
+    /// Applies the events at the time where an observer has stopped the integration; returns how
+    /// the integration ends, if it does.
     pub(crate) fn settle(
         &mut self,
         occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,

@@ -16,7 +16,7 @@ const GRAZING: f64 = 1e-9;
 
 /// Rates that differ by less than this fraction are those of a corner.
 const SAME_RATES: f64 = 1e-12;
-/// The times of surfaces reached together move alike if they do so within this.
+/// The times of surfaces reached together change alike if they agree within this.
 const SAME_SHIFTS: f64 = 1e-9;
 
 /// The slopes of a surface.
@@ -33,9 +33,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// s⁺ = R_y s⁻ + R_p + (R_t + R_y f⁻ − f⁺) τ,    τ = ∂tₑ/∂p = −(g_y s⁻ + g_p)/(g_t + g_y f⁻)
     /// ```
     /// with f⁻ = f(t, y⁻) and f⁺ = f(t, y⁺) [Hiskens, Pai, IEEE Trans. Circuits Syst. I 47 (2000)
-    /// 204, eqs. (37)–(43)]. The derivatives by parameters are those of the events; so are those by
-    /// (t, y) if the events [have them](Events::has_derivatives), else they are central difference
-    /// quotients along the columns and along the motion.
+    /// 204, eqs. (37)–(43)]. The derivatives with respect to parameters are those of the events; so
+    /// are those by (t, y) if the events [have them](Events::has_derivatives), else they are
+    /// central difference quotients along the columns and along the motion.
     ///
     /// An event that the reset of another one sets off occurs when that one does: `shifts`, once
     /// known, are the τ of all resets at t, and S⁺ of each is S⁻ of the next.
@@ -81,8 +81,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(jumped)
     }
 
-    /// Goes on at the front where these surfaces of the field are reached; the derivatives jump as at an event that
-    /// resets nothing,
+    /// Continues at the front where these surfaces of the field are reached; the derivatives jump as at an event
+    /// that resets nothing,
     /// ```text
     /// s⁺ = s⁻ + (f⁻ − f⁺) τ,    τ = −(g_y s⁻ + g_p)/(g_t + g_y f⁻)
     /// ```
@@ -118,14 +118,14 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         !self.engine.column_parameters().is_empty()
     }
 
-    /// Of each occurrence so far the derivatives of its time by what each column of the sensitivities stands for,
-    /// τ = −(g_y s⁻ + g_p)/(g_t + g_y f⁻). Empty without sensitivities; NaN where the events have no derivatives by
-    /// [parameters](Events::by_parameter), and where their functions only touch zero.
+    /// For each occurrence so far, the derivatives of its time with respect to the variable of each column of the
+    /// sensitivities, τ = −(g_y s⁻ + g_p)/(g_t + g_y f⁻). Empty without sensitivities; NaN if the events have no
+    /// derivatives with respect to [parameters](Events::by_parameter), and where their functions only touch zero.
     pub fn time_derivatives(&self) -> &[Vec<f64>] {
         &self.time_derivatives
     }
 
-    /// The same of the events at the front.
+    /// The same for the events at the front.
     pub(crate) fn time_derivatives_of_due(&mut self, t: f64) -> Result<Vec<(usize, Vec<f64>)>, SolveError> {
         if !self.has_columns() {
             return Ok(Vec::new());
@@ -298,8 +298,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// Whether the [projection](VectorField::project) of the field moves the result of the reset.
-    /// If not, it is no part of R: derivatives by parameters that move the surface point out of it,
-    /// and must not be projected to it.
+    /// If not, it is not part of R: derivatives with respect to parameters that move the surface
+    /// point out of it, and must not be projected to it.
     fn is_projected(
         &mut self,
         event: usize,

@@ -1,10 +1,10 @@
 //! The sides of the surfaces on which a field of several pieces is held.
 //!
 //! During a step the field is smooth: it is [held](pc_expr::Switching) on one side of each surface. Where a surface is
-//! reached the step ends, and the motion goes on by the first of these ways that is consistent: across the surface, if f
-//! on the other side leads on; along it, if f leads back from both sides; or back, where it only touches. Where several
-//! surfaces are reached at once, or the motion slides along others already, all combinations are tried, those with fewer
-//! surfaces that slide first.
+//! reached the step ends, and the motion continues in the first of these ways that is consistent: across the surface, if
+//! f on the other side leads away from it; along it, if f leads back from both sides; or back, where it only touches.
+//! Where several surfaces are reached at once, or the motion slides along others already, all combinations are tried,
+//! those with fewer surfaces that slide first.
 
 use pc_expr::{Events, Failure, Sliding, SlidingError, Switching, VectorField};
 
@@ -22,13 +22,13 @@ use crate::integration::stepper::Stepper;
 
 /// A function below this many roundings of its terms is at zero.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
-/// A rate of a function below this fraction of its terms is no rate.
+/// A rate of a function below this fraction of its terms counts as zero.
 const FLAT: f64 = 1e-11;
 /// |σ| may exceed 1 by this where a motion begins to slide.
 const BEYOND: f64 = 1e-9;
 /// Up to this number of surfaces all combinations are tried; more are decided one after the other.
 const MOST_COMBINED: usize = 3;
-/// Fractions of the time scale of the motion at which a function that begins flat is looked at.
+/// Fractions of the time scale of the motion at which a function that begins flat is evaluated.
 const AHEAD: [f64; 3] = [1e-5, 1e-3, 1e-2];
 
 /// Surfaces at zero, each with the sides to be tried in turn.
@@ -51,7 +51,7 @@ struct Place<'a> {
 /// Whether sides are consistent with the motion that they lead to.
 enum Verdict {
     Consistent,
-    /// This one of the open surfaces is left to another side.
+    /// The motion leaves this one of the open surfaces to another side.
     Left(usize, f64),
 }
 
@@ -91,7 +91,7 @@ impl Place<'_> {
         }
     }
 
-    /// The rates on these sides; none where surfaces do not determine how the motion slides.
+    /// The rates on these sides; none if the surfaces do not determine how the motion slides.
     fn rates(&mut self, sides: &[f64]) -> Result<Option<Sliding>, Failure> {
         self.field.hold(Some(sides));
         if sides.contains(&0.0) {
@@ -116,7 +116,7 @@ impl Place<'_> {
         }))
     }
 
-    /// The rate below which a function rests.
+    /// The rate below which a function counts as constant.
     fn least_rate(&self, rates: &[f64]) -> f64 {
         let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
         ROUNDINGS * largest(self.y).max(largest(rates))
@@ -218,7 +218,7 @@ impl Place<'_> {
         Ok(y.iter().zip(&sum).map(|(y, sum)| y + h / 6.0 * sum).collect())
     }
 
-    /// The first consistent sides; none if there are no such.
+    /// The first consistent sides, if there are any.
     fn decide(&mut self, sides: &[f64], open: &Open) -> Result<Option<Vec<f64>>, Failure> {
         if open.len() > MOST_COMBINED {
             return self.decide_in_turn(sides, open);
@@ -243,8 +243,8 @@ impl Place<'_> {
         Ok(None)
     }
 
-    /// The same for many surfaces: the first one that is left goes to the side to which it is left [Murty 1974], which
-    /// ends where each surface acts on its own function more than others do.
+    /// The same for many surfaces: the first one that the motion leaves goes to the side to which the motion leaves it
+    /// [Murty 1974]. This ends if each surface acts on its own function more than the others do.
     fn decide_in_turn(&mut self, sides: &[f64], open: &Open) -> Result<Option<Vec<f64>>, Failure> {
         let mut tried = sides.to_vec();
         open.iter().for_each(|&(surface, _)| tried[surface] = 0.0);
@@ -289,7 +289,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.take_sides(decided, &open)
     }
 
-    /// Finds how the motion goes on at the front where these surfaces are reached; returns what happened.
+    /// Finds how the motion continues at the front where these surfaces are reached; returns what happened.
     pub(crate) fn pass_surfaces(&mut self, due: &[usize]) -> Result<(), SolveError> {
         let (t, y, least) = (self.front.t, self.front_state.clone(), self.engine.least_size());
         let span = self.span_of_interest();
@@ -348,7 +348,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// Decides anew at a break of a table while the motion slides. The function of a surface may jump away from zero there:
-    /// the motion goes on beside this surface. Along others the rates jump, as those of the table do.
+    /// the motion continues beside this surface. Along others the rates jump, as those of the table do.
     pub(crate) fn leave_what_jumps(&mut self, towards: f64) -> Result<(), SolveError> {
         if !self.held.sides.contains(&0.0) {
             return Ok(());
@@ -426,7 +426,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         &self.held.slides
     }
 
-    /// Holds the field on these sides for good: no surface is looked for.
+    /// Holds the field on these sides permanently: no surface is looked for.
     #[cfg(feature = "cvode")] // for the adjoint equations
     pub(crate) fn stay_on(&mut self, sides: &[f64]) {
         self.hold_on(sides);
@@ -492,5 +492,5 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 }
 
-/// A function that is open and larger than this has jumped.
+/// An open function that is larger than this has jumped.
 const NEAR: f64 = 1e-6;

@@ -11,7 +11,7 @@ use crate::integration::integration::{Ending, Integration};
 use crate::integration::observer::{Observed, Observer};
 use crate::integration::stepper::Stepper;
 
-/// What receives the start and the end of a part of a motion with the states there, from an integration at that end.
+/// Receives the start and the end of a part of a motion with the states there, and the integration at that end.
 pub(crate) type Piece<'a, I> =
     dyn FnMut(&mut I, (f64, &[f64]), (f64, &[f64])) -> Result<ControlFlow<()>, SolveError> + 'a;
 

@@ -137,7 +137,7 @@ pub trait Stepper {
         Ok(Vec::new())
     }
 
-    /// For each column the number of its parameter, if it is a derivative by one.
+    /// For each column the number of its parameter, if it is a derivative with respect to one.
     fn column_parameters(&self) -> &[Option<usize>] {
         &[]
     }

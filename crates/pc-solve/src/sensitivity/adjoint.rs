@@ -8,8 +8,8 @@ use crate::sensitivity::adjoint_options::AdjointOptions;
 use crate::sensitivity::adjoint_pass;
 use crate::sensitivity::functional::{Functional, Gradient};
 
-/// The gradient by y₀ and the parameters of a functional G of the motion from y(t0) = y0 to t1,
-/// which may be before t0.
+/// The gradient with respect to y₀ and the parameters of a functional G of the motion from y(t0) =
+/// y0 to t1, which may be before t0.
 ///
 /// With λ(t₁) = ∂h/∂y and
 /// ```text
@@ -95,7 +95,7 @@ pub fn adjoint_gradients<F: VectorField, G: Functional>(
 /// ```
 /// and ∂G/∂p changes by R_pᵀ λ⁺ − κ γ_p: the transpose of the rule for
 /// [sensitivities](crate::Sensitivities). The [derivatives](Events::by_parameter) of the events by
-/// parameters are needed if the field has derivatives by parameters.
+/// parameters are needed if the field has derivatives with respect to parameters.
 ///
 /// # Errors
 /// As there; [`Reason::EndsEarly`](crate::Reason::EndsEarly) at a terminal event before t1,

@@ -16,7 +16,7 @@ use crate::settings::options::Options;
 /// What the adjoint equations of all functionals of a motion share.
 pub(crate) struct Path<F> {
     pub(crate) field: F,
-    /// For derivatives by parameters.
+    /// For derivatives with respect to parameters.
     linearisation: Linearisation,
     transpose: Transpose,
     motion: MotionRecord,
@@ -97,7 +97,7 @@ impl<F: VectorField, G: Functional> AdjointField<F, G> {
         &self.state
     }
 
-    /// h(t, y), and its derivatives by the state and by the parameters.
+    /// h(t, y), and its derivatives with respect to the state and the parameters.
     pub(crate) fn end(&mut self, t: f64, y: &[f64]) -> Result<(f64, Vec<f64>, Vec<f64>), Failure> {
         self.state.copy_from_slice(y);
         let value = self.term(Term::End, t)?;

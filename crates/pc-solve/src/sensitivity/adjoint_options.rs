@@ -49,7 +49,7 @@ impl AdjointOptions {
     /// Steps from one checkpoint to the next, at least 1.
     ///
     /// Memory holds the states at checkpoints and, of one interval at a time, all steps with their
-    /// derivatives, at most 13 vectors a step. The method restarts at each checkpoint, so an
+    /// derivatives, at most 13 vectors per step. The method restarts at each checkpoint, so an
     /// interval should be longer than its starting phase.
     pub fn checkpoint_interval(self, steps: u32) -> Self {
         AdjointOptions { checkpoint_interval: steps, ..self }

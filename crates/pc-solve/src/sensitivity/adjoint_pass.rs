@@ -113,7 +113,7 @@ pub(crate) fn gradients<F: VectorField, E: Events, G: Functional>(
     ways.into_iter().map(|way| way.arrive((t0, y0), there.statistics)).collect()
 }
 
-/// What is kept of the forward motion.
+/// The parts of the forward motion that are kept.
 struct There {
     marks: Vec<Mark>,
     has_jumps: bool,

@@ -23,7 +23,7 @@ use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 use crate::taylor::stepper::Taylor;
 
-/// An absolute tolerance of what no error is to be controlled of.
+/// The absolute tolerance of components whose error is not controlled.
 const ANY: f64 = 1e300;
 
 /// A field with the equations of variation of its columns, ṡ = (∂f/∂y) s + ∂f/∂p.
@@ -83,7 +83,7 @@ impl<F: VectorField> VectorField for WithVariation<F> {
         self.field.enter(t, end)
     }
 
-    /// The surfaces are those of y; their functions are asked for y alone, by the integration.
+    /// The surfaces are those of y; the integration evaluates their functions with y alone.
     fn switching(&mut self) -> Option<&mut dyn Switching> {
         self.field.switching()
     }
@@ -101,11 +101,11 @@ impl<F: VectorField> VectorField for WithVariation<F> {
 #[derive(Debug)]
 pub(crate) struct Explicit<S> {
     method: S,
-    /// The parameter of each column, none for derivatives by the start.
+    /// The parameter of each column, none for derivatives with respect to the start.
     parameters: Vec<Option<usize>>,
     dim: usize,
     relative_tolerance: f64,
-    /// Where states of the last step are read, and the columns at the current time inside it.
+    /// The time at which states of the last step are read, and the columns there.
     state: Vec<f64>,
     inside: Option<Vec<f64>>,
     /// The columns at the start of the last step.
@@ -113,8 +113,8 @@ pub(crate) struct Explicit<S> {
 }
 
 impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
-    /// Starts at y(t0) = y0 with derivatives of the motion, by the method that `begin` makes of the field, the start
-    /// and the options.
+    /// Starts at y(t0) = y0 with derivatives of the motion, with the method that `begin` makes from the field, the
+    /// start and the options.
     ///
     /// # Errors
     /// As for `begin`; [`SolveError::Input`] if a column needs a derivative that the field does not have.
@@ -319,7 +319,7 @@ impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
     }
 }
 
-/// The method of a motion with its derivatives that options choose.
+/// The method that options choose for a motion with its derivatives.
 #[derive(Debug)]
 pub(crate) enum Differentiated<F: VectorField> {
     /// [`Method::Adams`], [`Method::Bdf`], and Adams for [`Method::Auto`].

@@ -51,7 +51,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     ///
     /// # Errors
     /// As for [`restart`](Integration::restart); [`SolveError::Input`] unless `matrix` is finite
-    /// and as long as [`sensitivities`](Integration::sensitivities).
+    /// and has the length of [`sensitivities`](Integration::sensitivities).
     pub fn restart_with_sensitivities(
         &mut self,
         t: f64,

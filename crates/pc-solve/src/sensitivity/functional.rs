@@ -7,9 +7,9 @@ use crate::integration::statistics::Statistics;
 /// A functional G = ∫ g(t, y, p) dt + h(t₁, y(t₁), p) of a motion from t₀ to t₁, with its
 /// derivatives.
 ///
-/// Both terms write their derivatives by the state and by the parameters of the field, the latter
-/// empty if it has no [derivatives](pc_expr::VectorField::parameter_jacobian) by them. Every entry
-/// must be written, zeros too. A term not implemented is zero.
+/// Both terms write their derivatives with respect to the state and the parameters of the field,
+/// the latter empty if it has no [derivatives](pc_expr::VectorField::parameter_jacobian) by them.
+/// Every entry must be written, zeros too. A term not implemented is zero.
 pub trait Functional {
     /// g(t, y), with ∂g/∂y and ∂g/∂p.
     ///
@@ -74,7 +74,7 @@ pub struct Gradient {
     /// ∂G/∂y₀, one for each component of the field.
     pub by_start: Vec<f64>,
     /// ∂G/∂p for a start that does not depend on p, one for each parameter; empty if the field has
-    /// no derivatives by them.
+    /// no derivatives with respect to them.
     ///
     /// If the start does depend on p, add (∂y₀/∂p)ᵀ ∂G/∂y₀.
     pub by_parameters: Vec<f64>,

@@ -78,8 +78,8 @@ pub struct SensitivitySolution {
     pub trajectory: SensitivityTrajectory,
     /// The occurrences, in order.
     pub occurrences: Vec<Occurrence>,
-    /// Of each occurrence the [derivatives of its time](Integration::time_derivatives), one for each column; none are kept
-    /// with checkpoints.
+    /// For each occurrence the [derivatives of its time](Integration::time_derivatives), one for each column; none are
+    /// kept with checkpoints.
     pub time_derivatives: Vec<Vec<f64>>,
     /// How it ended; none if it failed.
     pub ending: Option<Ending>,

@@ -91,8 +91,9 @@ impl Options {
         Options { inequalities, ..self }
     }
 
-    /// Relative tolerance, positive. Below ε = 2.2e-16 it is ε, for Adams' and BDF formulas 2 ε;
-    /// Taylor's method, which carries the rounding of the state along, has finer ones.
+    /// Relative tolerance, positive. Below ε = 2.2e-16 it is taken as ε, or 2 ε for Adams' and BDF
+    /// formulas; only Taylor's method, which carries the rounding of the state along, can have
+    /// smaller ones.
     pub fn relative_tolerance(self, relative_tolerance: f64) -> Self {
         Options { relative_tolerance, ..self }
     }
@@ -133,9 +134,9 @@ impl Options {
         Options { stop_time: Some(t), ..self }
     }
 
-    /// The number of equal parts of each internal step at whose ends event functions are sampled
-    /// that are not programs of the state; at least 1, by default 4. Between two samples [an even
-    /// number](crate::Integration) of their zeros may be missed.
+    /// The number of equal parts of each internal step at whose ends those event functions are
+    /// sampled that are not programs of the state; at least 1, by default 4. Between two samples
+    /// [an even number](crate::Integration) of their zeros may be missed.
     pub fn samples_per_step(self, parts: u32) -> Self {
         Options { samples_per_step: parts, ..self }
     }

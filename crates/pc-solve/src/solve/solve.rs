@@ -18,7 +18,7 @@ use crate::solve::solution::Solution;
 /// Integrates ẏ = f(t, y) from y(t0) = y0 by the method of the options and returns the states at
 /// `times`; [`Solve`] offers more choices.
 ///
-/// `y0` is as long as `field` has components. The times are monotonic, forwards or backwards; the
+/// `y0` has one number per component. The times are monotonic, forwards or backwards; the
 /// first may be t0. The vector field is not evaluated beyond the last time, nor beyond the stop
 /// time of the options.
 ///
@@ -64,7 +64,7 @@ pub struct Solve<'a, F, M = Options, E = NoEvents> {
 }
 
 impl<'a, F: VectorField> Solve<'a, F> {
-    /// By the default [`Options`], without events.
+    /// An integration with the default [`Options`], without events.
     pub fn new(field: F, t0: f64, y0: &'a [f64]) -> Self {
         Solve { field, t0, y0, method: Options::default(), events: NoEvents }
     }

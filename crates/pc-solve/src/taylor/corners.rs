@@ -69,8 +69,7 @@ fn value(terms: &[f64], s: f64) -> f64 {
     terms.iter().rev().fold(0.0, |sum, c| sum * s + c)
 }
 
-/// A point at most a few roundings beyond the one in [a, b] where the polynomial falls through
-/// zero.
+/// A point in [a, b] at most a few roundings beyond the zero through which the polynomial falls.
 fn bisected(terms: &[f64], (mut a, mut b): (f64, f64)) -> f64 {
     while b - a > 4.0 * f64::EPSILON * b {
         let middle = 0.5 * (a + b);

@@ -7,9 +7,9 @@ use crate::integration::breaks::next_break;
 use crate::integration::stepper::Stepper;
 use crate::taylor::stepper::Taylor;
 
-/// A step that would end within this fraction of its length of a stop time or a break ends there.
+/// A step that would end less than this fraction of its length before a stop time or a break ends there.
 const NEAR: f64 = 1e-9;
-/// A step is at most this many times as long as the one before or as the time to where it leads, whichever is longer.
+/// A step is at most this many times as long as the previous step or the time to its target, whichever is longer.
 const FARTHEST: f64 = 1e3;
 
 /// Why a step is rejected.

@@ -6,7 +6,7 @@ use crate::taylor::polynomial::Polynomial;
 
 /// Orders chosen automatically.
 const ORDERS: std::ops::RangeInclusive<usize> = 6..=40;
-/// A tolerance below this gains nothing.
+/// A smaller tolerance gains nothing.
 const TIGHTEST: f64 = 1e-20;
 /// Changes of the state over a step below this fraction of it are rounding.
 const ROUNDING: f64 = 1e-15;

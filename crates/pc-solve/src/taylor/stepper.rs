@@ -61,7 +61,7 @@ pub struct Taylor<F> {
 }
 
 impl<F: VectorField> Taylor<F> {
-    /// Starts at y(t0) = y0, as long as `field` has components, with the tolerances, step lengths,
+    /// Starts at y(t0) = y0, one number per component, with the tolerances, step lengths,
     /// highest order and limits of the options; their method is ignored.
     ///
     /// # Errors

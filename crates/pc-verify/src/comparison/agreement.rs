@@ -10,8 +10,8 @@ use crate::error::{Disagreement, Irregular, VerifyError};
 pub struct Agreement {
     /// States at which all forms were compared.
     pub states: usize,
-    /// The number of these at which equations were only compared along random virtual velocities, the model
-    /// being large.
+    /// The number of these at which equations were compared only along random virtual velocities, because
+    /// the model is large.
     pub projected: usize,
     /// States that were skipped because the equations are singular or not defined there.
     pub skipped: usize,
@@ -19,7 +19,7 @@ pub struct Agreement {
     pub reason: Option<String>,
     /// The largest difference, relative to the size of the terms; at most [`TOLERANCE`](crate::TOLERANCE).
     pub error: f64,
-    /// The quantity that differs by it.
+    /// The quantity with that difference.
     pub quantity: String,
     /// The forms compared: `poincare`, `canonical`, `emit`.
     pub forms: Vec<String>,
@@ -80,7 +80,7 @@ impl Agreement {
 
 /// The reason why a state gives no comparison.
 pub(crate) enum Passed {
-    /// It is not regular.
+    /// The state is not regular.
     Irregular(Irregular),
     /// The derivations differ.
     Error(VerifyError),

@@ -23,7 +23,7 @@ use crate::numbers::sized::Sized;
 const OTHER: f64 = 1e-9;
 
 /// The greatest factor by which rounding in the first derivation may exceed that in the second: forms that
-/// are not chosen for accuracy lose up to half of the digits. Where values scatter further, they are not
+/// are not chosen for accuracy lose up to half of the digits. If values scatter further, they are not
 /// compared.
 const WORSE: f64 = 1e4;
 
@@ -162,7 +162,7 @@ fn has_form(variables: Variables, assembly: &Assembly<'_>) -> bool {
     }
 }
 
-/// A large model in quasi-velocities.
+/// A large model, in quasi-velocities.
 pub(crate) struct Projection {
     flow: Flow,
     layout: Layout,
@@ -175,11 +175,11 @@ impl Projection {
     }
 }
 
-/// Equations of the first derivation that are compared.
+/// The equations of the first derivation that are compared.
 pub(crate) enum Compared<'g> {
-    /// In these forms.
+    /// All equations, in these forms.
     Wholly(Vec<First<'g>>),
-    /// Those of a large model, along random virtual velocities.
+    /// The equations of a large model along random virtual velocities.
     Along(Box<Projection>),
 }
 
@@ -273,7 +273,8 @@ impl Second {
         agreement.finished(&[], 1)
     }
 
-    /// Compares at the start, and at so many random states near it as are regular among three times as many.
+    /// Compares at the start and at random states near it, trying up to three times as many as needed,
+    /// since some may not be regular.
     pub(crate) fn compare_near_start(
         &self,
         mut compared: Compared<'_>,
@@ -434,9 +435,9 @@ impl Second {
     }
 
     /// Raises sizes to the scatter of the values of the first derivation, in units of rounding, at states
-    /// that differ by rounding: its eliminations, too, amplify rounding where independent velocities
-    /// determine the others badly. The increase is bounded, as a value that is noise scatters by its own size
-    /// and would agree with any. Returns the sizes without bounds.
+    /// that differ by rounding: its eliminations also amplify rounding where independent velocities determine
+    /// the others badly. The increase is bounded, since a value that is noise scatters by its own size and
+    /// would agree with any value. Returns the sizes without bounds.
     fn scatter_first(
         &self,
         first: &mut First<'_>,
@@ -460,8 +461,8 @@ impl Second {
         noise
     }
 
-    /// Whether a form in momenta finds velocities other than those of a place, with the same momenta and
-    /// under the same constraints: if L is not convex in η, momenta do not determine η.
+    /// Whether a form in momenta finds velocities different from those of a place, with the same momenta
+    /// and under the same constraints: if L is not convex in η, momenta do not determine η.
     fn has_other_velocities(
         &self,
         first: &First<'_>,

@@ -19,12 +19,13 @@ pub(crate) struct First<'g> {
     pub(crate) form: String,
     /// The compared quantities with their names.
     pub(crate) wanted: Vec<(String, Quantity)>,
-    /// The indices of these among the values of the first derivation.
+    /// Their indices among the values of the first derivation.
     places: Vec<usize>,
     /// The free quasi-velocities, if their momenta or energies are compared.
     pub(crate) free: Option<Vec<Free>>,
     source: Values<'g>,
-    /// The number of states at which it was compared, and the reason for the last of the others.
+    /// The number of states at which it was compared, and the reason for the last state that was not
+    /// compared.
     pub(crate) compared: usize,
     pub(crate) reason: Option<String>,
     /// The difference at the last state at which its values were noise.
@@ -203,7 +204,7 @@ impl<'g> First<'g> {
         }
     }
 
-    /// Compares those candidates that the second derivation has, except the values given to the first.
+    /// Compares those candidates that the second derivation also has, except the values given to the first.
     fn comparing(
         form: &str,
         candidates: Vec<(String, Option<Quantity>)>,

@@ -1,4 +1,4 @@
-//! What leaves a model other than a motion, compared before it does.
+//! Results other than motions, compared before they are returned.
 
 use pc_mech::Folding;
 use pc_model::{Assembly, Flow, Model, Variables};
@@ -11,24 +11,25 @@ use crate::comparison::printed::printed_name;
 use crate::comparison::second::{LONG, Second};
 use crate::error::VerifyError;
 
-/// Equations on their way to a reader, a compiler or an integrator.
+/// Equations to be given to a reader, a compiler or an integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outlet {
-    /// Those that are integrated or linearized, in these variables.
+    /// Equations to integrate or linearize, in these variables.
     Equations(Variables),
-    /// Those that are written as source, in these variables.
+    /// Equations to write as source, in these variables.
     Source(Variables),
-    /// Those that are printed, in this form.
+    /// Equations to print, in this form.
     Page(Form),
 }
 
-/// The random states at which equations that leave are compared, besides the start.
+/// The number of random states at which such equations are compared, besides the start.
 const NEAR: usize = 3;
 
-/// Compares equations that leave in one form with the second derivation: at the start, and at three random states near it.
+/// Compares equations in the form in which they are returned with the second derivation: at the start, and at
+/// three random states near it.
 ///
 /// Those of a large model are compared along random virtual velocities, as [`Second::agrees`] does, in the form that is
-/// integrated; others of its forms are left out, and the agreement says so.
+/// integrated; its other forms are left out, and the agreement says so.
 ///
 /// # Errors
 /// As for [`verify`](crate::verify).

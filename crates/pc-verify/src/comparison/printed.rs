@@ -14,7 +14,7 @@ use crate::error::Irregular;
 use crate::numbers::linear::solve;
 use crate::numbers::rounding::Rounding;
 
-/// The forms that are printed.
+/// The printed forms.
 pub(crate) const FORMS: [Form; 8] = [
     Form::Poincare,
     Form::Canonical,
@@ -54,7 +54,7 @@ struct Change<'g> {
     /// Their symbols and those of their rates.
     symbols: Vec<Expr<'g>>,
     accelerations: Vec<Expr<'g>>,
-    /// Their definitions in terms of the independent ones of the model.
+    /// Their definitions in terms of the independent quasi-velocities of the model.
     definitions: Vec<Expr<'g>>,
     /// The rates of these in terms of them.
     rates: Vec<Expr<'g>>,
@@ -86,7 +86,8 @@ impl Second {
             .or_else(reaction)
     }
 
-    /// Whether these are as many as the velocities, or as the velocities that the constraints leave.
+    /// Whether their number is that of the velocities, or that of the velocities that the constraints leave
+    /// free.
     fn are_free(&self, free: &[Free]) -> bool {
         let k = self.start.w.len();
         free.len() == k || free.len() + self.derivation.kept.len() == k
@@ -219,7 +220,7 @@ impl<'g> Printed<'g> {
         }
     }
 
-    /// M by rows, empty if rates of momenta are printed, and the right sides, both as they are and expanded.
+    /// M by rows, empty if rates of momenta are printed, and the right sides, both unchanged and expanded.
     fn balance(&self) -> (Vec<Expr<'g>>, [&[Expr<'g>]; 2]) {
         match &self.sheet.balance {
             Balance::Velocities { mass, right, written, .. } => {
@@ -331,7 +332,7 @@ impl<'g> Change<'g> {
         }
     }
 
-    /// Whether a symbol is one of these quasi-velocities and foreign to the model, or the rate of one.
+    /// Whether a symbol is one of the quasi-velocities that do not belong to the model, or the rate of one.
     fn has(&self, symbol: Expr<'g>) -> bool {
         let place = self.symbols.iter().position(|&eta| eta == symbol);
         place.is_some_and(|place| self.definitions[place] != symbol) || self.accelerations.contains(&symbol)

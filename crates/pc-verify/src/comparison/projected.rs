@@ -1,7 +1,7 @@
 //! The equations of large models, along a few virtual velocities drawn at random.
 //!
 //! All equations at a state need all second derivatives of L by the velocities, n² of them. Along one virtual
-//! velocity v that the constraints allow they are one equation without multipliers,
+//! velocity v that the constraints allow they become one equation without multipliers,
 //!
 //!   v_s (D_t p_s − p·δw_s − X_s L − Q_s) = 0,
 //!
@@ -92,7 +92,7 @@ impl Derivation {
         }
     }
 
-    /// The motion of the first derivation at a place: ẇ solved for if η̇ and constraints determine it.
+    /// The motion of the first derivation at a place: ẇ is solved for if η̇ and constraints determine it.
     fn moving(
         &self,
         flow: &mut Flow,

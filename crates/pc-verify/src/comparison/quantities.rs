@@ -293,8 +293,8 @@ impl Derivation {
     }
 }
 
-/// Quantities from one elimination are as uncertain as some roundings of the largest of them, or of their
-/// natural size.
+/// Quantities from one elimination have an uncertainty of some roundings of the largest of them, or of
+/// their natural size.
 fn raise(quantities: &mut [Sized], wanted: &[Quantity], natural_size: impl Fn(&Quantity) -> f64) {
     for (quantity, wanted) in quantities.iter_mut().zip(wanted) {
         quantity.size = quantity.size.max(SHARED * natural_size(wanted));

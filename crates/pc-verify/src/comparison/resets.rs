@@ -1,4 +1,4 @@
-//! States after resets, against the definitions of the text.
+//! States after resets, compared with the definitions of the text.
 
 use pc_mech::VectorField;
 use pc_model::{Flow, Model};
@@ -9,12 +9,14 @@ use crate::derivation::place::Place;
 use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::numbers::rounding::{Rounding, within};
 
-/// A reset is evaluated in some operations, and its state projected where quaternions have length 1.
+/// The tolerance of a reset: it takes some operations, and its state is projected so that quaternions have
+/// length 1.
 const APART: f64 = 1e-12;
-/// Velocities are projected onto constraints to this part of their terms: positions that are off by rounding turn them.
+/// Velocities are projected onto constraints up to this fraction of their terms: positions that are off by
+/// rounding rotate the constraints.
 const OFF: f64 = 1e-9;
 
-/// What an event does to a state.
+/// The effect of an event on a state.
 #[derive(Clone, Copy, Debug)]
 pub struct Jump<'a> {
     /// The name of the event.
@@ -29,8 +31,8 @@ pub struct Jump<'a> {
 
 impl Second {
     /// Compares the state after an event with the definitions of its reset, evaluated at the state before: names have their new values,
-    /// coordinates and first-order states that are not reset the old ones. Under constraints new values may give way to them, and
-    /// it is the constraints that are compared instead.
+    /// coordinates and first-order states that are not reset the old ones. Under constraints new values may yield to them; then the
+    /// constraints are compared instead.
     ///
     /// # Errors
     /// As for [`verify`](crate::verify).
@@ -84,7 +86,7 @@ impl Second {
         }))
     }
 
-    /// Labels with the value of the first, that by the text, and their size.
+    /// Labels with the value of the first derivation, the value from the text, and their size.
     fn pairs(
         &self,
         model: &Model,

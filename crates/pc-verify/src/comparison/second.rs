@@ -1,4 +1,4 @@
-//! The second derivation of a model, by the names of the first.
+//! The second derivation of a model, under the names of the first.
 
 use pc_mech::Expr;
 use pc_model::{Assembly, Flow, Model};
@@ -33,7 +33,7 @@ const PRODUCTS: usize = 50;
 const FEWEST: usize = 3;
 
 /// The most velocities for which the canonical equations are derived to be compared: the inverse of a full
-/// mass matrix then takes a second, and ten times as long with each two more.
+/// mass matrix then takes a second, and ten times as long with every two more.
 const MOST_INVERTED: usize = 9;
 
 /// The most velocities for which an orthonormal frame is made to be compared: its roots are nested.
@@ -46,7 +46,8 @@ pub struct Second {
     /// The names of the columns of a table.
     pub(crate) columns: Vec<String>,
     pub(crate) start: Place,
-    /// Whether the first derivation has the energy of independent velocities, y·η − L, and not that of all.
+    /// Whether the energy of the first derivation is that of independent velocities, y·η − L, and not that of
+    /// all.
     pub(crate) has_free_energy: bool,
     external: Vec<String>,
     /// The places of the quaternions of joints among the coordinates.
@@ -140,7 +141,7 @@ impl Second {
     }
 
     /// The place with these coordinates, columns and first-order states. Quaternions are divided by their lengths: both
-    /// derivations hold for rotations, and differ in how they go on elsewhere.
+    /// derivations hold for rotations, and differ in how they continue elsewhere.
     pub(crate) fn place(&self, t: f64, row: &[f64]) -> Result<Place, Irregular> {
         let (x, eta) = row.split_at(self.start.x.len());
         let (eta, z) = eta.split_at(eta.len() - self.start.z.len());
@@ -252,8 +253,8 @@ impl Second {
         evaluations.saturating_mul(self.derivation.text.terms())
     }
 
-    /// Whether one comparison takes more than some milliseconds: the equations are long, and those of this flow, in
-    /// momenta or in other variables, cannot be compared along virtual velocities instead.
+    /// Whether one comparison takes more than some milliseconds: the equations are long and, being in momenta or in
+    /// other variables, cannot be compared along virtual velocities instead.
     pub fn is_long(&self, flow: &Flow) -> bool {
         let is_own = flow.has_own_variables() && flow.motion.coordinates() == self.start.x.len();
         self.cost() > LONG && (flow.has_momenta() || !is_own)
@@ -279,7 +280,7 @@ impl Second {
     }
 
     /// The row of coordinates, columns and first-order states in the state of a flow; coordinates that it
-    /// leaves out are those of the start.
+    /// leaves out have their start values.
     pub(crate) fn row(&self, flow: &mut Flow, t: f64, state: &[f64]) -> Vec<f64> {
         let shown = flow.row_beside(t, state);
         let names = &self.derivation.text.names;
@@ -290,13 +291,13 @@ impl Second {
         coordinates.chain(others).collect()
     }
 
-    /// The number of states, of this many, at which all equations are compared.
+    /// The number of states, out of this many, at which all equations are compared.
     pub(crate) fn wholly(&self, states: usize) -> usize {
         let least = usize::from(self.cost() <= ONE_STATE);
         states.min(ALL_STATES / self.cost().max(1)).max(least)
     }
 
-    /// The number of states, of this many, at which any are compared.
+    /// The number of states, out of this many, at which any equations are compared.
     pub(crate) fn affordable(&self, states: usize) -> usize {
         let affordable = self.wholly(states) + 4 * ONE_STATE / self.projected_cost().max(1);
         states.min(affordable.max(FEWEST))
@@ -320,7 +321,7 @@ fn completing(text: &Text, name: &str) -> Option<Completing> {
 }
 
 impl Derivation {
-    /// The sizes of what states near a start consist of.
+    /// The sizes of the components of states near a start.
     fn units_at(&self, start: &Place) -> Units {
         match self.text.velocities {
             Velocities::Ordinary(_) => Units::of(start, None),

@@ -1,4 +1,4 @@
-//! Derivatives of the equations, against differences of the rates of the second derivation.
+//! Derivatives of the equations, compared with differences of the rates of the second derivation.
 
 use pc_mech::VectorField;
 use pc_model::{Assembly, Flow, Model};
@@ -11,10 +11,11 @@ use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::numbers::rounding::{Rounding, within};
 use crate::numbers::sized::Sized;
 
-/// A direction in which the state and parameters of a flow change, with the derivatives along it that leave.
+/// A direction in which the state and parameters of a flow change, with the derivatives along it that are to
+/// be returned.
 #[derive(Clone, Debug, Default)]
 pub struct Slope {
-    /// What it is called in messages, as `∂/∂p`.
+    /// Its name in messages, such as `∂/∂p`.
     pub name: String,
     /// The change of each component of the state.
     pub state: Vec<f64>,
@@ -26,25 +27,26 @@ pub struct Slope {
     pub observed: Vec<(String, f64)>,
 }
 
-/// Steps, in parts of the state: which is best depends on how curved the rates are.
+/// Steps, as fractions of the state: which is best depends on how curved the rates are.
 const STEPS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
-/// A derivative is compared where differences tell it to this part.
+/// A derivative is compared if differences determine it to this fraction.
 const KNOWN: f64 = 1e-3;
-/// The least part by which two derivatives differ that are not the same: errors are of the order of a term.
+/// Different derivatives differ by at least this fraction: errors are of the order of a term.
 const APART: f64 = 1e-5;
 /// Differences of rates carry the rounding of many terms.
 const ROUNDINGS: f64 = 1e3 * f64::EPSILON;
-/// By this factor differences on either side may come nearer each other as the step is halved, at the least, where there is no
-/// corner: 2 where they are smooth.
+/// Unless there is a corner, the differences on either side come nearer each other by at least this factor when the step is
+/// halved; the factor is 2 for smooth rates.
 const SMOOTH: f64 = 1.5;
-/// What is known of a difference is as large as it looks, times this.
+/// The factor by which the uncertainty of a difference may exceed its estimate.
 const DOUBT: f64 = 10.0;
 
 impl Second {
     /// Compares derivatives along a direction with differences of the second derivation's rates at a state of a flow of the model.
     ///
-    /// What differences do not tell, at corners and where rounding is large, is not compared, and neither is a large model.
+    /// Derivatives that differences do not determine, at corners and where rounding is large, are not
+    /// compared, and neither is a large model.
     ///
     /// # Errors
     /// As for [`verify`](crate::verify).
@@ -127,7 +129,7 @@ struct Moved<'a> {
 }
 
 impl Moved<'_> {
-    /// The derivative of each quantity by central differences, with what they leave in doubt; none where they do not tell it.
+    /// The derivative of each quantity by central differences, with its uncertainty; none if they do not determine it.
     fn differences(&self) -> Result<Vec<Option<Sized>>, Irregular> {
         let here = self.at(0.0)?;
         let mut best: Vec<Option<Sized>> = vec![None; here.len()];
@@ -147,7 +149,7 @@ impl Moved<'_> {
         Ok(best)
     }
 
-    /// The length of a direction by which the state and the parameters change by their own size.
+    /// The distance along a direction over which the state and the parameters change by their own size.
     fn unit(&self) -> f64 {
         let parameter =
             |name: &str| self.model.parameters().find(|(known, _)| *known == name).map(|(_, value)| value);
@@ -172,7 +174,7 @@ impl Moved<'_> {
         Ok(sides.collect())
     }
 
-    /// The quantities, so far along the direction.
+    /// The quantities at this distance along the direction.
     fn at(&self, along: f64) -> Result<Vec<Sized>, Irregular> {
         let state: Vec<f64> =
             self.state.iter().zip(&self.slope.state).map(|(y, by)| y + along * by).collect();
@@ -200,12 +202,12 @@ impl Moved<'_> {
 #[derive(Clone, Copy, Debug)]
 struct Sides {
     central: f64,
-    /// By how much those on either side differ.
+    /// The difference between the two sides.
     apart: f64,
     rounding: f64,
 }
 
-/// The derivative that differences at a step and at half of it tell.
+/// The derivative from differences at a step and at half of it.
 fn told(far: &Sides, near: &Sides) -> Option<Sized> {
     let value = (4.0 * near.central - far.central) / 3.0;
     let doubt = (near.central - far.central).abs() + near.rounding;

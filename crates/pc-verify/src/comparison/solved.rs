@@ -48,9 +48,9 @@ impl Derivation {
         point.with_resultants(solved.resultants.clone())
     }
 
-    /// The sizes of the terms of integrals and outputs by the unknowns in them: if each of w, ẇ and λ agrees
-    /// to the tolerance of its own terms, an output may differ accordingly, λ² by the square where λ
-    /// vanishes.
+    /// The sizes of the terms of integrals and outputs from the unknowns in them: if each of w, ẇ and λ
+    /// agrees to the tolerance of its own terms, an output may differ accordingly; if λ vanishes, λ² may
+    /// differ by the square.
     pub(crate) fn led_to_observed(
         &self,
         derived: &Derived,
@@ -83,7 +83,8 @@ impl Derivation {
         Ok(sizes)
     }
 
-    /// Raises the sizes of integrals and outputs for the reactions in them, if these are less certain.
+    /// Raises the sizes of integrals and outputs on account of the reactions in them, if these are less
+    /// certain.
     pub(crate) fn lead_reactions(
         &self,
         quantities: &mut [Sized],
@@ -131,13 +132,13 @@ impl Derivation {
     }
 
     /// The sizes of the reactions without cancellation, in a unit that two eliminations share: at the given
-    /// velocities and momenta, and where the quasi-velocities of the text and the constraints determine each
+    /// velocities and momenta, and, if the quasi-velocities of the text and the constraints determine each
     /// other, also by
     ///
     ///   λ_α = (ṗ − F)·W_α,
     ///
     /// with the virtual velocities W_α at which φ_α alone is 1 and all quasi-velocities are 0. The first
-    /// derivation finds λ by these, and where they are large more cancels than in M ẇ − Cᵀλ = F.
+    /// derivation finds λ with these, and if they are large, more cancels than in M ẇ − Cᵀλ = F.
     pub(crate) fn least_reaction_sizes(&self, derived: &Derived) -> Result<Vec<f64>, Irregular> {
         let exact = Rounding::none();
         let (at, k, l) = (&derived.place, derived.place.w.len(), self.kept.len());
@@ -218,7 +219,7 @@ root = "sqrt(1 + λ_k) - 1"
         assert!(near(led[2], size / 2.0, 1e-3), "{led:?}");
     }
 
-    /// A reaction with an error of a part in 1e9 of its terms gives outputs that disagree, even for its
+    /// A reaction with an error of one part in 1e9 of its terms makes outputs disagree, even its
     /// square.
     #[test]
     fn an_output_of_a_wrong_reaction_is_found() {
@@ -238,7 +239,7 @@ root = "sqrt(1 + λ_k) - 1"
         }
     }
 
-    /// λ vanishes in one derivation, and in the other is some units in the last place of cancelling terms.
+    /// λ vanishes in one derivation; in the other it is some units in the last place of cancelling terms.
     #[test]
     fn squares_of_reactions_that_vanish_agree() {
         let frames = r#"

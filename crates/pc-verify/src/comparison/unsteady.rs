@@ -10,8 +10,8 @@ use crate::numbers::rounding::{Random, Rounding, within};
 use crate::numbers::sized::Sized;
 
 /// The distance of other states from this one: large enough that small terms absorbed by a large number are
-/// rounded differently, unlike after single roundings, and small enough that the difference due to a wrong
-/// term keeps as many digits.
+/// rounded differently, which single roundings do not achieve, and small enough that the difference due to
+/// a wrong term keeps as many digits.
 const ASIDE: f64 = 1e-9;
 
 /// The number of such states.
@@ -29,8 +29,8 @@ pub(crate) struct Aside {
 }
 
 impl Derivation {
-    /// Compares two derivations near a state at which they differ. Where rates jump, the last bit of the state decides the
-    /// side, and each derivation may be on another one; beside it they agree.
+    /// Compares two derivations near a state at which they differ. If rates jump, the last bit of the state decides the
+    /// side, and the derivations may be on different sides; nearby they agree.
     pub(crate) fn aside(
         &self,
         first: &mut First<'_>,
@@ -81,7 +81,7 @@ mod tests {
         Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
     }
 
-    /// A mass with an error of a part in 1e10 makes a difference that does not jump.
+    /// A mass with an error of one part in 1e10 makes a difference that does not jump.
     #[test]
     fn errors_of_derivation_are_steady() {
         let text = "[coordinates]\nx = 1.0\ny = 0.3\n[parameters]\nm = 2.0\n[lagrangian]\n\

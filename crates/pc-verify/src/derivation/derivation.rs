@@ -37,14 +37,14 @@ pub(crate) struct Derivation {
     pub(crate) text: Text,
     /// Whether each constraint is free of velocities.
     pub(crate) on_positions: Vec<bool>,
-    /// The constraints that are independent of those before.
+    /// The constraints that are independent of the preceding ones.
     pub(crate) kept: Vec<usize>,
     /// The quasi-velocities that complete the declared ones.
     pub(crate) completing: Vec<Completing>,
     pub(crate) structure: Structure,
     /// Which second derivatives of L by velocities vanish.
     pub(crate) couplings: Couplings,
-    /// The sizes of what states consist of.
+    /// The sizes of the components of states.
     pub(crate) units: Units,
 }
 
@@ -129,13 +129,13 @@ impl Derivation {
         (0..at.w.len()).map(field).collect()
     }
 
-    /// Those of some constraints that are independent at a place of those before.
+    /// Those of the given constraints that are independent, at a place, of the preceding ones.
     pub(crate) fn independent(&self, at: &Place, of: &[usize]) -> Result<Vec<usize>, Irregular> {
         let rows = independent_rows(&self.constraint_matrix(of, at, &Rounding::none())?, at.w.len());
         Ok(rows.into_iter().map(|row| of[row]).collect())
     }
 
-    /// The place moved by rounding errors of a state, w by errors of terms of these sizes.
+    /// The place moved by the rounding errors of a state; w is moved by the errors of terms of these sizes.
     pub(crate) fn near(&self, place: &Place, sizes: &[f64], rounding: &Rounding) -> Place {
         // Constraints mix velocities, so each is as uncertain as the largest.
         let largest = place.w.iter().fold(0.0f64, |largest, w| largest.max(w.abs()));

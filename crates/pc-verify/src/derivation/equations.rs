@@ -33,7 +33,7 @@ pub(crate) struct Derived {
     pub(crate) accelerations: Vec<f64>,
     pub(crate) acceleration_sizes: Vec<f64>,
     /// The sizes of the terms of the forces, reactions included, and of the accelerations that each would
-    /// give its own mass.
+    /// give to its own mass.
     pub(crate) force_sizes: Vec<f64>,
     pub(crate) unconstrained_sizes: Vec<f64>,
     /// λ of the independent constraints, each with the size of its terms.
@@ -43,7 +43,7 @@ pub(crate) struct Derived {
     pub(crate) momenta: Vec<f64>,
     pub(crate) momentum_rates: Vec<f64>,
     pub(crate) momentum_rate_sizes: Vec<f64>,
-    /// The sizes of the terms of p, ∂²L/∂w∂w w, and of those of w where p is solved for it.
+    /// The sizes of the terms of p, ∂²L/∂w∂w w, and of those of w if p is solved for it.
     pub(crate) momentum_sizes: Vec<f64>,
     pub(crate) velocity_sizes: Vec<f64>,
     /// L and its rate.

@@ -1,12 +1,12 @@
 //! Which forces on bodies count in the energy.
 //!
-//! A force F on a body at r that depends on the place alone, and is homogeneous of degree d in r there, has
-//! the force function U = F·r/(d + 1) (Euler) if F·X_s r = X_s U for all s. The text format adds such forces,
-//! whole or by components, to L; which ones is the choice of the first derivation, by the symbols that the
-//! expressions contain: at a state where its rate vanishes, a force of time looks like a constant one, and
-//! velocities that cancel leave rounding. Here that choice is justified in numbers: the force does not change
-//! with the velocities, and the quotient μ of F·X_s r and X_s (F·r) is one constant for all s, at all places
-//! and for other values of the parameters.
+//! A force F on a body at r that depends on the position alone, and is homogeneous of degree d in r there,
+//! has the force function U = F·r/(d + 1) (Euler) if F·X_s r = X_s U for all s. The text format adds such
+//! forces, whole or by components, to L; the first derivation chooses them by the symbols that the
+//! expressions contain: at a state where its rate vanishes, a time-dependent force looks like a constant
+//! one, and velocities that cancel leave rounding. Here that choice is justified in numbers: the force does
+//! not change with the velocities, and the quotient μ of F·X_s r and X_s (F·r) is one constant for all s, at
+//! all places and for other values of the parameters.
 
 use crate::derivation::derivation::Derivation;
 use crate::derivation::place::Place;
@@ -23,8 +23,8 @@ const MOVED: f64 = 0.3;
 const ALIKE: f64 = 1e-9;
 
 impl Derivation {
-    /// Finds the factors μ_i of F_i r_i for all bodies, of the components that are chosen by the name of
-    /// the body and their place.
+    /// Finds the factors μ_i of F_i r_i for all bodies, for the components chosen by the name of the
+    /// body and their index.
     pub(crate) fn find_force_functions(&mut self, near: &Place, chosen: impl Fn(&str, usize) -> bool) {
         let mut random = Random::new(1);
         let mut other = self.clone();
@@ -52,7 +52,7 @@ impl Derivation {
         }
     }
 
-    /// μ of the vector with these components of the force on a body, and zeros.
+    /// μ of the vector with these components of the force on a body, and zeros elsewhere.
     fn factor(&self, body: usize, components: &[usize], near: &Place) -> Option<f64> {
         let mut random = Random::new(2);
         let mut known: Vec<Sides> = Vec::with_capacity(PLACES);
@@ -111,11 +111,11 @@ impl Derivation {
     }
 }
 
-/// What the force on a body does at a place.
+/// The action of the force on a body at a place.
 struct Sides {
     /// F·X_s r and X_s (F·r) for all s.
     of_fields: Vec<[f64; 2]>,
-    /// The rates of its components with the velocities, and the largest term of each.
+    /// The derivatives of its components by the velocities, and the largest term of each.
     rates: Vec<f64>,
     terms: Vec<f64>,
 }

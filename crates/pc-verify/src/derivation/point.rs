@@ -21,7 +21,7 @@ pub(crate) struct Point<'a, T: Number> {
     x: Vec<T>,
     w: Vec<T>,
     z: Vec<T>,
-    /// Whether w is known here; as a function of time it is unknown without accelerations.
+    /// Whether w is known here; without accelerations it is unknown as a function of time.
     knows_velocities: bool,
     /// ẇ, if known.
     accelerations: Option<Vec<T>>,
@@ -45,7 +45,7 @@ pub(crate) struct Point<'a, T: Number> {
     in_state_rates: Cell<bool>,
 }
 
-/// A point as it moves in time; boxed, as nested points would have types without end.
+/// A point as it moves in time; boxed, since nested points would have infinite types.
 trait Moving<T> {
     /// The rate of a term.
     fn rate(&self, term: &Term) -> Result<T, Irregular>;
@@ -107,7 +107,7 @@ impl<'a, T: Number> Point<'a, T> {
         value.rounded(self.rounding)
     }
 
-    /// Checks that there is time left; each longer evaluation calls it.
+    /// Checks that there is time left; every longer evaluation calls it.
     fn within_limits(&self) -> Result<(), Irregular> {
         self.text.deadline.passed().map_or(Ok(()), |what| Err(Irregular::Spent { what }))
     }

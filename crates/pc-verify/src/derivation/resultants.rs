@@ -2,8 +2,8 @@
 //!
 //! Forces F at the points of the bodies, torques N on them and impulses on other terms of the kinetic energy
 //! do the work of the reactions on all virtual velocities: Jᵀ F = λ_α ∂φ_α/∂w, where J has the rows ∂ṙ/∂w,
-//! ∂ω/∂w and ∂p/∂w. The least F is that of the pseudo-inverse; compared are the parts of it that the first
-//! derivation considers determined.
+//! ∂ω/∂w and ∂p/∂w. The least F is that of the pseudo-inverse; the parts of it that the first derivation
+//! considers determined are compared.
 
 use nalgebra::DMatrix;
 

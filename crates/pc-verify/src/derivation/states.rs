@@ -1,4 +1,4 @@
-//! States at random that satisfy the constraints.
+//! Random states that satisfy the constraints.
 
 use nalgebra::DMatrix;
 
@@ -13,7 +13,7 @@ use crate::text::text::Velocities;
 /// The sizes of the random displacements, in turn.
 const SCALES: [f64; 4] = [1.0, 0.3, 0.05, 0.002];
 
-/// The number of smaller displacements that are tried if a size leads to no state.
+/// The number of smaller displacements that are tried if a size does not lead to a state.
 const ATTEMPTS: i32 = 5;
 
 impl Derivation {
@@ -49,13 +49,13 @@ impl Derivation {
         self.on_constraints(at)
     }
 
-    /// A step of time, or the same one back where inputs have values only there: a table begins where a motion does.
+    /// A step in time, backwards if inputs have values only there: a table may begin with the motion.
     fn within_tables(&self, t: f64, step: f64) -> f64 {
         let is_known = |t: f64| self.text.tables.iter().all(|(_, table)| table.at(t).is_some());
         if !is_known(t + step) && is_known(t - step) { -step } else { step }
     }
 
-    /// The velocities by which coordinates change by their own size in a unit of time.
+    /// The velocities at which coordinates change by their own size in a unit of time.
     fn sizes(&self, at: &Place) -> Vec<f64> {
         match self.text.velocities {
             Velocities::Ordinary(_) => {
@@ -65,7 +65,7 @@ impl Derivation {
         }
     }
 
-    /// The place reached from another one by the motion with velocity b ξ + τ b_0 for a unit of time, during
+    /// The place reached from another one by moving with velocity b ξ + τ b_0 for a unit of time, during
     /// which t grows by τ: it stays on the leaf of the frame. The step is ξ in terms of its sizes there.
     fn moved(&self, from: &Place, tau: f64, step: &[f64]) -> Result<Place, Irregular> {
         let xi: Vec<f64> = self.sizes(from).iter().zip(step).map(|(size, step)| size * step).collect();
@@ -105,7 +105,7 @@ impl Derivation {
         }
     }
 
-    /// A place near by that satisfies the constraints, by Newton's method in steps of least length.
+    /// A nearby place that satisfies the constraints, by Newton's method in steps of least length.
     pub(crate) fn on_constraints(&self, mut at: Place) -> Result<Place, Irregular> {
         let exact = Rounding::none();
         let all = 0..self.on_positions.len();
@@ -137,7 +137,7 @@ impl Derivation {
         Ok(at)
     }
 
-    /// Repeats a step, which returns its length, until it is rounding.
+    /// Repeats a step, which returns its length, until the length is rounding.
     fn settle(&self, mut step: impl FnMut() -> Result<f64, Irregular>) -> Result<(), Irregular> {
         for _ in 0..NEWTON {
             if step()? <= SETTLED {
@@ -165,7 +165,7 @@ fn shortest(rows: &[Vec<f64>], rest: &[f64], columns: usize) -> Result<Vec<f64>,
     }
 }
 
-/// The shortest part of a displacement.
+/// The shortest fraction of a displacement.
 const SHORTEST: f64 = 1.0 / 64.0;
 
 /// The numbers of parts of a step, for extrapolation to infinitely many.

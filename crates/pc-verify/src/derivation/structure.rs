@@ -12,7 +12,7 @@ pub(crate) enum Structure {
     Frame,
     /// They are constants.
     Constant(Constants),
-    /// A table, whose values may depend on parameters and time.
+    /// A table whose values may depend on parameters and time.
     Table(Vec<(usize, usize, Term)>),
     /// Constants for which [X_r, X_s] = c_rs^m X_m holds everywhere.
     Fitted,

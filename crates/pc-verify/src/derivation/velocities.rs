@@ -12,7 +12,7 @@ use crate::numbers::rounding::Rounding;
 use crate::text::text::Velocities;
 
 impl Derivation {
-    /// ∂η_s/∂w of the quasi-velocities, a row for each; of ordinary velocities if none is declared.
+    /// ∂η_s/∂w of the quasi-velocities, a row for each; or ordinary velocities if none is declared.
     pub(crate) fn quasi_velocity_matrix(
         &self,
         at: &Place,
@@ -43,7 +43,7 @@ impl Derivation {
         point.quasi_velocities()
     }
 
-    /// The velocities w at which η has these values and the constraints hold, by least squares where w = ẋ.
+    /// The velocities w at which η has these values and the constraints hold, by least squares if w = ẋ.
     pub(crate) fn velocities_of(&self, t: f64, x: &[f64], eta: &[f64]) -> Result<Vec<f64>, Irregular> {
         match &self.text.velocities {
             Velocities::Quasi(_) => return Ok(eta.to_vec()),
@@ -111,5 +111,5 @@ impl Derivation {
 /// Steps of Newton's method.
 pub(crate) const NEWTON: usize = 30;
 
-/// A step that is rounding.
+/// The length of a step that is rounding.
 pub(crate) const SETTLED: f64 = 1e-13;

@@ -1,22 +1,22 @@
 //! Dense matrices with pivoting, block by block: n uncoupled coordinates cost n small matrices. The size of an
-//! equation and the units of an unknown decide no rank: rows and columns are scaled before.
+//! equation and the units of an unknown do not affect the rank: rows and columns are scaled first.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Irregular;
 use crate::numbers::rounding::within;
 
-/// Singular values below this part of the largest count as zero.
+/// Singular values below this fraction of the largest count as zero.
 const RANK: f64 = 1e-9;
 
-/// The factor that excludes doubt about a rank: the rounding of a decomposition is some thousand times the
-/// condition.
+/// The factor beyond which a rank is not in doubt: the rounding of a decomposition is some thousand times
+/// the condition.
 const CERTAIN: f64 = 0.1;
 
-/// Entries below this part of the largest of their row may be some hundred roundings of it.
+/// Entries below this fraction of the largest of their row may be some hundred roundings of it.
 const NOISE: f64 = 1e-13;
 
-/// Pivots below this part of the largest make equations singular.
+/// Pivots below this fraction of the largest make equations singular.
 const PIVOT: f64 = 1e-13;
 
 /// The matrix of these rows, of `columns` entries each.
@@ -104,7 +104,7 @@ fn row_weights(a: &DMatrix<f64>, columns: &[f64]) -> Vec<f64> {
 }
 
 /// Powers of two by which the largest entry of each column is near 1. Entries that are rounding of others in
-/// their row give a column no unit.
+/// their row do not determine a unit of the column.
 fn column_weights(a: &DMatrix<f64>, rows: &[f64]) -> Vec<f64> {
     let noise: Vec<f64> = a.row_iter().map(|row| NOISE * row.amax()).collect();
     let column = |j: usize| {
@@ -189,8 +189,8 @@ fn by_singular_values(blocks: &[(Block, DMatrix<f64>)]) -> Option<Vec<(DMatrix<f
     Some(inverses)
 }
 
-/// The indices of rows of `width` entries each that are independent of those before, by the method of Gram and
-/// Schmidt.
+/// The indices of rows of `width` entries each that are independent of the preceding ones, by the method of
+/// Gram and Schmidt.
 pub(crate) fn independent_rows(rows: &[Vec<f64>], width: usize) -> Vec<usize> {
     let all = matrix(rows, width);
     let columns = column_weights(&all, &row_weights(&all, &vec![1.0; width]));
@@ -249,7 +249,7 @@ pub(crate) fn solve(a: &DMatrix<f64>, right: &[f64], terms: &[f64]) -> Result<So
     Ok(Solution { values: values.iter().copied().collect(), sizes, inverse, condition })
 }
 
-/// The inverse, block by block, unless a pivot is too small against the largest.
+/// The inverse, block by block, unless a pivot is too small relative to the largest.
 fn inverse_by_pivots(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let mut inverse = DMatrix::zeros(a.nrows(), a.ncols());
     let (mut least, mut largest) = (f64::INFINITY, 0.0f64);
@@ -290,7 +290,7 @@ mod tests {
     use super::*;
     use crate::numbers::rounding::Random;
 
-    /// A matrix of such blocks, with rows and columns in another order.
+    /// A matrix of such blocks, with rows and columns in a different order.
     fn shuffled(parts: &[DMatrix<f64>]) -> DMatrix<f64> {
         let (m, n) = (parts.iter().map(DMatrix::nrows).sum(), parts.iter().map(DMatrix::ncols).sum());
         let mut all = DMatrix::zeros(m, n);
@@ -365,7 +365,7 @@ mod tests {
         assert_eq!(independent_rows(&[rows[1].clone(), multiple], 3), [0]);
     }
 
-    /// cos(π/2) beside 1 in the one row with such a column makes it no unit.
+    /// cos(π/2) beside 1, in the only row with an entry in that column, does not give the column a unit.
     #[test]
     fn rounding_is_no_unit() {
         let rows = [vec![1.0, 6.1e-17], vec![2.0, 0.0]];

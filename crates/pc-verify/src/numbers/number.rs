@@ -9,7 +9,7 @@ pub(crate) trait Number: DualNum<Primitive = f64> + Copy {
     /// The same with one more direction.
     type Rate: Number;
 
-    /// This number as it changes at a rate; `None` beyond the deepest nesting.
+    /// This number, changing at a rate; `None` beyond the deepest nesting.
     fn changing(self, rate: Self) -> Option<Self::Rate>;
 
     /// The rate at which a number changes.

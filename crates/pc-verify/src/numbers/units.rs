@@ -1,10 +1,10 @@
-//! The sizes of what a state consists of, in the units that the text has chosen: how far random states are from the
+//! The sizes of the components of a state, in the units of the text: they decide how far random states are from the
 //! start.
 
 use crate::derivation::place::Place;
 use crate::numbers::rounding::Random;
 
-/// A start value below this is the unit of its quantity; for a larger one 1 is.
+/// A start value below this is the unit of its quantity; for a larger one the unit is 1.
 const SMALL: f64 = 1e-3;
 
 /// A unit of each coordinate, velocity and first-order state: 1 unless the start has small values, such as lengths of
@@ -17,20 +17,20 @@ pub(crate) struct Units {
 }
 
 impl Units {
-    /// Those of a start, where ẋ_i = b_is w_s + …, with a list of b_is for each s; of w = ẋ without them.
+    /// The units of a start, with ẋ_i = b_is w_s + … and a list of b_is for each s; without lists if w = ẋ.
     pub(crate) fn of(start: &Place, frame: Option<&[Vec<f64>]>) -> Units {
         let x = units(&start.x);
         let w = frame.map_or_else(|| x.clone(), |frame| velocity_units(frame, &start.x, &x));
         Units { x, w, z: units(&start.z) }
     }
 
-    /// Coordinates at random at this distance from those of a place.
+    /// Random coordinates at this distance from those of a place.
     pub(crate) fn displaced(&self, from: &Place, scale: f64, random: &mut Random) -> Vec<f64> {
         let moved = |(x, unit): (&f64, &f64)| x + scale * (unit + x.abs()) * random.signed();
         from.x.iter().zip(&self.x).map(moved).collect()
     }
 
-    /// Velocities at random at this distance from those of a place.
+    /// Random velocities at this distance from those of a place.
     pub(crate) fn faster(&self, from: &Place, scale: f64, random: &mut Random) -> Vec<f64> {
         let fastest = from.w.iter().fold(0.0f64, |fastest, w| fastest.max(w.abs()));
         let moved = |(w, unit): (&f64, &f64)| w + scale * (unit + fastest) * random.signed();
@@ -38,15 +38,15 @@ impl Units {
     }
 }
 
-/// 1 or a small value itself; 0 tells nothing, and takes the largest unit of the others.
+/// 1, or a small value itself; 0 gives no information, and takes the largest unit of the others.
 fn units(values: &[f64]) -> Vec<f64> {
     let known = |value: f64| (value != 0.0).then_some(if value < SMALL { value } else { 1.0 });
     let largest = values.iter().filter_map(|value| known(value.abs())).reduce(f64::max).unwrap_or(1.0);
     values.iter().map(|value| known(value.abs()).unwrap_or(largest)).collect()
 }
 
-/// Units of velocities, which move each coordinate by no more than its unit and itself in a unit of time; 1 where
-/// the coordinates have no smaller unit.
+/// Units of velocities, which move each coordinate by no more than its unit and its own value in a unit of time;
+/// 1 if the coordinates have no smaller unit.
 fn velocity_units(frame: &[Vec<f64>], x: &[f64], of_x: &[f64]) -> Vec<f64> {
     if of_x.iter().all(|&unit| unit >= 1.0) {
         return vec![1.0; frame.len()];

@@ -104,7 +104,7 @@ impl Term {
         }
     }
 
-    /// Whether it contains velocities; `definitions` tells this of the definitions before it, and `None` is
+    /// Whether it contains velocities; `definitions` says this of the definitions before it, and `None` is
     /// returned if it uses a later one.
     pub(crate) fn has_velocities(&self, definitions: &[bool]) -> Option<bool> {
         let any = |terms: &mut dyn Iterator<Item = &Term>| -> Option<bool> {

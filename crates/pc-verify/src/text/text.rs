@@ -20,7 +20,7 @@ pub(crate) struct Text {
     pub(crate) parameters: Vec<f64>,
     /// The tables among them, with their indices.
     pub(crate) tables: Vec<(usize, Arc<Table>)>,
-    /// What is added to the values of tables, by their indices.
+    /// The numbers added to the values of tables, by their indices.
     pub(crate) shifts: Vec<(usize, f64)>,
     /// ż of the first-order states.
     pub(crate) state_rates: Vec<Term>,
@@ -40,7 +40,7 @@ pub(crate) struct Text {
     pub(crate) forces: Vec<(Forced, Term)>,
     /// `[integrals]` and `[outputs]`, as far as they can be resolved.
     pub(crate) observed: Vec<(String, Term)>,
-    /// When work on the model has to end.
+    /// When work on the model must end.
     pub(crate) deadline: Deadline,
 }
 

@@ -1,6 +1,6 @@
 //! Bodies on joints, as terms: their places, their rotations, and the rates of the joints' coordinates.
 //!
-//! A body has thirty definitions of its own: the constant rotation of its joint, the rotation by the joint,
+//! A body has thirty definitions: the constant rotation of its joint, the rotation by the joint,
 //! its own, and its place; a point has three. They follow the constant definitions of the text, which joints
 //! may contain, and precede the others, which may contain points.
 
@@ -254,8 +254,8 @@ fn vector(list: Option<&[Expression; 3]>, names: &Names) -> Result<Vec<Term>, Un
     }
 }
 
-/// The constant rotation of a joint. Entries that are 0 or ±1 up to rounding are exact, as cos(π/2) is not: of
-/// parallel axes a loop must not restrict what they leave free.
+/// The constant rotation of a joint. Entries that are 0 or ±1 up to rounding, such as cos(π/2), are made
+/// exact: a loop must not restrict the directions that parallel axes leave free.
 fn constant_rotation(joint: &Joint, names: &Names) -> Result<Vec<Term>, Unable> {
     let entries = match &joint.rotation {
         None => unit(),
@@ -347,7 +347,8 @@ fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
 }
 
 /// The sine and cosine of an angle, exact for a number that is a multiple of π/2 up to rounding: the cosine
-/// of the double next to π/2 could remain alone where other terms vanish, and would be taken for their size.
+/// of the double next to π/2 could be the only term left when others vanish, and would be taken for their
+/// size.
 fn sine_and_cosine(angle: &Term) -> [Term; 2] {
     let quarter = std::f64::consts::FRAC_PI_2;
     if let Some(value) = number(angle) {
@@ -385,7 +386,7 @@ fn number(term: &Term) -> Option<f64> {
 }
 
 /// |q|² + 2 q_0 S + 2 S² for the S of the vector of a quaternion: |q|² times a rotation, so that energies
-/// agree also where a motion has left |q| = 1 by its tolerance.
+/// agree even if a motion is off |q| = 1 by its tolerance.
 fn by_quaternion(q: &[Term]) -> Vec<Term> {
     let (s, two) = (skew(&q[1..]), Term::Number(2.0));
     let square = product(&s, &s);

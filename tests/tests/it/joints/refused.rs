@@ -340,7 +340,7 @@ joint = { kind = "revolute", axis = [0, 0, 1], rotation = [1, 0, 0, 0, 1, 0, 0, 
 mass = 1
 "#,
         4,
-        r#"m.toml:2:60: [bodies.a] joint.rotation: these nine entries are no rotation: R·Rᵀ differs from 1 by 0, and the determinant is -1
+        r#"m.toml:2:60: [bodies.a] joint.rotation: these nine entries are not a rotation: R·Rᵀ differs from 1 by 0, and the determinant is -1
     joint = { kind = "revolute", axis = [0, 0, 1], rotation = [1, 0, 0, 0, 1, 0, 0, 0, -1] }
                                                                ^^^^^^^^^^^^^^^^^^^^^^^^^^
   help: its rows are orthogonal unit vectors; angles about axes are given by `turns`"#,

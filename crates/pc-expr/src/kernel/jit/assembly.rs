@@ -56,7 +56,7 @@ impl Drop for Assembly {
 /// Executable code.
 pub(super) struct Code {
     address: usize,
-    /// Owned, never read; the mutex makes it `Sync`.
+    /// Owned but never read; the mutex makes it `Sync`.
     _assembly: Mutex<Assembly>,
     /// Read by the code.
     _constants: Box<[f64]>,

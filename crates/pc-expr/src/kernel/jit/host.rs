@@ -12,7 +12,7 @@ use super::assembly::Code;
 pub(super) struct Host {
     isa: OwnedTargetIsa,
     fma: bool,
-    /// The routine for sines and cosines outside the range of the code in line.
+    /// The routine for sines and cosines outside the range of the inline code.
     far_circle: Option<Code>,
 }
 

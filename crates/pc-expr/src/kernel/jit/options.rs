@@ -3,13 +3,13 @@
 /// Options of the compiler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JitOptions {
-    /// Fuse products into sums where the processor has fused multiply-add.
+    /// Fuse products into sums if the processor has fused multiply-add.
     ///
     /// Without this and `inline_trig`, results equal those of the
     /// [`Interpreter`](crate::Interpreter) bit for bit.
     pub fma: bool,
-    /// Compute sines and cosines in line, to 2 units in the last place, where the processor has
-    /// fused multiply-add.
+    /// Compute sines and cosines inline, to 2 units in the last place, if the processor has fused
+    /// multiply-add.
     pub inline_trig: bool,
     /// Number of values held in machine registers; the others stay in memory.
     pub registers: u32,

@@ -87,7 +87,7 @@ pub(super) struct Stay {
     pub(super) dies: bool,
 }
 
-/// No further use.
+/// The value that stands for no further use.
 const NEVER: u32 = u32::MAX;
 
 impl Plan {
@@ -146,7 +146,7 @@ struct NextUses {
     after_operand: Vec<u32>,
     /// By result, in the order of the steps.
     after_result: Vec<u32>,
-    /// By register.
+    /// By register: the last step that uses it.
     last_use: Vec<u32>,
 }
 

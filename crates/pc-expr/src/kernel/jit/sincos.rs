@@ -1,4 +1,4 @@
-//! Sines and cosines in line, two arguments in the two lanes of a vector.
+//! Inline sines and cosines, two arguments in the two lanes of a vector.
 //!
 //! With n the integer nearest to 2x/π, r = x − nπ/2 lies in [−π/4, π/4]; sin r and cos r are
 //! polynomials of r (those of the Cephes library), and n mod 4 determines which of them, with which

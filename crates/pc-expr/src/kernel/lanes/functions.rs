@@ -1,8 +1,8 @@
 //! Functions in lanes.
 //!
-//! sin and cos are computed in line with errors below 2 units in the last place, exp and log below
+//! sin and cos are computed inline with errors below 2 units in the last place, exp and log below
 //! 1.5; √, min, max, |x|, sign and step are operations; the others are called lane by lane. For an
-//! argument outside the range of the code in line, the library computes the function of that lane.
+//! argument outside the range of the inline code, the library computes the function in that lane.
 
 use super::tape::{Binary, Fused, LaneTape, LaneValue};
 use crate::graph::function::Function;
@@ -10,7 +10,7 @@ use crate::kernel::circle::{COS, HALF_PI, ROUNDING, SIN};
 
 const SIGN: u64 = 1 << 63;
 
-/// Arguments of sin and cos up to this are reduced in line: with n below 2³⁰, x − n·HALF_PI\[0\] is
+/// Arguments of sin and cos up to this are reduced inline: with n below 2³⁰, x − n·HALF_PI\[0\] is
 /// a multiple of 2⁻⁵³ below 1 and therefore exact, and the third part of π/2 still covers the
 /// remainder.
 const CIRCLE_RANGE: f64 = 1e9;

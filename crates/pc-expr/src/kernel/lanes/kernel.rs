@@ -8,11 +8,11 @@ use super::machine::code::Code;
 use super::portable::CHUNK;
 use super::tape::{LANES, LaneTape, Lanes};
 
-/// A [`LaneTape`] that can be run, by machine code if there is some for this processor.
+/// A [`LaneTape`] that can be run, by machine code if it is available for this processor.
 ///
-/// The results of a lane depend on its own inputs only, bit for bit the same beside any other lanes
-/// and on any processor; only for functions that are not computed in line do they depend on the
-/// system's library. (The bits of a NaN may differ.) Clones share the code.
+/// The results of a lane depend only on its own inputs, bit for bit the same beside any other lanes
+/// and on any processor; only functions that are not computed inline depend on the system's
+/// library. (The bits of a NaN may differ.) Clones share the code.
 #[derive(Clone, Debug)]
 pub struct LaneKernel {
     tape: Arc<LaneTape>,
@@ -104,8 +104,8 @@ impl LaneKernel {
         }
     }
 
-    /// Computes the lanes of a vector again, one of which is outside the range of functions in
-    /// line.
+    /// Computes the lanes of a vector again, at least one of which is outside the range of inline
+    /// functions.
     #[cfg(all(feature = "jit", target_arch = "x86_64", unix))]
     #[cold]
     fn again(&self, frame: &mut [Lanes], first: usize, width: usize) {

@@ -2,8 +2,8 @@
 //!
 //! The results of all operations are determined to the last bit: the four of arithmetic, square
 //! roots and fused multiply-add, each rounded once; comparisons, and operations on the bits.
-//! Functions are composed of them, alike for every kernel. So the result of a lane depends on its
-//! own inputs only: neither on the other lanes nor on the instructions of the processor.
+//! Functions are composed of them in the same way for every kernel. So the result of a lane depends
+//! only on its own inputs: neither on the other lanes nor on the instructions of the processor.
 
 use rustc_hash::FxHashMap;
 
@@ -98,7 +98,7 @@ pub(super) enum Node {
     ShiftRight(LaneValue, u8),
     /// A function, called lane by lane.
     Call(Function, [LaneValue; 3]),
-    /// `value` where `size` ≤ `bound`, else the function of its argument.
+    /// `value` where `size` ≤ `bound`, elsewhere the function of its argument.
     Near {
         function: Function,
         argument: LaneValue,
@@ -231,7 +231,7 @@ impl LaneTape {
         self.node(Node::Call(function, arguments))
     }
 
-    /// `value` where `size` ≤ `bound`, else the function of its argument.
+    /// `value` where `size` ≤ `bound`, elsewhere the function of its argument.
     pub(super) fn near(
         &mut self,
         (function, argument): (Function, LaneValue),

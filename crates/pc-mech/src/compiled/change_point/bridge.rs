@@ -12,21 +12,22 @@ use crate::compiled::motion::Motion;
 use crate::compiled::point::Point;
 use crate::error::{ConstraintError, MechError};
 
-/// The least pivot below which a place where it vanishes is looked for ahead: steps get short there.
+/// If the least pivot is below this, a place where it vanishes is looked for ahead: steps get short there.
 const NEAR: f64 = 0.1;
 
-/// So many steps ahead.
+/// How many steps ahead.
 const STEPS_AHEAD: f64 = 5.0;
 
-/// The least pivot that is rounding: positions are known to 1e-16, directions to this part of it.
+/// A least pivot below this is rounding: positions are known to 1e-16, directions to this fraction.
 const LOST: f64 = 1e-7;
 
-/// The error of a bridge, as a part of the state: the tolerance of a projection, which rates near the place magnify by
-/// the inverse of the least pivot; and the largest that is allowed.
+/// The error of a bridge, as a fraction of the state: the tolerance of a projection, which rates near the place
+/// magnify by the inverse of the least pivot; and the largest error allowed.
 const MAGNIFIED: f64 = 1e-11;
 const LARGEST_ERROR: f64 = 1e-8;
 
-/// The error up to which a step across the place is confirmed, and the part of its length that is tried last.
+/// The error up to which a step across the place is confirmed, and the fraction of its length that is tried
+/// last.
 const CONFIRMED: f64 = 1e-3;
 const COARSE: f64 = 1e-6;
 const SHORTEST: f64 = 1.0 / 256.0;
@@ -37,14 +38,15 @@ const PARTS: usize = 16;
 /// The number of halvings by which the place is found.
 const HALVINGS: usize = 30;
 
-/// What becomes of the rank of the constraints along a smooth motion.
+/// What happens to the rank of the constraints along a smooth motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rank {
     /// Nothing.
     Full,
     /// It is lost at a state that satisfies the constraints: motions cross there.
     Lost,
-    /// It is lost at a state that does not: this is no motion, since it leaves the surface for another sheet of it.
+    /// It is lost at a state that does not: this is not a motion, since it leaves the surface for another
+    /// sheet of it.
     Passed,
 }
 
@@ -136,7 +138,7 @@ impl Motion {
         }))
     }
 
-    /// The smooth motion to `end`, and what becomes of the rank on it.
+    /// The smooth motion to `end`, and what happens to the rank on it.
     fn ahead(
         &mut self,
         from: (f64, &[f64]),
@@ -149,8 +151,8 @@ impl Motion {
         Some((motion, rank))
     }
 
-    /// Whether a polynomial may stand for the motion: it has no derivatives by state and parameters, and knows nothing
-    /// of forces that jump or kink.
+    /// Whether a polynomial may stand for the motion: it has no derivatives with respect to state and parameters, and
+    /// does not show forces that jump or have corners.
     fn takes_bridge(&self, from: f64, end: f64) -> bool {
         let has_derivatives = self.options.jvp || self.options.parameter_jacobian;
         let breaks = self.signals.breaks().iter().any(|&t| (t - from) * (t - end) <= 0.0);
@@ -197,7 +199,7 @@ impl Motion {
         Collocation::new(&mut flow, from, end, &groups, tolerance)
     }
 
-    /// What becomes of the rank along a smooth motion: the orientation of the space that the constraints span changes
+    /// What happens to the rank along a smooth motion: the orientation of the space that the constraints span changes
     /// where it is lost.
     fn rank_along(&mut self, motion: &Collocation) -> Option<Rank> {
         let at = |field: &mut Motion, t: f64| {

@@ -12,13 +12,13 @@ const TERMS: usize = 8;
 /// The nodes on either side of the middle: the zeros of Legendre's P_5 from 0 to 1, moved to the outer part.
 const NODES: [f64; 5] = [0.046910077030668, 0.2307653449471585, 0.5, 0.7692346550528415, 0.953089922969332];
 
-/// The part of the interval around its middle that has no node: rates lose their digits there.
+/// The fraction of the interval around its middle that has no node: rates lose their digits there.
 const MIDDLE: f64 = 0.4;
 
 /// The most iterations: each gains digits in proportion to the length.
 const MOST_ITERATIONS: usize = 20;
 
-/// So often the way to go may grow before it does not end.
+/// How often the remaining distance may grow before the iteration is given up.
 const MOST_RETURNS: usize = 2;
 
 /// The motion y(t) from y(a) to t = b with x = 2 (t − a)/(b − a) − 1 and
@@ -37,13 +37,13 @@ pub(crate) struct Collocation {
     sizes: Vec<(Range<usize>, f64)>,
 }
 
-/// What a motion is made of: moves a state at a time to where it belongs and writes its rates there; false where it
-/// cannot.
+/// The flow that defines a motion: moves a state at a time to where it belongs and writes its rates there; false if
+/// it cannot.
 pub(crate) type Flow<'a> = dyn FnMut(f64, &mut [f64], &mut [f64]) -> bool + 'a;
 
 impl Collocation {
-    /// The motion from (t, y) to `end`, if there is one that `flow` confirms at all nodes up to a part `tolerance` of
-    /// the largest component of each of the `groups`.
+    /// The motion from (t, y) to `end`, if there is one that `flow` confirms at all nodes up to the fraction
+    /// `tolerance` of the largest component of each of the `groups`.
     pub(crate) fn new(
         flow: &mut Flow<'_>,
         (t, y): (f64, &[f64]),
@@ -92,7 +92,7 @@ impl Collocation {
         None
     }
 
-    /// The series of the rates at the nodes, and the longest way on which a state was moved there.
+    /// The series of the rates at the nodes, and the longest distance by which a state was moved there.
     fn improved(
         &self,
         flow: &mut Flow<'_>,
@@ -144,7 +144,7 @@ impl Collocation {
         (t - self.start) * (t - self.end) <= 0.0
     }
 
-    /// The distance of two states, as a part of the largest component of each group.
+    /// The distance of two states, as a fraction of the largest component of each group.
     pub(crate) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let part = |(group, size): &(Range<usize>, f64)| {
             let apart = group.clone().map(|i| (a[i] - b[i]).abs()).fold(0.0, larger);
@@ -178,7 +178,7 @@ mod tests {
     use super::*;
 
     /// ẍ = −x from (1, 0) over half a unit of time: the terms left out, from 4⁻⁸/(15·13⋯3) = 8e-12 on, are far below the
-    /// last ones kept, of 1e-8, by which it is judged.
+    /// last terms kept, of 1e-8, which judge the error.
     #[test]
     fn an_oscillation_is_followed() {
         let mut flow = |_: f64, y: &mut [f64], rates: &mut [f64]| {

@@ -1,9 +1,9 @@
-//! What is known, from step to step, of the rank of the constraints along a motion.
+//! The rank of the constraints along a motion, as known from step to step.
 
 use crate::compiled::change_point::collocation::Collocation;
 use crate::compiled::elimination::saddle_point::{Independence, Pivot};
 
-/// A state this near to a bridge, as a part of its components, belongs to the motion on it.
+/// A state this near to a bridge, as a fraction of its components, belongs to the motion on it.
 const ON_BRIDGE: f64 = 1e-2;
 
 /// The rank at the end of the last step, and the motion across the place where it is lost.
@@ -40,7 +40,7 @@ impl Seen {
         Seen { t, state: y.to_vec(), rank, sizes, least, largest: least, tried: f64::INFINITY }
     }
 
-    /// Goes on to the state after a step; returns the rank before it.
+    /// Moves to the state after a step; returns the rank before it.
     pub(super) fn advance(&mut self, (t, y): (f64, &[f64]), rank: Independence) -> Independence {
         self.sizes.iter_mut().zip(&rank.row_sizes).for_each(|(size, now)| *size = size.max(*now));
         let before = std::mem::replace(&mut self.least, least(&rank, &self.sizes).0);

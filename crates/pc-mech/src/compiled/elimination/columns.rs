@@ -5,16 +5,16 @@ use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Progr
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::point::Point;
 
-/// A derivative of more operations is interpreted: integrators evaluate it once in dozens of steps, and
-/// compiling it would take longer than a run.
+/// A derivative with more operations is interpreted: integrators evaluate it once in dozens of steps,
+/// and compiling it would take longer than a run.
 const LONG_DERIVATIVE: usize = 5000;
 
 /// How the entries of a matrix are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Storage {
-    /// All, column after column.
+    /// All entries, column after column.
     Dense,
-    /// Those of its pattern, in order.
+    /// The entries of its pattern, in order.
     Sparse,
 }
 

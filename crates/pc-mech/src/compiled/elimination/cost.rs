@@ -29,8 +29,7 @@ pub(crate) fn operations(m: &Matrix<Expr<'_>>) -> usize {
     count
 }
 
-/// Whether M = L D Lᵀ exists in the order of the rows at almost all states: all leading minors are other than
-/// zero.
+/// Whether M = L D Lᵀ exists in the order of the rows at almost all states: no leading minor is zero.
 pub(crate) fn needs_no_pivoting<'g>(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> bool {
     let row = |i: usize, size: usize| m.nonzero(i).take_while(|&(j, _)| j < size).collect();
     let leading = |size: usize| (0..size).map(|i| row(i, size)).collect::<Vec<_>>();

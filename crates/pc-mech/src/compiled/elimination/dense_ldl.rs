@@ -13,14 +13,14 @@ use pc_expr::Pattern;
 use crate::compiled::elimination::pivots;
 use crate::compiled::failure::EvaluationFailure;
 
-/// Pivots of complete pivoting this small against the largest are rounding.
+/// Pivots of complete pivoting this small relative to the largest are rounding.
 const DEPENDENT: f64 = 1e-13;
 
 /// A symmetric k × k matrix and, once it is factorised, L below the diagonal and D on it.
 #[derive(Clone, Debug)]
 pub(crate) struct DenseLdl {
     matrix: Mat<f64>,
-    /// The sizes that pivots are compared with: the diagonal of M, unless others are given.
+    /// The sizes that pivots are compared with: the diagonal of M unless given.
     sizes: Vec<f64>,
     pivots: Vec<f64>,
     scratch: Vec<MaybeUninit<u8>>,
@@ -40,7 +40,7 @@ impl DenseLdl {
         }
     }
 
-    /// Factorises M, given by its `values` at the places `lower` on and below the diagonal; all are finite.
+    /// Factorises M, given by its `values` at the indices `lower` on and below the diagonal; all are finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.

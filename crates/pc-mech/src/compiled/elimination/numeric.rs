@@ -20,7 +20,7 @@ pub(crate) struct Staged {
     multipliers: usize,
     unknowns: Unknowns,
     solver: Solver,
-    /// An alternative for w alone, for a tree with loops; it reports where it is inaccurate.
+    /// An alternative for w alone, for a tree with loops; it reports if it is inaccurate.
     schur: Option<Box<Schur>>,
     /// y, then w.
     known: Vec<f64>,
@@ -94,7 +94,7 @@ impl Staged {
         &self.cost
     }
 
-    /// The same system with w by `schur`, where nothing but w is needed.
+    /// The same system with w from `schur`, where nothing but w is needed.
     pub(crate) fn by_joints(self, schur: Schur) -> Staged {
         Staged { schur: Some(Box::new(schur)), ..self }
     }
@@ -184,8 +184,8 @@ impl Staged {
         check_finite(ydot, &self.rates, Point { t, y: &self.known, p })
     }
 
-    /// Writes the observables; those that contain w are not finite if it has no solution, or is not to be
-    /// `solved` for.
+    /// Writes the observables; those that contain w are not finite if it has no solution, or if `solved`
+    /// is false.
     pub(crate) fn observe(&mut self, (t, y, p): (f64, &[f64], &[f64]), values: &mut [f64], solved: bool) {
         if !solved || self.solve(t, y, p).is_err() {
             let (state, unknowns) = self.known.split_at_mut(self.dim);

@@ -8,10 +8,10 @@ use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::first_order::FirstOrder;
 
-/// A pivot this small against its diagonal entry before elimination is rounding.
+/// A pivot this small relative to its diagonal entry before elimination is rounding.
 const VANISHING_PIVOT: f64 = 1e-14;
 
-/// A diagonal entry this small against the largest may be the square of a rounding error, as sin² π is.
+/// A diagonal entry this small relative to the largest may be the square of a rounding error, as sin² π is.
 const SQUARE_OF_ROUNDING: f64 = 2.0 * f64::EPSILON * f64::EPSILON;
 
 /// Checks that no pivot vanishes; `sizes` are those of the terms of each one, including its diagonal entry.
@@ -48,8 +48,8 @@ fn closely(pivots: &[f64], sizes: &[f64], largest: f64) -> Result<(), Evaluation
     }
 }
 
-/// The pivots, and which of them and of their sizes change with the state. They are counted as one list, the
-/// pivots and then as many sizes.
+/// The pivots, and which of them and of their sizes change with the state. They are counted as one list: the
+/// pivots, then as many sizes.
 #[derive(Debug)]
 pub(crate) struct PivotPartition {
     /// The quasi-velocity of each pivot.
@@ -80,7 +80,7 @@ impl PivotPartition {
     /// Checks that no pivot vanishes, from the fixed numbers and the values of those that change.
     ///
     /// # Errors
-    /// [`EvaluationFailure::Pivot`] for the first that does.
+    /// [`EvaluationFailure::Pivot`] for the first that vanishes.
     #[inline]
     pub(crate) fn check(
         &self,
@@ -162,7 +162,7 @@ impl Pivots {
     /// Checks that no pivot vanishes; `moving` are the values of those that change.
     ///
     /// # Errors
-    /// [`EvaluationFailure::Pivot`] for the first that does.
+    /// [`EvaluationFailure::Pivot`] for the first that vanishes.
     #[inline]
     pub(crate) fn check(
         &mut self,

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use pc_expr::{Backend, Entry, Evaluator, Program};
 
-/// A program divided into a first part that depends on parameters alone, such as regrouped masses, and runs
-/// when they change, and the rest.
+/// A program divided into two parts: the first depends on parameters alone, such as regrouped masses, and
+/// runs when they change; the second is the rest.
 #[derive(Clone, Debug)]
 pub(crate) struct Prologue {
     of_parameters: Evaluator,

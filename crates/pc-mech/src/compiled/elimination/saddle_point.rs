@@ -5,10 +5,10 @@ use pc_expr::Pattern;
 use crate::compiled::elimination::dense_ldl::DenseLdl;
 use crate::compiled::failure::EvaluationFailure;
 
-/// A pivot of the constraints this small against their largest coefficient is rounding.
+/// A pivot of the constraints this small relative to their largest coefficient is rounding.
 const VANISHING_PIVOT: f64 = 1e-12;
 
-/// A spare row replaces another one if its pivot is larger by the inverse of this.
+/// A spare row replaces another one if its pivot is larger by a factor of the inverse of this.
 const SPARE: f64 = 1e-2;
 
 /// The symmetric matrix
@@ -79,8 +79,8 @@ impl Saddle {
         }
     }
 
-    /// Factorises the matrix, given by its `values` at the places `lower` on and below the diagonal; all are
-    /// finite.
+    /// Factorises the matrix, given by its `values` at the indices `lower` on and below the diagonal; all
+    /// are finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Constraint`] with k and the index of the constraint that the others leave nothing
@@ -94,7 +94,7 @@ impl Saddle {
         outcome.map_err(|failure| failure.at_place(|index| self.columns[self.rank + index]))
     }
 
-    /// As [`factorise`](Saddle::factorise), but ends once the dependent unknowns are known.
+    /// As [`factorise`](Saddle::factorise), but stops once the dependent unknowns are known.
     ///
     /// # Errors
     /// As there.
@@ -298,7 +298,7 @@ impl Saddle {
     }
 }
 
-/// How far the rows of C are from depending on each other.
+/// How far the rows of C are from linear dependence.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Independence {
     /// The pivots of C in their order.
@@ -323,7 +323,7 @@ pub(crate) struct Pivot {
 }
 
 impl Independence {
-    /// Whether the sign of the minor has changed: then either it vanishes between, or rank is lost there. `None` if
+    /// Whether the sign of the minor has changed: then it vanishes in between, or rank is lost there. `None` if
     /// they are different minors.
     pub(crate) fn is_reversed(&self, later: &Independence) -> Option<bool> {
         let same = self.rows == later.rows && self.columns == later.columns;
@@ -337,7 +337,7 @@ fn sort_to(places: &[usize], sorted: &mut Vec<usize>) {
     sorted.sort_unstable();
 }
 
-/// Whether so many transpositions sort the list.
+/// Whether the number of transpositions that sort the list is odd.
 fn is_odd(places: &[usize]) -> bool {
     let later = |i: usize| places[i + 1..].iter().filter(move |&&place| place < places[i]).count();
     (0..places.len()).map(later).sum::<usize>() % 2 == 1

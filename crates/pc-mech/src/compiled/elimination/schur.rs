@@ -71,14 +71,15 @@ impl Schur {
         Ok(Some(Schur { equations, values: vec![0.0; outputs.len()], k, m, watched: watched.len(), solved }))
     }
 
-    /// The operations of an evaluation, each of a factorisation counted as `of_a_loop` of straight-line code.
+    /// The operations of an evaluation, each operation of a factorisation counted as `of_a_loop` of
+    /// straight-line code.
     pub(crate) fn operations(&self, of_a_loop: usize) -> usize {
         let m = self.m;
         let factors = m * m * m / 6 + 2 * m * m + self.solved.len();
         self.equations.program().cost().total() + of_a_loop * factors
     }
 
-    /// Writes η̇, then λ, and zeros after them; false where another way has to be taken.
+    /// Writes η̇, then λ, and zeros after them; false if another method has to be used.
     pub(crate) fn solve(&mut self, Point { t, y, p }: Point<'_>, unknowns: &mut [f64]) -> bool {
         self.equations.eval(t, y, p, &mut self.values);
         let (k, m) = (self.k, self.m);

@@ -22,7 +22,7 @@ impl Solver {
         Solver::of_rank(size, multipliers, multipliers)
     }
 
-    /// The same for constraints of which `rank` are independent.
+    /// The same for constraints, `rank` of which are independent.
     pub(crate) fn of_rank(size: usize, multipliers: usize, rank: usize) -> Solver {
         match multipliers {
             0 => Solver::Ldl(DenseLdl::new(size)),
@@ -30,8 +30,8 @@ impl Solver {
         }
     }
 
-    /// Factorises the matrix, given by its `values` at the places `lower` on and below the diagonal; all are
-    /// finite.
+    /// Factorises the matrix, given by its `values` at the indices `lower` on and below the diagonal; all
+    /// are finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes, or
@@ -43,8 +43,8 @@ impl Solver {
         }
     }
 
-    /// The approximate number of operations to factorise a matrix with so many unknowns and multipliers, and
-    /// to solve with it once.
+    /// The approximate number of operations to factorise a matrix with this many unknowns and multipliers,
+    /// and to solve with it once.
     pub(crate) fn operations(&self, size: usize, multipliers: usize) -> usize {
         let k = size - multipliers;
         match self {
@@ -78,7 +78,7 @@ impl Solver {
         }
     }
 
-    /// Replaces each of the columns, as long as there are unknowns, by the solution.
+    /// Replaces each of the columns, with one entry per unknown, by the solution.
     pub(crate) fn solve(&mut self, columns: &mut [f64]) {
         match self {
             Solver::Ldl(ldl) => ldl.solve(columns),

@@ -22,7 +22,7 @@ use crate::compiled::point::Point;
 pub(crate) struct Unrolled {
     /// Outputs: ẏ, then the pivots and the diagonal entries of M that change with the state.
     rates: Evaluator,
-    /// A faster form of the same, where much depends on parameters alone.
+    /// A faster form of the same, if much depends on parameters alone.
     prologue: Option<Box<Prologue>>,
     outputs: Vec<f64>,
     pivots: Pivots,
@@ -45,8 +45,8 @@ pub(crate) struct Unrolled {
 enum Jacobian {
     /// Each entry an expression.
     Columns(Columns),
-    /// Column after column as products with unit vectors: for large trees, where each pair of bodies has a
-    /// long entry.
+    /// Column after column, as products with unit vectors: for large trees, where each pair of bodies has
+    /// a long entry.
     Products(Pattern),
 }
 

@@ -17,7 +17,7 @@ pub(crate) enum Factors<'g> {
     /// though the matrix is regular; for a matrix without a usable pivot on its diagonal; and for one of two
     /// rows whose determinant is much shorter than its pivots.
     Inverse(Matrix<Expr<'g>>),
-    /// Joint after joint.
+    /// Elimination joint after joint.
     Tree(Rc<TreeEquations<'g>>),
 }
 
@@ -62,7 +62,7 @@ impl<'g> Factors<'g> {
     }
 
     /// The pivots D with the diagonal entries of M before elimination; or the determinant of an inverted M of
-    /// few rows, with its scale by the largest entry.
+    /// few rows, with its scale, from the largest entry.
     pub(crate) fn watched(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Vec<Watched<'g>> {
         let rows = m.rows();
         match self {
@@ -134,8 +134,8 @@ impl<'g> Ldl<'g> {
         graph.exact_root(self.diagonal[s]) * graph.sum(below.chain([eta[s]]))
     }
 
-    /// Whether two rows have a determinant that is much shorter than the pivots, whose product it is: for a
-    /// relativistic particle it is a power of the radicand in its Lagrangian.
+    /// Whether the determinant of two rows is much shorter than the pivots, of which it is the product: for
+    /// a relativistic particle it is a power of the radicand in its Lagrangian.
     fn is_longer(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> bool {
         let (2, Some(&last)) = (m.rows(), self.order.last()) else { return false };
         if !graph.know_root_powers(&m.nonzero_entries()) {
@@ -157,8 +157,8 @@ impl<'g> Ldl<'g> {
     }
 
     /// Eliminates row by row, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always a row with the fewest
-    /// entries left, preferably with a symbol as pivot: a wheel before the body that carries it. `None` if
-    /// the remaining diagonal is zero.
+    /// entries left, preferably with a symbol as pivot: for example, a wheel before the body that carries
+    /// it. `None` if the remaining diagonal is zero.
     fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {
         let k = m.rows();
         let mut schur: Vec<BTreeMap<usize, Expr<'g>>> = (0..k).map(|i| m.nonzero(i).collect()).collect();
@@ -205,7 +205,7 @@ impl<'g> Ldl<'g> {
         Some(ldl)
     }
 
-    /// As `solve`, for those unknowns alone that depend on the given entries of r.
+    /// As `solve`, but only for the unknowns that depend on the given entries of r.
     fn solve_nonzero(&self, graph: &'g Graph, right: &[(usize, Expr<'g>)]) -> Entries<'g> {
         let mut z: BTreeMap<usize, Expr<'g>> = right.iter().copied().collect();
         let zero = |z: &BTreeMap<usize, Expr<'g>>, i: usize| z.get(&i).copied().unwrap_or(Expr::ZERO);

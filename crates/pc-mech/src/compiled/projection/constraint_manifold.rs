@@ -9,7 +9,8 @@ use crate::compiled::point::Point;
 use crate::compiled::projection::followers::Followers;
 use crate::compiled::running_error::Measured;
 
-/// The most steps; distant ones are damped. Near the surface convergence is quadratic and a handful suffices.
+/// The most steps; those from far away are damped. Near the surface convergence is quadratic and a handful
+/// suffices.
 pub(super) const MOST_STEPS: usize = 50;
 
 /// The most halvings of a step before the projection fails.
@@ -27,12 +28,12 @@ const ONE_ROUNDING: f64 = 0.125;
 /// and so have the coefficients of the linear equations.
 const ROUNDINGS: f64 = 4.0;
 
-/// A step this short against the state is rounding if the active constraints determine it a hundred times
-/// worse than others would.
+/// A step this short relative to the state is rounding if the active constraints determine it a hundred
+/// times worse than others would.
 const ROUNDING: f64 = 1e-12;
 
-/// A step this short against the state is rounding where the error of f has no bound, at an edge of its
-/// domain.
+/// A step this short relative to the state is rounding where the error of f has no bound, at an edge of
+/// its domain.
 const SHORT: f64 = 1e-8;
 
 /// Storage up to this length is kept ready.
@@ -117,7 +118,7 @@ pub(super) struct Spans {
 }
 
 impl Spans {
-    /// Those of m constraints on k unknowns; of many they grow when they are needed.
+    /// Storage for m constraints on k unknowns; if there are many, it grows when needed.
     fn of(m: usize, k: usize) -> Spans {
         let room = |len: usize| if len <= SMALL { vec![0.0; len] } else { Vec::new() };
         Spans { before: room(m * k), later: room(m * k), products: room(m * m) }
@@ -219,8 +220,8 @@ impl Surface {
         Ok(())
     }
 
-    /// Writes how far the constraints are from losing rank at the end (t, y) of a step: where it was projected last, that
-    /// is known. False if there are none.
+    /// Writes how far the constraints are from losing rank at the end (t, y) of a step: if it was projected last, this is
+    /// already known. False if there are none.
     pub(crate) fn independence_to(
         &mut self,
         (t, y): (f64, &[f64]),
@@ -341,7 +342,7 @@ impl Surface {
             .find(|&fraction| go(self, fraction).is_some_and(|next| next <= (1.0 - fraction / 4.0) * length))
     }
 
-    /// Whether errors of f within these bounds may cause a step of this length, with the factorised matrix.
+    /// Whether errors of f within these bounds can cause a step of this length, with the factorised matrix.
     fn is_rounding(
         &mut self,
         part: Part,

@@ -13,8 +13,7 @@ use crate::numeric::singular_values::SingularValues;
 /// The residual that rounding may cause, in units of the bounds of all of them.
 const ROUNDINGS: f64 = 2.0;
 
-/// A singular value of the constraints, with rows of length 1 before, that has fallen to this part is that of a rank
-/// that is lost.
+/// If a singular value of the constraints, whose rows had length 1, has fallen to this fraction, the rank is lost.
 const FALLEN: f64 = 0.2;
 
 impl Surface {
@@ -49,7 +48,7 @@ impl Surface {
     }
 
     /// Whether the space that the independent constraints span has the other orientation at the later state: it turns
-    /// from one to the other within less than a right angle unless rank is lost between, det C C'ᵀ > 0.
+    /// by less than a right angle from one to the other unless rank is lost in between, det C C'ᵀ > 0.
     pub(crate) fn is_reversed(
         &mut self,
         (before, from): (&Independence, Point<'_>),
@@ -106,7 +105,7 @@ impl Surface {
     }
 }
 
-/// The length of a row; 1 for one that vanishes.
+/// The length of a row; 1 for a row that vanishes.
 fn length(row: &[f64]) -> f64 {
     let length = row.iter().copied().fold(0.0, f64::hypot);
     if length > 0.0 { length } else { 1.0 }

@@ -1,4 +1,4 @@
-//! Conditions that follow from the constraints, checked along the way.
+//! Conditions that follow from the constraints, checked during a projection.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
 
@@ -13,7 +13,7 @@ const OFF: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub(crate) struct Followers {
     names: Vec<String>,
-    /// Each function, then its derivatives by the components of the state.
+    /// Each function, then its derivatives with respect to the components of the state.
     functions: Evaluator,
     values: Vec<f64>,
     state: usize,
@@ -44,7 +44,7 @@ impl Followers {
     /// Checks that all vanish at a state.
     ///
     /// # Errors
-    /// [`EvaluationFailure::Departed`] for the first that does not.
+    /// [`EvaluationFailure::Departed`] for the first that does not vanish.
     pub(crate) fn check(&mut self, t: f64, y: &[f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         if self.names.is_empty() {
             return Ok(());

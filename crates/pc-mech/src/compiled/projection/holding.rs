@@ -7,13 +7,13 @@ use crate::compiled::point::Point;
 use crate::compiled::projection::constraint_manifold::{MOST_STEPS, Part, Surface};
 use crate::numeric::least_squares::LeastSquares;
 
-/// A combination of rows this small against them is rounding.
+/// A combination of rows this small relative to them is rounding.
 pub(super) const DEPENDENT: f64 = 1e-12;
 
 /// The same bound near places where constraints become dependent.
 pub(super) const NEARLY_DEPENDENT: f64 = 1e-7;
 
-/// A step this short against the state is rounding.
+/// A step this short relative to the state is rounding.
 const SHORT: f64 = 1e-13;
 
 /// The components of a state (x, η) that stay unchanged, by their indices among the x and among the η.

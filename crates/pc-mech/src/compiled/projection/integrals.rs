@@ -12,13 +12,13 @@ use crate::error::{IntegralError, MechError};
 /// The most steps; Newton's method converges quadratically, or fails.
 const MOST_STEPS: usize = 50;
 
-/// A step this short against the state is the last: the next would be rounding.
+/// A step this short relative to the state is the last: the next would be rounding.
 const SHORT: f64 = 1e-8;
 
 /// Rounding errors in the value of an integral, in units of its gradient and its value.
 const ROUNDINGS: f64 = 4.0;
 
-/// A gradient of which less than this is independent of those before it adds nothing.
+/// A gradient with less than this fraction independent of those before it adds nothing.
 const DEPENDENT: f64 = 1e-10;
 
 /// First integrals I_j(t, y) of a motion, compiled with their gradients, to keep it at their values: see
@@ -27,7 +27,7 @@ const DEPENDENT: f64 = 1e-10;
 pub struct KeptIntegrals {
     /// The names of the integrals.
     pub(super) names: Vec<String>,
-    /// The constraints, if there are any, which hold along the way, then the integrals.
+    /// The constraints, if there are any, which are kept at the same time, then the integrals.
     values: Measured,
     /// ∂I_j/∂t, then ∂I_j/∂y_i for each i, one after the other.
     gradients: Evaluator,
@@ -93,8 +93,9 @@ impl<'g> FirstOrder<'g> {
         self.quaternions.places().iter().map(norm).collect()
     }
 
-    /// Checks that an integral does not jump along the motion, where its values would belong to other states. The energy
-    /// of a Lagrangian that does not jump is tried at the surfaces where it changes pieces; others must have no such.
+    /// Checks that an integral does not jump along the motion, since its values beyond a jump would belong to other
+    /// states. The energy of a Lagrangian that does not jump is tested at the surfaces where it changes pieces; other
+    /// integrals must have no such surfaces.
     fn check_without_jumps(&self, name: &str, integral: Expr<'g>) -> Result<(), MechError> {
         // A state whose rate is zero changes by events alone, which begin the motion anew with the values after them.
         let flowing = self.state.iter().zip(&self.rates).filter(|(_, rate)| !rate.is_zero());

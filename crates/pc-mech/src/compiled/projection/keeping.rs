@@ -9,10 +9,10 @@ use crate::equations::poincare::Equations;
 use crate::error::{IntegralError, MechError};
 use pc_expr::VectorField;
 
-/// A rate of change counts above this part of the size of its terms, which is far above rounding.
+/// A rate of change counts above this fraction of the size of its terms, which is far above rounding.
 const RATE: f64 = 1e-9;
 
-/// A rate is rounding itself if it changes by more than this part when digits that are rounding change.
+/// A rate is itself rounding if it changes by more than this fraction when rounded digits change.
 const UNCERTAIN: f64 = 1.0 / 64.0;
 
 /// The number of such changes of digits, and their size.
@@ -20,7 +20,7 @@ const PROBES: u64 = 8;
 const LAST_DIGITS: f64 = 8.0 * f64::EPSILON;
 
 /// The number of steps along which an integral is tested, each twice the one before; the first changes the
-/// state by about this part of it, with an error far below [`RATE`].
+/// state by about this fraction, with an error far below [`RATE`].
 const STEPS: usize = 8;
 const FIRST_STEP: f64 = 1e-4;
 
@@ -63,7 +63,7 @@ impl<'g> Multipliers<'g> {
 
 impl Motion {
     /// The same motion with a [projection](pc_expr::VectorField::project) to the values of these integrals at
-    /// (t, y), after that to its constraints: the shortest way in the components of the state. Applied after
+    /// (t, y), after that to its constraints: the shortest path in the components of the state. Applied after
     /// each step, it changes the state by at most the error of the step.
     ///
     /// An integral whose gradient depends on those before it, such as the energy at rest, is not kept there.

@@ -8,14 +8,14 @@ use crate::compiled::projection::constraint_manifold::{MOST_STEPS, Part, Surface
 use crate::compiled::projection::holding::{DEPENDENT, NEARLY_DEPENDENT};
 use crate::numeric::least_squares::LeastSquares;
 
-/// The square of a displacement this short against the velocities is rounding, and with it the error of
-/// Newton's steps.
+/// The square of a displacement this short relative to the velocities is rounding, and with it the
+/// error of Newton's steps.
 const SHORT: f64 = 1e-8;
 
 /// A step this short is the last for the nearest point: its square, the remaining error, is rounding.
 const LAST: f64 = 1e-7;
 
-/// A displacement this short against the velocities is rounding of the linear equations.
+/// A displacement this short relative to the velocities is rounding of the linear equations.
 const ROUNDING: f64 = 1e-14;
 
 /// The most halvings of a step before its direction is given up.
@@ -28,8 +28,8 @@ pub(super) struct Coefficients {
 }
 
 impl Surface {
-    /// Moves the η of `y` to the nearest with g(t, x, η) = 0 in the kinetic metric; the matrix stays
-    /// factorised at the end point.
+    /// Moves the η of `y` to the nearest η with g(t, x, η) = 0 in the kinetic metric; the matrix
+    /// stays factorised at the end point.
     ///
     /// # Errors
     /// [`EvaluationFailure::NoProjection`] if no step leads closer.
@@ -113,7 +113,7 @@ impl Surface {
         Err(failed)
     }
 
-    /// Whether the distance between two velocities is greater than a part of the first.
+    /// Whether the distance between two velocities is greater than a fraction of the first.
     fn is_longer(&self, part: f64, a: &[f64], b: &[f64]) -> bool {
         self.speed(a.iter().zip(b).map(|(a, b)| a - b)) > part * self.speed(a.iter().copied())
     }
@@ -123,8 +123,8 @@ impl Surface {
         eta.zip(&self.weights).map(|(eta, weight)| eta * weight.sqrt()).fold(0.0, f64::hypot)
     }
 
-    /// Along g = 0: the step of Newton's method to the nearest point, and the steepest way there; both zero
-    /// where it is.
+    /// Along g = 0: the step of Newton's method to the nearest point, and the steepest direction to it;
+    /// both zero at that point.
     ///
     ///   (M − ∂(Cᵀμ)/∂η) δ + Cᵀ ν = −M z,   C δ = 0,   where   M z + Cᵀ μ = M (η − η₀),   C z = 0.
     fn tangents(

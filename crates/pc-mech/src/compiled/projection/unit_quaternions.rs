@@ -10,8 +10,8 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 /// The places of quaternions in a state; each has |q| = 1.
 ///
-/// The frame of a joint keeps |q|, but an integrator only to its tolerance, and where |q| is not 1 a quaternion stands for
-/// no rotation.
+/// The frame of a joint keeps |q|, but an integrator only to its tolerance, and if |q| is not 1, the quaternion is not a
+/// rotation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct UnitQuaternions {
     places: Vec<[usize; 4]>,
@@ -37,8 +37,8 @@ impl UnitQuaternions {
         &self.places
     }
 
-    /// q/|q|; returns whether that changes any. One without a direction is left to the equations, which have no values
-    /// there.
+    /// Replaces each q by q/|q|; returns whether that changes any. A zero quaternion is left to the equations, which
+    /// have no values there.
     #[inline]
     pub(crate) fn normalise(&self, y: &mut [f64]) -> bool {
         let mut changed = false;

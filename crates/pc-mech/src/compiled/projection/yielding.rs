@@ -10,12 +10,12 @@ use crate::compiled::projection::nearest::{Coefficients, dot};
 use crate::error::MechError;
 use crate::numeric::least_squares::LeastSquares;
 
-/// A step this short against the velocities is rounding.
+/// A step this short relative to the velocities is rounding.
 const SHORT: f64 = 1e-14;
 
 impl Surface {
-    /// Moves the η of `y` to g = 0, and those `held` only as far as they must: of all δη with C δη = −g, those that
-    /// change the held ones least, and of these the shortest, in the kinetic metric.
+    /// Moves the η of `y` to g = 0, and the `held` ones only as far as necessary: of all δη with C δη = −g it takes
+    /// those that change the held ones least, and of these the shortest, in the kinetic metric.
     ///
     /// # Errors
     /// [`EvaluationFailure::NoProjection`] if no such steps lead there.
@@ -105,11 +105,11 @@ impl Surface {
     }
 }
 
-/// The δ with the least ½ δᵀ M δ − pᵀ δ of those that solve A δ = α best,
+/// Among the δ that solve A δ = α best, the one with the least ½ δᵀ M δ − pᵀ δ,
 ///
 ///   M δ + Aᵀ μ = p,   A δ = α,
 ///
-/// whose rows are taken as of length one.
+/// with the rows of A taken as of length one.
 fn shortest(
     mass: &Matrix<f64>,
     pull: &[f64],

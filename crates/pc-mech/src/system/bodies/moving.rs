@@ -15,11 +15,11 @@ pub(crate) struct Share<'g> {
     pub(crate) forces: Vec<Expr<'g>>,
     /// U(t, x), which is a term of L.
     pub(crate) force_function: Expr<'g>,
-    /// The components of the force that it is of.
+    /// The components of the force from which U follows.
     pub(crate) in_lagrangian: Vec<bool>,
     /// ṙ
     pub(crate) velocity: Vec<Expr<'g>>,
-    /// ω, if it turns.
+    /// ω, if the body turns.
     pub(crate) angular_velocity: Option<Vec<Expr<'g>>>,
 }
 

@@ -8,9 +8,9 @@ use crate::system::bodies::moving::{Moving, Share};
 /// A mass point m at the place r(t, x), given by its one, two or three Cartesian components in an inertial frame.
 ///
 /// Its velocity is ṙ = X_0 r + η_s X_s r, its kinetic energy ½ m |ṙ|². A force F on it, with components along
-/// the same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ by the symbols `x'`. One
-/// that depends on the place alone, is homogeneous in r and has a force function, F · X_s r = X_s U, counts
-/// in the energy: U is added to L, and nothing to Q_s. So does a single component with this property.
+/// the same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ by the symbols `x'`. A
+/// force that depends on the position alone, is homogeneous in r and has a force function, F · X_s r = X_s U,
+/// counts in the energy: U is added to L, and nothing to Q_s. So does a single component with this property.
 ///
 /// ```
 /// use pc_mech::{Graph, Particle, System};
@@ -48,7 +48,7 @@ impl<'g> Particle<'g> {
         Particle { mass: mass.into(), position, force: None, name: None }
     }
 
-    /// The same particle with the force F on it, as long as the position.
+    /// The same particle with the force F on it, of as many components as the position.
     #[must_use]
     pub fn force(self, force: impl IntoIterator<Item = impl Into<Expr<'g>>>) -> Particle<'g> {
         Particle { force: Some(force.into_iter().map(Into::into).collect()), ..self }
@@ -136,15 +136,15 @@ impl<'g> Particle<'g> {
     }
 }
 
-/// The nearest multiple of 1/12 to a quotient with rounding errors, such as one of coefficients with √2, as
-/// 1/(d + 1) is such a multiple for the usual degrees d. Any other number is returned unchanged.
+/// The nearest multiple of 1/12 to a quotient with rounding errors, such as one of coefficients with √2;
+/// for the usual degrees d, 1/(d + 1) is such a multiple. Any other number is returned unchanged.
 fn simple(quotient: Number) -> Number {
     let twelfths = (12.0 * quotient.to_f64()).round();
     let is_near = (12.0 * quotient.to_f64() - twelfths).abs() <= 1e-13 * twelfths.abs();
     if is_near && twelfths.abs() < 1e6 { Number::ratio(twelfths as i64, 12) } else { quotient }
 }
 
-/// The vector with the i-th component of another one, and zeros.
+/// The vector with the i-th component of another one, and zeros elsewhere.
 fn component<'g>(vector: &[Expr<'g>], i: usize) -> Vec<Expr<'g>> {
     let mut part = vec![Expr::ZERO; vector.len()];
     part[i] = vector[i];

@@ -100,8 +100,8 @@ impl<'g> RigidBody<'g> {
     /// A body whose attitude is the 3 × 3 matrix R(t, x) from body axes to axes in space: ω̂ = RᵀṘ, along body axes.
     ///
     /// R may be a multiple of a rotation matrix, such as the |q|² R of a quaternion off the unit sphere: ω̂ is the
-    /// antisymmetric part of RᵀṘ divided by ⅓ tr RᵀR, in which a factor cancels. Of the matrices of groups, those of
-    /// [`UnitQuaternions`](crate::UnitQuaternions) and [`EulerAngles`](crate::EulerAngles) are such multiples
+    /// antisymmetric part of RᵀṘ divided by ⅓ tr RᵀR, in which a factor cancels. Among the matrices of groups, those
+    /// of [`UnitQuaternions`](crate::UnitQuaternions) and [`EulerAngles`](crate::EulerAngles) are such multiples
     /// everywhere. A matrix of nine coordinates R_ij is one on SO(3) only, and gives a long energy: it is better to
     /// [give](RigidBody::turning) ω by the quasi-velocities.
     pub fn rotating(
@@ -133,7 +133,7 @@ impl<'g> RigidBody<'g> {
         }
     }
 
-    /// The same body with the force F at its position, as long as this.
+    /// The same body with the force F at its position, of as many components as this.
     #[must_use]
     pub fn force(self, force: impl IntoIterator<Item = impl Into<Expr<'g>>>) -> RigidBody<'g> {
         RigidBody { centre: self.centre.force(force), ..self }
@@ -203,8 +203,8 @@ fn angular_velocities<'g>(
     Ok(rates.into_iter().map(angular).collect())
 }
 
-/// Whether RᵀR is a multiple of the unit matrix and R no reflection. Where n > k this may hold only on the
-/// surface of the motion, which is unknown here.
+/// Whether RᵀR is a multiple of the unit matrix and R is not a reflection. Where n > k this may hold only
+/// on the surface of the motion, which is unknown here.
 fn check_rotation<'g>(rotation: &Matrix<Expr<'g>>, moving: &Moving<'_, 'g>) -> Result<(), MechError> {
     if moving.frame.coordinates().len() > moving.frame.operators() {
         return Ok(());

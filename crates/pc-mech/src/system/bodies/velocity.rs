@@ -23,13 +23,13 @@ impl<'g> BodyVelocity<'g> {
         &self.velocity
     }
 
-    /// ω(t, x, η), along the axes of its inertia; none of a particle.
+    /// ω(t, x, η), along the axes of its inertia; none for a particle.
     pub fn angular_velocity(&self) -> Option<&[Expr<'g>]> {
         self.angular_velocity.as_deref()
     }
 
     /// For each component of the force on it, whether its force function is a term of L; nothing for a body
-    /// without a force, or on a joint.
+    /// without a force or for one on a joint.
     pub fn force_in_lagrangian(&self) -> &[bool] {
         &self.in_lagrangian
     }

@@ -11,7 +11,7 @@ from chetaev._language.toml import entry, formula, number, quoted
 
 M = TypeVar("M")
 
-#: The sections, in the order in which they stand in the text.
+#: The sections, in the order of the text.
 _SECTIONS = (
     "model",
     "parameters",
@@ -48,7 +48,7 @@ class Builder(Generic[M]):
     name : str
         The name of the model.
     model_of : callable
-        Makes the model of a text and a name: :meth:`Model.builder` says it.
+        Makes the model of a text and a name; :meth:`Model.builder` passes it.
 
     Examples
     --------
@@ -131,7 +131,8 @@ class Builder(Generic[M]):
         return self._put("coordinates", (name,), formula(start))
 
     def quasi_velocity(self, name: str, start: Any = 0.0, definition: Any = None) -> Builder[M]:
-        """A quasi-velocity with its start value, and its definition by velocities (2) if it has one."""
+        """A quasi-velocity with its start value, and its definition in terms of velocities (2) if
+        it has one."""
         if definition is None:
             return self._put("quasi_velocities", (name,), formula(start))
         self._put("quasi_velocities", (name, "is"), formula(definition))
@@ -190,7 +191,7 @@ class Builder(Generic[M]):
         Parameters
         ----------
         joint : Joint or mapping, optional
-            How it moves against the one it hangs on, as ``Revolute(axis=[0, 0, 1])``; without one it has a ``position``.
+            How it moves relative to the one it hangs on, as ``Revolute(axis=[0, 0, 1])``; without one it has a ``position``.
         parent : str, optional
             The body it hangs on, the world unless given.
         **entries

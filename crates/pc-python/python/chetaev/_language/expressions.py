@@ -258,7 +258,7 @@ def step(x: Operand, a: Operand, b: Operand) -> Expression:
 
 
 def d(x: Operand) -> Expression:
-    """The total derivative by time along the motion."""
+    """The total derivative with respect to time along the motion."""
     return _call("d", x)
 
 

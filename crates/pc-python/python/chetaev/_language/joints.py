@@ -9,12 +9,12 @@ from typing import Any, ClassVar
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """How a body moves against the one it hangs on: the base of all joints.
+    """How a body moves relative to the one it hangs on: the base of all joints.
 
     Parameters
     ----------
     at : sequence of three expressions, optional
-        Where it is, in the axes of the parent from the origin of the parent; there unless given.
+        Its place in the axes of the parent, from the origin of the parent; zero by default.
     turns : sequence of pairs, optional
         How it is turned there: ``[("z", a), ("x", b)]`` about its z-axis by a, then about its x-axis, as turned, by b.
     rotation : sequence of nine expressions, optional

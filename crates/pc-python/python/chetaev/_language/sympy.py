@@ -40,10 +40,8 @@ _NAME = re.compile(r"[A-Za-z_α-ωΑ-Ω][A-Za-z0-9_α-ωΑ-Ω]*'?\Z")
 def text_of(value: Any) -> str:
     """An expression of SymPy in the language of models.
 
-    ``x(t)`` becomes ``x``, and its derivative by ``t`` becomes ``x'``, as ``sympy.physics.mechanics`` has coordinates.
-    What has no equal in that language is refused.
-    """
-    import sympy
+    ``x(t)`` becomes ``x``, and its derivative with respect to ``t`` becomes ``x'``, as ``sympy.physics.mechanics`` has
+    coordinates. What has no equal in that language is refused. """ import sympy
 
     return _text(sympy.sympify(value))
 
@@ -233,7 +231,7 @@ class Reader:
         if name == "sqrt":
             return sympy.sqrt(arguments[0])
         if name == "d":
-            # Of a velocity: accelerations are written so.
+            # An acceleration is written as the derivative of a velocity.
             return self.symbol(f"{arguments[0]}'")
         if name == "step":
             x, a, b = arguments
@@ -245,7 +243,7 @@ class Reader:
 
 
 def equations(data: dict[str, Any]) -> dict[str, Any]:
-    """What is derived, from what is told to programs."""
+    """The derived equations, from the JSON for programs."""
     import sympy
 
     if "kinematics" not in data:

@@ -1,1 +1,1 @@
-"""What comes of models and systems."""
+"""Results of models and systems."""

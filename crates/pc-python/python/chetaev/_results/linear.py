@@ -29,7 +29,8 @@ def _complex(pairs: list[list[float]]) -> Complexes:
 class Linearization:
     """The motions near a state to first order: δẏ = A δy + B δu, δh = C δy + D δu.
 
-    The derivatives are exact. It is made by :meth:`Model.linearize`; printed it is the page of ``pc linearize``.
+    The derivatives are exact. It is made by :meth:`Model.linearize`; printing it shows the page of
+    ``pc linearize``.
 
     Attributes
     ----------
@@ -44,11 +45,11 @@ class Linearization:
     eigenvalues : array
         Those of A, in descending order of their real parts.
     modes : list
-        The eigenvector of each, an array of n complex numbers, or None where it is not determined.
+        The eigenvector of each, an array of n complex numbers, or None if it is not determined.
     is_steady : bool
         Whether the state is an equilibrium or a steady motion.
     stability : str or None
-        The verdict of ``pc check`` on it; None where it is not steady.
+        The verdict of ``pc check`` on it; None if it is not steady.
     second_order : dict or None
         ``coordinates`` and the matrices ``M``, ``G``, ``K``, ``F`` of M q̈ + G q̇ + K q = F u, where they are defined.
     data : dict
@@ -114,7 +115,7 @@ class RootLocus:
     values : array
         Its values.
     branches : array
-        The eigenvalues: a row for each, followed from value to value; NaN where there are none.
+        The eigenvalues: a row for each, followed from value to value; NaN if there are none.
     missing : dict
         The values that have no linearization, with the reason.
     """
@@ -133,7 +134,7 @@ class RootLocus:
         self.missing: dict[float, str] = {entry["value"]: entry["reason"] for entry in found["missing"]}
 
     def plot(self, *, ax: Any = None) -> Any:
-        """The branches in the complex plane, by matplotlib; returns the figure."""
+        """The branches in the complex plane, with matplotlib; returns the figure."""
         if ax is None:
             import matplotlib.pyplot as plt
 

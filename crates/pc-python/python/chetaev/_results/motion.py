@@ -50,7 +50,7 @@ class Motion(Mapping[str, "Floats"]):
     terminal : str or None
         The name of the event that ended it.
     drift : dict
-        How far each integral, the energy among them, went from its value at the start.
+        How far each integral, including the energy, went from its value at the start.
     residuals : dict
         The largest residual of each constraint that is kept by projection.
     statistics : dict
@@ -115,12 +115,12 @@ class Motion(Mapping[str, "Floats"]):
         return f"<Motion {self._origin[0].title!r}: {len(self.t)} rows, {span}, {self.ending}>"
 
     def __getstate__(self) -> dict[str, Any]:
-        # What is dense is integrated again where it is wanted.
+        # The dense motion is integrated again when it is needed.
         return {**self.__dict__, "_dense": None, "_system": None}
 
     @property
     def drift(self) -> dict[str, float]:
-        """How far each integral, the energy among them, went from its value at the start."""
+        """How far each integral, including the energy, went from its value at the start."""
         if len(self.t) == 0:
             return {}
         return {name: float(abs(self[name] - self[name][0]).max()) for name in self._kinds["conserved"]}
@@ -159,7 +159,7 @@ class Motion(Mapping[str, "Floats"]):
         return pd.DataFrame(self._values, index=index, columns=list(self.columns[1:]))
 
     def plot(self, names: Sequence[str] | None = None, *, ax: Any = None) -> Any:
-        """Columns over time, by matplotlib.
+        """Columns over time, with matplotlib.
 
         Parameters
         ----------
@@ -188,7 +188,7 @@ class Motion(Mapping[str, "Floats"]):
         figure, axes = plt.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(7.0, 2.2 * len(panels)))
         for axis, (title, scale, events, curves) in zip(axes[:, 0], panels):
             for name, times, values in curves:
-                # Of what is small and of different size there are decimal logarithms.
+                # Small values of different sizes are drawn as decimal logarithms.
                 shown = [10.0**value for value in values] if scale == "decades" else values
                 axis.plot(times, shown, label=name, linewidth=1.0)
             if scale == "decades":
@@ -202,7 +202,7 @@ class Motion(Mapping[str, "Floats"]):
         return figure
 
     def _recorded(self) -> dict[str, Any]:
-        """As the native part takes a motion."""
+        """The motion in the form that the native part takes."""
         recorded: dict[str, Any] = {"t": self.t.tolist(), "events": [event.t for event in self.events]}
         recorded["keeps_energy"] = self._keeps_energy
         for kind, names in self._kinds.items():

@@ -1,4 +1,4 @@
-"""What is printed of models."""
+"""Printed results of models."""
 
 from __future__ import annotations
 

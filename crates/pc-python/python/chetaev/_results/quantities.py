@@ -1,4 +1,4 @@
-"""What is known of a system beside its rates."""
+"""Quantities of a system besides its rates."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 class Values(MutableMapping[str, float]):
     """Parameters or start values of a system, to be read and set.
 
-    :meth:`update` sets several at once: all of them, or none where they contradict each other.
+    :meth:`update` sets several at once: all of them, or none if they contradict each other.
     """
 
     __slots__ = ("_kind", "_system")

@@ -135,7 +135,7 @@ impl<F: VectorField> Cvode<F> {
         self.begin_columns_anew(matrix, work)
     }
 
-    /// Reinitialises the columns of S, if there are any, after the state; `work` is that before.
+    /// Reinitialises the columns of S, if there are any, after the state; `work` is the work before.
     pub(crate) fn begin_columns_anew(
         &mut self,
         matrix: &[f64],

@@ -8,15 +8,15 @@ use crate::integration::checks::{check_length, finite, positive};
 
 /// Derivatives of a motion to be integrated along with it: the columns of S(t) = ∂y(t)/∂(p, y₀).
 ///
-/// Each column s satisfies the equation of variation, with one more term if it is a derivative by a
-/// parameter pⱼ,
+/// Each column s satisfies the equation of variation, with one more term if it is a derivative with
+/// respect to a parameter pⱼ,
 /// ```text
 /// ṡ = (∂f/∂y) s + ∂f/∂pⱼ,    s(t₀) = ∂y₀/∂pⱼ.
 /// ```
 /// Columns are in the order in which they are added. Products with ∂f/∂y are the field's
 /// [own](VectorField::jvp) if it has them, else by its [Jacobian](VectorField::jacobian), else
-/// difference quotients, accurate to about ten digits. Derivatives by parameters need the field's
-/// [`parameter_jacobian`](VectorField::parameter_jacobian).
+/// difference quotients, accurate to about ten digits. Derivatives with respect to parameters need
+/// the field's [`parameter_jacobian`](VectorField::parameter_jacobian).
 ///
 /// If the states lie on a surface that depends on the parameters, so does y₀: its derivatives are
 /// given by [`by_parameter_from`](Sensitivities::by_parameter_from). Columns that begin tangent to

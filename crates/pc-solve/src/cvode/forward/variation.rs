@@ -9,7 +9,7 @@ use crate::error::NonFinite;
 #[derive(Debug, Default)]
 pub(crate) struct Variation {
     linearisation: Linearisation,
-    /// The parameter of each column, none for derivatives by the start.
+    /// The parameter of each column, none for derivatives with respect to the start.
     parameters: Vec<Option<usize>>,
 }
 
@@ -18,7 +18,7 @@ impl Variation {
         Variation { linearisation, parameters }
     }
 
-    /// The parameter of each column, none for derivatives by the start.
+    /// The parameter of each column, none for derivatives with respect to the start.
     pub(crate) fn parameters(&self) -> &[Option<usize>] {
         &self.parameters
     }

@@ -66,7 +66,7 @@ impl Krylov {
     }
 }
 
-/// Makes preconditioners. Two are equal if they are clones of one.
+/// Makes preconditioners. Two are equal if they are clones of the same one.
 #[derive(Clone)]
 pub(super) struct Maker(pub(super) Arc<dyn Fn() -> Box<dyn Preconditioner + Send> + Send + Sync>);
 

@@ -9,7 +9,7 @@ use crate::settings::inequality::Inequality;
 
 /// Difference quotients of f for all columns of one colour at once, with CVODE's increments.
 pub(super) struct Quotients {
-    /// For the error weights and γ.
+    /// CVODE's memory, from which error weights and γ are read.
     pub(super) memory: *mut c_void,
     pub(super) pattern: Pattern,
     /// The columns of each colour.

@@ -9,7 +9,7 @@ pub(crate) trait Members {
     /// Identifies a member.
     type Name;
 
-    /// The next member, with its field, for which the kernels of the block hold, and its start;
+    /// The next member, with its start and its field, to which the kernels of the block apply;
     /// none if the source has none.
     fn next(&mut self, from: Source) -> Option<(Self::Name, LaneField, Vec<f64>)>;
 

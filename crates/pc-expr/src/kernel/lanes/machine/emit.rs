@@ -104,7 +104,7 @@ impl Emitter<'_> {
         Ok(leave)
     }
 
-    /// Writes a value to a row, in a line of its own.
+    /// Writes a value to a row, in a separate line.
     fn write(&mut self, row: u32, value: u32) -> Result<(), EncodeError> {
         self.registers.end_line(&[], self.at);
         let vector = self.registers.in_register(value, &mut self.assembler, self.at)?;

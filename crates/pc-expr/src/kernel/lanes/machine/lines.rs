@@ -16,11 +16,11 @@ pub(super) enum Line {
 /// The lines of a tape.
 pub(super) struct Lines {
     pub(super) lines: Vec<Line>,
-    /// For a value that equals another one in range ([`Node::Near`]), that other; else the value
+    /// For a value that equals another one in range ([`Node::Near`]), the other one; else the value
     /// itself.
     same_as: Vec<u32>,
-    /// The lines that read each value. Each value that is [written last](Lines::written_last) is read by a line of
-    /// its own after all others, so that it is kept until then.
+    /// The lines that read each value. Each value that is [written last](Lines::written_last) is read by a
+    /// separate line after all others, so that it is kept until then.
     pub(super) uses: Vec<Vec<u32>>,
 }
 
