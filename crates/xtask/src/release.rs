@@ -26,13 +26,37 @@ struct Point {
 
 const POINTS: [Point; 8] = [
     Point { title: "tree", why: "what is published is what is committed", work: tree },
-    Point { title: "version", why: "the changelog has a heading for the version, with its date", work: version },
-    Point { title: "tests", why: "the tests of everything pass, with the interface lists and the licences", work: tests },
-    Point { title: "compiler", why: "the oldest compiler that the manifests promise compiles all targets", work: compiler },
-    Point { title: "packages", why: "each package builds of the files that it is published with", work: packages },
+    Point {
+        title: "version",
+        why: "the changelog has a heading for the version, with its date",
+        work: version,
+    },
+    Point {
+        title: "tests",
+        why: "the tests of everything pass, with the interface lists and the licences",
+        work: tests,
+    },
+    Point {
+        title: "compiler",
+        why: "the oldest compiler that the manifests promise compiles all targets",
+        work: compiler,
+    },
+    Point {
+        title: "packages",
+        why: "each package builds of the files that it is published with",
+        work: packages,
+    },
     Point { title: "pages", why: "docs.rs can build the pages of each package", work: pages },
-    Point { title: "wheel", why: "two builds of the wheel have the same bytes, and its tests pass", work: wheel },
-    Point { title: "materials", why: "a bill of materials in CycloneDX lists what each package is made of", work: materials },
+    Point {
+        title: "wheel",
+        why: "two builds of the wheel have the same bytes, and its tests pass",
+        work: wheel,
+    },
+    Point {
+        title: "materials",
+        why: "a bill of materials in CycloneDX lists what each package is made of",
+        work: materials,
+    },
 ];
 
 /// The whole list, or the points with these titles.
@@ -73,7 +97,8 @@ fn tree() -> Result<(), Error> {
 
 /// What a line `key = "value"` of a text says.
 fn value<'t>(text: &'t str, key: &str) -> Option<&'t str> {
-    let of_line = |line: &'t str| line.strip_prefix(key)?.trim_start().strip_prefix('=')?.trim().strip_prefix('"');
+    let of_line =
+        |line: &'t str| line.strip_prefix(key)?.trim_start().strip_prefix('=')?.trim().strip_prefix('"');
     text.lines().find_map(of_line)?.split('"').next()
 }
 
@@ -98,7 +123,11 @@ fn heading(changelog: &str, version: &str) -> Result<(), String> {
         return Err(format!("CHANGELOG.md begins with `{first}`, and the version is {version}"));
     };
     let is_date = date.len() == 10 && date.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-');
-    if is_date { Ok(()) } else { Err(format!("CHANGELOG.md says `{date}` where the date of {version} belongs")) }
+    if is_date {
+        Ok(())
+    } else {
+        Err(format!("CHANGELOG.md says `{date}` where the date of {version} belongs"))
+    }
 }
 
 fn tests() -> Result<(), Error> {
@@ -166,7 +195,11 @@ fn materials() -> Result<(), Error> {
         fs::rename(bill, &to).map_err(|source| Error::of_file(bill, source))?;
     }
     println!("{}: {} bills of materials", place.display(), written.len());
-    if written.is_empty() { Err(Error::Unfit { wrong: "no bill of materials was written".to_owned() }) } else { Ok(()) }
+    if written.is_empty() {
+        Err(Error::Unfit { wrong: "no bill of materials was written".to_owned() })
+    } else {
+        Ok(())
+    }
 }
 
 /// The name that a bill of materials has beside the manifest of its package.
@@ -208,6 +241,9 @@ mod tests_of_the_list {
     #[test]
     fn a_point_that_is_not_on_the_list_is_refused() {
         let message = run(&["wheels".to_owned()]).unwrap_err().to_string();
-        assert!(message.starts_with("there is no point `wheels`; there are tree, version, tests, "), "{message}");
+        assert!(
+            message.starts_with("there is no point `wheels`; there are tree, version, tests, "),
+            "{message}"
+        );
     }
 }
