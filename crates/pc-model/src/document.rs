@@ -1,7 +1,7 @@
 //! The text of a model as a typed document: every entry with its place, names not yet resolved.
 //!
 //! TOML becomes a [`Document`]. Read the result first: `expression`, with the places that `text_map` finds in
-//! the file, and `contents`, section by section. Then see how it is read: `reading` reads bytes, `syntax` TOML, `reader`
+//! the file, and `contents`, section by section; `run_settings` has the defaults of a run. Then see how it is read: `reading` reads bytes, `syntax` TOML, `reader`
 //! gives typed access to it, `hidden` lists characters that labels cannot have; `sections`, `bodies`, `tree` with its
 //! `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation`, with its `tolerance`s, read the sections,
 //! `hanging` declares the coordinates of joints, `checks` tests conditions between the sections, and `parse` combines
@@ -21,6 +21,7 @@ pub(crate) mod loops;
 pub(crate) mod parse;
 pub(crate) mod reader;
 pub(crate) mod reading;
+pub(crate) mod run_settings;
 pub(crate) mod schema;
 pub(crate) mod sections;
 pub(crate) mod simulation;
@@ -30,9 +31,8 @@ pub(crate) mod tolerance;
 pub(crate) mod tree;
 
 pub use contents::{
-    Algebra, AlgebraDefinition, Body, Bracket, Constraint, ConstraintKind, Document, Event, Gravity,
-    HamiltonJacobi, Heading, Input, InputValue, Lagrangian, Orientation, QuasiVelocity, Simulation, State,
-    TableFile,
+    Algebra, AlgebraDefinition, Body, Bracket, Constraint, DeclaredKind, Document, Event, Gravity,
+    HamiltonJacobi, Heading, Input, InputValue, Lagrangian, Orientation, QuasiVelocity, State, TableFile,
 };
 pub use draw::{Draw, DrawnPlace, DrawnShape};
 pub use expression::{Expression, Located, Name, NamedExpression};
@@ -40,6 +40,7 @@ pub use hidden::is_hidden;
 pub use inertia::Inertia;
 pub use joints::{Joint, JointKind, JointRotation, Point, TreeBody, WORLD};
 pub use reading::{MOST_BYTES, read_bounded, read_file_bounded};
+pub use run_settings::Simulation;
 pub use schema::SCHEMA;
 pub use simulation::MOST_SAMPLES;
 pub use text_map::TextMap;

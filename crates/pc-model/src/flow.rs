@@ -1,6 +1,6 @@
 //! The vector field that is integrated, its events, and the columns of a table of its states.
 //!
-//! An [`Assembly`](crate::Assembly) becomes a [`Flow`](flow::Flow). Read `variables` first, the equations in the variables of their state, `free_form`,
+//! An [`Assembly`](crate::Assembly) becomes a [`Flow`](flow::Flow). Read `equations_of_forms` first, the equations in the variables of their state, `free_form`,
 //! the equations of independent quasi-velocities, whose start is given by `formulas`, and `compile`, their motion, evaluated at the start; `reading`
 //! converts states to coordinates, quasi-velocities and first-order states; `events` are the model's events on them, `constrained_resets` the states
 //! that constraints allow after these, and `flow` combines all of these; `tolerances` are by the scales of a flow; `prototype` gives a flow other
@@ -8,6 +8,7 @@
 
 pub(crate) mod compile;
 pub(crate) mod constrained_resets;
+pub(crate) mod equations_of_forms;
 pub(crate) mod event_slopes;
 pub(crate) mod events;
 pub(crate) mod flow;
@@ -17,4 +18,3 @@ pub(crate) mod prototype;
 pub(crate) mod reading;
 pub(crate) mod start_slopes;
 pub(crate) mod tolerances;
-pub(crate) mod variables;

@@ -1,7 +1,7 @@
 //! A model: a document with the values of its parameters, and errors located in it.
 //!
 //! A [`Document`](crate::Document) becomes a [`Model`](model::Model), from which equations are derived. Read
-//! `model` first; `blame` finds the entry in the file that causes an error of the derivation, `start` changes
+//! `model` first; `blame` finds the entry in the file that causes an error of the derivation, `start_values` changes
 //! the start values, `given` and `choices` are quasi-velocities requested in addition to those of the text,
 //! `builtin` are the models that come with the library, and `tags` groups them by keywords.
 
@@ -10,5 +10,5 @@ pub(crate) mod builtin;
 pub(crate) mod choices;
 pub(crate) mod given;
 pub(crate) mod model;
-pub(crate) mod start;
+pub(crate) mod start_values;
 pub(crate) mod tags;

@@ -18,7 +18,7 @@
 //!
 //! ```
 //! use pc_mech::{Constraint, Graph, System};
-//! use pc_nonholo::{ConstraintClassification, Kind};
+//! use pc_nonholo::{ConstraintClassification, ConstraintKind};
 //!
 //! let graph = Graph::new();
 //! let particle = System::builder(&graph)
@@ -31,11 +31,11 @@
 //! // ż = y ẋ binds no positions; ż = y ẋ + x ẏ is z = x y + const.
 //! let knife = Constraint::new("knife", vz - y * vx);
 //! let classification = ConstraintClassification::new(&particle, &[knife], &at)?;
-//! assert!(matches!(classification.kinds(), [Kind::Nonholonomic { .. }]));
+//! assert!(matches!(classification.kinds(), [ConstraintKind::Nonholonomic { .. }]));
 //! let saddle = Constraint::new("saddle", vz - y * vx - x * vy);
 //! let again = Constraint::new("again", 2.0 * vz - 2.0 * y * vx - 2.0 * x * vy);
 //! let classification = ConstraintClassification::new(&particle, &[saddle, again], &at)?;
-//! assert_eq!(classification.kinds(), [Kind::Integrable]);
+//! assert_eq!(classification.kinds(), [ConstraintKind::Integrable]);
 //! assert_eq!(classification.redundant()[0].follows_from, ["saddle"]);
 //! # Ok::<(), pc_nonholo::NonholoError>(())
 //! ```
@@ -184,7 +184,7 @@ mod n_trailer;
 mod reduction;
 
 pub use classification::binding::{Binding, Redundant};
-pub use classification::classification::{ConstraintClassification, Kind};
+pub use classification::classification::{ConstraintClassification, ConstraintKind};
 pub use classification::combinations::IntegrableCombination;
 pub use error::NonholoError;
 pub use n_trailer::{NTrailer, Wagon};

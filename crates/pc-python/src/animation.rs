@@ -1,7 +1,7 @@
 //! Pages for a browser: all that is known of a model, and its motion alone; and the panels of a picture.
 
 use pc_report::picture::{Content, Panel, Picture, Scale, Wanted};
-use pc_report::{Columns, Kind, Record, Samples, Scene, animation, report};
+use pc_report::{ColumnKind, Columns, Recording, Samples, Scene, animation, report};
 use pyo3::prelude::*;
 
 use crate::system::SystemCore;
@@ -23,26 +23,26 @@ pub(crate) struct Recorded {
     remark: Option<String>,
 }
 
-impl From<Recorded> for Record {
-    fn from(recorded: Recorded) -> Record {
+impl From<Recorded> for Recording {
+    fn from(recorded: Recorded) -> Recording {
         let columns = |kind, list| Columns { kind, list };
-        Record {
+        Recording {
             rows: Samples {
                 times: recorded.t,
                 columns: vec![
-                    columns(Kind::Coordinates, recorded.coordinates),
-                    columns(Kind::QuasiVelocities, recorded.quasi_velocities),
-                    columns(Kind::States, recorded.states),
-                    columns(Kind::Conserved, recorded.conserved),
-                    columns(Kind::Outputs, recorded.outputs),
-                    columns(Kind::Derivatives, recorded.derivatives),
-                    columns(Kind::Errors, recorded.errors),
+                    columns(ColumnKind::Coordinates, recorded.coordinates),
+                    columns(ColumnKind::QuasiVelocities, recorded.quasi_velocities),
+                    columns(ColumnKind::States, recorded.states),
+                    columns(ColumnKind::Conserved, recorded.conserved),
+                    columns(ColumnKind::Outputs, recorded.outputs),
+                    columns(ColumnKind::Derivatives, recorded.derivatives),
+                    columns(ColumnKind::Errors, recorded.errors),
                 ],
             },
             events: recorded.events,
             keeps_energy: recorded.keeps_energy,
             remark: recorded.remark,
-            ..Record::default()
+            ..Recording::default()
         }
     }
 }
@@ -79,7 +79,7 @@ fn drawn(panel: Panel) -> Drawn {
 impl SystemCore {
     /// The page of a motion; None if there is nothing to be drawn.
     fn animation_page(&self, py: Python<'_>, recorded: Recorded) -> PyResult<Option<String>> {
-        let record = Record::from(recorded);
+        let record = Recording::from(recorded);
         self.derive(py, move |model| {
             model.derived(|assembly| {
                 let scene = Scene::of(model, assembly, &record)?;
@@ -90,7 +90,7 @@ impl SystemCore {
 
     /// The page of the model, with a motion where there is one.
     fn report_page(&self, py: Python<'_>, recorded: Option<Recorded>) -> PyResult<String> {
-        let record = recorded.map(Record::from);
+        let record = recorded.map(Recording::from);
         self.derive(py, move |model| model.derived(|assembly| Ok(report(model, assembly, record.as_ref())?)))
     }
 }

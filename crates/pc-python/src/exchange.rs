@@ -8,7 +8,7 @@ use pc_fmu::{FmiVersion, Fmu, FmuOptions, FmuSolver};
 use pc_model::import::model_of_urdf;
 use pc_model::{Source, deep};
 use pc_run::files::error::FileError;
-use pc_run::files::place::Place;
+use pc_run::files::target::Target;
 use pc_verify::Outlet;
 use pyo3::prelude::*;
 
@@ -75,7 +75,7 @@ impl ModelCore {
         let cancel = renewed(&mut model);
         let work = move || {
             deep(|| {
-                let place = Place::regular(&path).map_err(|source| FileError::no_place(&path, source))?;
+                let place = Target::regular(&path).map_err(|source| FileError::no_place(&path, source))?;
                 let graph = model.graph();
                 let assembly = model.assemble(&graph)?;
                 if verify {

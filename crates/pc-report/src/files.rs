@@ -10,6 +10,6 @@ mod pdf;
 mod png;
 
 pub use error::PictureError;
-pub use gif::{frames, gif, nearest};
+pub use gif::{gif, nearest, stills};
 pub use pdf::pdf;
 pub use png::png;

@@ -1,6 +1,6 @@
 //! Everything known about a model, on one page.
 //!
-//! A [`Model`](pc_model::Model) and, if it was integrated, the [`Record`] of its motion become [one
+//! A [`Model`](pc_model::Model) and, if it was integrated, the [`Recording`] of its motion become [one
 //! page](report()) for a browser: the text of the model, frame and operators, verdicts, equations in every
 //! form that applies, brackets, integrals, steady motions, plots. The page is self-contained and readable
 //! without scripts; where scripts run, it plays the motion ([`animation`] is the player alone). A [`Check`]
@@ -28,18 +28,18 @@ mod check;
 mod error;
 #[cfg(feature = "files")]
 pub mod files;
-mod frame;
 mod page;
 pub mod picture;
-mod record;
+mod recording;
 mod remarks;
 mod scene;
+mod still;
 
 pub use check::check::Check;
 pub use check::findings::Finding;
 pub use error::ReportError;
 pub use page::player::animation;
 pub use page::report::report;
-pub use record::{Columns, Kind, Record, Samples, UnknownColumn};
+pub use recording::{ColumnKind, Columns, Recording, Samples, UnknownColumn};
 pub use remarks::{NEGATIVE_ENERGY, changing_masses, dropped};
 pub use scene::{Scene, SceneShape};

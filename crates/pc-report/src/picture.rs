@@ -1,6 +1,6 @@
 //! Pictures: of a motion, of a sweep, of eigenvalues, for a page and for files.
 //!
-//! A [`Record`](crate::Record) becomes [`Panel`]s of curves that one scale shows well, several panels become
+//! A [`Recording`](crate::Recording) becomes [`Panel`]s of curves that one scale shows well, several panels become
 //! a [`Picture`], and that a [`Drawing`]: lines, areas and texts that can be written in any format. Read
 //! `panel`, the contents of common axes; `scales`, which curves share them; `motion`, the panels of a motion;
 //! `axes`, round numbers; `simplify`, the visible points; `chart`, a panel drawn; `drawing` and `svg`, the

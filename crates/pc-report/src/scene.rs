@@ -5,12 +5,12 @@ use pc_mech::{Expr, MechError};
 use pc_model::{Assembly, Model, ModelError, Shape};
 use serde_json::{Value, json};
 
-use crate::record::Record;
+use crate::recording::Recording;
 
-/// The most numbers of all frames together: a third of a megabyte.
+/// The most numbers of all stills together: a third of a megabyte.
 const MOST_NUMBERS: usize = 60_000;
 
-/// A shape; its numbers are stored in the frames, shape after shape.
+/// A shape; its numbers are stored in the stills, shape after shape.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneShape {
     /// Three numbers: a dot, with a label.
@@ -34,7 +34,7 @@ pub enum SceneShape {
 }
 
 impl SceneShape {
-    /// The number of its values in each frame.
+    /// The number of its values in each still.
     pub fn numbers(&self) -> usize {
         match self {
             SceneShape::Point(_) | SceneShape::Trace | SceneShape::Text(_) => 3,
@@ -92,10 +92,10 @@ fn shown(rows: usize, width: usize) -> Vec<usize> {
 pub struct Scene {
     /// The shapes.
     pub shapes: Vec<SceneShape>,
-    /// The times of the frames.
+    /// The times of the stills.
     pub times: Vec<f64>,
-    /// The numbers of all shapes, frame by frame.
-    pub frames: Vec<f32>,
+    /// The numbers of all shapes, still by still.
+    pub stills: Vec<f32>,
     /// The acceleration of gravity at the start; up is opposite to it.
     pub gravity: [f64; 3],
 }
@@ -106,7 +106,11 @@ impl Scene {
     ///
     /// # Errors
     /// [`ModelError`] if the shapes cannot be resolved or compiled.
-    pub fn of(model: &Model, assembly: &Assembly<'_>, record: &Record) -> Result<Option<Scene>, ModelError> {
+    pub fn of(
+        model: &Model,
+        assembly: &Assembly<'_>,
+        record: &Recording,
+    ) -> Result<Option<Scene>, ModelError> {
         let drawing = model.drawing(assembly)?;
         if drawing.is_empty() || record.rows.times.is_empty() {
             return Ok(None);
@@ -131,14 +135,14 @@ impl Scene {
         let program = assembly.placed(Program::new(graph, &inputs, &functions).map_err(MechError::from))?;
         let mut evaluator = Evaluator::new(program, Backend::Interpreter);
         let numbers: Vec<f64> = system.parameters().iter().map(|&(_, value)| value).collect();
-        let (mut values, mut frames) = (vec![0.0; functions.len()], Vec::new());
+        let (mut values, mut stills) = (vec![0.0; functions.len()], Vec::new());
         let shown = shown(record.rows.times.len(), functions.len());
         for &i in &shown {
             let t = record.rows.times[i];
             let state: Vec<f64> =
                 columns.iter().map(|column| column.map_or(f64::NAN, |values| values[i])).collect();
             evaluator.eval(t, &state, &numbers, &mut values);
-            frames.extend(values.iter().map(|&value| value as f32));
+            stills.extend(values.iter().map(|&value| value as f32));
         }
         let mut at = assembly.at_start();
         at.extend(system.parameters());
@@ -146,12 +150,12 @@ impl Scene {
         Ok(Some(Scene {
             shapes: drawing.into_iter().map(SceneShape::from).collect(),
             times: shown.iter().map(|&i| record.rows.times[i]).collect(),
-            frames,
+            stills,
             gravity: [gravity[0], gravity[1], gravity[2]],
         }))
     }
 
-    /// The numbers of all shapes in a frame.
+    /// The numbers of all shapes in a still.
     pub fn width(&self) -> usize {
         self.shapes.iter().map(SceneShape::numbers).sum()
     }
@@ -172,7 +176,7 @@ impl Scene {
             "shapes": shapes,
             "gravity": self.gravity,
             "times": base64(&single),
-            "frames": base64(&self.frames),
+            "frames": base64(&self.stills),
         })
     }
 }

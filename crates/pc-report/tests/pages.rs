@@ -6,7 +6,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use pc_model::{Builtin, Document, Model, Source};
-use pc_report::{Columns, Kind, Record, ReportError, Samples, report};
+use pc_report::{ColumnKind, Columns, Recording, ReportError, Samples, report};
 use roxmltree::{Document as Xml, Node, ParsingOptions};
 
 /// The page as XML.
@@ -25,7 +25,7 @@ fn model(text: &str) -> Model {
     Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
 }
 
-fn paged(model: &Model, record: Option<&Record>) -> Result<String, ReportError> {
+fn paged(model: &Model, record: Option<&Recording>) -> Result<String, ReportError> {
     model.derived(|assembly| report(model, assembly, record))
 }
 
@@ -34,18 +34,21 @@ fn builtin(name: &str) -> Model {
 }
 
 /// A motion of three rows.
-fn record() -> Record {
+fn record() -> Recording {
     let column = |name: &str, values: [f64; 3]| (name.to_owned(), values.to_vec());
-    Record {
+    Recording {
         rows: Samples {
             times: vec![0.0, 0.5, 1.0],
             columns: vec![
                 Columns {
-                    kind: Kind::Coordinates,
+                    kind: ColumnKind::Coordinates,
                     list: vec![column("x", [1.0, 0.0, -1.0]), column("φ", [0.0, 100.0, 200.0])],
                 },
-                Columns { kind: Kind::QuasiVelocities, list: vec![column("x'", [0.0, -3.0, 0.0])] },
-                Columns { kind: Kind::Conserved, list: vec![column("energy", [2.0, 2.0 + 2e-12, 2.0])] },
+                Columns { kind: ColumnKind::QuasiVelocities, list: vec![column("x'", [0.0, -3.0, 0.0])] },
+                Columns {
+                    kind: ColumnKind::Conserved,
+                    list: vec![column("energy", [2.0, 2.0 + 2e-12, 2.0])],
+                },
             ],
         },
         fine: None,

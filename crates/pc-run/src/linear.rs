@@ -1,6 +1,6 @@
 //! Linearizations and equilibria of a model, for people and for programs.
 //!
-//! A model becomes a linearizer with its start (`ground`), with which `pc_analysis` computes at the requested `state`, also with other values
+//! A model becomes a linearizer with its start (`linearizable`), with which `pc_analysis` computes at the requested `state`, also with other values
 //! (`near`). One linearization is `linearized`, printed as `text` or `json`; `compared` has its matrices compared with a second derivation.
 //! `locus` is the table of eigenvalues over a parameter, `found` the list of equilibria. `arrays` are their numbers, and `output` writes
 //! files; `error` lists the errors.
@@ -9,8 +9,8 @@ mod arrays;
 mod compared;
 pub mod error;
 pub mod found;
-pub(crate) mod ground;
 mod json;
+pub(crate) mod linearizable;
 pub mod linearized;
 pub mod locus;
 pub(crate) mod near;

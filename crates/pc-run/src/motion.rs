@@ -4,7 +4,7 @@
 //! continue an interrupted run; `sensitivities` are derivatives with respect to parameters, `estimate` the global
 //! errors; `streamed` is a motion whose rows are written at once. `verification` compares it with a second derivation, `remarks` are notes on the equations. `lost_integral`
 //! finds, at some `step_states`, an integral that was proved to be kept and is `lost`; `lost_inertia` finds why a mass matrix became singular. `fine` is the motion between its
-//! rows, for pictures; `table` and `run` are the results, which `output` writes, `summary` puts into words and `record` prepares for pages and pictures.
+//! rows, for pictures; `table` and `run` are the results, which `output` writes, `summary` puts into words and `recording` prepares for pages and pictures.
 
 pub mod checkpoint_error;
 pub mod checkpoints;
@@ -17,7 +17,7 @@ pub mod lost;
 mod lost_inertia;
 mod lost_integral;
 mod output;
-mod record;
+mod recording;
 pub mod remarks;
 pub mod run;
 mod sensitivities;

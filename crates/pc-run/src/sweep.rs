@@ -1,8 +1,8 @@
 //! One model for many values of parameters and starts, in one table.
 //!
-//! Read `design` first, the values of the members, each of a grid of `values` or drawn by a `law`; `of` is what is computed for each.
+//! Read `design` first, the values of the members, each of a grid of `values` or drawn by a `law`, as they are `written`; `of` is what is computed for each.
 //! `members` are their models; `work` is done for each, and is one of `motions`, `linearizations` and `checks`; `record` is its result,
-//! kept in a `journal` on disk until the `output` is made, row by row of a `sheet`, and the `picture`, which has a `picture_error`. All
+//! kept in a `journal` on disk until the `output` is made, row by row of a `sweep_columns`, and the `picture`, which has a `picture_error`. All
 //! this is the `whole`, or a `shard` of it; `shards` are all shards together. `error` lists the errors.
 
 mod checks;
@@ -20,9 +20,10 @@ pub mod picture_error;
 pub mod record;
 pub mod shard;
 pub mod shards;
-pub mod sheet;
+pub mod sweep_columns;
 pub mod values;
 mod whole;
 mod work;
+pub mod written;
 
 pub use whole::{Sweep, SweepWishes, Swept};

@@ -10,8 +10,8 @@ use crate::dop853::setup::Dop853;
 #[cfg(not(feature = "cvode"))]
 use crate::error::InputError;
 use crate::error::{IntegrationError, SolveError};
+use crate::integration::integration_method::IntegrationMethod;
 use crate::integration::limits::Limits;
-use crate::integration::method::IntegrationMethod;
 use crate::integration::since::Since;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};

@@ -2,7 +2,7 @@
 //!
 //! A [`VectorField`](pc_expr::VectorField), a start and a method give states, occurrences and
 //! [`Statistics`](statistics::Statistics). Read `stepper` first, the interface of a method, and
-//! `method`, which starts one; then `integration`, which is built on them: `front` makes a step and
+//! `integration_method`, which starts one; then `integration`, which is built on them: `front` makes a step and
 //! searches it for events, `run` goes from event to event, `step` gives single steps and their
 //! polynomials, `occur` applies events, `saltation` their effect on derivatives, `held_sides` which
 //! pieces of a field it is on, `sides` how it continues at a surface between two; an `observer` is told
@@ -18,8 +18,8 @@ pub(crate) mod fn_field;
 pub(crate) mod front;
 pub(crate) mod held_sides;
 pub(crate) mod integration;
+pub(crate) mod integration_method;
 pub(crate) mod limits;
-pub(crate) mod method;
 pub(crate) mod observer;
 pub(crate) mod occur;
 pub(crate) mod pace;

@@ -12,8 +12,8 @@ use pc_expr::{Failure, VectorField};
 use crate::error::{NonFinite, Reason, SolveError};
 use crate::integration::breaks::next_break;
 use crate::integration::checks::{check_inequalities, check_start, finite, positive};
+use crate::integration::integration_method::IntegrationMethod;
 use crate::integration::limits::Limits;
-use crate::integration::method::IntegrationMethod;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 

@@ -35,7 +35,7 @@ pub(crate) fn engine(
 
 /// A solver's record of its events: the same amount however often they occur.
 #[derive(Default)]
-pub(crate) struct Record {
+pub(crate) struct EventLog {
     /// How often each has occurred.
     pub(crate) counts: Vec<u64>,
     /// The last occurrence of each.
@@ -52,9 +52,9 @@ pub(crate) struct Observer {
     pub(crate) user: User,
 }
 
-impl Record {
-    fn of(events: usize) -> Record {
-        Record { counts: vec![0; events], last: vec![None; events], ..Record::default() }
+impl EventLog {
+    fn of(events: usize) -> EventLog {
+        EventLog { counts: vec![0; events], last: vec![None; events], ..EventLog::default() }
     }
 
     fn note(&mut self, occurrence: &Occurrence) -> ControlFlow<()> {
@@ -79,7 +79,7 @@ pub(crate) struct Integration {
     sensitivities: Sensitivities,
     /// The work before the last restart.
     earlier: Statistics,
-    pub(crate) record: Record,
+    pub(crate) record: EventLog,
 }
 
 impl Integration {
@@ -91,7 +91,7 @@ impl Integration {
     ) -> Result<Integration, SolveError> {
         let sensitivities = Sensitivities::new();
         let engine = engine(field, from, &options, events.clone(), &sensitivities)?;
-        let record = Record::of(events.events().len());
+        let record = EventLog::of(events.events().len());
         Ok(Integration { engine, events, options, sensitivities, earlier: Statistics::default(), record })
     }
 

@@ -7,7 +7,6 @@ use pc_run::sweep::values::Vary;
 
 use crate::args::options::{self, ModelArguments, VerifyArguments};
 use crate::args::steady::StateArguments;
-use crate::args::sweep;
 
 /// How a table of matrices is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -40,7 +39,7 @@ pub struct LinearizeArguments {
     #[command(flatten)]
     pub state: StateArguments,
     /// Follow the eigenvalues over N evenly spaced values of a parameter or start value, both ends included: the root locus
-    #[arg(long, value_name = "NAME=FROM:TO:N", value_parser = sweep::vary)]
+    #[arg(long, value_name = "NAME=FROM:TO:N")]
     pub vary: Option<Vary>,
     /// How to print
     #[arg(long, value_name = "FORMAT", conflicts_with = "output")]

@@ -9,10 +9,10 @@ use pc_model::Variables;
 use pc_run::Wishes;
 use pc_run::sweep::SweepWishes;
 use pc_run::sweep::design::Variation;
-use pc_run::sweep::law::{Law, LawError, Random};
+use pc_run::sweep::law::Random;
 use pc_run::sweep::of::SweepOf;
 use pc_run::sweep::shard::Shard;
-use pc_run::sweep::values::{Values, Vary};
+use pc_run::sweep::values::Vary;
 
 use crate::args::examples;
 use crate::args::forms::{by_word, run_form};
@@ -46,10 +46,10 @@ pub struct SweepArguments {
     pub of: SweepOf,
     /// Vary a parameter or start value: FROM:TO:N evenly spaced values, both ends included; FROM:TO:N:log with a constant ratio; or
     /// a list A,B,… (repeatable)
-    #[arg(long, value_name = "NAME=FROM:TO:N", value_parser = vary, conflicts_with = "random")]
+    #[arg(long, value_name = "NAME=FROM:TO:N", conflicts_with = "random")]
     pub vary: Vec<Vary>,
     /// Draw a parameter or start value: normal(m,s), uniform(a,b) or lognormal(m,s) (repeatable)
-    #[arg(long, value_name = "NAME=DISTRIBUTION", value_parser = random, requires = "samples")]
+    #[arg(long, value_name = "NAME=DISTRIBUTION", requires = "samples")]
     pub random: Vec<Random>,
     /// Number of randomly drawn members
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "random", conflicts_with = "vary")]
@@ -180,131 +180,4 @@ fn sweep_of() -> impl TypedValueParser<Value = SweepOf> {
         };
         (of.word(), help, of)
     }))
-}
-
-pub(crate) fn vary(text: &str) -> Result<Vary, String> {
-    let usage = || {
-        "write NAME=FROM:TO:N, NAME=FROM:TO:N:log or NAME=A,B,…, as in `--vary m=1:2:11` or `--vary m=1,2,5`"
-            .to_owned()
-    };
-    let (name, values) = text.split_once('=').ok_or_else(usage)?;
-    let parts: Vec<&str> = values.split(':').map(str::trim).collect();
-    let values = match &parts[..] {
-        [from, to, count] => range(from, to, count, false)?,
-        [from, to, count, "log"] => range(from, to, count, true)?,
-        [values] if values.contains(',') => list(values)?,
-        _ => return Err(usage()),
-    };
-    match name.trim() {
-        "" => Err(usage()),
-        name => Ok(Vary { name: name.to_owned(), values }),
-    }
-}
-
-fn range(from: &str, to: &str, count: &str, is_logarithmic: bool) -> Result<Values, String> {
-    let (from, to) = (options::finite(from)?, options::finite(to)?);
-    let count = count.parse().ok().filter(|&count: &u64| count > 0);
-    let count = count.ok_or("the number of values must be a whole number, at least 1")?;
-    if count == 1 && from != to {
-        return Err(
-            "one value cannot be at both ends; give 2 values, or the same number at both ends".to_owned()
-        );
-    }
-    if is_logarithmic {
-        if from == 0.0 || to == 0.0 || (from > 0.0) != (to > 0.0) {
-            return Err("a logarithmic range lies on one side of 0".to_owned());
-        }
-        return Ok(Values::Logarithmic(from, to, count));
-    }
-    if !(to - from).is_finite() {
-        return Err("the range is too large".to_owned());
-    }
-    Ok(Values::Even(from, to, count))
-}
-
-fn list(values: &str) -> Result<Values, String> {
-    let list =
-        values.split(',').map(|value| options::finite(value.trim())).collect::<Result<Vec<f64>, _>>()?;
-    match list.iter().enumerate().find(|(i, value)| list[..*i].contains(value)) {
-        Some((_, value)) => Err(format!("the value {value} is given twice")),
-        None => Ok(Values::List(list)),
-    }
-}
-
-fn random(text: &str) -> Result<Random, String> {
-    let usage = || "write NAME=normal(m,s), NAME=uniform(a,b) or NAME=lognormal(m,s)".to_owned();
-    let (name, law) = text.split_once('=').ok_or_else(usage)?;
-    let (kind, numbers) =
-        law.trim().strip_suffix(')').and_then(|law| law.split_once('(')).ok_or_else(usage)?;
-    let (a, b) = numbers.split_once(',').ok_or_else(usage)?;
-    let (a, b) = (options::finite(a.trim())?, options::finite(b.trim())?);
-    let law = Law::of(kind.trim(), a, b).map_err(|error| match error {
-        LawError::Unknown { .. } => usage(),
-        LawError::Deviation | LawError::Bounds => error.to_string(),
-    })?;
-    match name.trim() {
-        "" => Err(usage()),
-        name => Ok(Random { name: name.to_owned(), law }),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn variations_are_shown_as_they_are_written() {
-        for text in ["m=1:2:3", "m=0.001:10:5:log", "m=5,1,-2"] {
-            assert_eq!(vary(text).map(|vary| vary.to_string()), Ok(text.to_owned()));
-        }
-        assert_eq!(
-            random("x=normal(0, 0.1)").map(|random| random.to_string()),
-            Ok("x=normal(0,0.1)".to_owned())
-        );
-    }
-
-    #[test]
-    fn variations_are_read_or_refused() {
-        let m = |values| Vary { name: "m".to_owned(), values };
-        assert_eq!(vary("m=1:2:11"), Ok(m(Values::Even(1.0, 2.0, 11))));
-        assert_eq!(vary("m = -1e3 : -1e3 : 1"), Ok(m(Values::Even(-1e3, -1e3, 1))));
-        assert_eq!(vary("m=1e-3:10:5:log"), Ok(m(Values::Logarithmic(1e-3, 10.0, 5))));
-        assert_eq!(vary("m = 5, 1,-2"), Ok(m(Values::List(vec![5.0, 1.0, -2.0]))));
-        for wrong in [
-            "m",
-            "m=1:2",
-            "m=1:2:0",
-            "m=1:2:1",
-            "m=1:2:-3",
-            "m=1:inf:3",
-            "m=1:2:3:4",
-            "=1:2:3",
-            "m=-1e308:1e308:3",
-            "m=1",
-            "m=1,",
-            "m=1,2,1",
-            "m=1,nan",
-            "m=0:1:3:log",
-            "m=-1:1:3:log",
-            "m=1:0:3:log",
-            "m=1:2:3:lin",
-        ] {
-            assert!(vary(wrong).is_err(), "{wrong}");
-        }
-        let x = |law| Random { name: "x".to_owned(), law };
-        assert_eq!(random("x=normal(0, 0.1)"), Ok(x(Law::Normal(0.0, 0.1))));
-        assert_eq!(random("x=uniform(-1,1)"), Ok(x(Law::Uniform(-1.0, 1.0))));
-        assert_eq!(random("x=lognormal(0,1)"), Ok(x(Law::LogNormal(0.0, 1.0))));
-        for wrong in [
-            "x",
-            "x=normal",
-            "x=normal(0)",
-            "x=normal(0,-1)",
-            "x=uniform(1,0)",
-            "x=cauchy(0,1)",
-            "=normal(0,1)",
-        ] {
-            assert!(random(wrong).is_err(), "{wrong}");
-        }
-    }
 }

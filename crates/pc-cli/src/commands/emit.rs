@@ -16,7 +16,7 @@ use crate::output::standard_output::print;
 use crate::terminal::observer::Terminal;
 use crate::terminal::text::say;
 use pc_run::files::error::FileError;
-use pc_run::files::place::{Place, file};
+use pc_run::files::target::{Target, file};
 use pc_run::motion::remarks::{choice, say_dropped, say_moved};
 use pc_run::motion::verification::vouched;
 use pc_run::observer::Observer;
@@ -84,7 +84,7 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     let mut places = Vec::new();
     for file in &files {
         let path = directory.join(&file.name);
-        places.push(Place::regular(&path).map_err(|source| FileError::cannot_write(&path, source))?);
+        places.push(Target::regular(&path).map_err(|source| FileError::cannot_write(&path, source))?);
     }
     for (file, place) in files.iter().zip(&places) {
         let path = place.path();

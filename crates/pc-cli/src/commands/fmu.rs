@@ -14,7 +14,7 @@ use crate::error::CliError;
 use crate::terminal::observer::Terminal;
 use crate::terminal::text::say;
 use pc_run::files::error::FileError;
-use pc_run::files::place::Place;
+use pc_run::files::target::Target;
 use pc_run::motion::remarks::{choice, say_dropped, say_moved};
 use pc_run::motion::verification::vouched;
 use pc_run::observer::Observer;
@@ -29,7 +29,7 @@ pub fn command(arguments: &EmitArguments, version: FmuVersion) -> Result<(), Cli
         let (option, path, expected) = ("--output", path.clone(), ".fmu".to_owned());
         return Err(FileError::UnknownExtension { option, path, expected }.into());
     }
-    let place = Place::regular(path).map_err(|source| FileError::cannot_write(path, source))?;
+    let place = Target::regular(path).map_err(|source| FileError::cannot_write(path, source))?;
     let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == Variables::Given)?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;

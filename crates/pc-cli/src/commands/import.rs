@@ -6,7 +6,7 @@ use pc_model::Source;
 use pc_model::document::{read_bounded, read_file_bounded};
 use pc_model::import::model_of_urdf;
 use pc_run::files::error::FileError;
-use pc_run::files::place::{Place, file};
+use pc_run::files::target::{Target, file};
 
 use crate::args::options::ImportArguments;
 use crate::error::CliError;
@@ -20,7 +20,7 @@ use crate::terminal::text::say;
 pub fn command(arguments: &ImportArguments) -> Result<(), CliError> {
     let path = file(Some(&arguments.file));
     let name = path.map_or("<stdin>".to_owned(), |path| path.display().to_string());
-    let place = file(arguments.output.as_deref()).map(|output| (output, Place::new(output)));
+    let place = file(arguments.output.as_deref()).map(|output| (output, Target::new(output)));
     let place = place
         .map(|(output, place)| place.map_err(|source| FileError::no_place(output, source)))
         .transpose()?;

@@ -13,7 +13,7 @@ use crate::error::CliError;
 use crate::output::standard_output::{self, print};
 use crate::terminal::text::say;
 use pc_run::files::error::FileError;
-use pc_run::files::place::{Place, file};
+use pc_run::files::target::{Target, file};
 
 /// Prints a page, or writes all of them into a directory.
 ///
@@ -30,7 +30,7 @@ pub fn command(arguments: &ManArguments) -> Result<(), CliError> {
     fs::create_dir_all(directory).map_err(|source| FileError::cannot_write(directory, source))?;
     for (name, page) in &pages {
         let path = directory.join(format!("{name}.1"));
-        let place = Place::regular(&path).map_err(|source| FileError::cannot_write(&path, source))?;
+        let place = Target::regular(&path).map_err(|source| FileError::cannot_write(&path, source))?;
         place.write(|out| out.write_all(page)).map_err(|source| FileError::cannot_write(&path, source))?;
         say(format_args!("{}\n", path.display()));
     }

@@ -11,7 +11,7 @@ use crate::error::CliError;
 use crate::output::standard_output::print;
 use crate::terminal::text::say;
 use pc_run::files::error::FileError;
-use pc_run::files::place::{Place, file};
+use pc_run::files::target::{Target, file};
 
 /// The file of the schema beside a model.
 const SCHEMA_FILE: &str = "pc-model.schema.json";
@@ -26,7 +26,7 @@ pub fn command(arguments: &NewArguments) -> Result<(), CliError> {
     let Some(path) = file(arguments.output.as_deref()) else {
         return print(|out| out.write_all(text.as_bytes()));
     };
-    let place = Place::fresh(path).map_err(|source| FileError::no_place(path, source))?;
+    let place = Target::fresh(path).map_err(|source| FileError::no_place(path, source))?;
     if arguments.schema {
         write_schema(&path.with_file_name(SCHEMA_FILE))?;
     }
@@ -48,7 +48,7 @@ fn write_schema(path: &Path) -> Result<(), CliError> {
             Ok(())
         }
         Err(_) => {
-            let place = Place::fresh(path).map_err(|source| FileError::no_place(path, source))?;
+            let place = Target::fresh(path).map_err(|source| FileError::no_place(path, source))?;
             let written = place.create(|out| out.write_all(SCHEMA.as_bytes()));
             written.map_err(|source| FileError::cannot_write(path, source).into())
         }

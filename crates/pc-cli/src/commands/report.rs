@@ -1,8 +1,8 @@
 //! `pc report`: all that is known of a model on one page; `pc animate`: its motion alone, as a page or in pictures.
 
 use pc_model::{Assembly, Model};
-use pc_report::files::{frames, nearest};
-use pc_report::{Record, Scene, animation, report};
+use pc_report::files::{nearest, stills};
+use pc_report::{Recording, Scene, animation, report};
 use pc_run::Plan;
 use pc_run::RunError;
 use pc_run::Wishes;
@@ -39,7 +39,7 @@ pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
         Err(CliError::Run(RunError::NoEnd { .. })) => None,
         run => Some(run?),
     };
-    let none = || Record { remark: Some(NO_END.to_owned()), ..Record::default() };
+    let none = || Recording { remark: Some(NO_END.to_owned()), ..Recording::default() };
     let record = run.as_ref().map_or_else(none, Run::record);
     destination.write_page(&report(&model, &assembly, Some(&record))?)?;
     Ok(run.map_or(Ok(()), Run::outcome)?)
@@ -67,7 +67,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
     let (title, times) = (model.title(), &scene.times);
     let drawing = |frame| scene.drawing(title, frame, PAPER);
     match destination.encoding() {
-        Encoding::Gif => destination.write_film(frames(times).into_iter().map(drawing))?,
+        Encoding::Gif => destination.write_film(stills(times).into_iter().map(drawing))?,
         _ if is_frame => {
             let at = arguments.at.map_or(times.len() - 1, |t| nearest(times, t));
             destination.write_plot(&drawing(at))?;

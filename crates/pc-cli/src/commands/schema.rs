@@ -8,7 +8,7 @@ use crate::args::tools::SchemaArguments;
 use crate::error::CliError;
 use crate::output::standard_output::print;
 use pc_run::files::error::FileError;
-use pc_run::files::place::{Place, file};
+use pc_run::files::target::{Target, file};
 
 /// Writes the schema.
 ///
@@ -19,7 +19,7 @@ pub fn command(arguments: &SchemaArguments) -> Result<(), CliError> {
     match file(arguments.output.as_deref()) {
         None => print(|out| out.write_all(text)),
         Some(path) => {
-            let place = Place::new(path).map_err(|source| FileError::no_place(path, source))?;
+            let place = Target::new(path).map_err(|source| FileError::no_place(path, source))?;
             place
                 .write(|out| out.write_all(text))
                 .map_err(|source| FileError::cannot_write(path, source).into())

@@ -4,7 +4,7 @@ use pc_print::{labelled, one_line};
 use pc_run::RunError;
 use pc_run::sweep::error::SweepError;
 use pc_run::sweep::journal::{Records, Tally};
-use pc_run::sweep::sheet::Sheet;
+use pc_run::sweep::sweep_columns::SweepColumns;
 use pc_run::sweep::{Sweep, Swept};
 use pc_run::sweep::{output, picture};
 use pc_run::table::file::{Format, TableFile};
@@ -64,7 +64,7 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
 pub(super) fn draw(
     place: &Destination,
     title: &str,
-    (sheet, members): (&Sheet, &dyn Records),
+    (sheet, members): (&SweepColumns, &dyn Records),
     columns: &[String],
     is_random: bool,
 ) -> Result<(), CliError> {

@@ -6,8 +6,8 @@ use std::path::Path;
 use pc_report::files::{gif, pdf, png};
 use pc_report::picture::Drawing;
 use pc_run::files::error::FileError;
-use pc_run::files::place;
-use pc_run::files::place::Place;
+use pc_run::files::target;
+use pc_run::files::target::Target;
 use pc_run::table::file::{Format, TableFile};
 
 use crate::error::CliError;
@@ -18,7 +18,7 @@ use crate::output::standard_output;
 /// # Errors
 /// [`FileError::UnknownExtension`]; [`FileError::Place`] where no file can be.
 pub fn table(path: Option<&Path>) -> Result<Option<TableFile>, FileError> {
-    place::file(path).map(|path| TableFile::new(path, Format::OF_TABLES)).transpose()
+    target::file(path).map(|path| TableFile::new(path, Format::OF_TABLES)).transpose()
 }
 
 /// How a page or a picture is encoded.
@@ -41,7 +41,7 @@ pub enum Encoding {
 pub struct Destination {
     encoding: Encoding,
     /// None for standard output.
-    place: Option<Place>,
+    place: Option<Target>,
 }
 
 impl Destination {
@@ -59,7 +59,7 @@ impl Destination {
     /// # Errors
     /// As for [`table`].
     pub fn page(path: Option<&Path>) -> Result<Destination, CliError> {
-        let Some(path) = place::file(path) else {
+        let Some(path) = target::file(path) else {
             return Ok(Destination { encoding: Encoding::Html, place: None });
         };
         Destination::file("-o", path, &[("html", Encoding::Html), ("htm", Encoding::Html)], ".html")
@@ -70,7 +70,7 @@ impl Destination {
     /// # Errors
     /// As for [`table`].
     pub fn shown(path: Option<&Path>) -> Result<Destination, CliError> {
-        let Some(path) = place::file(path) else { return Destination::page(path) };
+        let Some(path) = target::file(path) else { return Destination::page(path) };
         let encodings = [
             ("html", Encoding::Html),
             ("htm", Encoding::Html),
@@ -99,7 +99,7 @@ impl Destination {
             let expected = expected.to_owned();
             return Err(FileError::UnknownExtension { option, path: path.to_owned(), expected }.into());
         };
-        let place = Place::new(path).map_err(|source| FileError::no_place(path, source))?;
+        let place = Target::new(path).map_err(|source| FileError::no_place(path, source))?;
         Ok(Destination { encoding, place: Some(place) })
     }
 

@@ -2,7 +2,7 @@
 
 use pc_expr::SymbolPlaces;
 use pc_mech::{Constraint, ConstraintError, Equations, Expr, MechError, Multipliers, System};
-use pc_nonholo::{Adapted, Constrained, IntegrableCombination, Kind, NonholoError, Redundant};
+use pc_nonholo::{Adapted, Constrained, ConstraintKind, IntegrableCombination, NonholoError, Redundant};
 
 use crate::assembly::kept::Kept;
 
@@ -12,7 +12,7 @@ pub struct ClassifiedConstraint {
     /// Its name.
     pub constraint: String,
     /// Its kind.
-    pub kind: Kind,
+    pub kind: ConstraintKind,
 }
 
 /// The constraints of a model.
@@ -198,14 +198,15 @@ impl<'g> ConstraintTreatment<'g> {
         at: &[(Expr<'g>, f64)],
     ) -> Result<Vec<IntegrableCombination<'g>>, NonholoError> {
         let Some(multipliers) = &self.multipliers else { return Ok(Vec::new()) };
-        let kinds: Vec<Kind> = self.classified.iter().map(|verdict| verdict.kind).collect();
+        let kinds: Vec<ConstraintKind> = self.classified.iter().map(|verdict| verdict.kind).collect();
         IntegrableCombination::find(multipliers, &kinds, self.combinations, at)
     }
 
     /// The f of the conditions f(t, x) = 0 that multipliers hold, if all constraints are integrable.
     pub fn positions(&self, system: &System<'g>) -> Option<Vec<Expr<'g>>> {
-        let is_holonomic =
-            |verdict: &ClassifiedConstraint| matches!(verdict.kind, Kind::Position | Kind::Integrable);
+        let is_holonomic = |verdict: &ClassifiedConstraint| {
+            matches!(verdict.kind, ConstraintKind::Position | ConstraintKind::Integrable)
+        };
         if !self.classified.iter().all(is_holonomic) {
             return None;
         }

@@ -1,7 +1,7 @@
 //! The constraints of a model: classified, checked at the start, and given the cheapest treatment.
 
 use pc_mech::{Constraint, Expr, Multipliers, System};
-use pc_nonholo::{Constrained, ConstraintClassification, Kind, Redundant};
+use pc_nonholo::{Constrained, ConstraintClassification, ConstraintKind, Redundant};
 
 use super::trial::{StartHeld, Trial};
 use crate::assembly::assembler::Assembler;
@@ -11,7 +11,7 @@ use crate::assembly::constraint_treatment::{
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::document;
-use crate::document::ConstraintKind;
+use crate::document::DeclaredKind;
 use crate::names::stage::Stage;
 
 /// A constraint of the text with its expression, in which x' are symbols.
@@ -282,8 +282,8 @@ impl<'g> Assembler<'g, '_> {
                     .document()
                     .constraint_text(constraint.name())
                     .and_then(|text| text.kind.as_ref());
-                if let (Some(given), Kind::Nonholonomic { residual }) = (given, kind)
-                    && given.value == ConstraintKind::Holonomic
+                if let (Some(given), ConstraintKind::Nonholonomic { residual }) = (given, kind)
+                    && given.value == DeclaredKind::Holonomic
                 {
                     let constraint = constraint.name().to_owned();
                     return Err(self
@@ -299,5 +299,5 @@ impl<'g> Assembler<'g, '_> {
 
 /// Whether the text declares it as not affine in the velocities.
 fn is_called_nonlinear(constraint: &document::Constraint) -> bool {
-    constraint.kind.as_ref().is_some_and(|kind| kind.value == ConstraintKind::Nonlinear)
+    constraint.kind.as_ref().is_some_and(|kind| kind.value == DeclaredKind::Nonlinear)
 }

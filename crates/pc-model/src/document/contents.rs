@@ -1,6 +1,6 @@
 //! The text of a model as a typed document: every entry with its place, names not yet resolved.
 
-use pc_expr::{Direction, Method};
+use pc_expr::Direction;
 use pc_mech::Interpolation;
 
 use crate::diagnostics::source::{Place, Source};
@@ -8,8 +8,7 @@ use crate::document::draw::Draw;
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::inertia::Inertia;
 use crate::document::joints::{Point, TreeBody};
-use crate::document::tolerance::AbsoluteTolerance;
-use crate::variables::Variables;
+use crate::document::run_settings::Simulation;
 
 /// A model as written. Every list is in the order of the file.
 #[derive(Clone, Debug, Default)]
@@ -177,12 +176,12 @@ pub struct Constraint {
     /// The expression that stays zero.
     pub expression: Expression,
     /// The declared kind.
-    pub kind: Option<Located<ConstraintKind>>,
+    pub kind: Option<Located<DeclaredKind>>,
 }
 
 /// Whether a constraint is integrable, nonholonomic, or not affine in the velocities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ConstraintKind {
+pub enum DeclaredKind {
     /// It is integrable.
     Holonomic,
     /// It is not integrable.
@@ -270,62 +269,6 @@ pub struct Event {
     pub terminal: Option<Located<bool>>,
     /// New values; a velocity keeps its prime in the name.
     pub reset: Vec<NamedExpression>,
-}
-
-/// The settings of a run; the program chooses those left out.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Simulation {
-    /// The section's header.
-    pub place: Option<Place>,
-    /// Start time.
-    pub t_start: Option<Located<f64>>,
-    /// End time.
-    pub t_end: Option<Located<f64>>,
-    /// Number of rows, at least 2 (start and end).
-    pub samples: Option<Located<usize>>,
-    /// Relative tolerance, positive.
-    pub rtol: Option<Located<f64>>,
-    /// Absolute tolerances, positive.
-    pub atol: Option<Located<AbsoluteTolerance>>,
-    /// Largest length of a step, positive.
-    pub max_step: Option<Located<f64>>,
-    /// The number of parts of each step that are searched for events, at least 1.
-    pub samples_per_step: Option<Located<u32>>,
-    /// The fraction of the first interval between events to which the remaining time shrinks before they count as
-    /// accumulated, at least 0 and less than 1.
-    pub accumulation: Option<Located<f64>>,
-    /// Integration method.
-    pub method: Option<Located<Method>>,
-    /// Form of the equations.
-    pub form: Option<Located<Variables>>,
-    /// The quasi-velocities of the form `hamel`, as linear forms in the velocities.
-    pub hamel: Vec<NamedExpression>,
-    /// The velocities that are to be independent; the program's choice if there are none.
-    pub independent: Vec<Located<String>>,
-    /// Integrals, or `energy`, to whose values at the start the motion is projected.
-    pub project: Vec<Located<String>>,
-}
-
-impl Simulation {
-    /// The default number of rows of a table.
-    pub const ROWS: usize = 201;
-    /// The default relative tolerance.
-    pub const RELATIVE_TOLERANCE: f64 = 1e-9;
-
-    /// The start time; 0 if it is left out.
-    pub fn start_time(&self) -> f64 {
-        self.t_start.as_ref().map_or(0.0, |t| t.value)
-    }
-
-    /// The number of rows, [`ROWS`](Simulation::ROWS) if it is left out.
-    pub fn rows(&self) -> usize {
-        self.samples.as_ref().map_or(Simulation::ROWS, |samples| samples.value)
-    }
-
-    /// The relative tolerance, [`RELATIVE_TOLERANCE`](Simulation::RELATIVE_TOLERANCE) if it is left out.
-    pub fn relative_tolerance(&self) -> f64 {
-        self.rtol.as_ref().map_or(Simulation::RELATIVE_TOLERANCE, |rtol| rtol.value)
-    }
 }
 
 impl Document {

@@ -6,7 +6,7 @@ use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::document::contents::{
-    Algebra, AlgebraDefinition, Bracket, Constraint, ConstraintKind, Document, HamiltonJacobi, Heading,
+    Algebra, AlgebraDefinition, Bracket, Constraint, DeclaredKind, Document, HamiltonJacobi, Heading,
     Lagrangian, QuasiVelocity, State,
 };
 use crate::document::expression::NamedExpression;
@@ -132,9 +132,9 @@ fn constraint(item: &Item<'_>) -> Result<Constraint, ModelError> {
             "expr" => expression = Some(part.expression()?),
             "kind" => {
                 kind = Some(part.choice(&[
-                    ("holonomic", ConstraintKind::Holonomic),
-                    ("nonholonomic", ConstraintKind::Nonholonomic),
-                    ("nonlinear", ConstraintKind::Nonlinear),
+                    ("holonomic", DeclaredKind::Holonomic),
+                    ("nonholonomic", DeclaredKind::Nonholonomic),
+                    ("nonlinear", DeclaredKind::Nonlinear),
                 ])?);
             }
             _ => return Err(part.unknown(&["expr", "kind"])),

@@ -5,8 +5,9 @@ use pc_expr::{Direction, Method};
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::document::contents::{Event, Simulation};
+use crate::document::contents::Event;
 use crate::document::expression::{Located, Name, NamedExpression};
+use crate::document::run_settings::Simulation;
 use crate::document::tolerance::AbsoluteTolerance;
 use crate::variables::Variables;
 

@@ -2,7 +2,7 @@
 
 use pc_mech::{Graph, VectorField};
 use pc_model::{Category, ConstraintFormulation, Document, Model, ModelError, Source};
-use pc_nonholo::{Kind, Redundant};
+use pc_nonholo::{ConstraintKind, Redundant};
 
 use crate::verified::derived_twice;
 
@@ -386,13 +386,13 @@ fn a_kind_may_be_given() {
          \u{20}                                                     ^^^^^^^^^^^\n  \
          help: leave out its kind, or write it as a function of coordinates and t",
     );
-    assert!(matches!(kind(&given("nonholonomic")), Ok(Kind::Nonholonomic { .. })));
+    assert!(matches!(kind(&given("nonholonomic")), Ok(ConstraintKind::Nonholonomic { .. })));
     let circle =
         |kind: &str| point(BELOW, "", &format!("c = {{ expr = \"x*x' + y*y'\", kind = \"{kind}\" }}"));
     for given in ["holonomic", "nonholonomic"] {
-        assert_eq!(kind(&circle(given)).unwrap(), Kind::Integrable);
+        assert_eq!(kind(&circle(given)).unwrap(), ConstraintKind::Integrable);
     }
-    assert_eq!(kind(&point(BELOW, "", "c = \"x^2 + y^2 - 1\"")).unwrap(), Kind::Position);
+    assert_eq!(kind(&point(BELOW, "", "c = \"x^2 + y^2 - 1\"")).unwrap(), ConstraintKind::Position);
 }
 
 /// The name of a constraint may be that of something else: it is outside the namespace of expressions.
@@ -530,13 +530,16 @@ fn nonlinear_constraints_stand_beside_others() {
                 cone = { expr = \"x'^2 + y'^2 - 1\", kind = \"nonlinear\" }\nknife = \"z' - y*x'\"\n[lagrangian]\n\
                 kinetic = \"(x'^2 + y'^2 + z'^2)/2\"\n";
     let found = classified(text);
-    assert_eq!(found[0], ("cone".to_owned(), Kind::Nonlinear));
-    assert!(found[1].0 == "knife" && matches!(found[1].1, Kind::Nonholonomic { .. }), "{found:?}");
+    assert_eq!(found[0], ("cone".to_owned(), ConstraintKind::Nonlinear));
+    assert!(found[1].0 == "knife" && matches!(found[1].1, ConstraintKind::Nonholonomic { .. }), "{found:?}");
     // On a circle of the plane, a constant speed is one of the angle: the circle remains a position.
     let circle = "circle = \"x^2 + y^2 - 1\"\nspeed = { expr = \"x'^2 + z'^2 - 1\", kind = \"nonlinear\" }";
     let text = point("x = 1\ny = 0\nz = 0\n", "[quasi_velocities]\n\"z'\" = 1\n", circle);
     let found = classified(&text.replace("y'^2)", "y'^2 + z'^2)"));
-    assert_eq!(found.iter().map(|(_, kind)| *kind).collect::<Vec<_>>(), [Kind::Position, Kind::Nonlinear]);
+    assert_eq!(
+        found.iter().map(|(_, kind)| *kind).collect::<Vec<_>>(),
+        [ConstraintKind::Position, ConstraintKind::Nonlinear]
+    );
 }
 
 /// The error is located at the definition that causes it, not at the first.

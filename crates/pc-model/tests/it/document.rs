@@ -3,7 +3,7 @@
 use pc_expr::parse::{Ast, AstKind, Span};
 use pc_expr::{Direction, Method};
 use pc_model::document::{
-    AlgebraDefinition, ConstraintKind, Expression, Inertia, NamedExpression, Orientation,
+    AlgebraDefinition, DeclaredKind, Expression, Inertia, NamedExpression, Orientation,
 };
 use pc_model::{Category, Document, ErrorKind, Source, Variables};
 use proptest::prelude::*;
@@ -172,7 +172,7 @@ fn every_entry() {
     assert_eq!(given, [(false, true), (false, true), (true, false)]);
 
     let kinds: Vec<_> = document.constraints.iter().map(|c| c.kind.as_ref().map(|kind| kind.value)).collect();
-    assert_eq!(kinds, [None, Some(ConstraintKind::Holonomic), Some(ConstraintKind::Nonholonomic)]);
+    assert_eq!(kinds, [None, Some(DeclaredKind::Holonomic), Some(DeclaredKind::Nonholonomic)]);
     let AlgebraDefinition::Brackets(brackets) = document.algebra.unwrap().definition else {
         panic!("brackets")
     };

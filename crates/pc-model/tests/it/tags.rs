@@ -3,9 +3,9 @@
 use std::collections::HashSet;
 
 use pc_mech::Graph;
-use pc_model::document::ConstraintKind;
+use pc_model::document::DeclaredKind;
 use pc_model::{Builtin, Document, Model, TAGS};
-use pc_nonholo::Kind;
+use pc_nonholo::ConstraintKind;
 
 fn documents() -> Vec<(&'static Builtin, Document)> {
     let document = |model: &'static Builtin| {
@@ -49,7 +49,7 @@ fn tags_of_the_format_are_true() {
     });
     compare("nonlinear", |_, document| {
         let kinds = document.constraints.iter().filter_map(|constraint| constraint.kind.as_ref());
-        kinds.into_iter().any(|kind| kind.value == ConstraintKind::Nonlinear)
+        kinds.into_iter().any(|kind| kind.value == DeclaredKind::Nonlinear)
     });
 }
 
@@ -64,6 +64,10 @@ fn nonholonomic_models_are_those_whose_constraints_cannot_be_integrated() {
         let graph = Graph::new();
         let model_of = Model::new(document.clone());
         let assembly = model_of.assemble(&graph).unwrap_or_else(|error| panic!("{}: {error}", model.name));
-        assembly.constraints.classified().iter().any(|found| matches!(found.kind, Kind::Nonholonomic { .. }))
+        assembly
+            .constraints
+            .classified()
+            .iter()
+            .any(|found| matches!(found.kind, ConstraintKind::Nonholonomic { .. }))
     });
 }

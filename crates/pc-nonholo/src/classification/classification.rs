@@ -8,7 +8,7 @@ use crate::error::NonholoError;
 
 /// The kind of a constraint, by Frobenius' theorem.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum ConstraintKind {
     /// It binds positions, f(t, x) = 0.
     Position,
     /// It binds velocities, but together with the others it can be written f(t, x) = const: holonomic in
@@ -27,7 +27,7 @@ pub enum Kind {
 #[derive(Clone, Debug)]
 pub struct ConstraintClassification<'g> {
     multipliers: Option<Multipliers<'g>>,
-    kinds: Vec<Kind>,
+    kinds: Vec<ConstraintKind>,
     combinations: usize,
     redundant: Vec<Redundant>,
 }
@@ -78,7 +78,7 @@ impl<'g> ConstraintClassification<'g> {
     }
 
     /// The kind of each constraint that binds, in the order of [`Multipliers::constraints`].
-    pub fn kinds(&self) -> &[Kind] {
+    pub fn kinds(&self) -> &[ConstraintKind] {
         &self.kinds
     }
 
@@ -98,7 +98,7 @@ impl<'g> ConstraintClassification<'g> {
 
     /// Whether all constraints bind positions or are integrable.
     pub fn is_holonomic(&self) -> bool {
-        self.kinds.iter().all(|kind| matches!(kind, Kind::Position | Kind::Integrable))
+        self.kinds.iter().all(|kind| matches!(kind, ConstraintKind::Position | ConstraintKind::Integrable))
     }
 }
 
@@ -107,8 +107,8 @@ impl<'g> ConstraintClassification<'g> {
 fn kinds<'g>(
     multipliers: &Multipliers<'g>,
     at: &[(Expr<'g>, f64)],
-) -> Result<(Vec<Kind>, usize), NonholoError> {
-    let mut kinds = vec![Kind::Nonlinear; multipliers.constraints().len()];
+) -> Result<(Vec<ConstraintKind>, usize), NonholoError> {
+    let mut kinds = vec![ConstraintKind::Nonlinear; multipliers.constraints().len()];
     let (affine, Some(without)) = affine(multipliers)? else { return Ok((kinds, 0)) };
     let (of_affine, combinations) = kinds_of_affine(&without, at)?;
     for (a, kind) in affine.into_iter().zip(of_affine) {
@@ -120,27 +120,28 @@ fn kinds<'g>(
 fn kinds_of_affine<'g>(
     multipliers: &Multipliers<'g>,
     at: &[(Expr<'g>, f64)],
-) -> Result<(Vec<Kind>, usize), NonholoError> {
+) -> Result<(Vec<ConstraintKind>, usize), NonholoError> {
     let m = multipliers.constraints().len();
     if (0..m).all(|a| multipliers.is_holonomic(a)) {
-        return Ok((vec![Kind::Position; m], 0));
+        return Ok((vec![ConstraintKind::Position; m], 0));
     }
     let system = multipliers.equations().system();
     let reach = Reach::new(multipliers, at)?;
     let (graph, near) = (system.graph(), &reach.near);
-    let kinds: Vec<Kind> = (0..m)
+    let kinds: Vec<ConstraintKind> = (0..m)
         .map(|a| {
             if multipliers.is_holonomic(a) {
-                return Kind::Position;
+                return ConstraintKind::Position;
             }
             let components: Vec<Vec<Expr<'g>>> = reach.reached.iter().map(|along| along[a].clone()).collect();
             if near.residual(graph, &components) <= Neighbourhood::ROUNDING {
-                return Kind::Integrable;
+                return ConstraintKind::Integrable;
             }
             let sums: Vec<Expr<'g>> = components.into_iter().map(|terms| graph.sum(terms)).collect();
-            Kind::Nonholonomic { residual: near.largest(graph, &graph.shorten(&sums, &[])) }
+            ConstraintKind::Nonholonomic { residual: near.largest(graph, &graph.shorten(&sums, &[])) }
         })
         .collect();
-    let nonholonomic = kinds.iter().filter(|kind| matches!(kind, Kind::Nonholonomic { .. })).count();
+    let nonholonomic =
+        kinds.iter().filter(|kind| matches!(kind, ConstraintKind::Nonholonomic { .. })).count();
     Ok((kinds, nonholonomic.saturating_sub(reach.reached.len())))
 }

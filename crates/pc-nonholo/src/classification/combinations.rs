@@ -2,7 +2,7 @@
 
 use pc_mech::{Constraint, Expr, Graph, Multipliers, Number, System};
 
-use crate::classification::classification::Kind;
+use crate::classification::classification::ConstraintKind;
 use crate::classification::involutive::along;
 use crate::classification::reach::{Reach, affine};
 use crate::error::NonholoError;
@@ -59,7 +59,7 @@ impl<'g> IntegrableCombination<'g> {
     /// ```
     pub fn find(
         multipliers: &Multipliers<'g>,
-        kinds: &[Kind],
+        kinds: &[ConstraintKind],
         count: usize,
         at: &[(Expr<'g>, f64)],
     ) -> Result<Vec<IntegrableCombination<'g>>, NonholoError> {
@@ -71,7 +71,7 @@ impl<'g> IntegrableCombination<'g> {
         let reach = Reach::new(&multipliers, at)?;
         let Some(forms) = forms(system, &reach) else { return Ok(Vec::new()) };
         let kinds = places.into_iter().map(|a| kinds[a]).enumerate();
-        let nonholonomic = kinds.filter(|(_, kind)| matches!(kind, Kind::Nonholonomic { .. }));
+        let nonholonomic = kinds.filter(|(_, kind)| matches!(kind, ConstraintKind::Nonholonomic { .. }));
         let nonholonomic = nonholonomic.map(|(a, _)| a).collect();
         let search = Search { system, nonholonomic, reach: &reach, variables: variables(system) };
         let mut found: Vec<(Form<'g>, Expr<'g>)> = Vec::new();

@@ -1,7 +1,7 @@
 //! Constraints as expressions: classified, and put into frames of their own.
 
 use pc_mech::{Constraint, Expr, Graph, System};
-use pc_nonholo::{Adapted, Binding, ConstraintClassification, Kind, Redundant};
+use pc_nonholo::{Adapted, Binding, ConstraintClassification, ConstraintKind, Redundant};
 
 /// Chaplygin's sleigh in the velocities of its coordinates.
 fn sleigh(graph: &Graph) -> System<'_> {
@@ -71,13 +71,13 @@ fn constraints_are_classified_by_frobenius_test() {
     let knife = Constraint::new("knife", vz - y * vx);
 
     let sorted = sort(&system, &[sphere.clone(), disguised.clone()], &at);
-    assert_eq!(sorted.kinds(), [Kind::Position, Kind::Integrable], "φ̇ = 2 in disguise");
+    assert_eq!(sorted.kinds(), [ConstraintKind::Position, ConstraintKind::Integrable], "φ̇ = 2 in disguise");
     assert!(sorted.is_holonomic());
     let sorted = sort(&system, std::slice::from_ref(&knife), &at);
-    assert!(matches!(*sorted.kinds(), [Kind::Nonholonomic { residual }] if residual > 0.5));
+    assert!(matches!(*sorted.kinds(), [ConstraintKind::Nonholonomic { residual }] if residual > 0.5));
     // The two planes y = const and the knife: on them the knife is integrable.
     let sorted = sort(&system, &[Constraint::new("plane", vy * x.exp()), knife.clone()], &at);
-    assert_eq!(sorted.kinds(), [Kind::Integrable, Kind::Integrable]);
+    assert_eq!(sorted.kinds(), [ConstraintKind::Integrable, ConstraintKind::Integrable]);
 
     let twice = Constraint::new("twice", 2.0 * x * vx + 2.0 * y * vy + 2.0 * z * vz);
     let sorted = sort(&system, &[knife.clone(), sphere.clone(), twice], &at);
@@ -109,12 +109,12 @@ fn the_kind_of_a_constraint_does_not_depend_on_units() {
         let along = Constraint::new("along", vx - radius * vtheta * phi.cos());
         let across = Constraint::new("across", vy - radius * vtheta * phi.sin());
         let sorted = sort(&system, &[along.clone(), across.clone()], &at);
-        let nonholonomic = |kind: &Kind| matches!(kind, Kind::Nonholonomic { residual } if *residual > 0.0);
+        let nonholonomic = |kind: &ConstraintKind| matches!(kind, ConstraintKind::Nonholonomic { residual } if *residual > 0.0);
         assert!(sorted.kinds().iter().all(nonholonomic), "{radius}: {:?}", sorted.kinds());
         // Where it cannot turn, all three can be integrated.
         let straight = Constraint::new("straight", radius * vphi);
         let sorted = sort(&system, &[along, across, straight], &at);
-        assert_eq!(sorted.kinds(), [Kind::Integrable; 3], "{radius}");
+        assert_eq!(sorted.kinds(), [ConstraintKind::Integrable; 3], "{radius}");
     }
 }
 
@@ -130,7 +130,7 @@ fn a_bracket_that_vanishes_up_to_rounding_is_integrable() {
         .unwrap();
     let zero = (x * y).log() - x.log() - y.log();
     let plane = Constraint::new("plane", vz - (x + zero) * vx);
-    assert_eq!(sort(&system, &[plane], &state(&graph, &system)).kinds(), [Kind::Integrable]);
+    assert_eq!(sort(&system, &[plane], &state(&graph, &system)).kinds(), [ConstraintKind::Integrable]);
 }
 
 /// In an orthonormal frame ζ of the allowed velocities ζ̇_s = r_s; ẍ is the same as in independent
@@ -222,7 +222,7 @@ fn brackets_of_brackets_count() {
     let rolling = Constraint::new("rolling", c * vx + s * vy - theta);
     let sorted = sort(&system, &[across, rolling], &at);
     assert!(
-        sorted.kinds().iter().all(|kind| matches!(kind, Kind::Nonholonomic { .. })),
+        sorted.kinds().iter().all(|kind| matches!(kind, ConstraintKind::Nonholonomic { .. })),
         "{:?}",
         sorted.kinds()
     );

@@ -1,7 +1,7 @@
 //! Constraints that are nonlinear in the velocities, together with affine ones.
 
 use pc_mech::{Constraint, ConstraintError, Expr, Graph, MechError, System};
-use pc_nonholo::{Adapted, ConstraintClassification, Kind, NonholoError, Voronets};
+use pc_nonholo::{Adapted, ConstraintClassification, ConstraintKind, NonholoError, Voronets};
 
 fn particle(graph: &Graph) -> System<'_> {
     System::builder(graph)
@@ -25,11 +25,15 @@ fn affine_constraints_keep_their_kinds() {
     let knife = Constraint::new("knife", vz - y * vx);
     let sorted =
         ConstraintClassification::new(&particle(&graph), &[speed.clone(), knife], &at(&graph)).unwrap();
-    assert!(matches!(sorted.kinds(), [Kind::Nonlinear, Kind::Nonholonomic { .. }]), "{:?}", sorted.kinds());
+    assert!(
+        matches!(sorted.kinds(), [ConstraintKind::Nonlinear, ConstraintKind::Nonholonomic { .. }]),
+        "{:?}",
+        sorted.kinds()
+    );
     let plane = Constraint::new("plane", vy);
     let sorted =
         ConstraintClassification::new(&particle(&graph), &[plane, speed.clone()], &at(&graph)).unwrap();
-    assert_eq!(sorted.kinds(), [Kind::Integrable, Kind::Nonlinear]);
+    assert_eq!(sorted.kinds(), [ConstraintKind::Integrable, ConstraintKind::Nonlinear]);
     assert!(!sorted.is_holonomic());
     let again = Constraint::nonlinear("again", 2.0 * vx.square() + 2.0 * vy.square() - 2.0);
     let error = ConstraintClassification::new(&particle(&graph), &[speed, again], &at(&graph)).unwrap_err();

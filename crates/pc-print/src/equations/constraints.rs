@@ -1,13 +1,13 @@
 //! Constraints in words.
 
-use pc_nonholo::Kind;
+use pc_nonholo::ConstraintKind;
 
 /// The kind of a constraint in words.
-pub fn kind_in_words(kind: Kind) -> &'static str {
+pub fn kind_in_words(kind: ConstraintKind) -> &'static str {
     match kind {
-        Kind::Position => "holonomic",
-        Kind::Integrable => "integrable, so holonomic",
-        Kind::Nonholonomic { .. } => "nonholonomic",
-        Kind::Nonlinear => "nonholonomic, not affine in the velocities",
+        ConstraintKind::Position => "holonomic",
+        ConstraintKind::Integrable => "integrable, so holonomic",
+        ConstraintKind::Nonholonomic { .. } => "nonholonomic",
+        ConstraintKind::Nonlinear => "nonholonomic, not affine in the velocities",
     }
 }

@@ -2,7 +2,7 @@
 
 use pc_mech::{Constraint, Equations, Expr, Multipliers};
 use pc_model::{Assembly, ConstraintFormulation, ModelError, Variables};
-use pc_nonholo::{Kind, NonholoError, Voronets};
+use pc_nonholo::{ConstraintKind, NonholoError, Voronets};
 
 use crate::equations::form::Form;
 
@@ -14,7 +14,7 @@ pub struct Derived<'g> {
     /// The quasi-velocities that constraints keep at zero, over which brackets are summed too.
     pub vanishing: Vec<Expr<'g>>,
     /// The constraints with their kinds.
-    pub constraints: Vec<(Constraint<'g>, Kind)>,
+    pub constraints: Vec<(Constraint<'g>, ConstraintKind)>,
     /// The definitions of the vanishing quasi-velocities in terms of velocities, if they are known.
     pub definitions: Vec<(Expr<'g>, Expr<'g>)>,
     /// The quasi-velocities that are not those of the model, each with its definition.

@@ -7,7 +7,7 @@ use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
 use pc_expr::{Function, Given, Graph};
 use pc_mech::{Canonical, Constraint, Equations, Expr, Matrix, System};
 use pc_model::Assembly;
-use pc_nonholo::Kind;
+use pc_nonholo::ConstraintKind;
 
 use crate::equations::derived::Derived;
 
@@ -26,7 +26,7 @@ pub struct Sheet<'p> {
     /// The quasi-velocities that are not those of the model, each with its definition.
     pub changed: Vec<(Expr<'p>, Expr<'p>)>,
     /// The vanishing left-hand sides, with the names of the constraints.
-    pub constraints: Vec<(String, Expr<'p>, Kind)>,
+    pub constraints: Vec<(String, Expr<'p>, ConstraintKind)>,
     /// The matrix b and the column b_0 of ẋ = b η + b_0 (3).
     pub frame: (Matrix<Expr<'p>>, Vec<Expr<'p>>),
     /// Each ẋ_i with its expression.
@@ -255,7 +255,9 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
     fn brackets(&self, derived: &Derived<'g>, vanishing: &[Expr<'g>]) -> Brackets<'p> {
         let system = self.system;
         let is_within = system.structure().operators() == system.quasi_velocities().len();
-        let is_nonholonomic = |(_, kind): &(Constraint<'g>, Kind)| matches!(kind, Kind::Nonholonomic { .. });
+        let is_nonholonomic = |(_, kind): &(Constraint<'g>, ConstraintKind)| {
+            matches!(kind, ConstraintKind::Nonholonomic { .. })
+        };
         let left_out = (is_within || vanishing.is_empty()) && derived.constraints.iter().any(is_nonholonomic);
         Brackets { left_out, ..Brackets::of(system, vanishing, self.page) }
     }

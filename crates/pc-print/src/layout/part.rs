@@ -2,7 +2,7 @@
 
 use pc_expr::{Given, Names, Side};
 use pc_mech::{Expr, Graph, Matrix};
-use pc_nonholo::Kind;
+use pc_nonholo::ConstraintKind;
 
 use crate::equations::sheet::{Balance, Bracket, Sheet};
 use crate::layout::layout::Layout;
@@ -58,7 +58,7 @@ impl Heading {
 #[derive(Clone, Debug)]
 pub(crate) enum Row<'p> {
     /// `name: left = 0 (kind)`
-    Constraint { name: String, left: Expr<'p>, kind: Kind },
+    Constraint { name: String, left: Expr<'p>, kind: ConstraintKind },
     /// left = right
     Equation { left: Expr<'p>, right: Expr<'p> },
     /// [X_r, X_s] = Σ c X_m

@@ -3,12 +3,12 @@
 use pc_analysis::ProposedAction;
 use pc_mech::{Expr, Identity};
 
+use crate::theory::basis::Basis;
 use crate::theory::description::{Entry, Section, Side, Verdict};
-use crate::theory::ground::Ground;
 use crate::words::words::{short, small};
 
 /// X_0 S + H(t, x, X_s S) = 0, and the action of the model.
-pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {
+pub(crate) fn section<'g>(ground: &Basis<'_, 'g>) -> Section<'g> {
     let section =
         |entries| Section { key: "hamilton_jacobi", title: "Hamilton–Jacobi", names: Vec::new(), entries };
     let action = ground.assembly.action.as_ref();
@@ -78,7 +78,7 @@ fn residual(checked: &ProposedAction<'_>) -> Vec<String> {
 }
 
 /// The equation, with X_s S as a symbol `S_` and the name of the coordinate or quasi-velocity.
-fn equation<'g>(ground: &Ground<'_, 'g>) -> Vec<Entry<'g>> {
+fn equation<'g>(ground: &Basis<'_, 'g>) -> Vec<Entry<'g>> {
     let (Ok(canonical), system) = (&ground.canonical, &ground.free) else { return Vec::new() };
     if system.forces().iter().any(|q| !q.is_zero()) {
         return Vec::new();

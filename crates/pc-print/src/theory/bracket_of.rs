@@ -4,7 +4,7 @@ use pc_analysis::PoissonBracket;
 use pc_mech::Expr;
 use pc_model::{Assembly, Model, ModelError, Variables};
 
-use crate::theory::ground::{NONLINEAR, placed};
+use crate::theory::basis::{NONLINEAR, placed};
 
 /// The Poisson bracket (12) of two expressions of a model, coordinates and velocities in them,
 ///

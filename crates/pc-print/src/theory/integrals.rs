@@ -8,8 +8,8 @@ use pc_model::{Assembly, ConstraintFormulation, Model, ModelError};
 
 use crate::equations::derived::energy_remark;
 use crate::language::mathml;
+use crate::theory::basis::Basis;
 use crate::theory::description::{Entry, Section, Side, Verdict};
-use crate::theory::ground::Ground;
 use crate::theory::options::TheoryOptions;
 use crate::words::lines::combination;
 use crate::words::words::short;
@@ -78,7 +78,7 @@ fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Opti
 
 /// The integrals of the theory, those of the ansatz at the end, with the extent of its search.
 pub(crate) fn found<'g>(
-    ground: &Ground<'_, 'g>,
+    ground: &Basis<'_, 'g>,
     model: &Model,
     options: &TheoryOptions,
 ) -> Result<(Integrals<'g>, AnsatzSearch), ModelError> {
@@ -96,7 +96,7 @@ pub(crate) fn found<'g>(
 
 /// Each with its verdict.
 pub(crate) fn section<'g>(
-    ground: &Ground<'_, 'g>,
+    ground: &Basis<'_, 'g>,
     (integrals, made): &(Integrals<'g>, AnsatzSearch),
     options: &TheoryOptions,
 ) -> Section<'g> {
@@ -163,7 +163,7 @@ fn tried(made: AnsatzSearch, options: &TheoryOptions) -> String {
 }
 
 /// X = a_s X_s of those integrals that are linear in the momenta.
-pub(crate) fn displacements<'g>(ground: &Ground<'_, 'g>, integrals: &Integrals<'g>) -> Section<'g> {
+pub(crate) fn displacements<'g>(ground: &Basis<'_, 'g>, integrals: &Integrals<'g>) -> Section<'g> {
     let section = |entries| Section {
         key: "cyclic_displacements",
         title: "Cyclic displacements",

@@ -5,11 +5,11 @@ use pc_mech::Expr;
 use pc_model::{Assembly, ModelError};
 use pc_nonholo::Voronets;
 
+use crate::theory::basis::Basis;
 use crate::theory::description::{Entry, Section, Side, Verdict};
-use crate::theory::ground::Ground;
 
 /// N of N dx dy.
-pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Result<Section<'g>, ModelError> {
+pub(crate) fn section<'g>(ground: &Basis<'_, 'g>) -> Result<Section<'g>, ModelError> {
     let section = |entries| {
         Ok(Section { key: "invariant_measure", title: "Invariant measure", names: Vec::new(), entries })
     };
@@ -52,7 +52,7 @@ fn open<'g>(words: &str) -> Entry<'g> {
 }
 
 /// N of dτ = N dt, and the Lagrangian in that time.
-pub(crate) fn multiplier<'g>(ground: &Ground<'_, 'g>) -> Section<'g> {
+pub(crate) fn multiplier<'g>(ground: &Basis<'_, 'g>) -> Section<'g> {
     let section = |entries| Section {
         key: "reducing_multiplier",
         title: "Chaplygin's multiplier",

@@ -3,8 +3,8 @@
 use pc_model::{Assembly, Model, ModelError};
 
 use crate::layout::format::Page;
+use crate::theory::basis::Basis;
 use crate::theory::description::{Section, Theory};
-use crate::theory::ground::Ground;
 use crate::theory::options::TheoryOptions;
 use crate::theory::{action, brackets, integrals, json, latex, measure, names, routh, steady, text};
 use crate::words::visible::{visible, visible_json};
@@ -34,7 +34,7 @@ impl<'g> Theory<'g> {
         assembly: &Assembly<'g>,
         options: &TheoryOptions,
     ) -> Result<Theory<'g>, ModelError> {
-        let ground = Ground::new(assembly)?;
+        let ground = Basis::new(assembly)?;
         let bracket = ground.placed(brackets::bracket(&ground))?;
         let found = integrals::found(&ground, model, options)?;
         let sections: Vec<Section<'g>> = vec![

@@ -4,11 +4,11 @@ use pc_analysis::Routhian;
 use pc_mech::{Expr, Style};
 use pc_model::ModelError;
 
+use crate::theory::basis::Basis;
 use crate::theory::description::{Entry, Section, Side};
-use crate::theory::ground::Ground;
 
 /// The momenta of cyclic coordinates, the Routhian, and the equations that remain.
-pub(crate) fn section<'g>(ground: &Ground<'_, 'g>) -> Result<Section<'g>, ModelError> {
+pub(crate) fn section<'g>(ground: &Basis<'_, 'g>) -> Result<Section<'g>, ModelError> {
     let section =
         |entries| Ok(Section { key: "routh", title: "Routh's reduction", names: Vec::new(), entries });
     if !ground.is_unbound() {

@@ -5,8 +5,8 @@ use pc_analysis::{
 };
 use pc_model::ModelError;
 
+use crate::theory::basis::Basis;
 use crate::theory::description::{Entry, Section, Verdict};
-use crate::theory::ground::Ground;
 use crate::words::words::short;
 
 /// The remainder that Newton's method leaves in place of a zero.
@@ -17,7 +17,7 @@ const MOST_LISTED: usize = 8;
 
 /// All steady motions found, or the nearest of many.
 pub(crate) fn section<'g>(
-    ground: &Ground<'_, 'g>,
+    ground: &Basis<'_, 'g>,
     integrals: &Integrals<'g>,
 ) -> Result<Section<'g>, ModelError> {
     let section =

@@ -3,7 +3,7 @@
 use pc_analysis::{FrameFacts, Integral, Integrals, SteadySearch};
 use pc_mech::{Equations, Expr, Identity, MechError, Motion, Neighbourhood, System, VectorField};
 use pc_model::{Assembly, ClassifiedConstraint, ConstraintFormulation, Model, ModelError};
-use pc_nonholo::{IntegrableCombination, Kind, Redundant};
+use pc_nonholo::{ConstraintKind, IntegrableCombination, Redundant};
 use pc_print::{
     Operations, assignments, columns, counted, integrals_of, kind_in_words, labelled, one_line, short, small,
     wrapped,
@@ -296,9 +296,9 @@ fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
 
 fn constraint(verdict: &ClassifiedConstraint) -> Value {
     let residual = match verdict.kind {
-        Kind::Nonholonomic { residual } => Some(residual),
-        Kind::Position | Kind::Integrable => Some(0.0),
-        Kind::Nonlinear => None, // not tested
+        ConstraintKind::Nonholonomic { residual } => Some(residual),
+        ConstraintKind::Position | ConstraintKind::Integrable => Some(0.0),
+        ConstraintKind::Nonlinear => None, // not tested
     };
     json!({ "name": verdict.constraint, "kind": kind_in_words(verdict.kind), "residual": residual })
 }

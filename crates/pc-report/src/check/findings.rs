@@ -1,7 +1,7 @@
 //! The properties of a model in one row of a table: numbers and words that can be compared between models.
 
 use pc_analysis::FrameConstraints;
-use pc_nonholo::Kind;
+use pc_nonholo::ConstraintKind;
 
 use crate::check::check::{Check, held};
 use crate::check::steady;
@@ -41,7 +41,9 @@ impl Check<'_> {
     pub fn findings(&self) -> [Finding; 14] {
         let count = |count: usize| Finding::Number(count as f64);
         let words = |words: &str| Finding::Words(words.to_owned());
-        let is_free = |kind: &Kind| matches!(kind, Kind::Nonholonomic { .. } | Kind::Nonlinear);
+        let is_free = |kind: &ConstraintKind| {
+            matches!(kind, ConstraintKind::Nonholonomic { .. } | ConstraintKind::Nonlinear)
+        };
         let nonholonomic = self.classified.iter().filter(|verdict| is_free(&verdict.kind)).count();
         let of_frame = matches!(self.frame.constraints, Some(FrameConstraints::NotIntegrable { .. }));
         let is_holonomic = nonholonomic == 0 && !of_frame;

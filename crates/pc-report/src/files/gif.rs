@@ -9,18 +9,18 @@ use crate::files::png::{opaque, painted};
 
 /// Pixels per point.
 const SCALE: f32 = 1.0;
-/// Frames per second.
+/// Stills per second.
 const RATE: f64 = 25.0;
-/// Duration of a frame at this rate, in hundredths of a second.
+/// Duration of a still at this rate, in hundredths of a second.
 const DELAY: u16 = 4;
-/// The most frames of a film: longer motions are shown faster.
+/// The most stills of a film: longer motions are shown faster.
 const MOST: usize = 250;
 /// Speed of the choice of colours, from 1 (best) to 30; 1 takes ten times as long, and lines on
 /// white look the same.
 const SPEED: i32 = 10;
 
-/// The numbers of those frames at `times` that show the motion at its true speed.
-pub fn frames(times: &[f64]) -> Vec<usize> {
+/// The numbers of those stills at `times` that show the motion at its true speed.
+pub fn stills(times: &[f64]) -> Vec<usize> {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
     let span = last - first;
     let intervals = (span.abs() * RATE).round().clamp(1.0, MOST as f64) as usize;
@@ -74,12 +74,12 @@ mod tests {
     #[test]
     fn a_film_is_as_long_as_its_motion() {
         let times: Vec<f64> = (0..=600).map(|i| f64::from(i) / 300.0).collect();
-        let shown = frames(&times);
+        let shown = stills(&times);
         assert_eq!((shown.len(), shown[0], shown[25], shown[50]), (51, 0, 300, 600));
         let long: Vec<f64> = (0..=600).map(|i| -f64::from(i)).collect();
-        let shown = frames(&long);
+        let shown = stills(&long);
         assert_eq!((shown.len(), shown[0], shown.last()), (MOST + 1, 0, Some(&600)));
-        assert_eq!(frames(&[1.0]), [0, 0]);
+        assert_eq!(stills(&[1.0]), [0, 0]);
         assert_eq!(nearest(&times, 0.0171), 5);
     }
 }

@@ -4,7 +4,7 @@ use crate::page::html::{described, paragraph, text};
 use crate::picture::chart::figure;
 use crate::picture::motion::{of_kind, portrait, title};
 use crate::picture::{Ink, Panel};
-use crate::record::Record;
+use crate::recording::Recording;
 
 /// The most charts of a kind; the table of `pc run` has the others.
 const MOST_CHARTS: usize = 8;
@@ -12,7 +12,7 @@ const MOST_CHARTS: usize = 8;
 const MOST_POINTS: usize = 1500;
 
 /// Charts by kind, the most informative pairs of columns over each other, then the summary.
-pub(super) fn motion(record: &Record, pairs: &[(String, String)]) -> String {
+pub(super) fn motion(record: &Recording, pairs: &[(String, String)]) -> String {
     let mut shown = String::new();
     if let Some(remark) = &record.remark {
         shown += &paragraph(remark);

@@ -3,11 +3,11 @@
 use pc_model::Assembly;
 
 use crate::picture::motion::{are_alike, moves};
-use crate::record::{Kind, Record};
+use crate::recording::{ColumnKind, Recording};
 
 /// Each coordinate with the quasi-velocity that is its rate, then successive components of one vector; only
 /// columns that change.
-pub(super) fn pairs(assembly: &Assembly<'_>, record: &Record) -> Vec<(String, String)> {
+pub(super) fn pairs(assembly: &Assembly<'_>, record: &Recording) -> Vec<(String, String)> {
     let (system, samples) = (&assembly.system, record.curves());
     let shown = |name: &str| samples.column(name).is_ok_and(|(_, values)| moves(values));
     let eta = system.quasi_velocities();
@@ -21,7 +21,7 @@ pub(super) fn pairs(assembly: &Assembly<'_>, record: &Record) -> Vec<(String, St
     let vectors = samples
         .columns
         .iter()
-        .filter(|columns| matches!(columns.kind, Kind::Coordinates | Kind::QuasiVelocities))
+        .filter(|columns| matches!(columns.kind, ColumnKind::Coordinates | ColumnKind::QuasiVelocities))
         .flat_map(|columns| columns.list.windows(2))
         .map(|pair| (pair[0].0.clone(), pair[1].0.clone()))
         .filter(|(a, b)| are_alike(a, b));

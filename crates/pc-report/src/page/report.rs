@@ -10,7 +10,7 @@ use crate::page::html::{Part, described, lines, page, paragraph, text};
 use crate::page::pairs::pairs;
 use crate::page::player::player;
 use crate::page::{equations, formulas, motion, theory};
-use crate::record::Record;
+use crate::recording::Recording;
 use crate::scene::Scene;
 
 /// The width of a line of a formula, in columns.
@@ -26,7 +26,7 @@ const LONG_TEXT: usize = 40;
 pub fn report(
     model: &Model,
     assembly: &Assembly<'_>,
-    motion: Option<&Record>,
+    motion: Option<&Recording>,
 ) -> Result<String, ReportError> {
     let equations = assembly.equations()?;
     let check = Check::new(model, assembly, &equations)?;

@@ -7,7 +7,7 @@ use pc_print::one_line;
 use crate::picture::axes::{is_still, range};
 use crate::picture::panel::{Content, Curve, Panel, Scale};
 use crate::picture::scales::groups;
-use crate::record::{Columns, Kind, Record, Samples, UnknownColumn};
+use crate::recording::{ColumnKind, Columns, Recording, Samples, UnknownColumn};
 
 /// The decimal logarithm of the smallest drift that is drawn: less is rounding.
 const FLOOR: f64 = -17.0;
@@ -27,15 +27,15 @@ pub struct Wanted {
 }
 
 /// The title of columns of a kind.
-pub(crate) fn title(kind: Kind) -> &'static str {
+pub(crate) fn title(kind: ColumnKind) -> &'static str {
     match kind {
-        Kind::Coordinates => "Coordinates",
-        Kind::QuasiVelocities => "Quasi-velocities",
-        Kind::States => "States",
-        Kind::Conserved => "Relative drift of integrals",
-        Kind::Outputs => "Outputs and reactions",
-        Kind::Derivatives => "Derivatives by parameters",
-        Kind::Errors => "Estimated errors",
+        ColumnKind::Coordinates => "Coordinates",
+        ColumnKind::QuasiVelocities => "Quasi-velocities",
+        ColumnKind::States => "States",
+        ColumnKind::Conserved => "Relative drift of integrals",
+        ColumnKind::Outputs => "Outputs and reactions",
+        ColumnKind::Derivatives => "Derivatives by parameters",
+        ColumnKind::Errors => "Estimated errors",
     }
 }
 
@@ -43,7 +43,7 @@ pub(crate) fn title(kind: Kind) -> &'static str {
 ///
 /// # Errors
 /// [`UnknownColumn`]
-pub(crate) fn panels(record: &Record, wanted: &Wanted) -> Result<Vec<Panel>, UnknownColumn> {
+pub(crate) fn panels(record: &Recording, wanted: &Wanted) -> Result<Vec<Panel>, UnknownColumn> {
     let samples = record.curves();
     for name in &wanted.wrapped {
         samples.column(name)?;
@@ -65,7 +65,7 @@ pub(crate) fn panels(record: &Record, wanted: &Wanted) -> Result<Vec<Panel>, Unk
 }
 
 /// The chosen columns: those of one kind in panels by scale, drifts separately.
-fn chosen(record: &Record, samples: &Samples, wanted: &Wanted) -> Result<Vec<Panel>, UnknownColumn> {
+fn chosen(record: &Recording, samples: &Samples, wanted: &Wanted) -> Result<Vec<Panel>, UnknownColumn> {
     let mut drifts: Vec<(String, Vec<f64>)> = Vec::new();
     let mut kinds: Vec<Columns> = Vec::new();
     for name in &wanted.columns {
@@ -87,11 +87,11 @@ fn chosen(record: &Record, samples: &Samples, wanted: &Wanted) -> Result<Vec<Pan
     }
     let mut panels = Vec::new();
     for columns in &kinds {
-        if columns.kind == Kind::Errors {
+        if columns.kind == ColumnKind::Errors {
             panels.extend(errors(record, &columns.list));
             continue;
         }
-        let title = if columns.kind == Kind::Conserved { "Integrals" } else { title(columns.kind) };
+        let title = if columns.kind == ColumnKind::Conserved { "Integrals" } else { title(columns.kind) };
         panels.extend(by_scale(record, title, &columns.list, &wanted.wrapped));
     }
     panels.extend(drift(record, &drifts));
@@ -99,18 +99,18 @@ fn chosen(record: &Record, samples: &Samples, wanted: &Wanted) -> Result<Vec<Pan
 }
 
 /// The panels of columns of one kind: integrals with their drift, others with their values.
-pub(crate) fn of_kind(record: &Record, columns: &Columns, wrapped: &[String]) -> Vec<Panel> {
+pub(crate) fn of_kind(record: &Recording, columns: &Columns, wrapped: &[String]) -> Vec<Panel> {
     match columns.kind {
-        Kind::Conserved => {
+        ColumnKind::Conserved => {
             let count = columns.list.len() - usize::from(!record.keeps_energy);
             drift(record, &columns.list[..count]).into_iter().collect()
         }
-        Kind::Errors => errors(record, &columns.list).into_iter().collect(),
+        ColumnKind::Errors => errors(record, &columns.list).into_iter().collect(),
         kind => by_scale(record, title(kind), &columns.list, wrapped),
     }
 }
 
-fn by_scale(record: &Record, title: &str, list: &[(String, Vec<f64>)], wrapped: &[String]) -> Vec<Panel> {
+fn by_scale(record: &Recording, title: &str, list: &[(String, Vec<f64>)], wrapped: &[String]) -> Vec<Panel> {
     let (angles, others): (Vec<_>, Vec<_>) = list.iter().partition(|(name, _)| wrapped.contains(name));
     let times = &record.curves().times;
     let curve = |(name, values): &(String, Vec<f64>), wrap: bool| Curve {
@@ -132,7 +132,7 @@ fn by_scale(record: &Record, title: &str, list: &[(String, Vec<f64>)], wrapped: 
     panels
 }
 
-fn over_time(record: &Record, title: &str, scale: Scale, curves: Vec<Curve>) -> Panel {
+fn over_time(record: &Recording, title: &str, scale: Scale, curves: Vec<Curve>) -> Panel {
     let times = &record.curves().times;
     let (first, last) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(1.0));
     let span = if first == last { (first, first + 1.0) } else { (first.min(last), first.max(last)) };
@@ -140,7 +140,7 @@ fn over_time(record: &Record, title: &str, scale: Scale, curves: Vec<Curve>) -> 
 }
 
 /// log₁₀ |I(t) − I(0)|/|I(0)|; if |I(0)| is at most the drift, the largest |I|, at least 1, replaces it.
-fn drift(record: &Record, list: &[(String, Vec<f64>)]) -> Option<Panel> {
+fn drift(record: &Recording, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     let curve = |(name, values): &(String, Vec<f64>)| {
         let start = values.first().copied().unwrap_or(0.0);
         let worst = values.iter().fold(0.0f64, |worst, v| worst.max((v - start).abs()));
@@ -155,24 +155,24 @@ fn drift(record: &Record, list: &[(String, Vec<f64>)]) -> Option<Panel> {
         Curve { name: one_line(name).into_owned(), points }
     };
     let curves: Vec<Curve> = list.iter().map(curve).collect();
-    (!curves.is_empty()).then(|| over_time(record, title(Kind::Conserved), Scale::Decades, curves))
+    (!curves.is_empty()).then(|| over_time(record, title(ColumnKind::Conserved), Scale::Decades, curves))
 }
 
 /// The errors at the rows.
-fn known_errors(record: &Record) -> &[(String, Vec<f64>)] {
-    let errors = record.rows.columns.iter().find(|columns| columns.kind == Kind::Errors);
+fn known_errors(record: &Recording) -> &[(String, Vec<f64>)] {
+    let errors = record.rows.columns.iter().find(|columns| columns.kind == ColumnKind::Errors);
     errors.map_or(&[], |columns| &columns.list)
 }
 
 /// log₁₀ of errors at the rows; an error of 0 is not drawn.
-fn errors(record: &Record, list: &[(String, Vec<f64>)]) -> Option<Panel> {
+fn errors(record: &Recording, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     let times = &record.rows.times;
     let curve = |(name, values): &(String, Vec<f64>)| {
         let logarithms = values.iter().map(|error| if *error == 0.0 { f64::NAN } else { error.log10() });
         Curve { name: one_line(name).into_owned(), points: times.iter().copied().zip(logarithms).collect() }
     };
     let curves: Vec<Curve> = list.iter().map(curve).collect();
-    (!curves.is_empty()).then(|| over_time(record, title(Kind::Errors), Scale::Decades, curves))
+    (!curves.is_empty()).then(|| over_time(record, title(ColumnKind::Errors), Scale::Decades, curves))
 }
 
 /// The curve of one column over another.

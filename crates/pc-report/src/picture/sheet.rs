@@ -6,7 +6,7 @@ use crate::picture::chart::{Frame, width_of};
 use crate::picture::drawing::{Anchor, Drawing, Ink};
 use crate::picture::motion::{Wanted, panels};
 use crate::picture::panel::{Content, Panel, Scale};
-use crate::record::{Record, UnknownColumn};
+use crate::recording::{Recording, UnknownColumn};
 
 const WIDTH: f64 = 960.0;
 const TITLE: f64 = 46.0;
@@ -45,7 +45,7 @@ impl Picture {
     ///
     /// # Errors
     /// [`UnknownColumn`]
-    pub fn of(title: &str, record: &Record, wanted: &Wanted) -> Result<Picture, UnknownColumn> {
+    pub fn of(title: &str, record: &Recording, wanted: &Wanted) -> Result<Picture, UnknownColumn> {
         let mut panels = panels(record, wanted)?;
         let mut remarks: Vec<String> = record.remark.iter().cloned().collect();
         if wanted.columns.is_empty() && panels.len() > MOST_PANELS {

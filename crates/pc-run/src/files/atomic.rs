@@ -7,12 +7,12 @@ use std::path::Path;
 use tempfile::NamedTempFile;
 
 use crate::files::partial;
-use crate::files::place::Place;
+use crate::files::target::Target;
 
 /// A buffered writer to a file.
 pub type FileWriter<'f> = BufWriter<&'f mut File>;
 
-impl Place {
+impl Target {
     /// Puts what `write` writes there. Until all of it is on disk, an existing file stays
     /// unchanged.
     ///

@@ -8,9 +8,9 @@ use tempfile::{Builder, NamedTempFile};
 use crate::files::atomic::{FileWriter, fill};
 use crate::files::error::FileError;
 use crate::files::kept::Kept;
-use crate::files::place::Place;
+use crate::files::target::Target;
 
-impl Place {
+impl Target {
     /// Puts a result at its place, or else in the directory of temporary files; failing that, if
     /// `is_lines` says that single lines are of use, keeps the part that could be written beside
     /// the file.

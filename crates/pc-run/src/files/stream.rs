@@ -8,15 +8,15 @@ use tempfile::NamedTempFile;
 use crate::files::error::FileError;
 use crate::files::kept::Kept;
 use crate::files::partial;
-use crate::files::place::Place;
 use crate::files::rescue::beside;
+use crate::files::target::Target;
 use crate::table::csv;
 use crate::table::rows::Cell;
 
 /// A table of comma-separated values that grows beside the file that it replaces at the end.
 #[derive(Debug)]
 pub struct Stream<'p> {
-    place: &'p Place,
+    place: &'p Target,
     /// The file, once begun.
     out: Option<BufWriter<NamedTempFile>>,
     /// The error that ended the writing.
@@ -28,7 +28,7 @@ const BLOCK: usize = 1 << 20;
 
 impl<'p> Stream<'p> {
     /// To a regular file.
-    pub(crate) fn to(place: &'p Place) -> Stream<'p> {
+    pub(crate) fn to(place: &'p Target) -> Stream<'p> {
         Stream { place, out: None, error: None }
     }
 

@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 use crate::error::RunError;
 use crate::files::error::FileError;
 use crate::linear::error::LinearError;
-use crate::linear::ground::{Ground, placed};
 use crate::linear::json::map;
+use crate::linear::linearizable::{Linearizable, placed};
 use crate::linear::output::Contents;
 use crate::linear::text::rounded;
 use crate::observer::Observer;
@@ -61,7 +61,7 @@ impl Found {
         observer: &dyn Observer,
     ) -> Result<Found, RunError> {
         let graph = model.graph();
-        let mut ground = Ground::vouched(model, &graph, verify, observer)?;
+        let mut ground = Linearizable::vouched(model, &graph, verify, observer)?;
         let integrals = ground.integrals();
         let mut search = EquilibriumSearch::default().starts(wanted.starts);
         for (i, (name, low, high)) in wanted.bounds.iter().enumerate() {

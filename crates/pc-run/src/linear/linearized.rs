@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use crate::error::RunError;
 use crate::files::error::FileError;
 use crate::linear::arrays::of_linearization;
-use crate::linear::ground::{Ground, placed};
+use crate::linear::linearizable::{Linearizable, placed};
 use crate::linear::near::{CyclicChoice, near};
 use crate::linear::output::Contents;
 use crate::linear::state::{At, StateChoice};
@@ -43,7 +43,7 @@ impl Linearized {
         observer: &dyn Observer,
     ) -> Result<Linearized, RunError> {
         let graph = model.graph();
-        let mut ground = Ground::vouched(model, &graph, verify, observer)?;
+        let mut ground = Linearizable::vouched(model, &graph, verify, observer)?;
         let (t, start) = (ground.assembly.t_start, ground.start.clone());
         let linear = near(&mut ground.linearizer, t, &start, state, CyclicChoice::OfState)
             .map_err(|error| placed(&ground.assembly, error, true))?;

@@ -11,7 +11,7 @@ use crate::error::RunError;
 use crate::files::error::FileError;
 use crate::linear::arrays::of_locus;
 use crate::linear::error::LinearError;
-use crate::linear::ground::Ground;
+use crate::linear::linearizable::Linearizable;
 use crate::linear::near::Varied;
 use crate::linear::output::Contents;
 use crate::linear::state::StateChoice;
@@ -47,7 +47,7 @@ impl Locus {
         observer: &dyn Observer,
     ) -> Result<Locus, RunError> {
         let graph = model.graph();
-        let ground = Ground::vouched(model, &graph, verify, observer)?;
+        let ground = Linearizable::vouched(model, &graph, verify, observer)?;
         let linearizations = Varied::of(model, &ground, state);
         let values = vary.values.in_order();
         let mut locus = Locus {

@@ -7,7 +7,7 @@ use pc_model::Model;
 
 use crate::error::RunError;
 use crate::linear::error::LinearError;
-use crate::linear::ground::{Ground, placed};
+use crate::linear::linearizable::{Linearizable, placed};
 use crate::linear::state::{At, Cyclic, StateChoice};
 
 /// Which cyclic coordinates are kept by default.
@@ -62,7 +62,7 @@ pub(crate) struct Varied {
 
 impl Varied {
     /// Linearizations near a model, which begins with its own values.
-    pub(crate) fn of(model: &Model, ground: &Ground<'_>, state: &StateChoice) -> Varied {
+    pub(crate) fn of(model: &Model, ground: &Linearizable<'_>, state: &StateChoice) -> Varied {
         let places = ground.places(model);
         Varied {
             t: ground.assembly.t_start,
@@ -79,7 +79,7 @@ impl Varied {
     pub(crate) fn linearization(&self, model: &Model) -> Result<Linearization, RunError> {
         let Some((linearizer, places)) = &self.common else {
             let graph = model.graph();
-            let mut own = Ground::new(model, &graph)?;
+            let mut own = Linearizable::new(model, &graph)?;
             let start = own.start.clone();
             let found = near(&mut own.linearizer, self.t, &start, &self.state, CyclicChoice::None);
             return found.map_err(|error| placed(&own.assembly, error, true));
@@ -98,7 +98,7 @@ impl Varied {
     ///
     /// # Errors
     /// [`RunError`] where the parts of the equations are not defined there.
-    pub(crate) fn most_components(&self, ground: &mut Ground<'_>) -> Result<usize, RunError> {
+    pub(crate) fn most_components(&self, ground: &mut Linearizable<'_>) -> Result<usize, RunError> {
         let cyclic = match (self.state.at, self.state.cyclic) {
             (At::Start, _) | (_, Some(Cyclic::Keep)) => CyclicCoordinates::KeptAtRest,
             (At::Steady | At::Rest, _) => CyclicCoordinates::LeftOut,

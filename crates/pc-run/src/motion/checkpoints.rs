@@ -12,7 +12,7 @@ use pc_solve::{Checkpoint, CheckpointError, Ending, Options, Resumable, Solution
 
 use crate::error::RunError;
 use crate::files::error::FileError;
-use crate::files::place::Place;
+use crate::files::target::Target;
 use crate::motion::checkpoint_error::CheckpointFileError;
 use crate::motion::identity;
 use crate::motion::identity::Identity;
@@ -45,7 +45,7 @@ impl CheckpointFiles {
 /// Checkpoints of one run.
 #[derive(Debug)]
 pub(crate) struct Checkpoints {
-    place: Place,
+    place: Target,
     every: NonZeroU64,
     identity: Identity,
     /// The checkpoint to begin at; the start if there is none.
@@ -66,7 +66,7 @@ impl Checkpoints {
             return if files.every.is_some() { Err(CheckpointFileError::Nowhere.into()) } else { Ok(None) };
         };
         // A file would replace a device.
-        let place = Place::regular(path).map_err(|source| FileError::no_place(path, source))?;
+        let place = Target::regular(path).map_err(|source| FileError::no_place(path, source))?;
         let overwritten = files.checkpoint.as_ref().and_then(|path| beginning(path).ok());
         if overwritten.is_some_and(|bytes| !bytes.is_empty() && !Checkpoint::is_one(&bytes)) {
             return Err(CheckpointFileError::Occupied { path: path.to_owned() }.into());

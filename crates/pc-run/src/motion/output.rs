@@ -12,12 +12,12 @@ use crate::motion::table::Table;
 use crate::table::file::{Format, TableFile};
 #[cfg(feature = "parquet")]
 use crate::table::parquet;
-use crate::table::rows::{Cell, Column, Kind, Rows, Take};
+use crate::table::rows::{Cell, CellKind, Column, Rows, Take};
 use crate::table::{csv, json, npz};
 
 impl Rows for Table {
     fn columns(&self) -> Vec<Column> {
-        Table::columns(self).iter().map(|name| Column::new(name, Kind::Number)).collect()
+        Table::columns(self).iter().map(|name| Column::new(name, CellKind::Number)).collect()
     }
 
     fn count(&self) -> Option<u64> {

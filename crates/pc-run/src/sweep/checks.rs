@@ -13,7 +13,7 @@ use super::shard::Shard;
 use super::work::{Consume, Work};
 use crate::error::RunError;
 use crate::motion::verification::checked;
-use crate::table::rows::{Column, Kind};
+use crate::table::rows::{CellKind, Column};
 
 /// Checks each member.
 pub(crate) struct Checks {
@@ -22,7 +22,7 @@ pub(crate) struct Checks {
 
 impl Checks {
     pub(crate) fn new(model: Model, design: Design) -> Checks {
-        let kind = |is_number| if is_number { Kind::Number } else { Kind::Text };
+        let kind = |is_number| if is_number { CellKind::Number } else { CellKind::Text };
         let columns = Check::FINDINGS.iter().map(|&(name, is_number)| Column::new(name, kind(is_number)));
         Checks { members: Members::new(model, design, columns.collect()) }
     }

@@ -9,7 +9,7 @@ use pc_solve::{EnsembleError, Spent};
 use crate::category::Category;
 use crate::sweep::picture_error::SweepPlotError;
 use crate::sweep::shard::Shard;
-use crate::sweep::sheet::Misshapen;
+use crate::sweep::sweep_columns::Misshapen;
 
 /// Why a sweep was not begun or not completed.
 #[derive(Debug, thiserror::Error)]

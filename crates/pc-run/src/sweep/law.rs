@@ -5,7 +5,7 @@ use std::fmt;
 use pc_solve::member_stream;
 use rand_distr::{Distribution, LogNormal, Normal, Uniform};
 
-/// A quantity with the distribution of its values: `NAME=DISTRIBUTION`.
+/// A quantity with the distribution of its values, [written](super::written) `NAME=DISTRIBUTION`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Random {
     /// The parameter, or what has a start value.

@@ -14,13 +14,13 @@ use super::shard::Shard;
 use super::work::{Consume, Work};
 use crate::category::Category;
 use crate::error::RunError;
-use crate::linear::ground::Ground;
+use crate::linear::linearizable::Linearizable;
 use crate::linear::near::Varied;
 use crate::linear::state::{Cyclic, StateChoice};
 use crate::motion::remarks::say_dropped;
 use crate::motion::verification::compared;
 use crate::observer::Observer;
-use crate::table::rows::{Column, Kind};
+use crate::table::rows::{CellKind, Column};
 
 /// Linearizes the equations of each member at a state near its start.
 pub(crate) struct Linearizations {
@@ -41,15 +41,15 @@ impl Linearizations {
     ) -> Result<Self, RunError> {
         let (varied, most) = {
             let graph = model.graph();
-            let mut ground = Ground::new(&model, &graph)?;
+            let mut ground = Linearizable::new(&model, &graph)?;
             say_dropped(&ground.assembly, observer);
             let varied = Varied::of(&model, &ground, state);
             let most = varied.most_components(&mut ground)?;
             (varied, most)
         };
         let numbers = (1..=most).flat_map(|i| [format!("re{i}"), format!("im{i}")]);
-        let mut columns: Vec<Column> = numbers.map(|name| Column::new(name, Kind::Number)).collect();
-        columns.push(Column::new("stability", Kind::Text));
+        let mut columns: Vec<Column> = numbers.map(|name| Column::new(name, CellKind::Number)).collect();
+        columns.push(Column::new("stability", CellKind::Text));
         Ok(Linearizations { members: Members::new(model, design, columns), varied, most })
     }
 

@@ -6,7 +6,7 @@ use super::design::Design;
 use super::record::{Record, Status};
 use crate::chain::{chain, line};
 use crate::error::RunError;
-use crate::table::rows::{Column, Kind};
+use crate::table::rows::{CellKind, Column};
 
 /// The models of a sweep.
 pub(crate) struct Members {
@@ -28,7 +28,7 @@ impl Members {
 
     /// The record of a member that could not start and of which only the values are known: one empty row.
     pub(crate) fn blank(&self, member: u64) -> Record {
-        let words = self.columns.iter().filter(|column| column.kind == Kind::Text).count();
+        let words = self.columns.iter().filter(|column| column.kind == CellKind::Text).count();
         Record {
             member,
             status: Status::Refused,

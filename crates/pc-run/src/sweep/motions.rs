@@ -22,7 +22,7 @@ use crate::motion::verification::Verification;
 use crate::plan::Plan;
 use crate::plan::memory;
 use crate::plan::tolerances::Tolerances;
-use crate::table::rows::{Column, Kind};
+use crate::table::rows::{CellKind, Column};
 use pc_print::short;
 
 /// Integrates each member.
@@ -236,7 +236,7 @@ impl Columns {
     fn in_rows(&self, drifts: bool) -> Vec<Column> {
         let kept = if drifts { &self.names[self.conserved.clone()] } else { &[] };
         let drifts = kept.iter().map(|name| format!("drift({name})"));
-        self.names.iter().cloned().chain(drifts).map(|name| Column::new(name, Kind::Number)).collect()
+        self.names.iter().cloned().chain(drifts).map(|name| Column::new(name, CellKind::Number)).collect()
     }
 }
 

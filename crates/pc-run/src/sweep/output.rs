@@ -6,7 +6,7 @@ use std::io;
 use serde_json::json;
 
 use super::journal::Records;
-use super::sheet::Sheet;
+use super::sweep_columns::SweepColumns;
 use crate::files::error::FileError;
 use crate::files::kept::Kept;
 use crate::table::file::{Format, TableFile};
@@ -17,13 +17,13 @@ use crate::table::{csv, json, npz};
 
 /// The members of a sweep as a table.
 struct SweepTable<'s> {
-    sheet: &'s Sheet,
+    columns: &'s SweepColumns,
     records: &'s dyn Records,
 }
 
 impl Rows for SweepTable<'_> {
     fn columns(&self) -> Vec<Column> {
-        self.sheet.columns().to_vec()
+        self.columns.columns().to_vec()
     }
 
     fn count(&self) -> Option<u64> {
@@ -32,7 +32,7 @@ impl Rows for SweepTable<'_> {
 
     fn each(&self, take: Take<'_>) -> io::Result<()> {
         for record in self.records.records()? {
-            self.sheet.rows(&record?)?.try_for_each(|row| take(&row))?;
+            self.columns.rows(&record?)?.try_for_each(|row| take(&row))?;
         }
         Ok(())
     }
@@ -42,8 +42,13 @@ impl Rows for SweepTable<'_> {
 ///
 /// # Errors
 /// [`FileError::Write`]; an existing file is then unchanged.
-pub fn write(file: &TableFile, title: &str, sheet: &Sheet, records: &dyn Records) -> Result<(), FileError> {
-    let table = SweepTable { sheet, records };
+pub fn write(
+    file: &TableFile,
+    title: &str,
+    columns: &SweepColumns,
+    records: &dyn Records,
+) -> Result<(), FileError> {
+    let table = SweepTable { columns, records };
     let written = file.place.write(|out| match file.format {
         Format::Json => json::write(&[("model", json!(title))], &table, &[], out),
         Format::Npz => npz::write(&table, &[], out),

@@ -10,7 +10,7 @@ use crate::sweep::error::SweepError;
 use crate::sweep::journal::Records;
 use crate::sweep::picture_error::{MOST_CELLS, SweepPlotError};
 use crate::sweep::record::Status;
-use crate::sweep::sheet::Sheet;
+use crate::sweep::sweep_columns::SweepColumns;
 use pc_print::short;
 
 /// The most panels unless columns are chosen.
@@ -27,7 +27,7 @@ const QUANTILES: [(f64, &str); 5] =
 /// # Errors
 /// [`SweepPlotError`]
 pub(crate) fn check(
-    sheet: &Sheet,
+    sheet: &SweepColumns,
     wanted: &[String],
     counts: &[u64],
     is_random: bool,
@@ -48,7 +48,7 @@ pub(crate) fn check(
 
 /// The indices of the chosen columns among those of the motion; all but time and drifts if none is
 /// chosen.
-fn chosen(sheet: &Sheet, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError> {
+fn chosen(sheet: &SweepColumns, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError> {
     let names = sheet.numbers();
     if wanted.is_empty() {
         // Time is the same in most members, and drifts are noise.
@@ -65,7 +65,7 @@ fn chosen(sheet: &Sheet, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError
 }
 
 /// Whether number `j` of a row is its time.
-fn is_time(sheet: &Sheet, j: usize) -> bool {
+fn is_time(sheet: &SweepColumns, j: usize) -> bool {
     sheet.of() == SweepOf::Run && j == 0
 }
 
@@ -102,7 +102,7 @@ impl Member {
 /// [`SweepError::Drawn`], and [`SweepError::Read`] where members cannot be read.
 pub fn picture(
     title: &str,
-    sheet: &Sheet,
+    sheet: &SweepColumns,
     members: &dyn Records,
     wanted: &[String],
     is_random: bool,
@@ -112,7 +112,7 @@ pub fn picture(
 
 fn drawn(
     title: &str,
-    sheet: &Sheet,
+    sheet: &SweepColumns,
     members: &dyn Records,
     wanted: &[String],
     is_random: bool,

@@ -7,7 +7,7 @@ use crate::motion::identity::{self, Identity};
 use crate::sweep::error::SweepError;
 use crate::sweep::journal::{Journal, Records, Tally};
 use crate::sweep::shard::Shard;
-use crate::sweep::sheet::Sheet;
+use crate::sweep::sweep_columns::SweepColumns;
 
 /// Names of the entries in the header of a shard, in addition to those of any sweep.
 const SHARD: &str = "--shard";
@@ -22,7 +22,7 @@ pub(crate) fn described(
     shard: Shard,
     members: u64,
     title: &str,
-    sheet: &Sheet,
+    sheet: &SweepColumns,
 ) -> Identity {
     let entries = [
         (SHARD, shard.to_string()),
@@ -42,7 +42,7 @@ pub struct Shards {
     /// The title of the model.
     pub title: String,
     /// The columns.
-    pub sheet: Sheet,
+    pub sheet: SweepColumns,
     /// Whether the members were drawn.
     pub is_random: bool,
 }
@@ -98,7 +98,7 @@ impl Shards {
             return Err(SweepError::Missing { shards: missing, of });
         }
         let value = |name: &str| entry(&header, name).unwrap_or_default().to_owned();
-        let sheet = Sheet::from_text(&value(SHEET)).ok_or(SweepError::NoShard { path })?;
+        let sheet = SweepColumns::from_text(&value(SHEET)).ok_or(SweepError::NoShard { path })?;
         Ok(Shards {
             members: value(MEMBERS).parse().unwrap_or(0),
             title: value(TITLE),

@@ -24,7 +24,7 @@ use super::motions::Motions;
 use super::of::SweepOf;
 use super::record::Record;
 use super::shard::Shard;
-use super::sheet::Sheet;
+use super::sweep_columns::SweepColumns;
 use super::work::Work;
 use super::{picture, shards};
 use crate::error::RunError;
@@ -60,7 +60,7 @@ pub struct Sweep {
     title: String,
     deadline: Deadline,
     work: Box<dyn Work>,
-    sheet: Sheet,
+    sheet: SweepColumns,
     threads: Option<NonZeroUsize>,
     members: u64,
     is_random: bool,
@@ -97,7 +97,7 @@ impl Sweep {
         let (members, names) = (design.members(), design.names());
         let (title, deadline) = (model.title().to_owned(), model.budget().deadline().clone());
         let (work, depends_on) = begun(wishes, model, design, observer)?;
-        let sheet = Sheet::new(wishes.of, &names, work.members().columns());
+        let sheet = SweepColumns::new(wishes.of, &names, work.members().columns());
         Ok(Sweep {
             title,
             deadline,
@@ -126,7 +126,7 @@ impl Sweep {
         let (members, names) = (design.members(), design.names());
         let (title, deadline) = (model.title().to_owned(), plan.deadline.clone());
         let work = Motions::new(model, design, plan, all_rows, workers(threads), Some(derived))?;
-        let sheet = Sheet::new(SweepOf::Run, &names, work.members().columns());
+        let sheet = SweepColumns::new(SweepOf::Run, &names, work.members().columns());
         let (counts, header) = (Vec::new(), Identity::new());
         let work = Box::new(work);
         Ok(Sweep { title, deadline, work, sheet, threads, members, is_random: false, counts, header })
@@ -167,7 +167,7 @@ impl Sweep {
     }
 
     /// The columns of its table.
-    pub fn sheet(&self) -> &Sheet {
+    pub fn sheet(&self) -> &SweepColumns {
         &self.sheet
     }
 

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::files::error::FileError;
-use crate::files::place::Place;
 use crate::files::stream::Stream;
+use crate::files::target::Target;
 
 /// The format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +64,7 @@ impl Format {
 /// The file of a table; its place is examined before anything is computed.
 #[derive(Debug)]
 pub struct TableFile {
-    pub(crate) place: Place,
+    pub(crate) place: Target,
     pub(crate) format: Format,
 }
 
@@ -76,7 +76,7 @@ impl TableFile {
     pub fn new(path: &Path, formats: &[Format]) -> Result<TableFile, FileError> {
         let format = format(path, formats)?;
         // Writing the archive needs to seek.
-        let place = if format == Format::Npz { Place::regular(path) } else { Place::new(path) };
+        let place = if format == Format::Npz { Target::regular(path) } else { Target::new(path) };
         Ok(TableFile { place: place.map_err(|source| FileError::no_place(path, source))?, format })
     }
 
@@ -86,7 +86,7 @@ impl TableFile {
     /// As for [`new`](TableFile::new).
     pub fn regular(path: &Path, formats: &[Format]) -> Result<TableFile, FileError> {
         let format = format(path, formats)?;
-        let place = Place::regular(path).map_err(|source| FileError::no_place(path, source))?;
+        let place = Target::regular(path).map_err(|source| FileError::no_place(path, source))?;
         Ok(TableFile { place, format })
     }
 

@@ -7,7 +7,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::table::array::Array;
-use crate::table::rows::{Cell, Kind, Rows};
+use crate::table::rows::{Cell, CellKind, Rows};
 
 /// The length, in numbers, from which an entry needs the archive format for more than 4 GiB.
 const LARGE: u64 = (1 << 29) - 1024;
@@ -29,7 +29,7 @@ pub(crate) fn write(
     out: &mut (impl Write + Seek),
 ) -> io::Result<()> {
     let columns = table.columns();
-    let texts = columns.iter().any(|column| column.kind == Kind::Text);
+    let texts = columns.iter().any(|column| column.kind == CellKind::Text);
     let (rows, lengths) = match table.count() {
         Some(rows) if !texts => (rows, vec![0; columns.len()]),
         _ => extent(table, columns.len())?,
@@ -41,21 +41,21 @@ pub(crate) fn write(
         let options = options().large_file(is_large(rows));
         archive.start_file(format!("{}.npy", entry(&column.name)), options)?;
         let dtype = match column.kind {
-            Kind::Integer => "<u8".to_owned(),
-            Kind::Number => "<f8".to_owned(),
-            Kind::Text => format!("<U{}", lengths[j].max(1)),
+            CellKind::Integer => "<u8".to_owned(),
+            CellKind::Number => "<f8".to_owned(),
+            CellKind::Text => format!("<U{}", lengths[j].max(1)),
         };
         let dtype = DType::new_scalar(dtype.parse().map_err(|e| Error::new(ErrorKind::InvalidInput, e))?);
         match column.kind {
-            Kind::Integer => fill(&mut archive, dtype, (table, j, rows), |cell| match cell {
+            CellKind::Integer => fill(&mut archive, dtype, (table, j, rows), |cell| match cell {
                 Cell::Integer(value) => value,
                 Cell::Number(_) | Cell::Text(_) => 0,
             })?,
-            Kind::Number => fill(&mut archive, dtype, (table, j, rows), |cell| match cell {
+            CellKind::Number => fill(&mut archive, dtype, (table, j, rows), |cell| match cell {
                 Cell::Number(value) => value,
                 Cell::Integer(_) | Cell::Text(_) => f64::NAN,
             })?,
-            Kind::Text => fill(&mut archive, dtype, (table, j, rows), |cell| match cell {
+            CellKind::Text => fill(&mut archive, dtype, (table, j, rows), |cell| match cell {
                 Cell::Text(text) => text.to_owned(),
                 Cell::Integer(_) | Cell::Number(_) => String::new(),
             })?,

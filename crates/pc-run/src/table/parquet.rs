@@ -10,7 +10,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
 
-use crate::table::rows::{self, Cell, Kind, Rows};
+use crate::table::rows::{self, Cell, CellKind, Rows};
 
 /// The most rows in memory.
 const GROUP: usize = 65_536;
@@ -50,9 +50,9 @@ pub(crate) fn write(name: &str, table: &dyn Rows, out: impl io::Write + Send) ->
 fn schema(name: &str, columns: &[rows::Column]) -> Result<Type, ParquetError> {
     let field = |rows::Column { name, kind }: &rows::Column| {
         let (physical, logical) = match kind {
-            Kind::Integer => (Physical::INT64, Some(LogicalType::integer(64, false))),
-            Kind::Number => (Physical::DOUBLE, None),
-            Kind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+            CellKind::Integer => (Physical::INT64, Some(LogicalType::integer(64, false))),
+            CellKind::Number => (Physical::DOUBLE, None),
+            CellKind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
         };
         let builder = Type::primitive_type_builder(name, physical).with_repetition(Repetition::REQUIRED);
         builder.with_logical_type(logical).build().map(Arc::new)
@@ -63,9 +63,9 @@ fn schema(name: &str, columns: &[rows::Column]) -> Result<Type, ParquetError> {
 
 fn empty(columns: &[rows::Column]) -> Vec<Column> {
     let column = |column: &rows::Column| match column.kind {
-        Kind::Integer => Column::Integers(Vec::new()),
-        Kind::Number => Column::Numbers(Vec::new()),
-        Kind::Text => Column::Texts(Vec::new()),
+        CellKind::Integer => Column::Integers(Vec::new()),
+        CellKind::Number => Column::Numbers(Vec::new()),
+        CellKind::Text => Column::Texts(Vec::new()),
     };
     columns.iter().map(column).collect()
 }

@@ -4,7 +4,7 @@ use std::io;
 
 /// The kind of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum CellKind {
     /// Whole numbers, not negative.
     Integer,
     /// Numbers.
@@ -19,12 +19,12 @@ pub struct Column {
     /// Its name.
     pub name: String,
     /// The kind of its cells.
-    pub kind: Kind,
+    pub kind: CellKind,
 }
 
 impl Column {
     /// A column of this name.
-    pub fn new(name: impl Into<String>, kind: Kind) -> Column {
+    pub fn new(name: impl Into<String>, kind: CellKind) -> Column {
         Column { name: name.into(), kind }
     }
 }

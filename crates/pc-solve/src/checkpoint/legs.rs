@@ -11,7 +11,7 @@ use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::events::events::Occurrence;
 use crate::integration::checks::finite;
 use crate::integration::integration::{Ending, Integration};
-use crate::integration::method::IntegrationMethod;
+use crate::integration::integration_method::IntegrationMethod;
 use crate::integration::observer::Observed;
 use crate::integration::stepper::Stepper;
 use crate::solve::failure::SolveFailure;

@@ -7,7 +7,7 @@ use pc_expr::{Events, VectorField};
 
 use crate::checkpoint::checkpoint::Checkpoint;
 use crate::checkpoint::legs::follow;
-use crate::integration::method::IntegrationMethod;
+use crate::integration::integration_method::IntegrationMethod;
 use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;

@@ -8,7 +8,7 @@ use crate::error::SolveError;
 use crate::events::events::{NoEvents, Occurrence};
 use crate::integration::dense_output::DenseOutput;
 use crate::integration::integration::{Ending, Integration};
-use crate::integration::method::IntegrationMethod;
+use crate::integration::integration_method::IntegrationMethod;
 use crate::integration::observer::Observed;
 use crate::integration::trajectory::Trajectory;
 use crate::settings::options::Options;

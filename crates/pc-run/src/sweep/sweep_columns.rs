@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::of::SweepOf;
 use super::record::Record;
-use crate::table::rows::{Cell, Column, Kind};
+use crate::table::rows::{Cell, CellKind, Column};
 
 /// A record that is not made of whole rows: its names and numbers come from different tables.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -25,7 +25,7 @@ pub struct Misshapen {
 
 /// The columns.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Sheet {
+pub struct SweepColumns {
     of: SweepOf,
     columns: Vec<Column>,
     /// How many values are varied.
@@ -34,10 +34,10 @@ pub struct Sheet {
     results: usize,
 }
 
-impl Sheet {
+impl SweepColumns {
     /// Number of the member, what is varied, how it ended, then `results`, steps of a motion, and message.
-    pub(crate) fn new(of: SweepOf, names: &[String], results: &[Column]) -> Sheet {
-        let varied: Vec<Column> = names.iter().map(|name| Column::new(name, Kind::Number)).collect();
+    pub(crate) fn new(of: SweepOf, names: &[String], results: &[Column]) -> SweepColumns {
+        let varied: Vec<Column> = names.iter().map(|name| Column::new(name, CellKind::Number)).collect();
         // What is varied and shown is the same, as a parameter that is an integral would be: names are of one space.
         let taken: Vec<&str> = varied.iter().chain(results).map(|column| column.name.as_str()).collect();
         let free = |name: &str, kind| {
@@ -47,11 +47,11 @@ impl Sheet {
             }
             vec![Column::new(name, kind)]
         };
-        let steps = if of == SweepOf::Run { free("steps", Kind::Integer) } else { Vec::new() };
-        let (member, status) = (free("member", Kind::Integer), free("status", Kind::Text));
-        let message = free("message", Kind::Text);
+        let steps = if of == SweepOf::Run { free("steps", CellKind::Integer) } else { Vec::new() };
+        let (member, status) = (free("member", CellKind::Integer), free("status", CellKind::Text));
+        let message = free("message", CellKind::Text);
         let columns = [member, varied.clone(), status, results.to_vec(), steps, message].concat();
-        Sheet { of, columns, varied: varied.len(), results: results.len() }
+        SweepColumns { of, columns, varied: varied.len(), results: results.len() }
     }
 
     /// What is computed for each member.
@@ -67,14 +67,14 @@ impl Sheet {
     }
 
     /// The sheet from its text.
-    pub(crate) fn from_text(text: &str) -> Option<Sheet> {
+    pub(crate) fn from_text(text: &str) -> Option<SweepColumns> {
         type Parts = (String, usize, usize, Vec<(String, u8)>);
         let (of, varied, results, columns): Parts = serde_json::from_str(text).ok()?;
         let of = SweepOf::of_word(&of)?;
         let kind = |kind| match kind {
-            0 => Some(Kind::Integer),
-            1 => Some(Kind::Number),
-            2 => Some(Kind::Text),
+            0 => Some(CellKind::Integer),
+            1 => Some(CellKind::Number),
+            2 => Some(CellKind::Text),
             _ => None,
         };
         let columns: Option<Vec<_>> =
@@ -83,7 +83,7 @@ impl Sheet {
         let others = if of == SweepOf::Run { 4 } else { 3 };
         let all = varied.checked_add(results)?.checked_add(others)?;
         let columns = columns.filter(|columns| columns.len() == all && results > 0)?;
-        Some(Sheet { of, columns, varied, results })
+        Some(SweepColumns { of, columns, varied, results })
     }
 
     /// Names of the varied quantities.
@@ -99,7 +99,7 @@ impl Sheet {
 
     /// Names of the numbers among the results.
     pub(crate) fn numbers(&self) -> Vec<&str> {
-        let numbers = self.results().iter().filter(|column| column.kind == Kind::Number);
+        let numbers = self.results().iter().filter(|column| column.kind == CellKind::Number);
         numbers.map(|column| column.name.as_str()).collect()
     }
 
@@ -113,7 +113,7 @@ impl Sheet {
     /// # Errors
     /// [`Misshapen`]
     pub(crate) fn check(&self, record: &Record) -> Result<(), Misshapen> {
-        let words = self.results().iter().filter(|column| column.kind == Kind::Text).count();
+        let words = self.results().iter().filter(|column| column.kind == CellKind::Text).count();
         let numbers = self.results().len() - words;
         let rows = |found: usize, columns: usize| match (columns, found) {
             (0, 0) => Some(None),
@@ -142,8 +142,8 @@ impl Sheet {
         self.check(record).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
         let (mut numbers, mut words) = (record.rows.iter(), record.words.iter());
         let mut result = move |column: &Column| match column.kind {
-            Kind::Text => words.next().map(|word| Cell::Text(word)),
-            Kind::Number | Kind::Integer => numbers.next().map(|&number| Cell::Number(number)),
+            CellKind::Text => words.next().map(|word| Cell::Text(word)),
+            CellKind::Number | CellKind::Integer => numbers.next().map(|&number| Cell::Number(number)),
         };
         Ok(std::iter::from_fn(move || {
             let mut cells = vec![Cell::Integer(record.member)];

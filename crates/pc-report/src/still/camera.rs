@@ -52,7 +52,7 @@ impl Bounds {
     fn of(scene: &Scene) -> Bounds {
         let (up, down) = ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
         let mut bounds = Bounds { low: down, high: up, least: down, most: up, across: [0.0; 3] };
-        for numbers in scene.frames.chunks_exact(scene.width().max(1)) {
+        for numbers in scene.stills.chunks_exact(scene.width().max(1)) {
             let mut rest = numbers;
             for shape in &scene.shapes {
                 let (own, after) = rest.split_at(shape.numbers());
@@ -166,7 +166,7 @@ mod tests {
 
     fn scene(points: &[[f32; 3]], gravity: [f64; 3]) -> Scene {
         let times = (0..points.len()).map(|i| i as f64).collect();
-        Scene { shapes: vec![SceneShape::Point(None)], times, frames: points.concat(), gravity }
+        Scene { shapes: vec![SceneShape::Point(None)], times, stills: points.concat(), gravity }
     }
 
     #[test]

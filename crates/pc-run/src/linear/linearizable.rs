@@ -18,7 +18,7 @@ use crate::motion::verification::vouched;
 use crate::observer::Observer;
 
 /// A model with its equations in independent quasi-velocities, compiled to be linearized.
-pub(crate) struct Ground<'g> {
+pub(crate) struct Linearizable<'g> {
     pub(crate) assembly: Assembly<'g>,
     pub(crate) equations: Equations<'g>,
     pub(crate) linearizer: Linearizer,
@@ -26,10 +26,10 @@ pub(crate) struct Ground<'g> {
     pub(crate) start: Vec<f64>,
 }
 
-impl<'g> Ground<'g> {
+impl<'g> Linearizable<'g> {
     /// # Errors
     /// [`RunError`] at the place in the file that causes it.
-    pub(crate) fn new(model: &Model, graph: &'g Graph) -> Result<Ground<'g>, RunError> {
+    pub(crate) fn new(model: &Model, graph: &'g Graph) -> Result<Linearizable<'g>, RunError> {
         let assembly = model.assemble(graph)?;
         if assembly.constraints.nonlinear().is_some() {
             return Err(LinearError::Nonlinear.into());
@@ -57,21 +57,21 @@ impl<'g> Ground<'g> {
             Some(_) => assembly.start.clone(),
             None => assembly.start_of(&equations.system().state()),
         };
-        Ok(Ground { assembly, equations, linearizer, start })
+        Ok(Linearizable { assembly, equations, linearizer, start })
     }
 
     /// The same, with remarks on the equations, which are compared with a second derivation if
     /// requested.
     ///
     /// # Errors
-    /// As for [`new`](Ground::new), and [`RunError::Verify`].
+    /// As for [`new`](Linearizable::new), and [`RunError::Verify`].
     pub(crate) fn vouched(
         model: &Model,
         graph: &'g Graph,
         verify: bool,
         observer: &dyn Observer,
-    ) -> Result<Ground<'g>, RunError> {
-        let ground = Ground::new(model, graph)?;
+    ) -> Result<Linearizable<'g>, RunError> {
+        let ground = Linearizable::new(model, graph)?;
         say_dropped(&ground.assembly, observer);
         say_moved(&ground.assembly, observer);
         if verify {

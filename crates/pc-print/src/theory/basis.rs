@@ -6,7 +6,7 @@ use pc_model::{Assembly, ConstraintFormulation, ModelError};
 use pc_nonholo::Constrained;
 
 /// A model with its equations in independent quasi-velocities.
-pub(crate) struct Ground<'a, 'g> {
+pub(crate) struct Basis<'a, 'g> {
     pub(crate) assembly: &'a Assembly<'g>,
     pub(crate) equations: Equations<'g>,
     /// The system of the independent quasi-velocities.
@@ -19,8 +19,8 @@ pub(crate) struct Ground<'a, 'g> {
     pub(crate) near: Neighbourhood<'g>,
 }
 
-impl<'a, 'g> Ground<'a, 'g> {
-    pub(crate) fn new(assembly: &'a Assembly<'g>) -> Result<Ground<'a, 'g>, ModelError> {
+impl<'a, 'g> Basis<'a, 'g> {
+    pub(crate) fn new(assembly: &'a Assembly<'g>) -> Result<Basis<'a, 'g>, ModelError> {
         let at = assembly.at_start();
         let free = assembly.free_system()?;
         let canonical = match assembly.constraints.nonlinear() {
@@ -32,7 +32,7 @@ impl<'a, 'g> Ground<'a, 'g> {
             },
         };
         let centre = assembly.system.parameters().iter().copied().chain(at.iter().copied()).collect();
-        Ok(Ground {
+        Ok(Basis {
             equations: assembly.equations()?,
             constrained: assembly.placed(assembly.constraints.constrained(&at))?,
             near: Neighbourhood { centre },

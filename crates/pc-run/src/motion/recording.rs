@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pc_report::{Columns, Kind, Record, Samples};
+use pc_report::{ColumnKind, Columns, Recording, Samples};
 
 use crate::motion::run::{Ending, Run};
 use crate::motion::summary;
@@ -11,7 +11,7 @@ use pc_print::short;
 
 impl Run {
     /// The run for pages and pictures.
-    pub fn record(&self) -> Record {
+    pub fn record(&self) -> Recording {
         let at = || short(self.statistics.current_time, 6);
         let remark = match &self.ending {
             Ending::Completed => None,
@@ -23,7 +23,7 @@ impl Run {
                 Some(format!("The motion was {} at t = {}; what was reached is shown.", ending.word(), at()))
             }
         };
-        Record {
+        Recording {
             rows: samples(&self.table),
             fine: self.fine.as_ref().map(samples),
             summary: summary::entries(self)
@@ -45,13 +45,13 @@ fn samples(table: &Table) -> Samples {
     Samples {
         times: table.column(0).collect(),
         columns: vec![
-            columns(Kind::Coordinates, table.coordinates()),
-            columns(Kind::QuasiVelocities, table.quasi_velocities()),
-            columns(Kind::States, table.states()),
-            columns(Kind::Conserved, table.conserved()),
-            columns(Kind::Outputs, table.outputs()),
-            columns(Kind::Derivatives, table.derivatives()),
-            columns(Kind::Errors, table.errors()),
+            columns(ColumnKind::Coordinates, table.coordinates()),
+            columns(ColumnKind::QuasiVelocities, table.quasi_velocities()),
+            columns(ColumnKind::States, table.states()),
+            columns(ColumnKind::Conserved, table.conserved()),
+            columns(ColumnKind::Outputs, table.outputs()),
+            columns(ColumnKind::Derivatives, table.derivatives()),
+            columns(ColumnKind::Errors, table.errors()),
         ],
     }
 }

@@ -14,7 +14,7 @@ pub fn file(path: Option<&Path>) -> Option<&Path> {
 
 /// The place of a file that is replaced whole, or of a device that is written through.
 #[derive(Debug)]
-pub struct Place {
+pub struct Target {
     /// The path as given.
     pub(super) asked: PathBuf,
     /// The file that links lead to.
@@ -23,30 +23,30 @@ pub struct Place {
     pub(crate) device: Option<File>,
 }
 
-impl Place {
+impl Target {
     /// A regular file, existing or not, in a directory in which files can be made; leftovers of
     /// killed runs are removed.
     ///
     /// # Errors
     /// [`io::Error`] that says why it cannot be written.
-    pub fn regular(path: &Path) -> io::Result<Place> {
+    pub fn regular(path: &Path) -> io::Result<Target> {
         match fs::metadata(path) {
             Ok(found) if !found.is_file() && !found.is_dir() => Err(refused("it is not a regular file")),
-            _ => Place::new(path),
+            _ => Target::new(path),
         }
     }
 
     /// A file that does not exist yet, not even as a dangling link.
     ///
     /// # Errors
-    /// As for [`regular`](Place::regular).
-    pub fn fresh(path: &Path) -> io::Result<Place> {
+    /// As for [`regular`](Target::regular).
+    pub fn fresh(path: &Path) -> io::Result<Target> {
         match fs::symlink_metadata(path) {
             Ok(_) => {
                 let message = "it is there already, and nothing is replaced; give another name";
                 Err(io::Error::new(ErrorKind::AlreadyExists, message))
             }
-            Err(error) if error.kind() == ErrorKind::NotFound => Place::new(path),
+            Err(error) if error.kind() == ErrorKind::NotFound => Target::new(path),
             Err(error) => Err(error),
         }
     }
@@ -55,8 +55,8 @@ impl Place {
     /// reader.
     ///
     /// # Errors
-    /// As for [`regular`](Place::regular).
-    pub fn new(path: &Path) -> io::Result<Place> {
+    /// As for [`regular`](Target::regular).
+    pub fn new(path: &Path) -> io::Result<Target> {
         let (file, device) = match fs::metadata(path) {
             Ok(found) if found.is_dir() => {
                 return Err(io::Error::new(ErrorKind::IsADirectory, "it is a directory"));
@@ -79,7 +79,7 @@ impl Place {
         if device.is_none() {
             try_directory(&file)?;
         }
-        Ok(Place { asked: path.to_owned(), file, device })
+        Ok(Target { asked: path.to_owned(), file, device })
     }
 
     /// The path as given.

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::frame::camera::{Camera, Seen, length, vector};
 use crate::picture::{Anchor, Drawing, Ink};
 use crate::scene::SceneShape;
+use crate::still::camera::{Camera, Seen, length, vector};
 
 /// Radius of a point.
 const DOT: f64 = 5.5;

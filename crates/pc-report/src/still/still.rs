@@ -1,9 +1,9 @@
-//! One frame of a scene.
+//! One still of a scene.
 
-use crate::frame::camera::{Camera, vector};
-use crate::frame::shapes;
 use crate::picture::{Anchor, Drawing, Ink};
 use crate::scene::{Scene, SceneShape};
+use crate::still::camera::{Camera, vector};
+use crate::still::shapes;
 
 /// Height of the letters of title and clock.
 const LETTERS: f64 = 14.0;
@@ -11,7 +11,7 @@ const LETTERS: f64 = 14.0;
 const EDGE: f64 = 12.0;
 
 impl Scene {
-    /// Frame number `number` on paper of this width and height, with the title and the time; the last one if there are
+    /// Still number `number` on paper of this width and height, with the title and the time; the last one if there are
     /// fewer. It shows what the player of [`animation`](crate::animation) shows before the view is turned.
     pub fn drawing(&self, title: &str, number: usize, [width, height]: [f64; 2]) -> Drawing {
         let mut drawing = Drawing { width, height, shapes: Vec::new() };
@@ -19,12 +19,12 @@ impl Scene {
         let number = number.min(last);
         let camera = Camera::of(self, [width, height]);
         let all = self.width();
-        let frame = |i: usize| &self.frames[i * all..(i + 1) * all];
+        let still = |i: usize| &self.stills[i * all..(i + 1) * all];
         let (mut own, mut from, mut colours) = (Vec::new(), 0, 0);
         for shape in &self.shapes {
-            let numbers = &frame(number)[from..from + shape.numbers()];
+            let numbers = &still(number)[from..from + shape.numbers()];
             let trace: Vec<[f64; 3]> = match shape {
-                SceneShape::Trace => (0..=number).map(|i| vector(frame(i), from)).collect(),
+                SceneShape::Trace => (0..=number).map(|i| vector(still(i), from)).collect(),
                 _ => Vec::new(),
             };
             let ink = Ink::Curve(colours);

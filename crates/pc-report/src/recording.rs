@@ -2,7 +2,7 @@
 
 /// The kinds of columns of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum ColumnKind {
     /// Coordinates x.
     Coordinates,
     /// Quasi-velocities η.
@@ -23,7 +23,7 @@ pub enum Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
     /// Their kind.
-    pub kind: Kind,
+    pub kind: ColumnKind,
     /// Each with its values, one for each time.
     pub list: Vec<(String, Vec<f64>)>,
 }
@@ -39,8 +39,8 @@ pub struct Samples {
 
 /// A motion as far as it was computed.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Record {
-    /// Evenly spaced, like the frames of a moving picture.
+pub struct Recording {
+    /// Evenly spaced, like the stills of a film.
     pub rows: Samples,
     /// As dense as smooth curves need, if that is known.
     pub fine: Option<Samples>,
@@ -69,7 +69,7 @@ impl Samples {
     ///
     /// # Errors
     /// [`UnknownColumn`]
-    pub(crate) fn column(&self, name: &str) -> Result<(Kind, &[f64]), UnknownColumn> {
+    pub(crate) fn column(&self, name: &str) -> Result<(ColumnKind, &[f64]), UnknownColumn> {
         let all =
             || self.columns.iter().flat_map(|columns| columns.list.iter().map(move |c| (columns.kind, c)));
         match all().find(|(_, (known, _))| known == name) {
@@ -82,7 +82,7 @@ impl Samples {
     }
 }
 
-impl Record {
+impl Recording {
     /// The samples through which curves are drawn.
     pub(crate) fn curves(&self) -> &Samples {
         self.fine.as_ref().unwrap_or(&self.rows)

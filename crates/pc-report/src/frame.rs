@@ -1,8 +1,0 @@
-//! A frame of a motion as a drawing, as the player of a page shows it.
-//!
-//! `camera` looks at everything that moves, from the player's initial viewpoint; `shapes` draws each
-//! [`SceneShape`](crate::SceneShape); `frame` puts them into one [`Drawing`](crate::picture::Drawing), the farthest first.
-
-mod camera;
-pub(crate) mod frame;
-mod shapes;
