@@ -1983,6 +1983,17 @@ pc_status pc_system_theory(const pc_system *system,
 pc_status pc_system_verify(const pc_system *system, size_t states, char **text, pc_error **error);
 
 /**
+ * As pc_system_verify, at one state of the system, such as that of a solver: its time, and the
+ * state that pc_solver_advance has written.
+ */
+pc_status pc_system_verify_at(const pc_system *system,
+                              double t,
+                              const double *y,
+                              size_t y_length,
+                              char **text,
+                              pc_error **error);
+
+/**
  * Makes a kernel of the system with its current parameters.
  */
 pc_status pc_kernel_new(const pc_system *system, pc_kernel **kernel, pc_error **error);

@@ -302,6 +302,11 @@ public:
     /// How closely the equations agree with a second derivation, at random states; throws if they
     /// do not.
     std::string verify(std::size_t states = 100) const { return detail::text(pc_system_verify, get(), states); }
+    /// The same at one state, such as that of a solver.
+    std::string verify_at(double t, const std::vector<double> &y) const
+    {
+        return detail::text(pc_system_verify_at, get(), t, y.data(), y.size());
+    }
     /// The equations as C source, which with -DNAME_MAIN is a program that integrates to t_end, if that is finite.
     c_source emit_c(const std::string &name, double t_end = std::numeric_limits<double>::infinity()) const
     {

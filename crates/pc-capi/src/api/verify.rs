@@ -2,12 +2,12 @@
 
 use std::ffi::c_char;
 
-use ::pc_model::Model;
-use pc_verify::{Options, VerifyError, verify};
+use ::pc_model::{Flow, Model, Variables};
+use pc_verify::{Agreement, Options, Second, VerifyError, verify};
 
 use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::pointer::{clear, write};
+use crate::ffi::pointer::{clear, numbers, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
@@ -40,20 +40,70 @@ pub unsafe extern "C" fn pc_system_verify(
     unsafe { inside(system, error, compare) }
 }
 
+/// As pc_system_verify, at one state of the system, such as that of a solver: its time, and the
+/// state that pc_solver_advance has written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_verify_at(
+    system: *const pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    text: *mut *mut c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let compare = |inventory: &Inventory, inner: &mut Inner| {
+        if !text.is_null() {
+            // SAFETY: the pointers are as the preamble demands.
+            unsafe { clear(text, "text") }?;
+        }
+        // SAFETY: null or `y_length` numbers, as the preamble demands.
+        let y = unsafe { numbers(y, y_length, inventory.dim(), "y") }?;
+        let (variables, parameters) = (inventory.variables, inner.field.parameters());
+        let report = inventory.derive(|model| report_at(model, variables, parameters, (t, y)))?;
+        // SAFETY: as the preamble demands.
+        if text.is_null() { Ok(()) } else { unsafe { write(text, give(&report), "text") } }
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, compare) }
+}
+
 fn report(mut model: Model, parameters: &[f64], states: usize) -> Result<String, CallError> {
-    let names: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
-    for (name, &value) in names.iter().zip(parameters) {
-        model.set(name, value)?;
-    }
-    // Random states are looked for near the start, so it may be off the constraints.
-    model.project_start(true);
+    set(&mut model, parameters)?;
     let usual = Options::default();
     let options = Options { states: if states == 0 { usual.states } else { states }, ..usual };
-    let agreement =
-        model.derived(|assembly| verify(&model, assembly, &options)).map_err(|error| match error {
-            VerifyError::Model(error) => CallError::Model(error),
-            other => CallError::Verify(other),
-        })?;
+    in_words(model.derived(|assembly| verify(&model, assembly, &options)))
+}
+
+fn report_at(
+    mut model: Model,
+    variables: Variables,
+    parameters: &[f64],
+    (t, y): (f64, &[f64]),
+) -> Result<String, CallError> {
+    set(&mut model, parameters)?;
+    in_words(model.derived(|assembly| {
+        let flow = Flow::new(&model, assembly, variables)?;
+        Second::new(&model, assembly)?.agrees(variables.name(), &flow, assembly, t, y)
+    }))
+}
+
+/// Gives a model the parameters of a system; its start may then be off the constraints, which does not matter here.
+fn set(model: &mut Model, parameters: &[f64]) -> Result<(), CallError> {
+    let names: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
+    for (place, (name, &value)) in names.iter().zip(parameters).enumerate() {
+        if !model.parameter_values().is_table(place) {
+            model.set(name, value)?;
+        }
+    }
+    model.project_start(true);
+    Ok(())
+}
+
+fn in_words(compared: Result<Agreement, VerifyError>) -> Result<String, CallError> {
+    let agreement = compared.map_err(|error| match error {
+        VerifyError::Model(error) => CallError::Model(error),
+        other => CallError::Verify(other),
+    })?;
     let more = agreement.not_compared.iter().map(|what| format!("not compared: {what}\n"));
     Ok(format!("{agreement}\n{}", more.collect::<String>()))
 }

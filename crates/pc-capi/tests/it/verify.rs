@@ -36,6 +36,37 @@ fn a_system_agrees_with_a_second_derivation() {
     assert!(said.starts_with("agrees to ") && said.ends_with(" at 7 states\n"), "{said}");
 }
 
+/// A solver's state at the end, for the parameters that the system has then.
+#[test]
+fn a_solver_agrees_with_a_second_derivation_where_it_is() {
+    let (mut handle, mut system, mut solver) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut());
+    let mut text = ptr::null_mut::<c_char>();
+    let mut y = [0.0; 6];
+    // SAFETY: live handles, each freed once, room for the state, and a text of the library.
+    let said = unsafe {
+        let made = pc_model_builtin(c"heavy-top-lagrange".as_ptr(), &raw mut handle, ptr::null_mut());
+        assert_eq!(made, pc_status::PC_OK);
+        assert_eq!(pc_system_new(handle, ptr::null(), &raw mut system, ptr::null_mut()), pc_status::PC_OK);
+        assert_eq!(pc_system_set_parameter(system, 0, 1.25, ptr::null_mut()), pc_status::PC_OK);
+        let none = ptr::null();
+        let begun = pc_solver_new(system, none, 0.0, ptr::null(), 0, &raw mut solver, ptr::null_mut());
+        assert_eq!(begun, pc_status::PC_OK);
+        let at = pc_solver_advance(solver, 1.5, y.as_mut_ptr(), y.len(), ptr::null_mut());
+        assert_eq!(at, pc_status::PC_OK);
+        let status = pc_system_verify_at(system, 1.5, y.as_ptr(), y.len(), &raw mut text, ptr::null_mut());
+        assert_eq!(status, pc_status::PC_OK);
+        let short = pc_system_verify_at(system, 1.5, y.as_ptr(), 5, ptr::null_mut(), ptr::null_mut());
+        assert_eq!(short, pc_status::PC_INVALID_ARGUMENT);
+        let said = CStr::from_ptr(text).to_str().unwrap().to_owned();
+        pc_string_free(text);
+        pc_solver_free(solver);
+        pc_system_free(system);
+        pc_model_free(handle);
+        said
+    };
+    assert!(said.starts_with("agrees to ") && said.ends_with(" at 1 state\n"), "{said}");
+}
+
 #[test]
 fn a_null_system_is_refused() {
     let mut error = ptr::null_mut();
