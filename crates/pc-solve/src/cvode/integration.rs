@@ -1,4 +1,4 @@
-//! Integration by CVODES: constructors, and the functions that only this method has.
+//! Integration with CVODES: constructors, and the functions that only this method has.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -14,7 +14,7 @@ use crate::integration::observer::Observed;
 use crate::settings::options::Options;
 
 impl<F: VectorField> Integration<Cvode<F>> {
-    /// Starts at y(t0) = y0 by CVODES, by Adams' formulas unless the method is
+    /// Starts at y(t0) = y0 with CVODES, using Adams' formulas unless the method is
     /// [`Bdf`](crate::Method::Bdf); `y0` has one number per component.
     ///
     /// # Errors
@@ -67,7 +67,7 @@ impl<F: VectorField> Integration<Cvode<F>> {
         Ok(Integration::of(Cvode::with_integrals(field, t0, y0, options, integrals)?))
     }
 
-    /// This integration, which has not begun, with integrals along the motion.
+    /// Adds integrals along the motion to this integration, which has not begun.
     ///
     /// # Errors
     /// As for [`Cvode::and_integrals`].

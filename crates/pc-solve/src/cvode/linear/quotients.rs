@@ -21,7 +21,7 @@ pub(super) struct Quotients {
 }
 
 impl Quotients {
-    /// For the CVODES of `memory`, which must outlive them.
+    /// Quotients for the CVODES instance at `memory`, which must outlive them.
     pub(super) fn new(memory: &Memory, pattern: &Pattern, inequalities: &[Inequality]) -> Self {
         let colouring = pattern.colouring();
         let colours = (0..colouring.len()).map(|colour| colouring.columns(colour).collect()).collect();

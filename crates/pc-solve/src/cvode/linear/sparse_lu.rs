@@ -125,8 +125,8 @@ mod tests {
             ..ProptestConfig::default()
         })]
 
-        /// The matrices are diagonally dominant, so well conditioned: errors are a few roundings of
-        /// n operations.
+        /// The matrices are diagonally dominant, so well conditioned: errors amount to a few
+        /// rounding errors of n operations.
         #[test]
         fn sparse_factors_are_the_dense_ones((pattern, first, second) in matrices()) {
             let n = pattern.rows();
