@@ -6,7 +6,7 @@
 
 use super::coefficients::{B, B3, E5};
 
-/// The length of a row for a state of this length.
+/// The length of a row that holds a state of length `dim`.
 pub(super) fn padded(dim: usize) -> usize {
     dim.next_multiple_of(2)
 }

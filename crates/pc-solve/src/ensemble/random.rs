@@ -1,4 +1,4 @@
-//! Random numbers that depend only on a seed and the number of a member.
+//! Random numbers that depend only on a seed and on the index of a member.
 
 use rand_chacha::ChaCha12Rng;
 use rand_chacha::rand_core::SeedableRng;

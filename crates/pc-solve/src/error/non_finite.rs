@@ -92,7 +92,7 @@ pub enum NonFinite {
         t: f64,
     },
 
-    /// The function of an event.
+    /// The value of an event function.
     #[error("the function of the event {event} is {value} at t = {t}")]
     Event {
         /// Its name.
