@@ -19,7 +19,7 @@ use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solve::Solve;
 
-/// A motion to be integrated with its derivatives, as [`Solve::sensitivities`] makes it.
+/// A motion to be integrated with its derivatives; [`Solve::sensitivities`] makes it.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct SolveSensitivities<'a, F, E> {
@@ -32,7 +32,8 @@ pub struct SolveSensitivities<'a, F, E> {
 }
 
 impl<'a, F: VectorField, M: Borrow<Options>, E: Events> Solve<'a, F, M, E> {
-    /// With S = ∂y/∂(p, y₀), which jumps at resets, by [their derivatives](Events::by_parameter).
+    /// Adds the integration of S = ∂y/∂(p, y₀), which jumps at resets as [their
+    /// derivatives](Events::by_parameter) require.
     ///
     /// ```
     /// use pc_solve::{Sensitivities, Solve, from_fn};
@@ -97,7 +98,7 @@ impl<F: VectorField, E: Events> SolveSensitivities<'_, F, E> {
         }
     }
 
-    /// The motion to `end` and S, as functions of time, the entries of S column-major.
+    /// The motion to `end` and S as functions of time; the entries of S are column-major.
     ///
     /// # Errors
     /// As for [`Integration::run_dense_with_sensitivities`], which also gives what was reached.
@@ -120,7 +121,7 @@ impl<F: VectorField, E: Events> SolveSensitivities<'_, F, E> {
         result.map(|_| (motion, matrix))
     }
 
-    /// The integration at its start.
+    /// The integration at its start, before any step.
     fn towards(self, end: Option<f64>) -> Result<Integration<Differentiated<F>, E>, SolveError> {
         let SolveSensitivities { field, t0, y0, options, events, sensitivities } = self;
         let method = Differentiated::new(field, t0, y0, &towards(options, end), sensitivities)?;
@@ -134,7 +135,8 @@ fn towards(mut options: Options, end: Option<f64>) -> Options {
     options
 }
 
-/// A motion with its derivatives in legs from checkpoint to checkpoint, as [`Resumable::sensitivities`] makes it.
+/// A motion to be integrated with its derivatives from checkpoint to checkpoint;
+/// [`Resumable::sensitivities`] makes it.
 #[derive(Debug)]
 #[must_use]
 pub struct ResumableSensitivities<'a, P> {
@@ -143,7 +145,8 @@ pub struct ResumableSensitivities<'a, P> {
 }
 
 impl<P, M: Borrow<Options>> Resumable<P, M> {
-    /// With S = ∂y/∂(p, y₀): that of a checkpoint, and of the outputs before it, is in it.
+    /// Adds the integration of S = ∂y/∂(p, y₀). A checkpoint contains the S at its time and at the
+    /// outputs before it.
     pub fn sensitivities(self, sensitivities: &Sensitivities) -> ResumableSensitivities<'_, P> {
         let options = self.method.borrow().clone();
         ResumableSensitivities { motion: self.method(options), sensitivities }

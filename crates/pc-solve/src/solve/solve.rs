@@ -71,13 +71,13 @@ impl<'a, F: VectorField> Solve<'a, F> {
 }
 
 impl<'a, F: VectorField, M, E> Solve<'a, F, M, E> {
-    /// By this method: [`Options`] choose one of those built in.
+    /// Sets the method: [`Options`] choose one of those built in.
     pub fn method<N: IntegrationMethod<F>>(self, method: N) -> Solve<'a, F, N, E> {
         let Solve { field, t0, y0, events, .. } = self;
         Solve { field, t0, y0, method, events }
     }
 
-    /// With these events.
+    /// Adds these events.
     pub fn events<D: Events>(self, events: D) -> Solve<'a, F, M, D> {
         let Solve { field, t0, y0, method, .. } = self;
         Solve { field, t0, y0, method, events }
@@ -85,7 +85,7 @@ impl<'a, F: VectorField, M, E> Solve<'a, F, M, E> {
 }
 
 impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
-    /// The integration at its start, to be advanced step by step.
+    /// Begins the integration and returns it at its start, to be advanced step by step.
     ///
     /// # Errors
     /// As for [`IntegrationMethod::begin`] and [`Integration::with_events`].

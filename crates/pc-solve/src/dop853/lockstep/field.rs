@@ -5,7 +5,7 @@ use pc_expr::{Binary, LaneTape, LaneValue, Program};
 /// f with its inputs other than the state: the constants of a member, computed from its parameters.
 pub(super) struct Field<'a> {
     pub(super) program: &'a Program,
-    /// The number of pivots that are watched, and the ratio of a pivot to its size below which it
+    /// The number of pivots that are watched, and the ratio to the largest size below which a pivot
     /// counts as zero.
     pub(super) pivots: usize,
     pub(super) vanishing: f64,
