@@ -1,4 +1,4 @@
-//! Indices by names.
+//! Finding an index by a name.
 
 use std::ffi::{CString, c_char};
 

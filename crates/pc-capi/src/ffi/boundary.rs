@@ -8,7 +8,7 @@ use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::status::pc_status;
 
-/// Runs `body`, catching panics, and writes its fault to `*error`, or null.
+/// Runs `body`, catching panics, and writes its error to `*error`, or null if there is none.
 ///
 /// # Safety
 /// `error` is null or a place for a pointer.
@@ -70,7 +70,7 @@ mod tests {
     use crate::ffi::error::{pc_error_free, pc_error_message};
     use crate::machinery::exclusive::Exclusive;
 
-    /// Status and message of a call of `body`.
+    /// The status and the message of a call of `body`.
     fn called(body: impl FnOnce() -> Result<(), CallError>) -> (pc_status, String) {
         let mut error = ptr::null_mut();
         // SAFETY: a place for a pointer; the error is freed once.
