@@ -1830,7 +1830,7 @@ pc_status pc_system_mass_matrix(const pc_system *system,
 /**
  * Writes the right-hand side r of M η̇ = r at (t, y), k numbers, with k and M as in
  * pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions that multipliers
- * stand for. The first call derives r, as pc_system_new derives equations.
+ * represent. The first call derives r, as pc_system_new derives equations.
  */
 pc_status pc_system_right_hand_side(const pc_system *system,
                                     double t,

@@ -7,10 +7,10 @@
 //! `user_data` holds the arguments of the program's functions.
 //!
 //! A function that only looks at a handle takes it as `Option<&T>`: C passes null or a live
-//! handle, and `None` is null. The others keep pointers, because a reference promises more
-//! than C does. Memory for results may be uninitialised, and a function of the program that the
-//! call runs may write to the same memory for an error, so these pointers are not `&mut T`; arrays
-//! are checked for length, alignment and overlap before they become slices; a handle that is
+//! handle, and `None` is null. The other arguments remain pointers, because a reference promises
+//! more than C does. Memory for results may be uninitialised, and a function of the program that
+//! the call runs may write to the same memory for an error, so these pointers are not `&mut T`;
+//! arrays are checked for length, alignment and overlap before they become slices; a handle that is
 //! changed may be in use by another thread, which `Exclusive` answers with PC_BUSY, and a handle
 //! that is freed ceases to exist while the call still runs.
 

@@ -1,4 +1,4 @@
-//! The method chosen by options.
+//! The method that options choose.
 
 use pc_expr::{Method, PolynomialMotion, VectorField};
 
@@ -18,7 +18,7 @@ use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::options::Options;
 use crate::taylor::stepper::Taylor;
 
-/// The method chosen by [`Options`].
+/// The method that [`Options`] choose.
 ///
 /// Its variable of integration is the time since the start, so that the steps of a motion from t₀ =
 /// 10⁹ have as many digits as those of one from 0; the field is evaluated at t₀ plus that time.

@@ -23,7 +23,7 @@ const NEAR: f64 = 1e-9;
 const TOLERANCES: (f64, f64) = (1e-9, 1e-12);
 
 /// Integration by [`RungeKutta4`], without error control: for real-time loops, for comparisons, and
-/// where every step has to take equal time.
+/// where every step has to take the same computing time.
 ///
 /// ```
 /// use pc_solve::{FixedStep, Solve, from_fn};

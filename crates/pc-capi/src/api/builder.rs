@@ -29,7 +29,7 @@ pub unsafe extern "C" fn pc_model_new(
         // SAFETY: as the preamble demands.
         unsafe { write(model, boxed(Origin::Calls(Draft::new(name))), "model") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, new) }
 }
 

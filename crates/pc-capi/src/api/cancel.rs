@@ -20,13 +20,13 @@ pub struct pc_cancel {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_cancel_new(cancel: *mut *mut pc_cancel, error: *mut *mut pc_error) -> pc_status {
     let new = || {
-        // SAFETY: null or a place for a handle, as the preamble demands.
+        // SAFETY: null or memory for a handle, as the preamble demands.
         unsafe { clear(cancel, "cancel") }?;
         let made = Box::new(pc_cancel { cancel: Cancel::default() });
         // SAFETY: as the preamble demands.
         unsafe { write(cancel, Box::into_raw(made), "cancel") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, new) }
 }
 

@@ -44,10 +44,10 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
         }
     };
     let checked = || {
-        // SAFETY: null or a place for a pointer, or for a number, as the preamble demands.
+        // SAFETY: null or memory for a pointer, or for a number, as the preamble demands.
         unsafe { clear(data, "data").and(write(length, 0, "length")) }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     match unsafe { entry(error, checked) } {
         // SAFETY: as the preamble demands.
         pc_status::PC_OK => unsafe { integrate(solver, error, write_bytes) },
@@ -82,14 +82,14 @@ pub unsafe extern "C" fn pc_solver_restore(
         let events = Followed::new(inner.events.clone());
         let integration = Integration::new(inner.field.clone(), &checkpoint, options, events.clone())?;
         let made = pc_solver::boxed(integration, &events, inventory.dim());
-        // SAFETY: null or a place for a handle, as the preamble demands.
+        // SAFETY: null or memory for a handle, as the preamble demands.
         unsafe { write(solver, made, "solver") }
     };
     let checked = || {
         // SAFETY: as the preamble demands.
         unsafe { clear(solver, "solver") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     match unsafe { entry(error, checked) } {
         // SAFETY: as the preamble demands.
         pc_status::PC_OK => unsafe { inside(system, error, restore) },
@@ -107,14 +107,14 @@ pub unsafe extern "C" fn pc_checkpoint_label(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let read = || {
-        // SAFETY: null or a place for a pointer, as the preamble demands.
+        // SAFETY: null or memory for a pointer, as the preamble demands.
         unsafe { clear(label, "label") }?;
         // SAFETY: null or `length` bytes, as the preamble demands.
         let (_, found) = Checkpoint::from_bytes(unsafe { bytes(data.cast(), length, "data") }?)?;
         // SAFETY: as the preamble demands.
         unsafe { write(label, give(unmarked(&found).1), "label") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, read) }
 }
 

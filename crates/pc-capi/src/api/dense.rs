@@ -57,7 +57,7 @@ pub unsafe extern "C" fn pc_solver_run_dense(
     let run = |integration: &mut Integration, dim: usize| {
         let (motion, ending) = integration.run_dense(t)?;
         let made = Box::new(pc_dense { motion, dim });
-        // SAFETY: null or a place for a handle, as the preamble demands.
+        // SAFETY: null or memory for a handle, as the preamble demands.
         unsafe { write(dense, Box::into_raw(made), "dense") }?;
         integration.ended(ending)
     };
@@ -65,7 +65,7 @@ pub unsafe extern "C" fn pc_solver_run_dense(
         // SAFETY: as the preamble demands.
         unsafe { clear(dense, "dense") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     match unsafe { entry(error, checked) } {
         // SAFETY: as the preamble demands.
         pc_status::PC_OK => unsafe { integrate(solver, error, run) },
@@ -79,8 +79,8 @@ type Value = fn(&DenseOutput, f64) -> Result<Vec<f64>, InputError>;
 /// Writes this value at t.
 ///
 /// # Safety
-/// `dense` is null or a live handle, `y` null or room for `y_length` numbers, `error` null or a
-/// place for a pointer.
+/// `dense` is null or a live handle, `y` null or memory for `y_length` numbers, `error` null or
+/// memory for a pointer.
 unsafe fn at(
     dense: *const pc_dense,
     value: Value,

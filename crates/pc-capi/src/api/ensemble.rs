@@ -280,6 +280,6 @@ pub unsafe extern "C" fn pc_ensemble_run(
             Ending::Completed | Ending::Event { .. } => Ok(()),
         }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, run) }
 }

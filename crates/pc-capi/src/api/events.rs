@@ -26,7 +26,7 @@ pub enum pc_direction {
     PC_RISING = 1,
 }
 
-/// The direction that a number stands for, and its name in the text.
+/// The direction that a number denotes, and its name in the text.
 pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), CallError> {
     match value {
         -1 => Ok((Direction::Falling, "falling")),

@@ -99,7 +99,7 @@ pub unsafe extern "C" fn pc_system_set_force(
     let user = User { data: user, destroy };
     let mut unused = Controller::default();
     let Some(function) = function else {
-        // SAFETY: `error` is null or a place for a pointer.
+        // SAFETY: `error` is null or memory for a pointer.
         return unsafe { entry(error, || Err(CallError::Null { what: "function" })) };
     };
     let set = |_: &Inventory, inner: &mut Inner| {

@@ -47,14 +47,14 @@ pub unsafe extern "C" fn pc_kernel_new(
         // The clone below shares what is compiled before it.
         system.prepare_direct(inner);
         let made = Box::new(pc_kernel::new(inner.field.clone(), system.inventory.dim()));
-        // SAFETY: null or a place for a handle, as the preamble demands.
+        // SAFETY: null or memory for a handle, as the preamble demands.
         unsafe { write(kernel, Box::into_raw(made), "kernel") }
     };
     let checked = || {
         // SAFETY: as the preamble demands.
         unsafe { clear(kernel, "kernel") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     match unsafe { entry(error, checked) } {
         // SAFETY: as the preamble demands.
         pc_status::PC_OK => unsafe { holding(system, error, new) },
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
         }
         Ok(())
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, set) }
 }
 

@@ -74,7 +74,7 @@ pub unsafe extern "C" fn pc_system_mass_matrix(
 
 /// Writes the right-hand side r of M η̇ = r at (t, y), k numbers, with k and M as in
 /// pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions that multipliers
-/// stand for. The first call derives r, as pc_system_new derives equations.
+/// represent. The first call derives r, as pc_system_new derives equations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_right_hand_side(
     system: *const pc_system,
@@ -158,7 +158,7 @@ pub unsafe extern "C" fn pc_system_operator_count(
 ) -> pc_status {
     let compute = |inventory: &Inventory, inner: &mut Inner| {
         let (mechanics, ..) = inner.mechanics(inventory)?;
-        // SAFETY: null or a place for a number, as the preamble demands.
+        // SAFETY: null or memory for a number, as the preamble demands.
         unsafe { write(operators, mechanics.operators, "operators") }
     };
     // SAFETY: as the preamble demands.

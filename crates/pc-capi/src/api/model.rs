@@ -113,7 +113,7 @@ pub unsafe extern "C" fn pc_model_parse(
         // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(document), "model") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, read) }
 }
 
@@ -135,7 +135,7 @@ pub unsafe extern "C" fn pc_model_from_file(
         // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(document), "model") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, read) }
 }
 
@@ -155,7 +155,7 @@ pub unsafe extern "C" fn pc_model_builtin(
         // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(builtin.document()?), "model") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, read) }
 }
 
@@ -188,7 +188,7 @@ pub unsafe extern "C" fn pc_model_clone(
         // SAFETY: as the preamble demands.
         unsafe { write(copy, cloned, "copy") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, clone) }
 }
 
@@ -346,6 +346,6 @@ pub unsafe extern "C" fn pc_model_text(
         // SAFETY: as the preamble demands.
         unsafe { write(text, give(&written), "text") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, write_text) }
 }

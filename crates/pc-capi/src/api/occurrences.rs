@@ -157,7 +157,7 @@ pub unsafe extern "C" fn pc_solver_event_occurrences(
     let read = |integration: &mut Integration, _: usize| {
         let counts = &integration.record.counts;
         let Some(&number) = counts.get(event) else { return Err(no_such(event, counts.len())) };
-        // SAFETY: null or a place for a number, as the preamble demands.
+        // SAFETY: null or memory for a number, as the preamble demands.
         unsafe { write(occurrences, number, "occurrences") }
     };
     // SAFETY: as the preamble demands.
@@ -203,7 +203,7 @@ pub unsafe extern "C" fn pc_solver_last_occurrence(
         };
         before.copy_from_slice(&last.state_before[..before.len()]);
         after.copy_from_slice(&last.state_after[..after.len()]);
-        // SAFETY: null or a place for a number, as the preamble demands.
+        // SAFETY: null or memory for a number, as the preamble demands.
         unsafe { write(t, last.time, "t") }
     };
     // SAFETY: as the preamble demands.
@@ -220,7 +220,7 @@ pub unsafe extern "C" fn pc_solver_terminal_event(
 ) -> pc_status {
     let read = |integration: &mut Integration, _: usize| {
         let number = integration.record.terminal.ok_or(CallError::NotEnded)?;
-        // SAFETY: null or a place for a number, as the preamble demands.
+        // SAFETY: null or memory for a number, as the preamble demands.
         unsafe { write(event, number, "event") }
     };
     // SAFETY: as the preamble demands.

@@ -260,8 +260,8 @@ pub(crate) unsafe fn give<T: Copy>(place: *mut T, value: T, size: usize) {
     }
 }
 
-/// The options at `place`, with defaults for those that the caller's header does not have; all
-/// defaults if `place` is null.
+/// The options at `place`, with defaults for those that the caller's header does not have; if
+/// `place` is null, all are defaults.
 ///
 /// # Safety
 /// `T` is plain data for which any bytes are valid, and begins with a size; `place` is null or has

@@ -175,7 +175,7 @@ pub unsafe extern "C" fn pc_system_jacobian_pattern(
         }
         Ok(())
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { crate::ffi::boundary::entry(error, get) }
 }
 

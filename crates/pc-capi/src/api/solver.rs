@@ -71,14 +71,14 @@ pub unsafe extern "C" fn pc_solver_new(
         let integration =
             Integration::new(inner.field.clone(), &Checkpoint::start(t, y), options, events.clone())?;
         let made = pc_solver::boxed(integration, &events, dim);
-        // SAFETY: null or a place for a handle, as the preamble demands.
+        // SAFETY: null or memory for a handle, as the preamble demands.
         unsafe { write(solver, made, "solver") }
     };
     let checked = || {
         // SAFETY: as the preamble demands.
         unsafe { clear(solver, "solver") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     match unsafe { entry(error, checked) } {
         // SAFETY: as the preamble demands.
         pc_status::PC_OK => unsafe { inside(system, error, new) },
@@ -100,7 +100,7 @@ pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
 /// Calls `body` with the integration and the length of its state.
 ///
 /// # Safety
-/// `solver` is null or a live handle, `error` null or a place for a pointer.
+/// `solver` is null or a live handle, `error` null or memory for a pointer.
 pub(crate) unsafe fn integrate(
     solver: *const pc_solver,
     error: *mut *mut pc_error,

@@ -47,11 +47,11 @@ pub unsafe extern "C" fn pc_system_print(
         // SAFETY: as the preamble demands.
         unsafe { write(text, give(&printed), "text") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, print) }
 }
 
-/// The style of printing that a pc_format stands for.
+/// The style of printing that a pc_format denotes.
 pub(crate) fn page(format: c_int) -> Result<Page, CallError> {
     match format {
         0 => Ok(Page::Text),
@@ -99,7 +99,7 @@ pub unsafe extern "C" fn pc_system_emit_c(
             write(source, give(&written_source), "source")
         }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, emit) }
 }
 

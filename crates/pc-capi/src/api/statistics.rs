@@ -91,6 +91,6 @@ pub unsafe extern "C" fn pc_solver_statistics(
         unsafe { give(statistics, counts.into(), size) };
         Ok(())
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, read) }
 }

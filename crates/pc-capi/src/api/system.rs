@@ -39,7 +39,7 @@ pub unsafe extern "C" fn pc_system_new(
         // SAFETY: as the preamble demands.
         unsafe { write(system, Box::into_raw(Box::new(derived)), "system") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, new) }
 }
 
@@ -61,7 +61,7 @@ pub unsafe extern "C" fn pc_system_clone(
         // SAFETY: as the preamble demands.
         unsafe { write(copy, Box::into_raw(Box::new(cloned)), "copy") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, clone) }
 }
 
@@ -175,7 +175,7 @@ pub unsafe extern "C" fn pc_system_start(
         // SAFETY: as the preamble demands.
         if t.is_null() { Ok(()) } else { unsafe { write(t, inventory.t_start, "t") } }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, start) }
 }
 

@@ -52,7 +52,7 @@ pub unsafe extern "C" fn pc_system_theory(
         // SAFETY: as the preamble demands.
         unsafe { write(text, give(&printed), "text") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, print) }
 }
 

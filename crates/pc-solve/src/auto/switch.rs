@@ -1,4 +1,4 @@
-//! The stepper that changes between two methods.
+//! The stepper that switches between two methods.
 
 use std::fmt;
 

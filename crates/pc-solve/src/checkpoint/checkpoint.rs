@@ -42,7 +42,7 @@ pub struct Checkpoint {
     pub(crate) statistics: Statistics,
     /// The number of steps since the last output, to which a limit applies.
     pub(crate) steps_since_output: u64,
-    /// Whether the motion has been restarted, by a reset for example: quantities that the field
+    /// Whether the motion has been restarted, for example by a reset: quantities that the field
     /// conserves by projection then keep the values they have at this state.
     pub(crate) jumped: bool,
     /// S, column-major; empty without sensitivities.

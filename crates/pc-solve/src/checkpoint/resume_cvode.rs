@@ -54,7 +54,8 @@ impl<F: VectorField> Integration<Cvode<F>> {
     /// Their columns are specified by `sensitivities`, whose starts are ignored.
     ///
     /// # Errors
-    /// As there; [`InputError::Sensitivities`] if the checkpoint has another number of columns.
+    /// As for [`resume`](Integration::resume); [`InputError::Sensitivities`] if the checkpoint has
+    /// another number of columns.
     pub fn resume_with_sensitivities(
         field: F,
         checkpoint: &Checkpoint,

@@ -88,8 +88,8 @@ impl<F: VectorField> Cvode<F> {
         self.earlier.followed_by(&since)
     }
 
-    /// The linear solver of Newton's iteration, as chosen or by default for the field; none for the
-    /// fixed-point iteration.
+    /// The linear solver of Newton's iteration, either the chosen one or the default for the field;
+    /// none for the fixed-point iteration.
     pub fn linear_solver(&self) -> Option<&LinearSolver> {
         self.linear.as_ref().map(Linear::choice)
     }
@@ -192,7 +192,7 @@ impl<F: VectorField> Cvode<F> {
 
     /// Fails if many successive steps have not advanced the time; the last one began at `before`.
     ///
-    /// `failure` occurred in the last step and was overcome by a shorter one.
+    /// `failure` occurred in the last step and was overcome by shortening it.
     fn check_progress(&mut self, before: f64, failure: Option<Failure>) -> Result<(), SolveError> {
         if self.step_time != before {
             self.idle_steps = 0;

@@ -26,12 +26,12 @@ impl<F: VectorField> Integration<Cvode<F>> {
 
 /// Data of the error control and the linear solver.
 impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
-    /// As [`Cvode::linear_solver`].
+    /// The same as [`Cvode::linear_solver`].
     pub fn linear_solver(&self) -> Option<&LinearSolver> {
         self.engine.linear_solver()
     }
 
-    /// As [`Cvode::error_weights`].
+    /// The same as [`Cvode::error_weights`].
     ///
     /// # Errors
     /// As there.
@@ -39,7 +39,7 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         self.engine.error_weights()
     }
 
-    /// As [`Cvode::local_errors`].
+    /// The same as [`Cvode::local_errors`].
     ///
     /// # Errors
     /// As there.
@@ -87,7 +87,8 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         self.engine.integrals_here()
     }
 
-    /// As [`run`](Integration::run), but passes each (t, y) with the integrals up to t to `output`.
+    /// Like [`run`](Integration::run), but passes each (t, y) with the integrals up to t to
+    /// `output`.
     ///
     /// # Errors
     /// As for [`run`](Integration::run) and [`integrals`](Integration::integrals).

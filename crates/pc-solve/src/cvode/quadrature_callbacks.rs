@@ -117,7 +117,7 @@ impl<F: VectorField> Cvode<F> {
         Ok(values.as_slice().to_vec())
     }
 
-    /// The integrals at the current time, if any, from which
+    /// The integrals at the current time, if there are any, from which
     /// [`begin_integrals_anew`](Cvode::begin_integrals_anew) continues.
     pub(super) fn integrals_to_keep(&self) -> Result<Option<Vec<f64>>, SolveError> {
         self.quadrature.as_ref().map(|_| self.integrals_at(self.time)).transpose()

@@ -47,7 +47,7 @@ pub(super) fn add_of<const LENGTH: usize, const TERMS: usize>(
 #[derive(Clone, Copy)]
 pub(super) struct Weights<'a> {
     pub(super) relative: f64,
-    /// For each component, padded to a row.
+    /// The absolute tolerance of each component, padded to a row.
     pub(super) absolute: &'a [f64],
 }
 

@@ -20,7 +20,7 @@ pub(super) const SHRINKING: f64 = 1.0 / 3.0;
 #[derive(Debug, Clone)]
 pub(super) struct Control {
     pub(super) relative: f64,
-    /// For each component, padded to a row.
+    /// The absolute tolerance of each component, padded to a row.
     pub(super) absolute: Vec<f64>,
     pub(super) longest: f64,
     pub(super) shortest: f64,

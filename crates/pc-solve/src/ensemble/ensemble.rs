@@ -118,8 +118,8 @@ impl<'a> Ensemble<'a> {
     /// thread that integrates.
     ///
     /// With [`Method::Auto`](crate::Method::Auto) and [`Method::Dop853`](crate::Method::Dop853),
-    /// members whose fields are [programs](VectorField::lanes) that do not read time are integrated
-    /// sixteen at a time, each in a lane of a vector, as described for
+    /// members whose fields are [programs](VectorField::lanes) that do not read the time are
+    /// integrated sixteen at a time, each in a lane of a vector, as described for
     /// [`map_in_lanes`](Ensemble::map_in_lanes).
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! Numbers that are not finite.
 
-/// A number that is not finite, written by a vector field that reported no failure, or never
-/// written.
+/// A number that is not finite: a vector field that reported no failure wrote it, or failed to
+/// write it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NonFinite {

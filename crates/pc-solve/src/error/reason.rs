@@ -157,7 +157,8 @@ pub enum Reason {
         t: f64,
     },
 
-    /// The rates before or after a reset, by which sensitivities jump, cannot be evaluated.
+    /// The rates before or after a reset, which determine the jump of sensitivities, cannot be
+    /// evaluated.
     Saltation {
         /// When it occurred.
         t: f64,

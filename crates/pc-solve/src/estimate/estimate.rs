@@ -59,8 +59,8 @@ impl ErrorEstimate {
         ErrorEstimate::observed(motion, start, events, times, options, |_, _| ControlFlow::Continue(()))
     }
 
-    /// As [`of`](ErrorEstimate::of), but passes the end (t, ỹ⁻) of each step of the companion to `step`, to
-    /// show progress or to stop it.
+    /// Like [`of`](ErrorEstimate::of), but passes the end (t, ỹ⁻) of each step of the companion to
+    /// `step`, to show progress or to stop it.
     pub fn observed<F: VectorField>(
         motion: &Solution,
         (mut field, t0, y0): (F, f64, &[f64]),

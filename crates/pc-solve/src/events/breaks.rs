@@ -23,7 +23,7 @@ const RATIO: f64 = 8.0;
 const DISTANCES: i32 = 4;
 /// Near a pole a function falls by at least this factor from one distance to the next.
 const FALL: f64 = 1.5;
-/// A function that jumps varies on each side by at most this fraction of its jump.
+/// A function counts as jumping if on each side it varies by at most this fraction of its jump.
 const STEADY: f64 = 1e-3;
 /// A jump is larger than this fraction of the function's largest value in the step; anything
 /// smaller may be rounding error.

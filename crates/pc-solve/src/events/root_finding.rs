@@ -7,7 +7,7 @@ use crate::events::closer::look_closer;
 use crate::events::edges::{approach, edge};
 use crate::events::samples::{Look, SAME, Sample};
 
-/// A passage is bracketed by two times with this relative difference.
+/// A passage is bracketed by two times whose relative difference is at most this.
 const LOCATED: f64 = 4.0 * f64::EPSILON;
 /// A function that has no value inside an interval of at most this many times that width is taken
 /// to have a pole there.

@@ -85,7 +85,7 @@ where
     }
 }
 
-/// The field with one closure replaced by one of another type.
+/// The field with one closure replaced by a closure of another type.
 macro_rules! with {
     ($field:expr, $name:ident = $closure:expr, $($kept:ident),*) => {{
         let field = $field;

@@ -96,7 +96,7 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) time_derivatives: Vec<Vec<f64>>,
     /// Whether no step has been made since a restart.
     pub(crate) restarted: bool,
-    /// Whether the motion has been restarted, by a reset for example.
+    /// Whether the motion has been restarted, for example by a reset.
     pub(crate) jumped: bool,
     /// Its pace.
     pub(crate) pace: Pace,
@@ -371,7 +371,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// [`time`](Integration::time) is discarded.
     ///
     /// # Errors
-    /// As for [`restart`](Integration::restart); the field is changed nevertheless.
+    /// As for [`restart`](Integration::restart); the field remains changed nevertheless.
     pub fn change(&mut self, change: impl FnOnce(&mut S::Field)) -> Result<(), SolveError> {
         let (t, state) = (self.time(), self.state().to_vec());
         change(self.engine.field_mut());

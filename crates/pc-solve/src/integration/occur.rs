@@ -23,8 +23,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// Applies the events at the front and reports them to `occurred`. Returns how the integration
     /// ends, if it does: at the first terminal event, or else because `occurred` stops it.
     ///
-    /// An event whose function is carried through zero, in its direction, by the reset of another
-    /// one occurs at the same time, after those that are due already.
+    /// If the reset of one event carries the function of another through zero in its direction,
+    /// that other event occurs at the same time, after those that are already due.
     pub(crate) fn occur(
         &mut self,
         occurred: &mut dyn FnMut(&Occurrence) -> ControlFlow<()>,

@@ -1,8 +1,8 @@
 //! Whether an integration makes progress.
 //!
 //! Steps may become so short, without any of them failing, that a motion would take years. This
-//! becomes apparent long before the limit on steps is reached: [`STEPS`] steps that advance by less
-//! than [`LEAST`] of what is left would have to be followed by 10¹³ steps like them.
+//! becomes apparent long before the limit on steps is reached: [`STEPS`] steps that cover less than
+//! [`LEAST`] of the remaining time would have to be followed by 10¹³ steps like them.
 
 /// The number of steps that are judged together.
 const STEPS: u64 = 10_000;

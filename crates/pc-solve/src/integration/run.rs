@@ -48,7 +48,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.run_observed(times, Observed::new(output))
     }
 
-    /// As [`run`](Integration::run), but reports to an [`Observer`].
+    /// Like [`run`](Integration::run), but reports to an [`Observer`].
     ///
     /// # Errors
     /// As for [`run`](Integration::run).

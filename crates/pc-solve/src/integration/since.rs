@@ -2,7 +2,7 @@
 //!
 //! Near t = 10⁹ the floating-point numbers are 10⁻⁷ apart: a step of 10⁻⁵ would have two digits.
 //! The methods therefore integrate with respect to s = t − t₀, so that steps and stages have all
-//! digits, and the field is evaluated at t₀ + s. For t₀ = 0 that is t to the last bit.
+//! digits, and the field is evaluated at t₀ + s. For t₀ = 0 this is t to the last bit.
 
 use pc_expr::{
     Failure, LaneField, Pattern, RateJump, SteepFunctions, TaylorSeries, TimeDependence, VectorField,

@@ -115,7 +115,7 @@ pub trait Stepper {
     /// A time beyond which the field is never evaluated.
     fn stop_time(&self) -> Option<f64>;
 
-    /// Sets that time, validated by the caller, or removes it.
+    /// Sets the stop time, which the caller has validated, or removes it.
     ///
     /// # Errors
     /// [`SolveError`] if the method cannot do so.

@@ -72,12 +72,13 @@ pub fn adjoint_gradient<F: VectorField, G: Functional>(
     first.ok_or_else(|| InputError::NoFunctional.into())
 }
 
-/// As [`adjoint_gradient`], for several functionals, [boxed](Box) if of several types: they share
-/// the forward motion, the checkpoints, and the motion between checkpoints, along which each has
-/// its own adjoint equations. Each gradient is the same as if its functional were the only one.
+/// Like [`adjoint_gradient`], but for several functionals, [boxed](Box) if they are of several
+/// types: they share the forward motion, the checkpoints, and the motion between checkpoints, along
+/// which each has its own adjoint equations. Each gradient is the same as if its functional were
+/// the only one.
 ///
 /// # Errors
-/// As there; [`InputError::NoFunctional`]
+/// As for [`adjoint_gradient`]; [`InputError::NoFunctional`]
 pub fn adjoint_gradients<F: VectorField, G: Functional>(
     field: F,
     functionals: impl IntoIterator<Item = G>,
@@ -89,8 +90,8 @@ pub fn adjoint_gradients<F: VectorField, G: Functional>(
     adjoint_gradients_with_events(field, FnEvents::new(), functionals, t0, y0, t1, options)
 }
 
-/// As [`adjoint_gradients`], for a motion with events. At a reset y⁺ = R(t, y⁻) where the function
-/// γ of an event vanishes, λ changes backwards by the transposed saltation matrix,
+/// Like [`adjoint_gradients`], but for a motion with events. At a reset y⁺ = R(t, y⁻), where the
+/// function γ of an event vanishes, the transposed saltation matrix acts on λ backwards in time,
 /// ```text
 /// λ⁻ = R_yᵀ λ⁺ − κ γ_y,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + g⁻ − g⁺)/(γ_t + γ_y f⁻),
 /// ```
@@ -99,10 +100,10 @@ pub fn adjoint_gradients<F: VectorField, G: Functional>(
 /// with respect to parameters are needed if the field has such derivatives.
 ///
 /// # Errors
-/// As there; [`Reason::EndsEarly`](crate::Reason::EndsEarly) at a terminal event before t1,
-/// [`Reason::Together`](crate::Reason::Together) where several events reset the state at once,
-/// [`Reason::Grazing`](crate::Reason::Grazing) where an event function only touches zero, and
-/// [`InputError::EventParameters`].
+/// As for [`adjoint_gradients`]; [`Reason::EndsEarly`](crate::Reason::EndsEarly) at a terminal
+/// event before t1, [`Reason::Together`](crate::Reason::Together) where several events reset the
+/// state at once, [`Reason::Grazing`](crate::Reason::Grazing) where an event function only touches
+/// zero, and [`InputError::EventParameters`].
 pub fn adjoint_gradients_with_events<F: VectorField, E: Events, G: Functional>(
     field: F,
     events: E,

@@ -55,7 +55,7 @@ impl AdjointOptions {
         AdjointOptions { checkpoint_interval: steps, ..self }
     }
 
-    /// How the linear systems of the adjoint equations are solved, whose matrices are the
+    /// Sets how the linear systems of the adjoint equations are solved, whose matrices are the
     /// transposes of those of the motion; by default the [usual](LinearSolver) solver for the
     /// field, or [Krylov's method](LinearSolver::Krylov) if it offers only
     /// [products](pc_expr::VectorField::vjp).

@@ -66,7 +66,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.restart_with_columns(t, y, matrix)
     }
 
-    /// As [`run`](Integration::run), but passes each (t, y, S) to `output`, y⁺ and S⁺ at an event.
+    /// Like [`run`](Integration::run), but passes each (t, y, S) to `output`, with y⁺ and S⁺ at an
+    /// event.
     ///
     /// # Errors
     /// As for [`run`](Integration::run) and [`sensitivities`](Integration::sensitivities).
@@ -102,7 +103,7 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         self.engine.sensitivities_by_time(t, order)?.ok_or_else(|| InputError::NoSensitivities.into())
     }
 
-    /// As [`run_dense`](Integration::run_dense), but also passes on the segment of S on the same
+    /// Like [`run_dense`](Integration::run_dense), but also passes on the segment of S on the same
     /// span, from S⁺ to S⁻, whose components are the entries of S, column-major.
     ///
     /// # Errors

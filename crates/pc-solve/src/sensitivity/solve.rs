@@ -59,7 +59,8 @@ impl<F: VectorField, E: Events> SolveSensitivities<'_, F, E> {
         self.run_observed(times, |_, _| ControlFlow::Continue(()))
     }
 
-    /// As [`run`](SolveSensitivities::run), but passes each output (t, y) to `output`, to show progress or to stop.
+    /// Like [`run`](SolveSensitivities::run), but passes each output (t, y) to `output`, to show
+    /// progress or to stop.
     ///
     /// # Errors
     /// As for [`run`](SolveSensitivities::run).
@@ -154,7 +155,7 @@ impl<P, M: Borrow<Options>> Resumable<P, M> {
 }
 
 impl<P> ResumableSensitivities<'_, P> {
-    /// As [`Resumable::run`]. Derivatives of the times of events are not kept.
+    /// Like [`Resumable::run`]. Derivatives of the times of events are not recorded.
     ///
     /// # Errors
     /// As there; [`InputError::Sensitivities`](crate::InputError::Sensitivities) if the checkpoint has another number of

@@ -15,7 +15,7 @@ pub(crate) struct Transpose {
     sparse: Option<Sparse>,
 }
 
-/// ∂f/∂y of a known pattern.
+/// The entries of a ∂f/∂y whose pattern is known.
 #[derive(Debug)]
 struct Sparse {
     pattern: Pattern,

@@ -167,7 +167,7 @@ impl Options {
         }
     }
 
-    /// How the implicit equation of a step is solved, as chosen or by default.
+    /// How the implicit equation of a step is solved: as chosen, or by default.
     #[cfg(feature = "cvode")]
     pub(crate) fn iteration(&self) -> NonlinearSolver {
         self.nonlinear_solver.unwrap_or(match self.method {

@@ -35,7 +35,7 @@ pub(super) fn solver(context: &mut Context, y: &Vector, matrix: &Matrix) -> Resu
     direct::solver(context, matrix, blocked)
 }
 
-/// P A = L U in place, by blocks of columns.
+/// Factorises P A = L U in place, in blocks of columns.
 struct Blocked {
     rows: Vec<usize>,
     rows_inverse: Vec<usize>,

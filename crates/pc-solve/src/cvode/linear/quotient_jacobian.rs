@@ -1,4 +1,4 @@
-//! Sparse Jacobians by difference quotients.
+//! Sparse Jacobians from difference quotients.
 
 use std::ffi::{c_int, c_void};
 use std::slice;

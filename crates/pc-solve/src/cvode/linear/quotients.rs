@@ -45,7 +45,7 @@ impl Quotients {
         self.evaluations
     }
 
-    /// Moves component `j` of z by max(√ε |zⱼ|, `least`/wⱼ), in the direction that keeps its
+    /// Moves component `j` of z by max(√ε |zⱼ|, `least`/wⱼ), in the direction that satisfies its
     /// inequality, and returns the increment.
     pub(super) fn shift(&mut self, j: usize, z: &[f64], weight: f64, least: f64) -> f64 {
         let length = (f64::EPSILON.sqrt() * z[j].abs()).max(least / weight);

@@ -97,7 +97,8 @@ unsafe fn new(context: sys::SUNContext, places: &Places) -> sys::SUNMatrix {
 /// The content of `matrix`.
 ///
 /// # Safety
-/// `matrix` was made by [`matrix`] or a clone of such, and nobody else uses it during `'a`.
+/// `matrix` was made by [`matrix`] or is a clone of such a matrix, and nobody else uses it during
+/// `'a`.
 pub(super) unsafe fn content<'a>(matrix: sys::SUNMatrix) -> &'a mut Compressed {
     // SAFETY: as promised.
     unsafe { &mut *(*matrix).content.cast::<Compressed>() }

@@ -28,7 +28,8 @@ pub(super) fn solver(
 }
 
 /// P A Q = L U. The order Q of the columns, which keeps L and U sparse for every P, is found once,
-/// from the pattern; the order P of the rows for each matrix, by the largest pivot in each column.
+/// from the pattern; the order P of the rows is found for each matrix, from the largest pivot in
+/// each column.
 struct SparseLu {
     symbolic: SymbolicLu<usize>,
     numeric: NumericLu<usize, f64>,

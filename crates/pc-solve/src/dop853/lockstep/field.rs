@@ -118,8 +118,8 @@ pub(super) fn sums(tape: &mut LaneTape, a: [&[f64]; 2], k: &[&[LaneValue]]) -> [
 
 /// y + h Σ aⱼ kⱼ
 ///
-/// For many components computed as y + Σ (h aⱼ) kⱼ, which takes fewer operations, of which fewer
-/// wait for the last k.
+/// If there are many components it is computed as y + Σ (h aⱼ) kⱼ, which takes fewer operations, of
+/// which fewer wait for the last k.
 pub(super) fn advanced(
     tape: &mut LaneTape,
     y: &[LaneValue],

@@ -49,7 +49,8 @@ pub(super) enum Output {
     Broken,
     /// The start of the step.
     From,
-    /// Its length, with its sign; followed, for states inside the step, by y, ẏ and stages 6 to 12.
+    /// The length of the step, with its sign; followed, for states inside the step, by y, ẏ and
+    /// stages 6 to 12.
     Signed,
 }
 
