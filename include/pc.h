@@ -1443,9 +1443,10 @@ pc_status pc_system_start(const pc_system *system,
 
 /**
  * Writes the absolute tolerance of each component of the state with which the program `pc` would
- * run the system from its start to t_end: that of the text, else min(1e-12, relative·s) for a
- * component of the scale s at the start, where f is evaluated once, but no less than the rounding
- * error of the largest component. pc_solver_options takes them as absolute_tolerances.
+ * run the system from its start to t_end: that of the text if it gives one, else min(1e-12,
+ * relative·s) for a component of scale s at the start, where f is evaluated once, but no less than
+ * the rounding error of the largest component. pc_solver_options takes them as
+ * absolute_tolerances.
  */
 pc_status pc_system_absolute_tolerances(const pc_system *system,
                                         double relative,
@@ -1947,14 +1948,15 @@ pc_status pc_system_print(const pc_system *system, int format, char **text, pc_e
 
 /**
  * Writes the equations as C source that does not depend on this library: the text of NAME.h
- * and of NAME.c, where NAME is `name`, turned into an identifier: Greek letters by their names,
- * runs of other characters as one `_`, none at the ends, `n_` before a leading digit, `_` after a
- * keyword of C. The source has the right-hand side, its Jacobian, the mass matrix, the energy, the
- * integrals and the outputs in terms of independent quasi-velocities, or of momenta if these are
- * in the state of the system, and explains its use at its head. External forces are parameters,
- * after the others, called `Q_` and the name of their quasi-velocity, and zero until they are set.
- * If `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
- * integrates from the start of the model to that time. Free both texts with pc_string_free.
+ * and of NAME.c, where NAME is `name`, turned into an identifier: Greek letters become their
+ * names, runs of other characters one `_`, with none at the ends; `n_` precedes a leading digit,
+ * `_` follows a keyword of C. The source has the right-hand side, its Jacobian, the mass matrix,
+ * the energy, the integrals and the outputs in terms of independent quasi-velocities, or of
+ * momenta if these are in the state of the system, and explains its use at its head. External
+ * forces are parameters that come after the others; their names are `Q_` followed by that of their
+ * quasi-velocity, and they are zero until they are set. If `t_end` is finite, it can be compiled
+ * with -DNAME_MAIN (in capitals) to a program that integrates from the start of the model to that
+ * time. Free both texts with pc_string_free.
  */
 pc_status pc_system_emit_c(const pc_system *system,
                            const char *name,
@@ -1986,10 +1988,10 @@ pc_status pc_system_theory(const pc_system *system,
  * model with the first, and compares both at `states` random states on the constraints, for the
  * current parameters: velocities, accelerations or rates of momenta, reactions, the energy and its
  * rate of change, integrals and outputs. 0 states mean 100. `text` says how closely they agree and
- * what was not compared, in lines; it may be NULL, and is freed with pc_string_free. External
- * forces are taken to be 0. Returns PC_DISAGREEMENT, with the quantity and both its values, if the
- * two differ, which is a defect of the library; PC_UNSUPPORTED if there is no second derivation
- * for this model. The call takes as long as pc_system_new.
+ * what was not compared, on separate lines; it may be NULL, and is freed with pc_string_free.
+ * External forces are taken to be 0. Returns PC_DISAGREEMENT, with the quantity and both its
+ * values, if the two differ, which is a defect of the library; PC_UNSUPPORTED if there is no
+ * second derivation for this model. The call takes as long as pc_system_new.
  */
 pc_status pc_system_verify(const pc_system *system, size_t states, char **text, pc_error **error);
 

@@ -104,9 +104,9 @@
 //!
 //! # Many motions
 //!
-//! An [`Ensemble`] integrates on all cores, and fields that are programs eight at a time in the
-//! lanes of a vector. Its results come in the order of the members and are the same for any number
-//! of threads; [`member_stream`] gives each member its own random numbers.
+//! An [`Ensemble`] integrates on all cores; fields that are programs are integrated eight at a time
+//! in the lanes of a vector. Its results come in the order of the members and are the same for any
+//! number of threads; [`member_stream`] gives each member its own random numbers.
 //! ```
 //! use std::ops::ControlFlow;
 //! use pc_solve::{Ensemble, Method, Options, from_fn};

@@ -180,9 +180,10 @@ pub unsafe extern "C" fn pc_system_start(
 }
 
 /// Writes the absolute tolerance of each component of the state with which the program `pc` would
-/// run the system from its start to t_end: that of the text, else min(1e-12, relative·s) for a
-/// component of the scale s at the start, where f is evaluated once, but no less than the rounding
-/// error of the largest component. pc_solver_options takes them as absolute_tolerances.
+/// run the system from its start to t_end: that of the text if it gives one, else min(1e-12,
+/// relative·s) for a component of scale s at the start, where f is evaluated once, but no less than
+/// the rounding error of the largest component. pc_solver_options takes them as
+/// absolute_tolerances.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_absolute_tolerances(
     system: *const pc_system,

@@ -30,7 +30,7 @@ pub(crate) struct Own {
     pub(crate) user: User,
 }
 
-/// The error that a function of the program failed.
+/// The error for a function of the program that failed.
 #[derive(Debug, thiserror::Error)]
 #[error("the {what} of the event {event} returned {code}")]
 struct Returned {

@@ -31,7 +31,7 @@ impl<T> Exclusive<T> {
         Exclusive { state: AtomicU8::new(FREE), value: UnsafeCell::new(value) }
     }
 
-    /// The value, if nobody else uses it.
+    /// Gives access to the value, if nobody else uses it.
     #[inline]
     pub(crate) fn take(&self) -> Result<Use<'_, T>, CallError> {
         match self.state.compare_exchange(FREE, IN_USE, Ordering::Acquire, Ordering::Relaxed) {

@@ -198,7 +198,7 @@ impl Plan<'_> {
     }
 }
 
-/// The error of too many steps before the output at `t`.
+/// The error for too many steps before the output at `t`.
 fn too_much_work<S: Stepper, E: Events>(integration: &Integration<S, E>, steps: u64, t: f64) -> SolveError {
     let reason = Reason::Steps { steps, t, last: integration.statistics().last_step.abs() };
     let (time, state) = (integration.time(), integration.state().to_vec());

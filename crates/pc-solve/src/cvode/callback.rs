@@ -1,4 +1,4 @@
-//! Callbacks of CVODES to a [`VectorField`], with failures, panics and non-finite values.
+//! Callbacks from CVODES to a [`VectorField`], which handle failures, panics and non-finite values.
 
 use std::any::Any;
 use std::ffi::{c_int, c_void};

@@ -139,7 +139,7 @@ impl<F: VectorField> Cvode<F> {
         }
     }
 
-    /// One step of CVODES.
+    /// Makes one step of CVODES.
     pub(crate) fn internal_step(&mut self, towards: f64) -> Result<(), SolveError> {
         if self.direction.is_none()
             && let Some(length) = self.initial_step

@@ -18,7 +18,7 @@ pub enum Reason {
         message: String,
     },
 
-    /// The limit of steps from one output to the next was reached.
+    /// The limit on the number of steps from one output to the next was reached.
     Steps {
         /// The number of steps made.
         steps: u64,
@@ -73,8 +73,8 @@ pub enum Reason {
         t: f64,
     },
 
-    /// The state could not be [projected](pc_expr::VectorField::project) to the surface it belongs
-    /// to.
+    /// The state could not be [projected](pc_expr::VectorField::project) onto the surface to which
+    /// it belongs.
     Projection {
         /// Time of that state.
         t: f64,

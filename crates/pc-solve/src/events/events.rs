@@ -46,7 +46,7 @@ impl<'a> FnEvents<'a> {
         FnEvents::default()
     }
 
-    /// Adds an event where `function` of (t, y) passes through zero.
+    /// Adds an event that occurs where `function` of (t, y) passes through zero.
     pub fn with(
         mut self,
         event: Event,

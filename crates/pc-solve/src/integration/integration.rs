@@ -51,8 +51,8 @@ use crate::integration::stepper::Stepper;
 /// again.
 ///
 /// After a reset the functions of the events that caused it have to leave zero before these events
-/// can occur again: a function within the tolerances of zero counts as being on the side it moves
-/// to.
+/// can occur again: a function within the tolerances of zero counts as being on the side to which
+/// it moves.
 ///
 /// The root finding of CVODES is not used: it ignores projections and resets, reports at most one
 /// of two roots in a step, and may report a root again after a restart.

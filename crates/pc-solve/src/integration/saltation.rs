@@ -30,7 +30,7 @@ struct Slopes {
 }
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// S⁺ from S⁻ at an event at time t with the function g and the reset y⁺ = R(t, y⁻),
+    /// Computes S⁺ from S⁻ at an event at time t with the function g and the reset y⁺ = R(t, y⁻),
     /// ```text
     /// s⁺ = R_y s⁻ + R_p + (R_t + R_y f⁻ − f⁺) τ,    τ = ∂tₑ/∂p = −(g_y s⁻ + g_p)/(g_t + g_y f⁻)
     /// ```
@@ -255,7 +255,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         field.and_then(|field| field.surfaces().get(surface).cloned()).unwrap_or_default()
     }
 
-    /// λ⁻, and the increment of ∂G/∂p for each parameter p, from λ⁺ at such an event,
+    /// Computes λ⁻, and the increment of ∂G/∂p for each parameter p, from λ⁺ at such an event,
     /// ```text
     /// λ⁻ = R_yᵀ λ⁺ − κ g_y,    R_pᵀ λ⁺ − κ g_p,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + δ)/(g_t + g_y f⁻)
     /// ```
@@ -402,7 +402,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 }
 
-/// λ⁻, and the increment of ∂G/∂p for each parameter p, from λ⁺ where f jumps on surfaces that are reached together.
+/// Computes λ⁻, and the increment of ∂G/∂p for each parameter p, from λ⁺ where f jumps on surfaces
+/// that are reached together.
 #[cfg(feature = "cvode")] // for the adjoint equations
 pub(crate) fn transposed_passage<F: VectorField>(
     field: &mut F,

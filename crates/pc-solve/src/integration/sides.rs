@@ -351,9 +351,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         noise.is_some_and(|noise| *noise == 0.0)
     }
 
-    /// Decides anew at a break of a table while the motion slides. The function of a surface may
-    /// jump away from zero there, and the motion then continues beside this surface. Along the
-    /// other surfaces the rates jump, as those of the table do.
+    /// Decides the sides anew at a break of a table while the motion slides. The function of a
+    /// surface may jump away from zero there, and the motion then continues beside this surface.
+    /// Along the other surfaces the rates jump, as those of the table do.
     pub(crate) fn leave_what_jumps(&mut self, towards: f64) -> Result<(), SolveError> {
         if !self.held.sides.contains(&0.0) {
             return Ok(());
@@ -390,7 +390,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(())
     }
 
-    /// Finds the sides at the front, and notes them.
+    /// Finds the sides at the front, and records them.
     pub(crate) fn begin_on_sides(&mut self, direction: f64) -> Result<(), SolveError> {
         if self.held.are_known || self.held.len() == 0 {
             return Ok(());
@@ -443,7 +443,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.sides_before = self.sides.clone();
     }
 
-    /// The span of time of interest: that to the end, or that of some steps like the last one.
+    /// The span of time of interest: up to the end, or of many steps like the last one.
     fn span_of_interest(&self) -> f64 {
         let last = self.engine.last_step();
         match (self.engine.stop_time(), last.degree) {

@@ -52,7 +52,7 @@ struct Column {
     start: Start,
 }
 
-/// A column at the start.
+/// The value of a column at the start.
 #[derive(Debug, Clone, PartialEq)]
 enum Start {
     Zero,
@@ -283,6 +283,7 @@ pub struct SensitivityStatistics {
     /// Iterations of the nonlinear solver for the columns alone; 0 if the correction is
     /// simultaneous.
     pub nonlinear_iterations: u64,
-    /// Times that solver failed to converge, including failures remedied by a new Jacobian.
+    /// The number of times that solver failed to converge, including failures remedied by a new
+    /// Jacobian.
     pub nonlinear_failures: u64,
 }

@@ -79,7 +79,7 @@ impl<'a, N> Waiting<'a, N> {
         true
     }
 
-    /// Whether a member fits the kernels and can begin.
+    /// Whether the kernels apply to a member and it can begin.
     fn accepts(&self, field: &LaneField, y: &[f64]) -> bool {
         let watched = &field.watched;
         y.len() == self.kernels.dim
