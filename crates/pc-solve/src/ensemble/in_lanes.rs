@@ -33,11 +33,11 @@ impl Ensemble<'_> {
     ///
     /// Lanes are used with [`Method::Auto`](crate::Method::Auto) and
     /// [`Method::Dop853`](crate::Method::Dop853), for fields that do not read time, without
-    /// inequalities, a minimum step or a stop time. `begin` has to exclude events and breaks. Lanes use the method of [`Dop853`](crate::Dop853), but with fused multiply-adds, so
-    /// that the last digits differ. With `Auto` a member that turns out to be stiff is integrated
-    /// `alone`; `Dop853` does not look for stiffness here. Each lane does the same operations as it
-    /// would alone: results depend neither on the number of threads or lanes nor on the other
-    /// members.
+    /// inequalities, a minimum step or a stop time. `begin` has to exclude events and breaks. Lanes
+    /// use the method of [`Dop853`](crate::Dop853), but with fused multiply-adds, so that the last
+    /// digits differ. With `Auto` a member that turns out to be stiff is integrated `alone`;
+    /// `Dop853` does not look for stiffness here. Each lane does the same operations as it would
+    /// alone: results depend neither on the number of threads or lanes nor on the other members.
     ///
     /// # Errors
     /// [`EnsembleError`] if threads cannot be started. If the work for a member panics, that is the
