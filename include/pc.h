@@ -58,17 +58,17 @@ extern "C" {
 #endif // __cplusplus
 
 /**
- * First number of the version of the header.
+ * First number of the header's version.
  */
 #define PC_VERSION_MAJOR 0
 
 /**
- * Second number of the version of the header.
+ * Second number of the header's version.
  */
 #define PC_VERSION_MINOR 1
 
 /**
- * Third number of the version of the header.
+ * Third number of the header's version.
  */
 #define PC_VERSION_PATCH 0
 
@@ -101,7 +101,7 @@ typedef enum {
    */
   PC_INCONSISTENT_MODEL = 3,
   /**
-   * The request cannot be met, or not for this system.
+   * The request cannot be met, at least not for this system.
    */
   PC_UNSUPPORTED = 4,
   /**
@@ -126,12 +126,12 @@ typedef enum {
    */
   PC_STOPPED = 9,
   /**
-   * The handle is in use: by another thread, or by the call that called the observer or the
-   * force function.
+   * The handle is in use: by another thread, or by the call from which the observer or the force
+   * function was called.
    */
   PC_BUSY = 10,
   /**
-   * A fault of the library, after which the handle can only be freed; or threads or memory
+   * A fault of the library, after which the handle can only be freed; or else threads or memory
    * for a solver are not available, and the handle is unchanged.
    */
   PC_INTERNAL = 11,
@@ -158,12 +158,12 @@ typedef enum {
 } pc_status;
 
 /**
- * Which equations of motion; values of pc_system_options.form.
+ * The form of the equations of motion; values of pc_system_options.form.
  */
 typedef enum {
   /**
-   * Poincaré's, in quasi-velocities: independent ones if constraints make the others
-   * vanish, all of them with multipliers otherwise.
+   * Poincaré's equations, in quasi-velocities: in the independent ones if constraints make the
+   * others vanish, otherwise in all of them, with multipliers.
    */
   PC_POINCARE = 0,
   /**
@@ -171,10 +171,10 @@ typedef enum {
    */
   PC_CANONICAL = 1,
   /**
-   * Poincaré's without the coordinates that nothing depends on, Euler–Poincaré's where none is
-   * left; the state has fewer coordinates. Where multipliers hold constraints, this form and
-   * those below are PC_INCONSISTENT_MODEL, unless pc_model_add_independent says which
-   * velocities are independent.
+   * Poincaré's equations without the coordinates on which nothing depends, and Euler–Poincaré's
+   * where no coordinate is left; the state has fewer coordinates. Where constraints are imposed
+   * by multipliers, this form and those below give PC_INCONSISTENT_MODEL, unless
+   * pc_model_add_independent says which velocities are independent.
    */
   PC_REDUCED = 2,
   /**
@@ -182,11 +182,11 @@ typedef enum {
    */
   PC_LIE_POISSON = 3,
   /**
-   * Poincaré's, in quasi-velocities that are orthonormal in the kinetic metric.
+   * Poincaré's equations, in quasi-velocities that are orthonormal in the kinetic metric.
    */
   PC_ORTHONORMAL = 4,
   /**
-   * Hamel's, in the quasi-velocities of pc_model_give_quasi_velocity.
+   * Hamel's equations, in the quasi-velocities of pc_model_give_quasi_velocity.
    */
   PC_HAMEL = 5,
 } pc_form;
@@ -205,19 +205,19 @@ typedef enum {
   PC_BDF = 1,
   /**
    * The explicit Runge–Kutta method of order 8 of Dormand and Prince, for systems that are
-   * not stiff at tolerances of 1e-6 and below: the fastest where the equations are short. It
-   * has no sensitivities, no iteration, no linear solver and no highest order to choose.
+   * not stiff at tolerances of 1e-6 and below: the fastest where the equations are short. It has
+   * no sensitivities, and no iteration, linear solver or highest order to choose.
    */
   PC_DOP853 = 2,
   /**
    * Taylor's method of adaptive order and step, for systems that are not stiff: the fastest at
-   * tolerances of 1e-8 and below, and the one that follows a motion to rounding. It needs
-   * equations that are solved in expressions, without tables and without forces from
+   * tolerances of 1e-8 and below, and the one that follows a motion to within rounding errors.
+   * It needs equations that are solved in expressions, without tables and without forces from
    * functions of the program.
    */
   PC_TAYLOR = 3,
   /**
-   * PC_DOP853 where the motion is not stiff, PC_BDF where stiffness is seen. With
+   * PC_DOP853 where the motion is not stiff, PC_BDF where stiffness is detected. With
    * sensitivities it is PC_ADAMS.
    */
   PC_AUTO = 4,
@@ -228,7 +228,8 @@ typedef enum {
  */
 typedef enum {
   /**
-   * Newton's for PC_BDF, also within PC_AUTO, the fixed-point iteration for PC_ADAMS.
+   * Newton's iteration for PC_BDF, also within PC_AUTO, and the fixed-point iteration for
+   * PC_ADAMS.
    */
   PC_ITERATION_OF_METHOD = 0,
   /**
@@ -269,11 +270,11 @@ typedef enum {
  */
 typedef enum {
   /**
-   * As a book prints them, in UTF-8.
+   * As they appear in a book, in UTF-8.
    */
   PC_TEXT = 0,
   /**
-   * Displays of LaTeX with amsmath.
+   * LaTeX displays that use amsmath.
    */
   PC_LATEX = 1,
   /**
@@ -314,8 +315,8 @@ typedef struct pc_cancel pc_cancel;
 typedef struct pc_dense pc_dense;
 
 /**
- * Why a call failed: status, message and, for a model, the place in its text. Never changes;
- * free it with pc_error_free.
+ * Why a call failed: the status, the message and, for a model, the position in its text. It never
+ * changes; free it with pc_error_free.
  */
 typedef struct pc_error pc_error;
 
@@ -324,7 +325,7 @@ typedef struct pc_error pc_error;
  * Free it with pc_kernel_free.
  *
  * It holds workspace, so each thread needs its own, and two calls at the same time are not
- * safe; in return there are no locks.
+ * safe; in return it takes no locks.
  */
 typedef struct pc_kernel pc_kernel;
 
@@ -344,7 +345,7 @@ typedef struct pc_solver pc_solver;
 typedef struct pc_system pc_system;
 
 /**
- * What to derive. Set it up with pc_system_options_init.
+ * Options for deriving a system. Set them up with pc_system_options_init.
  */
 typedef struct {
   /**
@@ -360,25 +361,25 @@ typedef struct {
    */
   int reserved;
   /**
-   * Most bytes that the expressions of a derivation may take, by estimate; 0, the default,
-   * for 4 GiB. Beyond it, PC_LIMIT. It applies to pc_system_new and to each later call that
-   * derives, separately; so do the next two.
+   * Maximum number of bytes that the expressions of a derivation may take, by estimate; 0, the
+   * default, for 4 GiB. Beyond it a call returns PC_LIMIT. The limit applies separately to
+   * pc_system_new and to each later call that derives; so do the next two.
    */
   uint64_t memory_limit;
   /**
-   * Most seconds that a derivation may take, and each call of a solver or an ensemble of the
-   * system, positive; 0, the default, for no limit.
+   * Maximum time in seconds, positive, for a derivation and for each call of a solver or an
+   * ensemble of the system; 0, the default, for no limit.
    */
   double time_limit;
   /**
-   * The handle by which derivations and integrations can be ended; NULL, the default, for
+   * The handle with which derivations and integrations can be ended; NULL, the default, for
    * none. It may be freed when pc_system_new has returned.
    */
   const pc_cancel *cancel;
 } pc_system_options;
 
 /**
- * How to integrate. Set it up with pc_solver_options_init, then change what you like.
+ * Options for an integration. Set them up with pc_solver_options_init, then change what you like.
  */
 typedef struct {
   /**
@@ -414,11 +415,11 @@ typedef struct {
    */
   const double *absolute_tolerances;
   /**
-   * Their number, 0 with NULL.
+   * The number of these tolerances; 0 with NULL.
    */
   size_t absolute_tolerances_length;
   /**
-   * Most steps from one output to the next; 500000 by default.
+   * Maximum number of steps from one output to the next; 500000 by default.
    */
   uint64_t max_steps;
   /**
@@ -439,10 +440,11 @@ typedef struct {
    */
   double stop_time;
   /**
-   * Number of equal parts of each step, at least 1, at whose ends events are looked for that
-   * are not expressions of the state alone (those of your program, and those read through
-   * constraints, momenta or tables), and closer where the values leave doubt; 4 by default.
-   * Between two such places an even number of zeros may be missed.
+   * Number of equal parts of each step, at least 1, at whose ends the functions of events are
+   * sampled that are not expressions in the state alone (those of your program, and those that
+   * are read through constraints, momenta or tables); they are sampled more closely where the
+   * values leave doubt; 4 by default. Between two such times an even number of zeros may be
+   * missed.
    */
   uint32_t samples_per_step;
   /**
@@ -460,9 +462,9 @@ typedef struct {
 /**
  * Writes the external forces at (t, y) to q: one for each that was declared, in that order, so
  * `q_length` is pc_system_force_count. y is the state of the system; in the canonical form it
- * has momenta. Returns 0; a positive number where the forces are not defined, so that a smaller
- * step may help; a negative one to give up. A force left unwritten is NaN, and treated like a
- * positive return value. It must return: no exceptions, no longjmp.
+ * contains momenta. Returns 0; a positive number where the forces are not defined, so that a
+ * smaller step may help; a negative number to give up. A force left unwritten is NaN, and treated
+ * like a positive return value. It must return: no exceptions, no longjmp.
  */
 typedef int (*pc_force_function)(double t,
                                  const double *y,
@@ -484,7 +486,8 @@ typedef int (*pc_force_jacobian)(double t,
                                  void *user);
 
 /**
- * Frees what the `user` of a function points to. It must return: no exceptions, no longjmp.
+ * Frees the data to which the `user` of a function points. It must return: no exceptions, no
+ * longjmp.
  */
 typedef void (*pc_destroy)(void *user);
 
@@ -497,9 +500,9 @@ typedef int (*pc_observer)(double t, const double *y, size_t y_length, void *use
 
 /**
  * Receives each event where it occurs, by its number among the events of the solver, with the
- * states before and after it, which are valid during the call. Among simultaneous events each
- * has the state that it found and the one that it left. Returns 0 to continue; anything else
- * ends the call with PC_STOPPED, or with PC_EVENT where the event is terminal. Otherwise as
+ * states before and after it, which are valid during the call. Among simultaneous events each has
+ * the state that it found and the state that it left. Returns 0 to continue; anything else ends
+ * the call with PC_STOPPED, or with PC_EVENT where the event is terminal. Otherwise as
  * pc_observer.
  */
 typedef int (*pc_event_observer)(size_t event,
@@ -512,8 +515,8 @@ typedef int (*pc_event_observer)(size_t event,
 /**
  * Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else
  * ends the integration with PC_INTEGRATION, as does a value that is not finite or not
- * written. It should depend on nothing but its arguments and be smooth. It must return: no
- * exceptions, no longjmp.
+ * written. It should depend only on its arguments and be smooth. It must return: no exceptions, no
+ * longjmp.
  */
 typedef int (*pc_event_function)(double t,
                                  const double *y,
@@ -527,8 +530,8 @@ typedef int (*pc_event_function)(double t,
 typedef int (*pc_event_reset)(double t, double *y, size_t y_length, void *user);
 
 /**
- * Counts since the start of an integration, and its last internal step. The structure may
- * grow at the end.
+ * Counters since the start of an integration, and data of its last internal step. The structure
+ * may grow at the end.
  */
 typedef struct {
   /**
@@ -536,7 +539,7 @@ typedef struct {
    */
   uint64_t steps;
   /**
-   * Evaluations of f, with those for difference quotients.
+   * Evaluations of f, including those for difference quotients.
    */
   uint64_t rhs_evaluations;
   /**
@@ -544,7 +547,7 @@ typedef struct {
    */
   uint64_t jacobian_evaluations;
   /**
-   * Steps tried again because the estimated error was too large.
+   * Steps repeated because the estimated error was too large.
    */
   uint64_t error_test_failures;
   /**
@@ -585,7 +588,7 @@ typedef struct {
    */
   uint64_t limited_steps;
   /**
-   * Steps that PC_AUTO made by PC_BDF.
+   * Steps that PC_AUTO made with PC_BDF.
    */
   uint64_t implicit_steps;
   /**
@@ -593,7 +596,7 @@ typedef struct {
    */
   uint64_t changes;
   /**
-   * Time at which PC_DOP853 or PC_AUTO first found the motion stiff; NaN if never.
+   * Time at which PC_DOP853 or PC_AUTO first found the motion to be stiff; NaN if never.
    */
   double stiff_from;
 } pc_statistics;
@@ -615,8 +618,8 @@ typedef struct {
    */
   const char *message;
   /**
-   * The output times that it reached, as many as `rows`; the time of a terminal event is the
-   * last one.
+   * The output times that the member reached, as many as `rows`; the time of a terminal event is
+   * the last one.
    */
   const double *times;
   /**
@@ -625,7 +628,7 @@ typedef struct {
    */
   const double *states;
   /**
-   * How many there are, also if the member failed.
+   * The number of these times and states, also if the member failed.
    */
   size_t rows;
   /**
@@ -635,9 +638,9 @@ typedef struct {
 } pc_member;
 
 /**
- * Receives each member in order, on the thread of the call; what the member points to is
- * valid during the call. Returns 0 to continue; anything else ends the ensemble with
- * PC_STOPPED. Otherwise as pc_observer.
+ * Receives each member in order, on the thread of the call; the data to which `member` points are
+ * valid during the call. Returns 0 to continue; anything else ends the ensemble with PC_STOPPED.
+ * Otherwise as pc_observer.
  */
 typedef int (*pc_member_observer)(const pc_member *member, void *user);
 
@@ -647,7 +650,7 @@ typedef int (*pc_member_observer)(const pc_member *member, void *user);
 const char *pc_version(void);
 
 /**
- * The PC_ABI_VERSION of the library that runs.
+ * The PC_ABI_VERSION of the library that is in use.
  */
 uint32_t pc_abi_version(void);
 
@@ -662,8 +665,8 @@ const char *pc_status_name(int status);
 pc_status pc_error_status(const pc_error *error);
 
 /**
- * The message, in UTF-8, never NULL; it lives as long as the error. For a model it shows the
- * line at fault and what would be right, over several lines of text. Empty for NULL.
+ * The message, in UTF-8, never NULL; it lives as long as the error. For a model it shows the line
+ * at fault and what would be correct, in several lines of text. Empty for NULL.
  */
 const char *pc_error_message(const pc_error *error);
 
@@ -689,13 +692,13 @@ size_t pc_error_offset(const pc_error *error);
 size_t pc_error_length(const pc_error *error);
 
 /**
- * The code that CVODES returned (cvodes.h), where it is the reason; else 0, and for NULL.
+ * The code that CVODES returned (cvodes.h), if that is the reason; 0 otherwise, and for NULL.
  */
 int pc_error_integrator_code(const pc_error *error);
 
 /**
  * 1 if the status is PC_EVALUATION and evaluation may succeed at a nearby state, so that an
- * integrator should try a smaller step; else 0, and for NULL.
+ * integrator should try a smaller step; 0 otherwise, and for NULL.
  */
 int pc_error_is_recoverable(const pc_error *error);
 
@@ -755,27 +758,27 @@ void pc_model_free(pc_model *model);
 pc_status pc_model_set(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
- * Keeps this integral, or "energy", at its value at the start, by projection: after each step
- * of a solver, and in pc_system_project. An unknown name is reported by pc_system_new.
+ * Makes projection keep this integral, or "energy", at its value at the start: after each step of
+ * a solver, and in pc_system_project. An unknown name is reported by pc_system_new.
  */
 pc_status pc_model_keep(pc_model *model, const char *integral, pc_error **error);
 
 /**
- * Sets whether the start is moved onto the constraints (otherwise a start off them is refused).
- * Any value but 0 means yes.
+ * Sets whether the start is moved onto the constraints (otherwise a start that violates them is
+ * refused). Any value but 0 means yes.
  */
 pc_status pc_model_project_start(pc_model *model, int yes, pc_error **error);
 
 /**
- * Holds the start value of this coordinate or quasi-velocity fixed while the others move onto
- * the constraints. Without pc_model_project_start it has no effect.
- * An unknown name is reported by pc_system_new, with PC_NOT_FOUND.
+ * Holds the start value of this coordinate or quasi-velocity fixed while the others are moved to
+ * satisfy the constraints. Without pc_model_project_start it has no effect. An unknown name is
+ * reported by pc_system_new, with PC_NOT_FOUND.
  */
 pc_status pc_model_hold_start(pc_model *model, const char *name, pc_error **error);
 
 /**
- * Sets whether the reactions of the constraints are observed, each called `λ_` and the name of
- * its constraint. Any value but 0 means yes.
+ * Sets whether the reactions of the constraints are observed; the name of each is `λ_` followed by
+ * that of its constraint. Any value but 0 means yes.
  */
 pc_status pc_model_observe_reactions(pc_model *model, int yes, pc_error **error);
 
@@ -786,27 +789,27 @@ pc_status pc_model_observe_reactions(pc_model *model, int yes, pc_error **error)
 pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
 
 /**
- * Gives the text of the model, to be freed with pc_string_free. For a model built by calls it
- * is the text that the calls wrote; errors refer to its lines and columns. Settings that the
- * text format does not have are not in it: pc_model_set of parameters, pc_model_set_start of
- * a model that was read, pc_model_keep, pc_model_project_start, pc_model_hold_start,
- * pc_model_observe_reactions, pc_model_differentiate, pc_model_add_external_force,
- * pc_model_give_quasi_velocity, pc_model_add_independent.
+ * Gives the text of the model, to be freed with pc_string_free. For a model built by calls it is
+ * the text that the calls wrote; errors refer to its lines and columns. Settings that cannot be
+ * expressed in the text format are omitted: parameters set by pc_model_set, a start set by
+ * pc_model_set_start for a model that was read, and the settings of pc_model_keep,
+ * pc_model_project_start, pc_model_hold_start, pc_model_observe_reactions, pc_model_differentiate,
+ * pc_model_add_external_force, pc_model_give_quasi_velocity, pc_model_add_independent.
  */
 pc_status pc_model_text(const pc_model *model, char **text, pc_error **error);
 
 /**
- * Makes an empty model, to be built by the calls below. Kinds of entries may come in any order;
- * coordinates, quasi-velocities, parameters and so on keep the order of their calls.
- * Expressions are those of the text model, where `x'` is the velocity of the coordinate x and
- * `t` the time. The model is read as a whole by pc_model_check and pc_system_new, whose
- * errors name the entry and show its expression.
+ * Makes an empty model, to be built by the calls below. Different kinds of entries may be added in
+ * any order; coordinates, quasi-velocities, parameters and so on are in the order of their calls.
+ * Expressions are those of the text model, where `x'` is the velocity of the coordinate x and `t`
+ * the time. The model is read as a whole by pc_model_check and pc_system_new, whose errors name
+ * the entry and show its expression.
  */
 pc_status pc_model_new(const char *name, pc_model **model, pc_error **error);
 
 /**
- * Reads the model as a whole: PC_OK if all names are known, all expressions are well formed,
- * and the frame and the start are valid. Only pc_system_new shows whether equations can be
+ * Reads the model as a whole: returns PC_OK if all names are known, all expressions are well
+ * formed, and the frame and the start are valid. Only pc_system_new shows whether equations can be
  * derived.
  */
 pc_status pc_model_check(const pc_model *model, pc_error **error);
@@ -820,7 +823,7 @@ pc_status pc_model_add_parameter(pc_model *model,
                                  pc_error **error);
 
 /**
- * Adds a parameter that is an expression in the parameters before it. It follows them until
+ * Adds a parameter that is an expression in the parameters before it. It changes with them until
  * it is itself set.
  */
 pc_status pc_model_add_parameter_expression(pc_model *model,
@@ -829,8 +832,8 @@ pc_status pc_model_add_parameter_expression(pc_model *model,
                                             pc_error **error);
 
 /**
- * Adds a first-order state with its value at the start and its rate: an expression of time,
- * coordinates, velocities and states. It is integrated with the motion and comes after the
+ * Adds a first-order state with its value at the start and its rate, which is an expression in
+ * time, coordinates, velocities and states. It is integrated with the motion and comes after the
  * velocities in the state; it is not part of the frame.
  */
 pc_status pc_model_add_state(pc_model *model,
@@ -840,8 +843,8 @@ pc_status pc_model_add_state(pc_model *model,
                              pc_error **error);
 
 /**
- * Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions of
- * parameters and t: it acts on the mass centres of all bodies and counts in the energy.
+ * Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions in
+ * the parameters and t: it acts on the mass centres of all bodies and is included in the energy.
  */
 pc_status pc_model_set_gravity(pc_model *model,
                                const char *x,
@@ -878,8 +881,8 @@ pc_status pc_model_add_quasi_velocity(pc_model *model,
                                       pc_error **error);
 
 /**
- * Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3): for
- * every coordinate, or for none.
+ * Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3). Call it
+ * for every coordinate, or for none.
  */
 pc_status pc_model_set_kinematics(pc_model *model,
                                   const char *coordinate,
@@ -887,14 +890,14 @@ pc_status pc_model_set_kinematics(pc_model *model,
                                   pc_error **error);
 
 /**
- * Sets the brackets of the frame to those of an algebra by its name, such as "so3"; needed only
- * where the frame does not determine them.
+ * Sets the brackets of the frame to those of the algebra with this name, such as "so3"; needed
+ * only where the frame does not determine them.
  */
 pc_status pc_model_set_algebra(pc_model *model, const char *name, pc_error **error);
 
 /**
  * Sets the bracket [X_left, X_right], (5), as a linear combination of quasi-velocities, such as
- * "w3"; brackets that are not set are zero. `left` may be "t", for X_0. An alternative to
+ * "w3"; brackets that are not set are zero. `left` may be "t", for X_0. This is an alternative to
  * pc_model_set_algebra.
  */
 pc_status pc_model_set_bracket(pc_model *model,
@@ -904,8 +907,8 @@ pc_status pc_model_set_bracket(pc_model *model,
                                pc_error **error);
 
 /**
- * Adds a constraint: the expression, of coordinates or of velocities, vanishes. If it is not
- * affine in the velocities, declare this by pc_model_set_constraint_kind.
+ * Adds a constraint, which says that the expression, in coordinates or in velocities, vanishes. If
+ * it is not affine in the velocities, declare this with pc_model_set_constraint_kind.
  */
 pc_status pc_model_add_constraint(pc_model *model,
                                   const char *name,
@@ -913,7 +916,8 @@ pc_status pc_model_add_constraint(pc_model *model,
                                   pc_error **error);
 
 /**
- * Sets the Lagrangian L(t, x, η), which may contain x' too. Excludes kinetic and potential energy.
+ * Sets the Lagrangian L(t, x, η), which may contain x' too. It cannot be combined with a kinetic
+ * or potential energy.
  */
 pc_status pc_model_set_lagrangian(pc_model *model,
                                   const char *expression,
@@ -935,7 +939,7 @@ pc_status pc_model_set_potential(pc_model *model, const char *expression, pc_err
 pc_status pc_model_set_dissipation(pc_model *model, const char *expression, pc_error **error);
 
 /**
- * Adds a force, conjugate to a quasi-velocity, or to a coordinate.
+ * Adds a force that is conjugate to a quasi-velocity or to a coordinate.
  */
 pc_status pc_model_add_force(pc_model *model,
                              const char *on,
@@ -959,16 +963,16 @@ pc_status pc_model_add_output(pc_model *model,
                               pc_error **error);
 
 /**
- * Adds an input: a value that is constant until it is set, as a parameter is. Inputs come
- * after all parameters. Forces, rates of states, events, integrals and outputs may contain
+ * Adds an input: a value that is constant until it is set, in the same way as a parameter. Inputs
+ * come after all parameters. Forces, rates of states, events, integrals and outputs may contain
  * it; velocities, momenta, constraints and positions of bodies may not.
  */
 pc_status pc_model_add_input(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
  * Adds an input that is a function of time: `length` values at increasing times, interpolated
- * by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the
- * times. Only the table determines its values.
+ * by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the times.
+ * The values of the input come from the table alone.
  */
 pc_status pc_model_add_input_table(pc_model *model,
                                    const char *name,
@@ -979,10 +983,10 @@ pc_status pc_model_add_input_table(pc_model *model,
                                    pc_error **error);
 
 /**
- * Adds an input whose table is a column of a file of comma-separated numbers below a line of
- * names; otherwise as pc_model_add_input_table. `time` is the name of the column of times,
- * NULL for "t" or, without one, the first column. The path is relative to the working
- * directory at the time of the call.
+ * Adds an input whose table is a column of a file of comma-separated numbers, the first line of
+ * which holds the names of the columns; otherwise as pc_model_add_input_table. `time` is the name
+ * of the column of times, NULL for "t" or, without one, the first column. The path is relative to
+ * the working directory at the time of the call.
  */
 pc_status pc_model_add_input_file(pc_model *model,
                                   const char *name,
@@ -1057,11 +1061,11 @@ pc_status pc_model_set_body_rotation(pc_model *model,
                                      pc_error **error);
 
 /**
- * Adds a body that hangs on another, or on the world if `parent` is null, by a joint of this
+ * Adds a body that is attached to another, or to the world if `parent` is null, by a joint of this
  * kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. Its
- * origin is the point of the joint. Inertia, force and torque are set as those of other bodies,
- * start values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names that
- * the joint gives: `NAME` and `NAME'` of a revolute one.
+ * origin is the point of the joint. Inertia, force and torque are set as for other bodies, start
+ * values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names that the joint
+ * gives, such as `NAME` and `NAME'` for a revolute one.
  */
 pc_status pc_model_add_jointed_body(pc_model *model,
                                     const char *name,
@@ -1070,7 +1074,7 @@ pc_status pc_model_add_jointed_body(pc_model *model,
                                     pc_error **error);
 
 /**
- * Sets the mass of a body that hangs by a joint.
+ * Sets the mass of a body that is attached by a joint.
  */
 pc_status pc_model_set_body_mass(pc_model *model,
                                  const char *body,
@@ -1078,7 +1082,8 @@ pc_status pc_model_set_body_mass(pc_model *model,
                                  pc_error **error);
 
 /**
- * Sets the mass centre of a body that hangs by a joint, in axes of the body from its origin.
+ * Sets the mass centre of a body that is attached by a joint, in axes of the body and relative to
+ * its origin.
  */
 pc_status pc_model_set_body_center(pc_model *model,
                                    const char *body,
@@ -1088,7 +1093,7 @@ pc_status pc_model_set_body_center(pc_model *model,
                                    pc_error **error);
 
 /**
- * Sets the point of a joint, in axes of the parent from its origin.
+ * Sets the point of a joint, in axes of the parent and relative to its origin.
  */
 pc_status pc_model_set_joint_place(pc_model *model,
                                    const char *body,
@@ -1134,8 +1139,8 @@ pc_status pc_model_set_joint_rotation(pc_model *model,
                                       pc_error **error);
 
 /**
- * Sets the same rotation by turns about axes: `axes` has a letter x, y or z for each of the
- * `length` angles; each turn is about an axis that the turns before it have moved.
+ * Sets the same rotation as a sequence of turns about axes: `axes` has a letter x, y or z for each
+ * of the `length` angles; each turn is about an axis that the turns before it have moved.
  */
 pc_status pc_model_set_joint_turns(pc_model *model,
                                    const char *body,
@@ -1145,7 +1150,7 @@ pc_status pc_model_set_joint_turns(pc_model *model,
                                    pc_error **error);
 
 /**
- * Gives the coordinates of a joint other names than those of its kind.
+ * Sets names for the coordinates of a joint, in place of the default names of its kind.
  */
 pc_status pc_model_name_joint_coordinates(pc_model *model,
                                           const char *body,
@@ -1154,7 +1159,7 @@ pc_status pc_model_name_joint_coordinates(pc_model *model,
                                           pc_error **error);
 
 /**
- * Gives the quasi-velocities of a joint other names than those of its kind.
+ * Sets names for the quasi-velocities of a joint, in place of the default names of its kind.
  */
 pc_status pc_model_name_joint_quasi_velocities(pc_model *model,
                                                const char *body,
@@ -1163,8 +1168,8 @@ pc_status pc_model_name_joint_quasi_velocities(pc_model *model,
                                                pc_error **error);
 
 /**
- * Adds a point of a body that hangs by a joint, in axes of the body from its origin. In
- * expressions its coordinates are `NAME_x`, `NAME_y`, `NAME_z`.
+ * Adds a point of a body that is attached by a joint, in axes of the body and relative to its
+ * origin. In expressions its coordinates are `NAME_x`, `NAME_y`, `NAME_z`.
  */
 pc_status pc_model_add_point(pc_model *model,
                              const char *name,
@@ -1175,8 +1180,9 @@ pc_status pc_model_add_point(pc_model *model,
                              pc_error **error);
 
 /**
- * Closes a loop by joining two bodies that hang by joints: kind point, revolute or rod. `places`
- * has 6 expressions: the point of the first body in its axes, then that of the second.
+ * Closes a loop by joining two bodies that are attached by joints; the kind is point, revolute or
+ * rod. `places` has 6 expressions: the point of the first body in its axes, then that of the
+ * second.
  */
 pc_status pc_model_add_loop(pc_model *model,
                             const char *name,
@@ -1187,7 +1193,7 @@ pc_status pc_model_add_loop(pc_model *model,
                             pc_error **error);
 
 /**
- * Sets the axis of a revolute loop, in axes of the first body and in those of the second, of 3
+ * Sets the axis of a revolute loop, in axes of the first body and in those of the second, with 3
  * numbers each.
  */
 pc_status pc_model_set_loop_axes(pc_model *model,
@@ -1206,13 +1212,13 @@ pc_status pc_model_set_loop_length(pc_model *model,
 
 /**
  * Sets a function S of time, coordinates and constants that is claimed to solve
- * Hamilton–Jacobi's equation; pc_system_theory examines the claim. No motion depends on it.
+ * Hamilton–Jacobi's equation; pc_system_theory examines the claim. Motions do not depend on it.
  */
 pc_status pc_model_set_action(pc_model *model, const char *expression, pc_error **error);
 
 /**
- * Adds a constant of the action, with a value near which the action is defined: without a
- * proof that the action solves the equation, it is tested numerically near these values.
+ * Adds a constant of the action, with a value near which the action is defined: if it cannot be
+ * proved that the action solves the equation, this is tested numerically near these values.
  */
 pc_status pc_model_add_action_constant(pc_model *model,
                                        const char *name,
@@ -1258,8 +1264,8 @@ pc_status pc_model_set_constraint_kind(pc_model *model,
 pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
 
 /**
- * Sets the time to which the program `pc` runs the model. It is written to the text, as are
- * the next five; solvers take pc_solver_options instead.
+ * Sets the time to which the program `pc` runs the model. It is written to the text, as are the
+ * settings of the next five functions; solvers take pc_solver_options instead.
  */
 pc_status pc_model_set_end_time(pc_model *model, double t, pc_error **error);
 
@@ -1278,13 +1284,13 @@ pc_status pc_model_set_tolerances(pc_model *model,
 
 /**
  * Sets the largest length of a step, positive, with which the program `pc` runs the model: an
- * event whose function has passed through zero and back within a step is not seen.
+ * event whose function passes through zero and back within a step is missed.
  */
 pc_status pc_model_set_max_step(pc_model *model, double length, pc_error **error);
 
 /**
- * Sets how the program `pc` looks for zeros of event functions: at `samples_per_step` places
- * of each step, at least 1; events whose intervals shrink until the time left is less than
+ * Sets how the program `pc` looks for zeros of event functions: at `samples_per_step` points in
+ * each step, at least 1; events whose intervals shrink until the time left is less than
  * `accumulation` of the first interval count as accumulated.
  */
 pc_status pc_model_set_event_search(pc_model *model,
@@ -1309,9 +1315,9 @@ pc_status pc_model_set_form(pc_model *model, const char *form, pc_error **error)
 pc_status pc_cancel_new(pc_cancel **cancel, pc_error **error);
 
 /**
- * Ends derivations and integrations with PC_LIMIT: those under way soon, later ones as soon as
- * they begin. It takes no lock and allocates nothing: it is the one function that a signal
- * handler may call. NULL is allowed.
+ * Ends derivations and integrations with PC_LIMIT: those under way end soon, later ones as soon as
+ * they begin. It takes no lock and allocates nothing: it is the one function that a signal handler
+ * may call. NULL is allowed.
  */
 void pc_cancel_request(const pc_cancel *cancel);
 
@@ -1321,7 +1327,7 @@ void pc_cancel_request(const pc_cancel *cancel);
 int pc_cancel_is_requested(const pc_cancel *cancel);
 
 /**
- * Frees a handle; systems that have it continue without it. NULL is allowed.
+ * Frees a handle; systems whose options contain it continue without it. NULL is allowed.
  */
 void pc_cancel_free(pc_cancel *cancel);
 
@@ -1347,8 +1353,8 @@ pc_status pc_system_new(const pc_model *model,
 
 /**
  * Makes a copy for another thread, with the current parameters. It shares the machine code that
- * exists: that of f, and that of each derivative which the original has evaluated before (its
- * first evaluation compiles it).
+ * exists: that of f, and that of each derivative that the original has evaluated before (the first
+ * evaluation of a derivative compiles it).
  */
 pc_status pc_system_clone(const pc_system *system, pc_system **copy, pc_error **error);
 
@@ -1385,13 +1391,13 @@ size_t pc_system_parameter_count(const pc_system *system);
 size_t pc_system_observable_count(const pc_system *system);
 
 /**
- * The number of observables that should stay constant, integrals and energy, which come
+ * The number of observables that should stay constant: the integrals and the energy, which come
  * first; 0 for NULL.
  */
 size_t pc_system_conserved_count(const pc_system *system);
 
 /**
- * The number of constraints that are kept by projection; 0 for NULL.
+ * The number of constraints that projection maintains; 0 for NULL.
  */
 size_t pc_system_constraint_count(const pc_system *system);
 
@@ -1416,12 +1422,13 @@ const char *pc_system_parameter_name(const pc_system *system, size_t index);
 const char *pc_system_observable_name(const pc_system *system, size_t index);
 
 /**
- * The name of a constraint that is kept by projection, from 0; NULL beyond the last.
+ * The name of a constraint that projection maintains, from 0; NULL beyond the last.
  */
 const char *pc_system_constraint_name(const pc_system *system, size_t index);
 
 /**
- * The name of a reaction, `λ_` and that of its constraint, from 0; NULL beyond the last.
+ * The name of a reaction, `λ_` followed by the name of its constraint, from 0; NULL beyond the
+ * last.
  */
 const char *pc_system_reaction_name(const pc_system *system, size_t index);
 
@@ -1436,9 +1443,10 @@ pc_status pc_system_start(const pc_system *system,
 
 /**
  * Writes the absolute tolerance of each component of the state with which the program `pc` would
- * run the system from its start to t_end: that of the text, else min(1e-12, relative·s) for a
- * component of the scale s at the start, where f is evaluated once, but no less than rounding of
- * the largest. pc_solver_options takes them as absolute_tolerances.
+ * run the system from its start to t_end: that of the text if it gives one, else min(1e-12,
+ * relative·s) for a component of scale s at the start, where f is evaluated once, but no less than
+ * the rounding error of the largest component. pc_solver_options takes them as
+ * absolute_tolerances.
  */
 pc_status pc_system_absolute_tolerances(const pc_system *system,
                                         double relative,
@@ -1456,9 +1464,9 @@ pc_status pc_system_parameters(const pc_system *system,
                                pc_error **error);
 
 /**
- * Sets all parameters; cheap, since nothing is derived again. The start stays the same, and
- * solvers and kernels made before keep their values. Inputs come after the parameters; one with
- * a table follows its table whatever it is set to.
+ * Sets all parameters, which is cheap, since nothing is derived again. The start stays the same,
+ * and solvers and kernels made before keep the values they have. Inputs come after the parameters;
+ * an input with a table follows its table whatever it is set to.
  */
 pc_status pc_system_set_parameters(pc_system *system,
                                    const double *values,
@@ -1497,10 +1505,10 @@ pc_status pc_system_find_observable(const pc_system *system,
                                     pc_error **error);
 
 /**
- * Declares that a force computed by a function of yours acts on a quasi-velocity; on a
- * coordinate if the model declares no quasi-velocities. It adds to the other forces there.
- * The function belongs to the system, not to the model: pc_system_set_force. An unknown name
- * is reported by pc_model_check and pc_system_new.
+ * Declares that a force computed by a function of yours acts on a quasi-velocity, or on a
+ * coordinate if the model declares no quasi-velocities. It is added to the other forces that act
+ * there. The function belongs to the system, not to the model: set it with pc_system_set_force. An
+ * unknown name is reported by pc_model_check and pc_system_new.
  */
 pc_status pc_model_add_external_force(pc_model *model, const char *on, pc_error **error);
 
@@ -1520,9 +1528,10 @@ const char *pc_system_force_name(const pc_system *system, size_t index);
  * the derivatives of the forces, and only these, are then difference quotients.
  *
  * Copies, kernels and solvers made from the system afterwards share the functions and `user`;
- * those made before keep what they had. The functions are called by whichever thread evaluates,
- * so by several at the same time if several use copies. They may call any function on other
- * handles, and of the same system pc_system_..._name and sizes.
+ * those made before keep the functions they had. The functions are called on whichever thread
+ * evaluates, and so on several at the same time if several threads use copies. They may call any
+ * function on other handles, and on the same system those that return names (pc_system_..._name)
+ * and sizes.
  *
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else
  * when the last handle that shares it is freed or given another function. It must not use a
@@ -1537,9 +1546,10 @@ pc_status pc_system_set_force(pc_system *system,
 
 /**
  * Adds a quasi-velocity to those of the model, for systems of the form PC_HAMEL: a linear
- * form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where fewer
- * are given than there are independent ones, quasi-velocities of the model complete them.
- * Each is an output too. Errors in it are reported by pc_model_check and pc_system_new.
+ * form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where fewer are
+ * given than there are independent quasi-velocities, the missing ones are taken from those of the
+ * model. Each is also an output. Errors in its definition are reported by pc_model_check and
+ * pc_system_new.
  */
 pc_status pc_model_give_quasi_velocity(pc_model *model,
                                        const char *name,
@@ -1547,23 +1557,23 @@ pc_status pc_model_give_quasi_velocity(pc_model *model,
                                        pc_error **error);
 
 /**
- * Chooses a velocity as independent; there must be as many choices as the constraints leave
- * velocities free. Where multipliers would hold the constraints, systems then have equations
- * without multipliers. The name is that of a quasi-velocity, or x' where there are none. Without
- * a choice, printed equations and source are in the velocities that make them shortest. A wrong
- * choice is reported by pc_system_new.
+ * Chooses a velocity as independent; there must be as many choices as there are velocities that
+ * the constraints leave free. Where multipliers would impose the constraints, systems then have
+ * equations without multipliers. The name is that of a quasi-velocity, or x' where there are none.
+ * Without such choices, printed equations and source use the velocities that make them shortest. A
+ * wrong choice is reported by pc_system_new.
  */
 pc_status pc_model_add_independent(pc_model *model, const char *name, pc_error **error);
 
 /**
  * Writes the rate f(t, y) of the state to ydot.
  *
- * After the first call it takes no lock where f is one piece of machine code: where no function
- * of the program computes forces, M is not factorised in numbers, and no velocities are solved
- * for. Any number of threads may then call it at the same time; while another thread sets
- * parameters, the rates are those of the parameters before or after. It returns PC_BUSY, with
- * ydot undefined, only where parameters are set during its evaluation, and where it fails
- * while the handle is in use.
+ * After the first call it takes no lock if f is a single piece of machine code, that is, if no
+ * function of the program computes forces, M is not factorised numerically, and no velocities are
+ * solved for. Any number of threads may then call it at the same time; while another thread sets
+ * parameters, the rates are those for the parameters before or after. It returns PC_BUSY, with
+ * ydot undefined, only if parameters are set during its evaluation, or if it fails while the
+ * handle is in use.
  */
 pc_status pc_system_rhs(const pc_system *system,
                         double t,
@@ -1621,10 +1631,10 @@ pc_status pc_system_jvp(const pc_system *system,
                         pc_error **error);
 
 /**
- * Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their
- * product: by each parameter with all others fixed, even those that are expressions in it; by
- * the value of an input with a table. PC_UNSUPPORTED unless pc_model_differentiate was called,
- * and with external forces.
+ * Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their product.
+ * Each derivative is taken with all other parameters fixed, even those that are expressions in
+ * this one; for an input with a table it is that with respect to the value of the input. Returns
+ * PC_UNSUPPORTED unless pc_model_differentiate was called, and with external forces.
  */
 pc_status pc_system_parameter_jacobian(const pc_system *system,
                                        double t,
@@ -1636,8 +1646,8 @@ pc_status pc_system_parameter_jacobian(const pc_system *system,
 
 /**
  * Writes ∂f/∂t, which Rosenbrock's methods need; it has the length of the state. The first call
- * derives, as pc_system_new does, unless f is free of t. PC_UNSUPPORTED with external forces,
- * whose ∂/∂t is unknown, and with inputs that have tables.
+ * derives it, as pc_system_new derives equations, unless f is free of t. Returns PC_UNSUPPORTED
+ * with external forces, whose ∂/∂t is unknown, and with inputs that have tables.
  */
 pc_status pc_system_time_derivative(const pc_system *system,
                                     double t,
@@ -1649,8 +1659,9 @@ pc_status pc_system_time_derivative(const pc_system *system,
 
 /**
  * Projects the state, in place: onto the constraints, along the shortest path in the kinetic
- * metric, and to the values that the integrals of pc_model_keep have at the start of the model,
- * or at the state of pc_system_keep_from. Without either the state stays as it is.
+ * metric, and to the values that the integrals of pc_model_keep have at the start of the model, or
+ * at the state of pc_system_keep_from. With neither constraints nor such integrals the state stays
+ * as it is.
  */
 pc_status pc_system_project(const pc_system *system,
                             double t,
@@ -1660,7 +1671,7 @@ pc_status pc_system_project(const pc_system *system,
 
 /**
  * Makes pc_system_project keep the integrals of pc_model_keep at their values at (t, y),
- * moved onto the constraints, also after parameters are set. Solvers keep the values at their
+ * moved onto the constraints, also after parameters are set. Solvers maintain the values at their
  * own start.
  */
 pc_status pc_system_keep_from(pc_system *system,
@@ -1673,8 +1684,8 @@ pc_status pc_system_keep_from(pc_system *system,
  * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
  * energy, the outputs.
  *
- * Where an observable has no value, the number is not finite; the same holds for one that contains
- * accelerations where external forces cannot be computed.
+ * Where an observable has no value, the number is not finite; the same holds for an observable
+ * that contains accelerations where external forces cannot be computed.
  */
 pc_status pc_system_observe(const pc_system *system,
                             double t,
@@ -1707,8 +1718,8 @@ pc_status pc_system_energy(const pc_system *system,
                            pc_error **error);
 
 /**
- * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: to
- * the force Q_s each adds its value times the derivative of its constraint with respect to η_s.
+ * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: each
+ * adds its value times the derivative of its constraint with respect to η_s to the force Q_s.
  */
 pc_status pc_system_reactions(const pc_system *system,
                               double t,
@@ -1719,7 +1730,7 @@ pc_status pc_system_reactions(const pc_system *system,
                               pc_error **error);
 
 /**
- * Writes the residual of each constraint that is kept by projection, as many as
+ * Writes the residual of each constraint that projection maintains, as many as
  * pc_system_constraint_count.
  */
 pc_status pc_system_constraint_residuals(const pc_system *system,
@@ -1731,9 +1742,9 @@ pc_status pc_system_constraint_residuals(const pc_system *system,
                                          pc_error **error);
 
 /**
- * Adds an event: the expression `when` passes through zero in a direction, a pc_direction. If
- * `terminal` is not 0 it ends an integration with PC_EVENT. Simultaneous events are handled
- * in the order in which they were added.
+ * Adds an event, which occurs where the expression `when` passes through zero in the given
+ * direction, a pc_direction. If `terminal` is not 0 it ends an integration with PC_EVENT.
+ * Simultaneous events are handled in the order in which they were added.
  */
 pc_status pc_model_add_event(pc_model *model,
                              const char *name,
@@ -1744,8 +1755,8 @@ pc_status pc_model_add_event(pc_model *model,
 
 /**
  * Adds a reset to an event: where the event occurs, the coordinate, quasi-velocity or
- * velocity `x'` called `variable` takes the value of the expression. All resets of an event
- * take effect together, from the state before it.
+ * velocity `x'` called `variable` takes the value of the expression. All resets of an event take
+ * effect together and use the state before it.
  */
 pc_status pc_model_add_event_reset(pc_model *model,
                                    const char *event,
@@ -1806,8 +1817,8 @@ pc_status pc_system_event_reset(const pc_system *system,
 /**
  * Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state,
  * so `length` is k*k; k is pc_system_dim less pc_system_coordinate_count and
- * pc_system_state_count. Rows of multipliers are not part of it. The first call derives, as
- * pc_system_new does.
+ * pc_system_state_count. Rows for multipliers are not part of it. The first call derives M, as
+ * pc_system_new derives equations.
  */
 pc_status pc_system_mass_matrix(const pc_system *system,
                                 double t,
@@ -1819,8 +1830,8 @@ pc_status pc_system_mass_matrix(const pc_system *system,
 
 /**
  * Writes the right-hand side r of M η̇ = r at (t, y), k numbers, with k and M as in
- * pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions of
- * multipliers. The first call derives, as pc_system_new does.
+ * pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions that multipliers
+ * represent. The first call derives r, as pc_system_new derives equations.
  */
 pc_status pc_system_right_hand_side(const pc_system *system,
                                     double t,
@@ -1831,9 +1842,9 @@ pc_status pc_system_right_hand_side(const pc_system *system,
                                     pc_error **error);
 
 /**
- * Solves M w = v at (t, y), with M as in pc_system_mass_matrix, and writes w = M⁻¹ v; both
- * have k numbers. The first call derives, as pc_system_new does. PC_EVALUATION where M is
- * singular.
+ * Solves M w = v at (t, y), with M as in pc_system_mass_matrix, and writes w = M⁻¹ v; both have k
+ * numbers. The first call derives M, as pc_system_new derives equations. Returns PC_EVALUATION
+ * where M is singular.
  */
 pc_status pc_system_solve_mass_matrix(const pc_system *system,
                                       double t,
@@ -1847,15 +1858,15 @@ pc_status pc_system_solve_mass_matrix(const pc_system *system,
 
 /**
  * Writes the number K of operators X_1 … X_K that have structure coefficients: one for each
- * quasi-velocity of the state, then one for each that constraints make vanish. The first call
- * derives, as pc_system_new does.
+ * quasi-velocity of the state, then one for each quasi-velocity that constraints make vanish. The
+ * first call derives them, as pc_system_new derives equations.
  */
 pc_status pc_system_operator_count(const pc_system *system, size_t *operators, pc_error **error);
 
 /**
  * Writes the structure coefficients of [X_r, X_s] = c_rs^m X_m, (5), at (t, y), for r, s = 0 …
  * K, with 0 for time, and m = 1 … K: c[(r*(K + 1) + s)*K + m - 1], so `length` is (K + 1)*(K +
- * 1)*K. The first call derives, as pc_system_new does.
+ * 1)*K. The first call derives them, as pc_system_new derives equations.
  */
 pc_status pc_system_structure_coefficients(const pc_system *system,
                                            double t,
@@ -1866,10 +1877,10 @@ pc_status pc_system_structure_coefficients(const pc_system *system,
                                            pc_error **error);
 
 /**
- * Writes the residual of the equations for ydot, as codes for implicit equations F(t, y, ẏ) =
- * 0 take it: ẋ − b η − b_0, then M η̇ − r, without dividing by M. With multipliers, whose
- * reactions are eliminated, the second part is M times the error of η̇; in the canonical form
- * the residual is ẏ − f. The first call derives, as pc_system_new does.
+ * Writes the residual of the equations for ydot in the form expected by codes for implicit
+ * equations F(t, y, ẏ) = 0: ẋ − b η − b_0, then M η̇ − r, without dividing by M. With multipliers,
+ * whose reactions are eliminated, the second part is M times the error of η̇; in the canonical
+ * form the residual is ẏ − f. The first call derives, as pc_system_new does.
  */
 pc_status pc_system_residual(const pc_system *system,
                              double t,
@@ -1882,14 +1893,15 @@ pc_status pc_system_residual(const pc_system *system,
                              pc_error **error);
 
 /**
- * Writes the Poisson bracket of coordinates and momenta (12) of two functions at (t, y),
+ * Writes the value at (t, y) of the Poisson bracket in coordinates and momenta, (12), of two
+ * functions,
  *
  *   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
  *
  * so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no
  * forces. The functions are expressions of the model in coordinates and velocities; the
  * momenta y_s = ∂L/∂η_s are substituted. Under nonholonomic constraints it is the
- * almost-Poisson bracket of the independent momenta. Each call derives, as pc_system_new
+ * almost-Poisson bracket of the independent momenta. Each call derives equations, as pc_system_new
  * does.
  */
 pc_status pc_system_bracket(const pc_system *system,
@@ -1903,7 +1915,7 @@ pc_status pc_system_bracket(const pc_system *system,
 
 /**
  * Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call
- * derives, as pc_system_new does.
+ * derives the transform, as pc_system_new derives equations.
  */
 pc_status pc_system_to_momenta(const pc_system *system,
                                double t,
@@ -1914,8 +1926,8 @@ pc_status pc_system_to_momenta(const pc_system *system,
                                pc_error **error);
 
 /**
- * Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives,
- * as pc_system_new does.
+ * Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives
+ * the transform, as pc_system_new derives equations.
  */
 pc_status pc_system_to_quasi_velocities(const pc_system *system,
                                         double t,
@@ -1928,22 +1940,23 @@ pc_status pc_system_to_quasi_velocities(const pc_system *system,
 /**
  * Derives and prints the equations, as `pc derive` does: constraints, kinematics, brackets,
  * equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
- * right-hand side. Where multipliers hold constraints, it shows the equations of independent
- * velocities. `format` is a pc_format. Parameters have the values of the model. Free the text
- * with pc_string_free.
+ * right-hand side. Where constraints are imposed by multipliers, it shows the equations in
+ * independent velocities. `format` is a pc_format. Parameters have the values of the model. Free
+ * the text with pc_string_free.
  */
 pc_status pc_system_print(const pc_system *system, int format, char **text, pc_error **error);
 
 /**
  * Writes the equations as C source that does not depend on this library: the text of NAME.h
- * and of NAME.c, where NAME is `name`, made an identifier: Greek letters by their names, runs
- * of other characters as one `_`, none at the ends, `n_` before a leading digit, `_` after a
- * keyword of C. The source has the right-hand side, its Jacobian, the mass matrix, the
- * energy, the integrals and the outputs of independent quasi-velocities, or those of its momenta
- * if the system has these, and explains its use at its head. External forces are parameters, after
- * the others, called `Q_` and the name of their quasi-velocity, and zero until they are set. If
- * `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
- * integrates from the start of the model to that time. Free both texts with pc_string_free.
+ * and of NAME.c, where NAME is `name`, turned into an identifier: Greek letters become their
+ * names, runs of other characters one `_`, with none at the ends; `n_` precedes a leading digit,
+ * `_` follows a keyword of C. The source has the right-hand side, its Jacobian, the mass matrix,
+ * the energy, the integrals and the outputs in terms of independent quasi-velocities, or of
+ * momenta if these are in the state of the system, and explains its use at its head. External
+ * forces are parameters that come after the others; their names are `Q_` followed by that of their
+ * quasi-velocity, and they are zero until they are set. If `t_end` is finite, it can be compiled
+ * with -DNAME_MAIN (in capitals) to a program that integrates from the start of the model to that
+ * time. Free both texts with pc_string_free.
  */
 pc_status pc_system_emit_c(const pc_system *system,
                            const char *name,
@@ -1953,14 +1966,14 @@ pc_status pc_system_emit_c(const pc_system *system,
                            pc_error **error);
 
 /**
- * Prints the analysis of the motions without integrating them, as `pc theory` does: momenta
- * and their brackets, Casimirs, integrals, cyclic displacements, invariant measure, Chaplygin's
- * multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each claim is
- * marked proved, disproved or open. The integrals sought are polynomials of a `degree` from 1 to 6
- * in the velocities, whose coefficients are polynomials in the coordinates times 1 or one of the
- * `functions`, expressions of the model; the list may be empty. `format` is a pc_format.
- * Parameters have the values of the model. Everything is derived again, which takes longer than
- * pc_system_print. Free the text with pc_string_free.
+ * Prints an analysis of the motions that is made without integrating them, as `pc theory` does:
+ * momenta and their brackets, Casimirs, integrals, cyclic displacements, invariant measure,
+ * Chaplygin's multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each
+ * claim is marked proved, disproved or open. The integrals sought are polynomials of a `degree`
+ * from 1 to 6 in the velocities, whose coefficients are polynomials in the coordinates times 1 or
+ * one of the `functions`, expressions of the model; the list may be empty. `format` is a
+ * pc_format. Parameters have the values of the model. Everything is derived again, which takes
+ * longer than pc_system_print. Free the text with pc_string_free.
  */
 pc_status pc_system_theory(const pc_system *system,
                            int format,
@@ -1971,14 +1984,14 @@ pc_status pc_system_theory(const pc_system *system,
                            pc_error **error);
 
 /**
- * Derives the model a second time, by a route that shares only its text with the first, and
- * compares both at `states` random states on the constraints, for the parameters as they are
- * now: velocities, accelerations or rates of momenta, reactions, the energy and its rate,
- * integrals and outputs. 0 states mean 100. `text` says how closely they agree and what was
- * not compared, in lines; it may be NULL, and is freed with pc_string_free. External forces
- * are taken to be 0. PC_DISAGREEMENT, with the quantity and both its values, if the two
- * differ, which is a defect of the library; PC_UNSUPPORTED if this model has no second
- * derivation. It takes as long as pc_system_new.
+ * Derives the equations of the model a second time, by a route that shares only the text of the
+ * model with the first, and compares both at `states` random states on the constraints, for the
+ * current parameters: velocities, accelerations or rates of momenta, reactions, the energy and its
+ * rate of change, integrals and outputs. 0 states mean 100. `text` says how closely they agree and
+ * what was not compared, on separate lines; it may be NULL, and is freed with pc_string_free.
+ * External forces are taken to be 0. Returns PC_DISAGREEMENT, with the quantity and both its
+ * values, if the two differ, which is a defect of the library; PC_UNSUPPORTED if there is no
+ * second derivation for this model. The call takes as long as pc_system_new.
  */
 pc_status pc_system_verify(const pc_system *system, size_t states, char **text, pc_error **error);
 
@@ -2031,9 +2044,10 @@ int pc_kernel_jacobian(double t,
                        void *kernel);
 
 /**
- * Writes f(t, y) of `count` states, which stand one after the other in `states`, to `rates`, in
- * the same order. Otherwise as pc_kernel_rhs: 1 if some cannot be evaluated, whose rates are
- * then NaN; −1 where no step helps, and the rates of the states after it are not written.
+ * Writes f(t, y) of `count` states, which are given one after the other in `states`, to `rates`,
+ * in the same order. Otherwise as pc_kernel_rhs: returns 1 if f cannot be evaluated at some
+ * states, whose rates are then NaN; −1 at a state where no step helps, and the rates of the states
+ * after it are not written.
  */
 int pc_kernel_rhs_many(double t, const double *states, size_t count, double *rates, void *kernel);
 
@@ -2044,11 +2058,11 @@ size_t pc_kernel_dim(const pc_kernel *kernel);
 
 /**
  * Makes a solver that integrates the system from the state y at the time t, with its current
- * parameters; from the start of the model if y is NULL, of length 0, and then t is ignored.
+ * parameters, or from the start of the model if y is NULL, of length 0; t is then ignored.
  * `options` may be NULL. Projection after each step keeps states on the constraints, and the
- * integrals of pc_model_keep at their values at this start. The events of the model are
- * followed: where one occurs, the state is reset as the model says, and a terminal one ends
- * the call with PC_EVENT.
+ * integrals of pc_model_keep at their values at this start. The events of the model are followed:
+ * where one occurs, the state is reset as the model says, and a terminal event ends the call with
+ * PC_EVENT.
  */
 pc_status pc_solver_new(const pc_system *system,
                         const pc_solver_options *options,
@@ -2067,7 +2081,7 @@ void pc_solver_free(pc_solver *solver);
 /**
  * Makes a solver continue with the current parameters and inputs of the system: it restarts
  * at its current state, at order 1. This is how inputs change between two calls of
- * pc_solver_advance. The system is that of the solver, or one of the same model.
+ * pc_solver_advance. The system must be that of the solver, or one of the same model. Returns
  * PC_UNSUPPORTED with events of pc_solver_add_event.
  */
 pc_status pc_solver_take_parameters(pc_solver *solver, const pc_system *system, pc_error **error);
@@ -2076,8 +2090,8 @@ pc_status pc_solver_take_parameters(pc_solver *solver, const pc_system *system, 
  * Integrates to the time t, in the direction of the first step, and writes the state there.
  * With PC_EVENT and PC_STOPPED it is the state where the integration ended, and
  * pc_solver_time gives the time; the next call continues from there. After a failure
- * pc_solver_time and pc_solver_state give what was reached. PC_LIMIT is such a failure, by
- * the time limit or the pc_cancel of the system's options.
+ * pc_solver_time and pc_solver_state give what was reached. PC_LIMIT is such a failure; it is due
+ * to the time limit or the pc_cancel of the system's options.
  */
 pc_status pc_solver_advance(pc_solver *solver,
                             double t,
@@ -2086,9 +2100,9 @@ pc_status pc_solver_advance(pc_solver *solver,
                             pc_error **error);
 
 /**
- * Takes one internal step in the direction of `towards`, or the part of it before an event,
- * and writes the time of its end, which may lie beyond `towards`, and the state there, also
- * with PC_EVENT and PC_STOPPED.
+ * Takes one internal step in the direction of `towards`, or the part of it before an event, and
+ * writes the time at its end, which may lie beyond `towards`, and the state there; both are also
+ * written with PC_EVENT and PC_STOPPED.
  */
 pc_status pc_solver_step(pc_solver *solver,
                          double towards,
@@ -2099,9 +2113,10 @@ pc_status pc_solver_step(pc_solver *solver,
 
 /**
  * Integrates through the times, which increase or decrease throughout, and calls `observer`
- * at each with the state, which is valid during the call, and with `user`. PC_STOPPED if the
- * observer stops it. At the time of an event it receives the state after the event; a
- * terminal event is the last call, at the time of the event, and PC_EVENT is returned.
+ * at each with the state, which is valid during the call, and with `user`. Returns PC_STOPPED if
+ * the observer stops it. At the time of an event the observer receives the state after the event;
+ * a terminal event brings the last call of the observer, at the time of the event, and PC_EVENT is
+ * returned.
  */
 pc_status pc_solver_run(pc_solver *solver,
                         const double *times,
@@ -2121,9 +2136,9 @@ pc_status pc_solver_time(const pc_solver *solver, double *t, pc_error **error);
 pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, pc_error **error);
 
 /**
- * Sets the observer that is called for each event from now on, in place of the one before;
- * NULL for none. `user` has to live until another observer is set or the solver is freed. It
- * is called within the calls that integrate, on their thread.
+ * Sets the observer that is called for each event from now on, in place of the previous one; NULL
+ * for none. `user` has to live until another observer is set or the solver is freed. The observer
+ * is called during the calls that integrate, on their thread.
  */
 pc_status pc_solver_observe_events(pc_solver *solver,
                                    pc_event_observer observer,
@@ -2131,9 +2146,9 @@ pc_status pc_solver_observe_events(pc_solver *solver,
                                    pc_error **error);
 
 /**
- * The same with a `user` that the solver owns: `destroy`, unless NULL, is called with it exactly
- * once: by this call if it fails or `observer` is NULL, else when another observer takes its
- * place or the solver is freed. It must not use the solver while the solver is being freed.
+ * The same, with a `user` that the solver owns: `destroy`, unless NULL, is called with it exactly
+ * once: by this call if it fails or `observer` is NULL, else when another observer takes its place
+ * or the solver is freed. It must not use the solver while the solver is being freed.
  */
 pc_status pc_solver_set_event_observer(pc_solver *solver,
                                        pc_event_observer observer,
@@ -2142,11 +2157,11 @@ pc_status pc_solver_set_event_observer(pc_solver *solver,
                                        pc_error **error);
 
 /**
- * Follows an event of your program, after those of the model and those added before:
- * `function` passes through zero in a direction, a pc_direction. There `reset`, unless NULL,
- * changes the state, which is then projected onto the constraints; if `terminal` is not 0 the
- * event ends the call with PC_EVENT. Must be called before the first step. `name` is for
- * messages.
+ * Follows an event of your program, numbered after those of the model and those added before: it
+ * occurs where `function` passes through zero in the given direction, a pc_direction. There
+ * `reset`, unless NULL, changes the state, which is then projected onto the constraints; if
+ * `terminal` is not 0 the event ends the call with PC_EVENT. Must be called before the first step.
+ * `name` is for messages.
  *
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
  * pc_solver_free. It must not use the solver.
@@ -2172,7 +2187,7 @@ size_t pc_solver_event_count(const pc_solver *solver);
 const char *pc_solver_event_name(const pc_solver *solver, size_t index);
 
 /**
- * Writes how often an event has occurred since the solver was made.
+ * Writes the number of times an event has occurred since the solver was made.
  */
 pc_status pc_solver_event_occurrences(const pc_solver *solver,
                                       size_t event,
@@ -2180,9 +2195,9 @@ pc_status pc_solver_event_occurrences(const pc_solver *solver,
                                       pc_error **error);
 
 /**
- * Writes when an event last occurred, and the states before and after. PC_NOT_FOUND if it has
- * not occurred. Only the last occurrence is kept; an observer sees all. `before` and `after` may
- * be NULL, of length 0.
+ * Writes when an event last occurred, and the states before and after. Returns PC_NOT_FOUND if it
+ * has not occurred. Only the last occurrence is recorded; an observer sees all of them. `before`
+ * and `after` may be NULL, of length 0.
  */
 pc_status pc_solver_last_occurrence(const pc_solver *solver,
                                     size_t event,
@@ -2194,16 +2209,16 @@ pc_status pc_solver_last_occurrence(const pc_solver *solver,
                                     pc_error **error);
 
 /**
- * Writes the number of the terminal event that ended the last integrating call; PC_NOT_FOUND
- * if none did.
+ * Writes the number of the terminal event that ended the last call that integrated; returns
+ * PC_NOT_FOUND if none did.
  */
 pc_status pc_solver_terminal_event(const pc_solver *solver, size_t *event, pc_error **error);
 
 /**
  * Writes the derivative of the start of the model with respect to parameter number `parameter`,
- * from 0: start values may be expressions in parameters. It derives the equations.
- * PC_INCONSISTENT_MODEL where nearby parameters have no start, for an input with a table, and for
- * a parameter that is an expression in others.
+ * from 0: start values may be expressions in parameters. The call derives the equations. Returns
+ * PC_INCONSISTENT_MODEL where there is no start for nearby values of the parameter, for an input
+ * with a table, and for a parameter that is an expression in others.
  */
 pc_status pc_system_start_by_parameter(const pc_system *system,
                                        size_t parameter,
@@ -2212,13 +2227,13 @@ pc_status pc_system_start_by_parameter(const pc_system *system,
                                        pc_error **error);
 
 /**
- * Adds a sensitivity that a solver integrates with the motion, before the first step: the
+ * Adds, before the first step, a sensitivity that a solver integrates with the motion: the
  * derivative of the state with respect to parameter number `parameter`, from 0. `start` is the
  * derivative of the start, which pc_system_start_by_parameter gives for that of the model; NULL,
  * of length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
- * Sensitivities jump where an event of the model resets the state; PC_INVALID_ARGUMENT where an
- * event of the program does. For an input with a table it is the derivative with respect to a
- * shift of all its values.
+ * Sensitivities jump where an event of the model resets the state; with an event of the program
+ * that does so, the call returns PC_INVALID_ARGUMENT. For an input with a table it is the
+ * derivative with respect to a shift of all its values.
  */
 pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     size_t parameter,
@@ -2239,8 +2254,8 @@ pc_status pc_solver_sensitivity(const pc_solver *solver,
 /**
  * Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal
  * step, from the polynomial of the method, whose degree is the order of that step. The step
- * reaches from step_time − last_step to step_time of pc_statistics, but not beyond an event;
- * before the first step and after a reset there is none. y is on the constraints; its
+ * extends from step_time − last_step to step_time of pc_statistics, but not beyond an event; there
+ * is no such step before the first one and after a reset. y satisfies the constraints; its
  * derivatives are those of the polynomial.
  */
 pc_status pc_solver_interpolate(pc_solver *solver,
@@ -2252,15 +2267,16 @@ pc_status pc_solver_interpolate(pc_solver *solver,
 
 /**
  * Integrates to the time t, which must differ from that of the solver, as pc_solver_advance
- * does, and keeps the motion from where the solver stood: (order + 2) × dim numbers for each
- * internal step. With PC_EVENT and PC_STOPPED `dense` is made too, and ends there.
+ * does, and records the motion from the previous time of the solver: (order + 2) × dim numbers for
+ * each internal step. `dense` is also made with PC_EVENT and PC_STOPPED, and then ends where the
+ * integration did.
  */
 pc_status pc_solver_run_dense(pc_solver *solver, double t, pc_dense **dense, pc_error **error);
 
 /**
  * Writes y(t). At an event this is the state after it, except at the very end, where it is
- * the limit from before. Between the ends of steps it is off the constraints by the error of
- * a step; pc_system_project moves it onto them.
+ * the limit from before. Inside a step it deviates from the constraints by the error of a step;
+ * pc_system_project moves it onto them.
  */
 pc_status pc_dense_eval(const pc_dense *dense,
                         double t,
@@ -2288,7 +2304,7 @@ size_t pc_dense_dim(const pc_dense *dense);
 double pc_dense_t_begin(const pc_dense *dense);
 
 /**
- * The time at which the motion ends, before its beginning if it goes back in time; NaN for NULL.
+ * The time at which the motion ends, before its beginning if it runs back in time; NaN for NULL.
  */
 double pc_dense_t_end(const pc_dense *dense);
 
@@ -2300,12 +2316,12 @@ void pc_dense_free(pc_dense *dense);
 /**
  * Writes time and state of a solver as bytes, to be freed with pc_bytes_free and read by
  * pc_solver_restore, possibly in another run of the program. `label` says what the checkpoint
- * is of; NULL means the empty text.
+ * belongs to; NULL means the empty text.
  *
  * A multistep method depends on earlier steps, so this solver restarts here too, at order 1:
  * from here on, it and the solvers restored from the checkpoint give the same numbers to the
- * last bit. Events of the model are part of it; PC_UNSUPPORTED with those of
- * pc_solver_add_event.
+ * last bit. Events of the model are part of the checkpoint; a solver with events of
+ * pc_solver_add_event returns PC_UNSUPPORTED.
  */
 pc_status pc_solver_checkpoint(pc_solver *solver,
                                const char *label,
@@ -2315,10 +2331,10 @@ pc_status pc_solver_checkpoint(pc_solver *solver,
 
 /**
  * Makes a solver that continues from a checkpoint, with the current parameters of the system.
- * It continues as the checkpointed one did if system, parameters and options are the same.
- * `options` may be NULL. PC_INVALID_CHECKPOINT unless the bytes are exactly what
- * pc_solver_checkpoint wrote, for a model with the same names and equations; values of
- * parameters may differ. Statistics of the solver count from here.
+ * It continues exactly as the original solver did if the system, the parameters and the options
+ * are the same. `options` may be NULL. Returns PC_INVALID_CHECKPOINT unless the bytes are exactly
+ * what pc_solver_checkpoint wrote, for a model with the same names and equations; the values of
+ * parameters may differ. The statistics of the solver count from here.
  */
 pc_status pc_solver_restore(const pc_system *system,
                             const pc_solver_options *options,
@@ -2347,22 +2363,22 @@ pc_status pc_solver_statistics(const pc_solver *solver,
                                pc_error **error);
 
 /**
- * Integrates many members through the times, each from its own state, with its own parameters,
- * as a single solver would: the numbers are the same for any number of threads. The events
- * of the model are followed. With PC_AUTO and PC_DOP853, members of a model without events,
- * constraints, kept integrals, tables and explicit dependence on time are integrated side by side
- * in vectors: their last digits may differ from those of a solver, within the tolerances. With
- * PC_AUTO, members that turn out to be stiff are integrated by themselves.
+ * Integrates many members through the times, each from its own state and with its own parameters,
+ * as a single solver would: the numbers are the same for any number of threads. The events of the
+ * model are followed. With PC_AUTO and PC_DOP853, members of a model without events, constraints,
+ * kept integrals, tables and explicit dependence on time are integrated side by side in vectors:
+ * their last digits may differ from those of a solver, within the tolerances. With PC_AUTO,
+ * members that turn out to be stiff are integrated by themselves.
  *
  * `states` has members × dim numbers, member by member, at the time t; NULL for the start of
  * the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
- * numbers; NULL for the current ones of the system. The length that goes with NULL is 0.
- * `options` may be NULL. `threads` is the number of threads, 0 for one on each core; they
- * have ended when this returns. A member that fails is passed to the observer like any other,
- * with what it reached, and the others continue. An error that all share, such as one in the
- * times, is reported by each. PC_STOPPED if the observer stops the ensemble; PC_LIMIT, after
- * the members that were finished, if the time limit or the pc_cancel of the system's options
- * ends it. The system may be used during the call.
+ * numbers; NULL for the current ones of the system. The length given with NULL is 0. `options` may
+ * be NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
+ * returns. A member that fails is passed to the observer like any other, with what it reached, and
+ * the others continue. An error that all members share, such as one in the times, is reported for
+ * each. Returns PC_STOPPED if the observer stops the ensemble, and PC_LIMIT, after the members
+ * that were finished, if the time limit or the pc_cancel of the system's options ends it. The
+ * system may be used during the call.
  */
 pc_status pc_ensemble_run(const pc_system *system,
                           const pc_solver_options *options,

@@ -1,11 +1,11 @@
-//! The functions of pc.h, a file for each group of them.
+//! The functions of pc.h, with one file for each group.
 //!
 //! `ffi` checks the numbers and pointers of a call, the crates below compute the results, and
-//! `machinery` keeps what lives between calls. Models: `model`, `builder`, `inputs`, `bodies`,
-//! `joints` (with `entry`), `action`, `settings`. Equations: `system`, `names`, `rates`,
-//! `mechanics`, `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`,
-//! `cancel`, `solver`, `observe`, `events`, `occurrences`, `force`, `dense`, `checkpoint`,
-//! `statistics`, `ensemble`. The library: `version`.
+//! `machinery` holds what outlives a call. Models: `model`, `builder`, `inputs`, `bodies`, `joints`
+//! (with `entry`), `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
+//! `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`, `cancel`,
+//! `solver`, `observe`, `events`, `occurrences`, `force`, `dense`, `checkpoint`, `statistics`,
+//! `ensemble`. The library: `version`.
 
 pub(crate) mod action;
 pub(crate) mod bodies;

@@ -1,17 +1,18 @@
 //! libpc, the C interface to the Poincaré–Chetaev equations: one header, one library.
 //!
-//! A [`pc_model`] is a text, or is built call by call; a [`pc_system`] its equations, compiled; a
-//! [`pc_solver`] their integration; a [`pc_kernel`] the right-hand side alone, for another
-//! integrator. The crate holds no mathematics: each function hands over to `pc_model`, `pc_mech` or
-//! `pc_solve`. C programmers read `include/pc.h`, generated from this crate; its head, the
-//! [`preamble`](crate::api::version::PREAMBLE), says what is true of every function.
+//! A [`pc_model`] is read from a text or built call by call; a [`pc_system`] holds its equations,
+//! compiled; a [`pc_solver`] integrates them; a [`pc_kernel`] is the right-hand side alone, for
+//! another integrator. The crate contains no mathematics: each function calls `pc_model`, `pc_mech`
+//! or `pc_solve`. C programmers read `include/pc.h`, generated from this crate; the comment at its
+//! top, the [`preamble`](crate::api::version::PREAMBLE), says what is true of every function.
 //!
 //! The tests call the functions from Rust, as C does; Rust programs are better served by the crates
 //! below.
 //!
 //! # Around it
 //!
-//! Below: [pc-model](../pc_model/index.html), [`pc_print`], [`pc_verify`] and [`pc_solve`], which the functions call.
+//! The layers below are [pc-model](../pc_model/index.html), [`pc_print`], [`pc_verify`] and
+//! [`pc_solve`], which the functions call.
 
 #![expect(unsafe_code, reason = "a C interface")]
 #![expect(non_camel_case_types, reason = "the names are those of C")]

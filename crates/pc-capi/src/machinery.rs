@@ -1,10 +1,11 @@
 //! The objects behind the handles.
 //!
-//! Read `exclusive` first, what one call may use at a time; `controller`, the functions of the
-//! program that compute forces, and `motion_field`, what is integrated with them or without;
-//! `lock_free_rhs`, f(t, y) by machine code alone, and `mechanics`, the parts of the equations;
-//! `system` is all these behind a handle. `engine` is an integration with a record of its events,
-//! `event_set` the events it follows. `draft` is a model built call by call.
+//! Read `exclusive` first, which guards values that one call at a time may use; then `controller`,
+//! the functions of the program that compute forces, and `motion_field`, the vector field that is
+//! integrated, with or without them; `lock_free_rhs`, f(t, y) computed by machine code alone, and
+//! `mechanics`, the parts of the equations; `system` puts all these behind a handle. `engine` is an
+//! integration with a record of its events, `event_set` the events it follows. `draft` is a model
+//! built call by call.
 
 pub(crate) mod controller;
 pub(crate) mod draft;

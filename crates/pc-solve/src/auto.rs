@@ -1,7 +1,7 @@
-//! The method that changes during the integration: explicit where the motion is not stiff, implicit
-//! where it is.
+//! The method that switches during the integration: explicit where the motion is not stiff,
+//! implicit where it is.
 //!
-//! `switch` holds the rules of the change, `growth` estimates the largest eigenvalue of ∂f/∂y,
+//! `switch` holds the rules for switching, `growth` estimates the largest eigenvalue of ∂f/∂y,
 //! `stepper` implements the method.
 
 mod growth;

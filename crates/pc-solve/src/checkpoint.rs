@@ -1,8 +1,8 @@
 //! Checkpoints, from which a motion resumes with the same numbers to the last bit.
 //!
 //! `checkpoint` holds the data, `encoding` their bytes; `resume` makes a checkpoint and continues
-//! from it, `resume_cvode` by CVODES, `resume_chosen` by the method of options; `legs` goes from
-//! checkpoint to checkpoint, for a motion that is `resumable`.
+//! from it, `resume_cvode` with CVODES, `resume_chosen` with the method that options choose; `legs`
+//! integrates from checkpoint to checkpoint, for a motion that is `resumable`.
 
 pub(crate) mod checkpoint;
 pub(crate) mod encoding;

@@ -1,4 +1,4 @@
-//! The method chosen by options.
+//! The method that options choose.
 
 use pc_expr::{Method, PolynomialMotion, VectorField};
 
@@ -18,14 +18,14 @@ use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::options::Options;
 use crate::taylor::stepper::Taylor;
 
-/// The method chosen by [`Options`].
+/// The method that [`Options`] choose.
 ///
-/// It integrates over the time since its start, so that the steps of a motion from t₀ = 10⁹ have as
-/// many digits as those of one from 0; the field is evaluated at t₀ plus that time.
+/// Its variable of integration is the time since the start, so that the steps of a motion from t₀ =
+/// 10⁹ have as many digits as those of one from 0; the field is evaluated at t₀ plus that time.
 #[derive(Debug)]
 pub struct Chosen<F: VectorField> {
     method: Engine<Since<F>>,
-    /// The time from which the method counts.
+    /// The time that is the method's origin of time.
     origin: f64,
     /// The current time, and the end of the last step.
     time: f64,
@@ -80,7 +80,7 @@ impl<F: VectorField> Chosen<F> {
         Ok(Chosen::of(method, t0, stop_time))
     }
 
-    /// Starts by CVODES as `begin` does, at a time from which the method counts.
+    /// Starts with CVODES as `begin` does, at a time that becomes the method's origin of time.
     ///
     /// # Errors
     /// The errors of `begin`.
@@ -104,7 +104,7 @@ impl<F: VectorField> Chosen<F> {
         each!(&self.method, method => method.field())
     }
 
-    /// The time at s since the origin.
+    /// The time t that lies s after the origin.
     fn at(&self, s: f64) -> f64 {
         match self.stop_time {
             Some(stop) if s == stop - self.origin => stop,
@@ -112,8 +112,8 @@ impl<F: VectorField> Chosen<F> {
         }
     }
 
-    /// The time since the origin of a time in the last step; one that rounding puts outside is moved
-    /// to its ends.
+    /// Converts a time in the last step to the time since the origin; one that rounding puts
+    /// outside the step is moved to the nearer end.
     fn inside(&self, t: f64) -> f64 {
         if self.origin == 0.0 {
             return t;
@@ -134,7 +134,8 @@ impl<F: VectorField> Chosen<F> {
     }
 }
 
-/// The field with its time counted from the start, the start in that time, and the options for it.
+/// The field with its time counted from the start, the start in terms of that time, and the options
+/// for it.
 fn counted<F: VectorField>(field: F, t0: f64, options: &Options) -> (Since<F>, f64, Options) {
     if !t0.is_finite() {
         return (Since::new(field, 0.0), t0, options.clone()); // which the method refuses
@@ -143,7 +144,7 @@ fn counted<F: VectorField>(field: F, t0: f64, options: &Options) -> (Since<F>, f
     (Since::new(field, t0), 0.0, options)
 }
 
-/// An error of the method, in the times of the integration.
+/// An error of the method, with its times converted to those of the integration.
 fn dated(error: SolveError, origin: f64) -> SolveError {
     match error {
         SolveError::Integration(error) if origin != 0.0 => {

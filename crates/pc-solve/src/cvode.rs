@@ -2,11 +2,11 @@
 //!
 //! `context`, `handles` and `callback` are the boundary to C: owned objects, vector fields as
 //! callbacks. `cvode` makes steps; `setup` constructs it, `interpolation` and `projection` give
-//! states inside steps; `integrals` are computed as a `quadrature`, called back by
+//! states inside steps; `integrals` are computed as a `quadrature`, through the
 //! `quadrature_callbacks`; `breaks` and `foresee`, with `foresight`, handle fields that are not
-//! smooth in time; `restart` continues after jumps; `statistics` counts the work. `stepper` makes
-//! it a method, `integration` starts an integration by it. `linear` solves its linear systems,
-//! `forward` its equations of variation. `version` names the library.
+//! smooth in time; `restart` continues after jumps; `statistics` counts the work. `stepper`
+//! implements the interface of a method, `integration` starts an integration with it. `linear`
+//! solves its linear systems, `forward` its equations of variation. `version` names the library.
 
 pub(crate) mod breaks;
 pub(crate) mod callback;

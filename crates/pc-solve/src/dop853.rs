@@ -8,9 +8,9 @@
 //! orders 5 and 3, their step control (II.4) and their dense output of order 7 (II.6); stiffness is
 //! detected as in [Hairer, Wanner 1996], IV.2.
 //!
-//! Read `stepper` first: `setup` starts an integration, `step` makes a step by `stages`, of a
+//! Read `stepper` first: `setup` starts an integration, `step` makes a step from `stages`, of a
 //! length given by `control`; `dense` gives the states inside it, `hindsight` checks them for
-//! features of f that the stages missed, `stiffness` detects that stability limits the steps.
+//! features of f that the stages missed, `stiffness` detects when stability limits the steps.
 //! `coefficients` holds the tables, `arithmetic` the sums over stages. `lockstep` integrates many
 //! members of an ensemble at once.
 

@@ -1,4 +1,4 @@
-//! Many motions at once, on all cores.
+//! The integration of many motions at once, on all cores.
 //!
 //! Read `ensemble`; `in_lanes` integrates members together in vector lanes, `ordered` puts results
 //! of threads in the order of the members, `random` gives each member its own stream of random

@@ -1,7 +1,8 @@
 //! Errors of integration.
 //!
-//! `input`: of a problem or an option, before the first step. `solve`: of an integration, with its
-//! `reason`, possibly a `return_code` of CVODES; `non_finite`: of a number that is NaN or infinite.
+//! `input` has the errors of a problem or an option, found before the first step; `solve` those of
+//! an integration, with their `reason` and possibly a `return_code` of CVODES; `non_finite` those
+//! of a number that is NaN or infinite.
 
 pub(crate) mod input;
 pub(crate) mod non_finite;

@@ -1,9 +1,9 @@
-//! Events: their functions, and their location.
+//! Events: their functions, and how their times are located.
 //!
 //! `events` defines events given by closures, and occurrences; `samples` holds values along a step,
-//! which `closer` refines where there is doubt and `edges` continues where functions have no value;
-//! `root_finding` locates the first zero along a step,
-//! which `breaks` tells from jumps and poles.
+//! which `closer` refines where there is doubt and `edges` extends where functions have no value;
+//! `root_finding` locates the first zero along a step, which `breaks` distinguishes from jumps and
+//! poles.
 
 pub(crate) mod breaks;
 pub(crate) mod closer;

@@ -1,14 +1,15 @@
 //! What the field may do between its evaluations, examined up to the end of the next step, for any method.
 //!
-//! A method evaluates f at a few times in each step only. If the
-//! [profile](pc_expr::TimeDependence::Known) of a field is known, `places` are the turns, jumps and
-//! corners of its terms in t, however close they are; a step in which nothing turns twice needs
-//! none. Otherwise they are evenly spaced over the whole integration. To these come the places of
-//! [steep functions](pc_expr::SteepFunctions) of the state, such as narrow barriers, along the
-//! polynomial of the step. What happens there is up to the method: one that predicts checks its
-//! prediction before the step, one with dense output checks that after the step. `scatter` detects
-//! noise: a function that turns faster than floating-point times can resolve is an error, unless it
-//! is below the tolerances.
+//! A method evaluates f at a few times in each step only. `places` are the times in a step that a
+//! method has to examine. If the [profile](pc_expr::TimeDependence::Known) of a field is known,
+//! they are the turns, jumps and corners of its terms in t, however close together they are; a step
+//! in which nothing turns twice needs none. Otherwise they are evenly spaced over the whole
+//! integration. In addition there are the times at which [steep functions](pc_expr::SteepFunctions)
+//! of the state, such as narrow barriers, matter along the polynomial of the step. What happens
+//! there is up to the method: one that predicts checks its prediction before the step, one with
+//! dense output checks its polynomial after the step. `scatter` detects noise: a function that
+//! varies faster than floating-point times can resolve is an error, unless the variation is below
+//! the tolerances.
 
 pub(crate) mod places;
 pub(crate) mod scatter;

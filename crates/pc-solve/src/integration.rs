@@ -4,12 +4,12 @@
 //! [`Statistics`](statistics::Statistics). Read `stepper` first, the interface of a method, and
 //! `integration_method`, which starts one; then `integration`, which is built on them: `front` makes a step and
 //! searches it for events, `run` goes from event to event, `step` gives single steps and their
-//! polynomials, `occur` applies events, `saltation` their effect on derivatives, `held_sides` which
-//! pieces of a field it is on, `sides` how it continues at a surface between two; an `observer` is told
-//! of outputs, steps and events. `limits` bounds an integration, `pace` ends one that hardly gets on,
-//! `checks` validates its input; `trajectory` and `dense_output` hold motions. `fn_field` turns closures
-//! into vector fields, `breaks` ends steps where a field is not smooth, `since` counts its time from the
-//! start.
+//! polynomials, `occur` applies events, `saltation` their effect on derivatives, `held_sides`
+//! records on which pieces of a field the motion is, `sides` decides how it continues at a surface
+//! between two; an `observer` is told of outputs, steps and events. `limits` bounds an integration,
+//! `pace` ends one that makes hardly any progress, `checks` validates its input; `trajectory` and
+//! `dense_output` hold motions. `fn_field` turns closures into vector fields, `breaks` ends steps
+//! where a field is not smooth, `since` counts the time of a field from the start.
 
 pub(crate) mod breaks;
 pub(crate) mod checks;

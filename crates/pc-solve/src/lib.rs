@@ -1,8 +1,9 @@
 //! Integration of ẏ = f(t, y), for any [`VectorField`]: by SUNDIALS CVODES, DOP853 or Taylor's
 //! method.
 //!
-//! In the order in which a program needs them: a motion in one call, its method, events, the motion
-//! as a function of time, its accuracy, a motion step by step, checkpoints, derivatives, many motions.
+//! The sections follow the order in which a program needs them: a motion in one call, its method,
+//! events, the motion as a function of time, its accuracy, a motion step by step, checkpoints,
+//! derivatives, many motions.
 //!
 //! # A motion in one call
 //!
@@ -43,9 +44,9 @@
 //! # Events
 //!
 //! [`Solve`] describes a motion to be integrated, with a method and [`Events`]: zeros of functions,
-//! which end the motion or [reset](FnEvents::with_reset) its state. Each is located to rounding,
-//! even if several lie in one step or one reset causes another. Impacts that follow each other ever
-//! faster end the motion at their [`Accumulation`].
+//! which end the motion or [reset](FnEvents::with_reset) its state. Each is located to rounding
+//! error, even if several lie in one step or one reset causes another. Impacts that follow each
+//! other ever faster end the motion where they [accumulate](Accumulation).
 //! ```
 //! use pc_solve::{Event, FnEvents, Solve, from_fn};
 //!
@@ -64,15 +65,15 @@
 //!
 //! # How accurate it is
 //!
-//! Tolerances bound the error of each step. [`ErrorEstimate`] integrates a motion once more, as its
-//! [`Companion`], and gives the global errors of its outputs.
+//! Tolerances bound the error of each step. [`ErrorEstimate`] integrates a motion a second time, as
+//! its [`Companion`], and gives the global errors of its outputs.
 //!
 //! # Step by step
 //!
-//! [`Solve::start`] gives the [`Integration`] itself, which is at a time and a state: it steps,
-//! advances to a time, can be [restarted](Integration::restart) from another state, and its field
-//! can be [changed](Integration::change), for example by a controller. An [`Observer`] sees
-//! outputs, steps and occurrences of a [run](Integration::run).
+//! [`Solve::start`] gives the [`Integration`] itself, which is at a certain time and state: it
+//! steps, advances to a time, can be [restarted](Integration::restart) from another state, and its
+//! field can be [changed](Integration::change) on the way, for example by a controller. An
+//! [`Observer`] sees outputs, steps and occurrences of a [run](Integration::run).
 //! ```
 //! use pc_solve::{Solve, from_fn};
 //!
@@ -95,17 +96,17 @@
 //!
 //! # Derivatives
 //!
-//! S = ∂y/∂(p, y₀) is integrated with the motion by [`Solve::sensitivities`], and jumps where an event
-//! resets the state. For many parameters and a
-//! single quantity g of the motion, [`adjoint_gradient`] integrates backwards instead; g is a
-//! [`Functional`]. [`Solve::integrals`] integrates quantities along the motion, and
-//! [`lyapunov_exponents`] measures the growth of its tangent vectors.
+//! [`Solve::sensitivities`] integrates S = ∂y/∂(p, y₀) with the motion; S jumps where an event
+//! resets the state. For many parameters and a single quantity g of the motion,
+//! [`adjoint_gradient`] integrates backwards instead; g is a [`Functional`]. [`Solve::integrals`]
+//! integrates quantities along the motion, and [`lyapunov_exponents`] measures the growth of its
+//! tangent vectors.
 //!
 //! # Many motions
 //!
-//! An [`Ensemble`] integrates on all cores, and fields that are programs eight at a time in the
-//! lanes of a vector. Its results come in the order of the members and are the same for any number
-//! of threads; [`member_stream`] gives each member its own random numbers.
+//! An [`Ensemble`] integrates on all cores; fields that are programs are integrated eight at a time
+//! in the lanes of a vector. Its results come in the order of the members and are the same for any
+//! number of threads; [`member_stream`] gives each member its own random numbers.
 //! ```
 //! use std::ops::ControlFlow;
 //! use pc_solve::{Ensemble, Method, Options, from_fn};

@@ -23,7 +23,7 @@ const NEAR: f64 = 1e-9;
 const TOLERANCES: (f64, f64) = (1e-9, 1e-12);
 
 /// Integration by [`RungeKutta4`], without error control: for real-time loops, for comparisons, and
-/// where every step has to take equal time.
+/// where every step has to take the same computing time.
 ///
 /// ```
 /// use pc_solve::{FixedStep, Solve, from_fn};
@@ -40,7 +40,7 @@ pub struct FixedStep {
 }
 
 impl FixedStep {
-    /// Steps of this positive length; a step that ends at a stop time or a
+    /// Integration with steps of this positive length; a step that ends at a stop time or a
     /// [break](VectorField::breaks) may be shorter.
     pub fn new(length: f64) -> FixedStep {
         FixedStep { length, limits: Limits::default() }
@@ -72,7 +72,7 @@ pub struct RungeKutta4<F> {
     length: f64,
     limits: Limits,
     stop_time: Option<f64>,
-    /// t, y and f at the start and at the end of the last step.
+    /// The values of t, y and f at the start and at the end of the last step.
     start: Node,
     end: Node,
     /// Whether no step has been made since the start.
@@ -151,7 +151,7 @@ impl<F: VectorField> RungeKutta4<F> {
         Ok(next.filter(is_near).unwrap_or(target))
     }
 
-    /// Computes the state at the end of a step of length h in `state`.
+    /// Writes the state at the end of a step of length h to `state`.
     fn advance(&mut self, t: f64, h: f64) -> Result<(), (f64, Failure)> {
         let RungeKutta4 { field, end: Node { t: from, y, rates: k1 }, rates: [k2, k3, k4], state, .. } = self;
         let middle = *from + h / 2.0;
@@ -185,8 +185,8 @@ fn evaluate(field: &mut impl VectorField, t: f64, y: &[f64], rates: &mut [f64]) 
     }
 }
 
-/// The factors of y₀, h f₀, y₁ and h f₁ in hᵏ times the derivative of order k of the Hermite cubic
-/// at s = (t − t₀)/h.
+/// The coefficients of y₀, h f₀, y₁ and h f₁ in hᵏ times the derivative of order k of the Hermite
+/// cubic at s = (t − t₀)/h.
 fn hermite(s: f64, order: u32) -> [f64; 4] {
     match order {
         0 => {

@@ -1,9 +1,11 @@
-//! Derivatives of a motion by its start and by parameters, and gradients of functionals of it.
+//! Derivatives of a motion with respect to its start and to parameters, and gradients of
+//! functionals of it.
 //!
-//! CVODES integrates the derivatives, or DOP853 with the equations of variation in its state (`explicit`), returned as a `trajectory`, in one call by `solve`, or by `forward_output`. `adjoint`
-//! integrates backwards for the gradient of a `functional`, with `adjoint_options`: `adjoint_pass`
-//! goes through the pieces of the motion, each a `motion_record`, and `adjoint_field` holds the
-//! equations, by a `transpose`.
+//! CVODES integrates the derivatives, or an explicit method does so with the equations of variation
+//! as part of its state (`explicit`). `solve` returns them as a `trajectory` in one call,
+//! `forward_output` during an integration. `adjoint` integrates backwards for the gradient of a
+//! `functional`, with `adjoint_options`: `adjoint_pass` goes through the pieces of the motion, each
+//! a `motion_record`, and `adjoint_field` holds the equations, with the help of a `transpose`.
 
 pub(crate) mod adjoint;
 pub(crate) mod adjoint_field;

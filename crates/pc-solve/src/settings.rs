@@ -1,5 +1,5 @@
-//! Settings, which errors refer to: `nonlinear_solver`, `tolerance` and `inequality`, and the `options` that
-//! contain them.
+//! Settings, to which errors refer: `nonlinear_solver`, `tolerance` and `inequality`, and the
+//! `options` that contain them.
 
 pub(crate) mod inequality;
 pub(crate) mod nonlinear_solver;

@@ -1,7 +1,7 @@
 //! Integration in one call.
 //!
-//! `solve` integrates by any method to a `solution` or a `failure`, with `integrals` along the
-//! motion.
+//! `solve` integrates by any method and returns a `solution` or a `failure`; `integrals` adds
+//! integrals along the motion.
 
 pub(crate) mod failure;
 #[cfg(feature = "cvode")]

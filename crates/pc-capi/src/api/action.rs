@@ -1,4 +1,4 @@
-//! A solution of Hamilton–Jacobi's equation, call by call.
+//! A solution of Hamilton–Jacobi's equation, specified call by call.
 
 use std::ffi::c_char;
 
@@ -10,7 +10,7 @@ use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, number, quoted};
 
 /// Sets a function S of time, coordinates and constants that is claimed to solve
-/// Hamilton–Jacobi's equation; pc_system_theory examines the claim. No motion depends on it.
+/// Hamilton–Jacobi's equation; pc_system_theory examines the claim. Motions do not depend on it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_action(
     model: *mut pc_model,
@@ -27,8 +27,8 @@ pub unsafe extern "C" fn pc_model_set_action(
     unsafe { draft(model, error, "pc_model_set_action", write) }
 }
 
-/// Adds a constant of the action, with a value near which the action is defined: without a
-/// proof that the action solves the equation, it is tested numerically near these values.
+/// Adds a constant of the action, with a value near which the action is defined: if it cannot be
+/// proved that the action solves the equation, this is tested numerically near these values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_action_constant(
     model: *mut pc_model,

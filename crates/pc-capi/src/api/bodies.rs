@@ -1,4 +1,4 @@
-//! Rigid bodies and particles, call by call.
+//! Rigid bodies and particles, specified call by call.
 
 use std::ffi::c_char;
 

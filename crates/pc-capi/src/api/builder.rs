@@ -1,4 +1,4 @@
-//! Models built call by call, expressions as strings.
+//! Models that are built call by call, with expressions given as strings.
 
 use std::ffi::c_char;
 
@@ -10,11 +10,11 @@ use crate::ffi::pointer::{clear, finite, text, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, number, quoted};
 
-/// Makes an empty model, to be built by the calls below. Kinds of entries may come in any order;
-/// coordinates, quasi-velocities, parameters and so on keep the order of their calls.
-/// Expressions are those of the text model, where `x'` is the velocity of the coordinate x and
-/// `t` the time. The model is read as a whole by pc_model_check and pc_system_new, whose
-/// errors name the entry and show its expression.
+/// Makes an empty model, to be built by the calls below. Different kinds of entries may be added in
+/// any order; coordinates, quasi-velocities, parameters and so on are in the order of their calls.
+/// Expressions are those of the text model, where `x'` is the velocity of the coordinate x and `t`
+/// the time. The model is read as a whole by pc_model_check and pc_system_new, whose errors name
+/// the entry and show its expression.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_new(
     name: *const c_char,
@@ -29,12 +29,12 @@ pub unsafe extern "C" fn pc_model_new(
         // SAFETY: as the preamble demands.
         unsafe { write(model, boxed(Origin::Calls(Draft::new(name))), "model") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, new) }
 }
 
-/// Reads the model as a whole: PC_OK if all names are known, all expressions are well formed,
-/// and the frame and the start are valid. Only pc_system_new shows whether equations can be
+/// Reads the model as a whole: returns PC_OK if all names are known, all expressions are well
+/// formed, and the frame and the start are valid. Only pc_system_new shows whether equations can be
 /// derived.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_check(model: *const pc_model, error: *mut *mut pc_error) -> pc_status {
@@ -46,10 +46,10 @@ pub unsafe extern "C" fn pc_model_check(model: *const pc_model, error: *mut *mut
     unsafe { change(model.cast_mut(), error, check) }
 }
 
-/// Calls `write` with the draft of a model begun with `pc_model_new`.
+/// Calls `write` with the draft of a model that was begun with `pc_model_new`.
 ///
 /// # Safety
-/// `model` is null or a live handle, `error` null or a place for a pointer.
+/// `model` is null or a live handle, `error` null or memory for a pointer.
 pub(crate) unsafe fn draft(
     model: *mut pc_model,
     error: *mut *mut pc_error,
@@ -82,7 +82,7 @@ pub unsafe extern "C" fn pc_model_add_parameter(
     unsafe { draft(model, error, "pc_model_add_parameter", write) }
 }
 
-/// Adds a parameter that is an expression in the parameters before it. It follows them until
+/// Adds a parameter that is an expression in the parameters before it. It changes with them until
 /// it is itself set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_parameter_expression(
@@ -101,8 +101,8 @@ pub unsafe extern "C" fn pc_model_add_parameter_expression(
     unsafe { draft(model, error, "pc_model_add_parameter_expression", write) }
 }
 
-/// Adds a first-order state with its value at the start and its rate: an expression of time,
-/// coordinates, velocities and states. It is integrated with the motion and comes after the
+/// Adds a first-order state with its value at the start and its rate, which is an expression in
+/// time, coordinates, velocities and states. It is integrated with the motion and comes after the
 /// velocities in the state; it is not part of the frame.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_state(
@@ -123,8 +123,8 @@ pub unsafe extern "C" fn pc_model_add_state(
     unsafe { draft(model, error, "pc_model_add_state", write) }
 }
 
-/// Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions of
-/// parameters and t: it acts on the mass centres of all bodies and counts in the energy.
+/// Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions in
+/// the parameters and t: it acts on the mass centres of all bodies and is included in the energy.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_gravity(
     model: *mut pc_model,
@@ -209,8 +209,8 @@ pub unsafe extern "C" fn pc_model_add_quasi_velocity(
     unsafe { draft(model, error, "pc_model_add_quasi_velocity", write) }
 }
 
-/// Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3): for
-/// every coordinate, or for none.
+/// Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3). Call it
+/// for every coordinate, or for none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_kinematics(
     model: *mut pc_model,
@@ -229,8 +229,8 @@ pub unsafe extern "C" fn pc_model_set_kinematics(
     unsafe { draft(model, error, "pc_model_set_kinematics", write) }
 }
 
-/// Sets the brackets of the frame to those of an algebra by its name, such as "so3"; needed only
-/// where the frame does not determine them.
+/// Sets the brackets of the frame to those of the algebra with this name, such as "so3"; needed
+/// only where the frame does not determine them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_algebra(
     model: *mut pc_model,
@@ -248,7 +248,7 @@ pub unsafe extern "C" fn pc_model_set_algebra(
 }
 
 /// Sets the bracket [X_left, X_right], (5), as a linear combination of quasi-velocities, such as
-/// "w3"; brackets that are not set are zero. `left` may be "t", for X_0. An alternative to
+/// "w3"; brackets that are not set are zero. `left` may be "t", for X_0. This is an alternative to
 /// pc_model_set_algebra.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_bracket(
@@ -269,8 +269,8 @@ pub unsafe extern "C" fn pc_model_set_bracket(
     unsafe { draft(model, error, "pc_model_set_bracket", write) }
 }
 
-/// Adds a constraint: the expression, of coordinates or of velocities, vanishes. If it is not
-/// affine in the velocities, declare this by pc_model_set_constraint_kind.
+/// Adds a constraint, which says that the expression, in coordinates or in velocities, vanishes. If
+/// it is not affine in the velocities, declare this with pc_model_set_constraint_kind.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_constraint(
     model: *mut pc_model,
@@ -288,7 +288,8 @@ pub unsafe extern "C" fn pc_model_add_constraint(
     unsafe { draft(model, error, "pc_model_add_constraint", write) }
 }
 
-/// Sets the Lagrangian L(t, x, η), which may contain x' too. Excludes kinetic and potential energy.
+/// Sets the Lagrangian L(t, x, η), which may contain x' too. It cannot be combined with a kinetic
+/// or potential energy.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_lagrangian(
     model: *mut pc_model,
@@ -356,7 +357,7 @@ pub unsafe extern "C" fn pc_model_set_dissipation(
     unsafe { draft(model, error, "pc_model_set_dissipation", write) }
 }
 
-/// Adds a force, conjugate to a quasi-velocity, or to a coordinate.
+/// Adds a force that is conjugate to a quasi-velocity or to a coordinate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_force(
     model: *mut pc_model,

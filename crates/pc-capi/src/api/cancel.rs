@@ -1,4 +1,4 @@
-//! Ending derivations and integrations from elsewhere.
+//! Ending derivations and integrations from outside.
 
 use std::ffi::c_int;
 
@@ -20,19 +20,19 @@ pub struct pc_cancel {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_cancel_new(cancel: *mut *mut pc_cancel, error: *mut *mut pc_error) -> pc_status {
     let new = || {
-        // SAFETY: null or a place for a handle, as the preamble demands.
+        // SAFETY: null or memory for a handle, as the preamble demands.
         unsafe { clear(cancel, "cancel") }?;
         let made = Box::new(pc_cancel { cancel: Cancel::default() });
         // SAFETY: as the preamble demands.
         unsafe { write(cancel, Box::into_raw(made), "cancel") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, new) }
 }
 
-/// Ends derivations and integrations with PC_LIMIT: those under way soon, later ones as soon as
-/// they begin. It takes no lock and allocates nothing: it is the one function that a signal
-/// handler may call. NULL is allowed.
+/// Ends derivations and integrations with PC_LIMIT: those under way end soon, later ones as soon as
+/// they begin. It takes no lock and allocates nothing: it is the one function that a signal handler
+/// may call. NULL is allowed.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_cancel_request(cancel: Option<&pc_cancel>) {
     if let Some(handle) = cancel {
@@ -46,7 +46,7 @@ pub extern "C" fn pc_cancel_is_requested(cancel: Option<&pc_cancel>) -> c_int {
     cancel.map_or(0, |handle| handle.cancel.is_cancelled().into())
 }
 
-/// Frees a handle; systems that have it continue without it. NULL is allowed.
+/// Frees a handle; systems whose options contain it continue without it. NULL is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_cancel_free(cancel: *mut pc_cancel) {
     // SAFETY: null or a handle of ours that nobody uses any more.

@@ -18,12 +18,12 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes time and state of a solver as bytes, to be freed with pc_bytes_free and read by
 /// pc_solver_restore, possibly in another run of the program. `label` says what the checkpoint
-/// is of; NULL means the empty text.
+/// belongs to; NULL means the empty text.
 ///
 /// A multistep method depends on earlier steps, so this solver restarts here too, at order 1:
 /// from here on, it and the solvers restored from the checkpoint give the same numbers to the
-/// last bit. Events of the model are part of it; PC_UNSUPPORTED with those of
-/// pc_solver_add_event.
+/// last bit. Events of the model are part of the checkpoint; a solver with events of
+/// pc_solver_add_event returns PC_UNSUPPORTED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_checkpoint(
     solver: *mut pc_solver,
@@ -44,10 +44,10 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
         }
     };
     let checked = || {
-        // SAFETY: null or a place for a pointer, or for a number, as the preamble demands.
+        // SAFETY: null or memory for a pointer, or for a number, as the preamble demands.
         unsafe { clear(data, "data").and(write(length, 0, "length")) }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     match unsafe { entry(error, checked) } {
         // SAFETY: as the preamble demands.
         pc_status::PC_OK => unsafe { integrate(solver, error, write_bytes) },
@@ -56,10 +56,10 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
 }
 
 /// Makes a solver that continues from a checkpoint, with the current parameters of the system.
-/// It continues as the checkpointed one did if system, parameters and options are the same.
-/// `options` may be NULL. PC_INVALID_CHECKPOINT unless the bytes are exactly what
-/// pc_solver_checkpoint wrote, for a model with the same names and equations; values of
-/// parameters may differ. Statistics of the solver count from here.
+/// It continues exactly as the original solver did if the system, the parameters and the options
+/// are the same. `options` may be NULL. Returns PC_INVALID_CHECKPOINT unless the bytes are exactly
+/// what pc_solver_checkpoint wrote, for a model with the same names and equations; the values of
+/// parameters may differ. The statistics of the solver count from here.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_restore(
     system: *const pc_system,
@@ -82,14 +82,14 @@ pub unsafe extern "C" fn pc_solver_restore(
         let events = Followed::new(inner.events.clone());
         let integration = Integration::new(inner.field.clone(), &checkpoint, options, events.clone())?;
         let made = pc_solver::boxed(integration, &events, inventory.dim());
-        // SAFETY: null or a place for a handle, as the preamble demands.
+        // SAFETY: null or memory for a handle, as the preamble demands.
         unsafe { write(solver, made, "solver") }
     };
     let checked = || {
         // SAFETY: as the preamble demands.
         unsafe { clear(solver, "solver") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     match unsafe { entry(error, checked) } {
         // SAFETY: as the preamble demands.
         pc_status::PC_OK => unsafe { inside(system, error, restore) },
@@ -107,14 +107,14 @@ pub unsafe extern "C" fn pc_checkpoint_label(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let read = || {
-        // SAFETY: null or a place for a pointer, as the preamble demands.
+        // SAFETY: null or memory for a pointer, as the preamble demands.
         unsafe { clear(label, "label") }?;
         // SAFETY: null or `length` bytes, as the preamble demands.
         let (_, found) = Checkpoint::from_bytes(unsafe { bytes(data.cast(), length, "data") }?)?;
         // SAFETY: as the preamble demands.
         unsafe { write(label, give(unmarked(&found).1), "label") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, read) }
 }
 
@@ -133,7 +133,7 @@ fn unmarked(label: &str) -> (Option<u64>, &str) {
     read.unwrap_or((None, label))
 }
 
-/// The number of bytes before those handed out, which hold their length.
+/// The number of bytes in front of those handed out; they hold the length of the latter.
 const HEAD: usize = size_of::<usize>();
 
 /// A copy for C.

@@ -21,8 +21,8 @@ pub struct pc_dense {
 
 /// Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal
 /// step, from the polynomial of the method, whose degree is the order of that step. The step
-/// reaches from step_time − last_step to step_time of pc_statistics, but not beyond an event;
-/// before the first step and after a reset there is none. y is on the constraints; its
+/// extends from step_time − last_step to step_time of pc_statistics, but not beyond an event; there
+/// is no such step before the first one and after a reset. y satisfies the constraints; its
 /// derivatives are those of the polynomial.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_interpolate(
@@ -44,8 +44,9 @@ pub unsafe extern "C" fn pc_solver_interpolate(
 }
 
 /// Integrates to the time t, which must differ from that of the solver, as pc_solver_advance
-/// does, and keeps the motion from where the solver stood: (order + 2) × dim numbers for each
-/// internal step. With PC_EVENT and PC_STOPPED `dense` is made too, and ends there.
+/// does, and records the motion from the previous time of the solver: (order + 2) × dim numbers for
+/// each internal step. `dense` is also made with PC_EVENT and PC_STOPPED, and then ends where the
+/// integration did.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run_dense(
     solver: *mut pc_solver,
@@ -56,7 +57,7 @@ pub unsafe extern "C" fn pc_solver_run_dense(
     let run = |integration: &mut Integration, dim: usize| {
         let (motion, ending) = integration.run_dense(t)?;
         let made = Box::new(pc_dense { motion, dim });
-        // SAFETY: null or a place for a handle, as the preamble demands.
+        // SAFETY: null or memory for a handle, as the preamble demands.
         unsafe { write(dense, Box::into_raw(made), "dense") }?;
         integration.ended(ending)
     };
@@ -64,7 +65,7 @@ pub unsafe extern "C" fn pc_solver_run_dense(
         // SAFETY: as the preamble demands.
         unsafe { clear(dense, "dense") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     match unsafe { entry(error, checked) } {
         // SAFETY: as the preamble demands.
         pc_status::PC_OK => unsafe { integrate(solver, error, run) },
@@ -72,14 +73,14 @@ pub unsafe extern "C" fn pc_solver_run_dense(
     }
 }
 
-/// A value of the motion at a time: the state, or its rate.
+/// Computes a value of the motion at a time: the state, or its rate.
 type Value = fn(&DenseOutput, f64) -> Result<Vec<f64>, InputError>;
 
 /// Writes this value at t.
 ///
 /// # Safety
-/// `dense` is null or a live handle, `y` null or room for `y_length` numbers, `error` null or a
-/// place for a pointer.
+/// `dense` is null or a live handle, `y` null or memory for `y_length` numbers, `error` null or
+/// memory for a pointer.
 unsafe fn at(
     dense: *const pc_dense,
     value: Value,
@@ -101,8 +102,8 @@ unsafe fn at(
 }
 
 /// Writes y(t). At an event this is the state after it, except at the very end, where it is
-/// the limit from before. Between the ends of steps it is off the constraints by the error of
-/// a step; pc_system_project moves it onto them.
+/// the limit from before. Inside a step it deviates from the constraints by the error of a step;
+/// pc_system_project moves it onto them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_dense_eval(
     dense: *const pc_dense,
@@ -140,7 +141,7 @@ pub extern "C" fn pc_dense_t_begin(dense: Option<&pc_dense>) -> f64 {
     span(dense).0
 }
 
-/// The time at which the motion ends, before its beginning if it goes back in time; NaN for NULL.
+/// The time at which the motion ends, before its beginning if it runs back in time; NaN for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_dense_t_end(dense: Option<&pc_dense>) -> f64 {
     span(dense).1

@@ -33,25 +33,25 @@ pub struct pc_member {
     pub status: pc_status,
     /// Why it failed, else NULL.
     pub message: *const c_char,
-    /// The output times that it reached, as many as `rows`; the time of a terminal event is the
-    /// last one.
+    /// The output times that the member reached, as many as `rows`; the time of a terminal event is
+    /// the last one.
     pub times: *const f64,
     /// The states at these times, one after the other, each of `dim` numbers. Like `times`,
     /// NULL where there are none.
     pub states: *const f64,
-    /// How many there are, also if the member failed.
+    /// The number of these times and states, also if the member failed.
     pub rows: usize,
     /// The length of a state.
     pub dim: usize,
 }
 
-/// Receives each member in order, on the thread of the call; what the member points to is
-/// valid during the call. Returns 0 to continue; anything else ends the ensemble with
-/// PC_STOPPED. Otherwise as pc_observer.
+/// Receives each member in order, on the thread of the call; the data to which `member` points are
+/// valid during the call. Returns 0 to continue; anything else ends the ensemble with PC_STOPPED.
+/// Otherwise as pc_observer.
 pub type pc_member_observer =
     Option<unsafe extern "C" fn(member: *const pc_member, user: *mut c_void) -> c_int>;
 
-/// What all members share, and the states and parameters in which they differ.
+/// The data that all members share, and the states and parameters in which they differ.
 struct Plan<'a> {
     prototype: Mutex<(MotionField, FlowEvents)>,
     t: f64,
@@ -95,7 +95,7 @@ impl Outcome {
     /// Passes the member to the observer, and returns whether to continue.
     ///
     /// # Safety
-    /// The observer is a function of that type.
+    /// The observer is a function of type `pc_member_observer`.
     unsafe fn tell(
         &self,
         number: usize,
@@ -144,7 +144,7 @@ impl Plan<'_> {
         outcome
     }
 
-    /// The field and start of a member, if it can be integrated beside others in vectors.
+    /// The field and start of a member, if it can be integrated together with others in vectors.
     fn lane(&self, member: usize) -> Option<(LaneField, Vec<f64>)> {
         let mut prototype = self.prototype.lock().unwrap_or_else(PoisonError::into_inner);
         let (field, events) = &mut *prototype;
@@ -181,27 +181,27 @@ impl Plan<'_> {
     }
 }
 
-/// The numbers of a member among those of all.
+/// The numbers that belong to a member, among those of all members.
 fn row(all: &[f64], member: usize, length: usize) -> &[f64] {
     &all[member * length..(member + 1) * length]
 }
 
-/// Integrates many members through the times, each from its own state, with its own parameters,
-/// as a single solver would: the numbers are the same for any number of threads. The events
-/// of the model are followed. With PC_AUTO and PC_DOP853, members of a model without events,
-/// constraints, kept integrals, tables and explicit dependence on time are integrated side by side
-/// in vectors: their last digits may differ from those of a solver, within the tolerances. With
-/// PC_AUTO, members that turn out to be stiff are integrated by themselves.
+/// Integrates many members through the times, each from its own state and with its own parameters,
+/// as a single solver would: the numbers are the same for any number of threads. The events of the
+/// model are followed. With PC_AUTO and PC_DOP853, members of a model without events, constraints,
+/// kept integrals, tables and explicit dependence on time are integrated side by side in vectors:
+/// their last digits may differ from those of a solver, within the tolerances. With PC_AUTO,
+/// members that turn out to be stiff are integrated by themselves.
 ///
 /// `states` has members × dim numbers, member by member, at the time t; NULL for the start of
 /// the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
-/// numbers; NULL for the current ones of the system. The length that goes with NULL is 0.
-/// `options` may be NULL. `threads` is the number of threads, 0 for one on each core; they
-/// have ended when this returns. A member that fails is passed to the observer like any other,
-/// with what it reached, and the others continue. An error that all share, such as one in the
-/// times, is reported by each. PC_STOPPED if the observer stops the ensemble; PC_LIMIT, after
-/// the members that were finished, if the time limit or the pc_cancel of the system's options
-/// ends it. The system may be used during the call.
+/// numbers; NULL for the current ones of the system. The length given with NULL is 0. `options` may
+/// be NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
+/// returns. A member that fails is passed to the observer like any other, with what it reached, and
+/// the others continue. An error that all members share, such as one in the times, is reported for
+/// each. Returns PC_STOPPED if the observer stops the ensemble, and PC_LIMIT, after the members
+/// that were finished, if the time limit or the pc_cancel of the system's options ends it. The
+/// system may be used during the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_ensemble_run(
     system: *const pc_system,
@@ -280,6 +280,6 @@ pub unsafe extern "C" fn pc_ensemble_run(
             Ending::Completed | Ending::Event { .. } => Ok(()),
         }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, run) }
 }

@@ -6,7 +6,8 @@ use crate::ffi::call_error::CallError;
 use crate::ffi::pointer::{numbers, text};
 use crate::machinery::draft::{Draft, Section, list, numbers as written};
 
-/// Writes an entry of something named, such as a body; `what` is the argument that holds the name.
+/// Writes an entry that belongs to something with a name, such as a body; `what` is the argument
+/// that holds the name.
 pub(crate) fn put(
     draft: &mut Draft,
     (name, what): (*const c_char, &'static str),

@@ -1,4 +1,5 @@
-//! Events of a model: declared call by call, and evaluated for an integrator of the program.
+//! Events of a model: how they are declared call by call, and evaluated for an integrator of the
+//! program.
 
 use std::ffi::{c_char, c_int};
 
@@ -25,7 +26,7 @@ pub enum pc_direction {
     PC_RISING = 1,
 }
 
-/// The direction that a number stands for, and its name in the text.
+/// The direction that a number denotes, and its name in the text.
 pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), CallError> {
     match value {
         -1 => Ok((Direction::Falling, "falling")),
@@ -35,9 +36,9 @@ pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), CallE
     }
 }
 
-/// Adds an event: the expression `when` passes through zero in a direction, a pc_direction. If
-/// `terminal` is not 0 it ends an integration with PC_EVENT. Simultaneous events are handled
-/// in the order in which they were added.
+/// Adds an event, which occurs where the expression `when` passes through zero in the given
+/// direction, a pc_direction. If `terminal` is not 0 it ends an integration with PC_EVENT.
+/// Simultaneous events are handled in the order in which they were added.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event(
     model: *mut pc_model,
@@ -61,8 +62,8 @@ pub unsafe extern "C" fn pc_model_add_event(
 }
 
 /// Adds a reset to an event: where the event occurs, the coordinate, quasi-velocity or
-/// velocity `x'` called `variable` takes the value of the expression. All resets of an event
-/// take effect together, from the state before it.
+/// velocity `x'` called `variable` takes the value of the expression. All resets of an event take
+/// effect together and use the state before it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event_reset(
     model: *mut pc_model,
@@ -116,7 +117,7 @@ pub extern "C" fn pc_system_event_resets(system: Option<&pc_system>, index: usiz
     of_event(system, index, |event| event.resets().into())
 }
 
-/// A property of an event; 0 for null, and beyond the last.
+/// A property of an event; 0 for a null system, and beyond the last event.
 fn of_event(system: Option<&pc_system>, index: usize, known: impl FnOnce(&Event) -> c_int) -> c_int {
     system.and_then(|system| system.inventory.events.get(index)).map_or(0, known)
 }

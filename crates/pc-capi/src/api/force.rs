@@ -15,9 +15,9 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes the external forces at (t, y) to q: one for each that was declared, in that order, so
 /// `q_length` is pc_system_force_count. y is the state of the system; in the canonical form it
-/// has momenta. Returns 0; a positive number where the forces are not defined, so that a smaller
-/// step may help; a negative one to give up. A force left unwritten is NaN, and treated like a
-/// positive return value. It must return: no exceptions, no longjmp.
+/// contains momenta. Returns 0; a positive number where the forces are not defined, so that a
+/// smaller step may help; a negative number to give up. A force left unwritten is NaN, and treated
+/// like a positive return value. It must return: no exceptions, no longjmp.
 pub type pc_force_function = Option<
     unsafe extern "C" fn(
         t: f64,
@@ -43,10 +43,10 @@ pub type pc_force_jacobian = Option<
     ) -> c_int,
 >;
 
-/// Declares that a force computed by a function of yours acts on a quasi-velocity; on a
-/// coordinate if the model declares no quasi-velocities. It adds to the other forces there.
-/// The function belongs to the system, not to the model: pc_system_set_force. An unknown name
-/// is reported by pc_model_check and pc_system_new.
+/// Declares that a force computed by a function of yours acts on a quasi-velocity, or on a
+/// coordinate if the model declares no quasi-velocities. It is added to the other forces that act
+/// there. The function belongs to the system, not to the model: set it with pc_system_set_force. An
+/// unknown name is reported by pc_model_check and pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_external_force(
     model: *mut pc_model,
@@ -79,9 +79,10 @@ pub extern "C" fn pc_system_force_name(system: Option<&pc_system>, index: usize)
 /// the derivatives of the forces, and only these, are then difference quotients.
 ///
 /// Copies, kernels and solvers made from the system afterwards share the functions and `user`;
-/// those made before keep what they had. The functions are called by whichever thread evaluates,
-/// so by several at the same time if several use copies. They may call any function on other
-/// handles, and of the same system pc_system_..._name and sizes.
+/// those made before keep the functions they had. The functions are called on whichever thread
+/// evaluates, and so on several at the same time if several threads use copies. They may call any
+/// function on other handles, and on the same system those that return names (pc_system_..._name)
+/// and sizes.
 ///
 /// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else
 /// when the last handle that shares it is freed or given another function. It must not use a
@@ -98,7 +99,7 @@ pub unsafe extern "C" fn pc_system_set_force(
     let user = User { data: user, destroy };
     let mut unused = Controller::default();
     let Some(function) = function else {
-        // SAFETY: `error` is null or a place for a pointer.
+        // SAFETY: `error` is null or memory for a pointer.
         return unsafe { entry(error, || Err(CallError::Null { what: "function" })) };
     };
     let set = |_: &Inventory, inner: &mut Inner| {

@@ -1,4 +1,4 @@
-//! Inputs of a model that is built call by call, with their tables.
+//! Inputs, with their tables, of a model that is built call by call.
 
 use std::ffi::c_char;
 
@@ -10,8 +10,8 @@ use crate::ffi::pointer::{finite, numbers, text};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, number, numbers as list_of, quoted};
 
-/// Adds an input: a value that is constant until it is set, as a parameter is. Inputs come
-/// after all parameters. Forces, rates of states, events, integrals and outputs may contain
+/// Adds an input: a value that is constant until it is set, in the same way as a parameter. Inputs
+/// come after all parameters. Forces, rates of states, events, integrals and outputs may contain
 /// it; velocities, momenta, constraints and positions of bodies may not.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input(
@@ -31,8 +31,8 @@ pub unsafe extern "C" fn pc_model_add_input(
 }
 
 /// Adds an input that is a function of time: `length` values at increasing times, interpolated
-/// by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the
-/// times. Only the table determines its values.
+/// by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the times.
+/// The values of the input come from the table alone.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input_table(
     model: *mut pc_model,
@@ -66,10 +66,10 @@ pub unsafe extern "C" fn pc_model_add_input_table(
     unsafe { draft(model, error, "pc_model_add_input_table", write) }
 }
 
-/// Adds an input whose table is a column of a file of comma-separated numbers below a line of
-/// names; otherwise as pc_model_add_input_table. `time` is the name of the column of times,
-/// NULL for "t" or, without one, the first column. The path is relative to the working
-/// directory at the time of the call.
+/// Adds an input whose table is a column of a file of comma-separated numbers, the first line of
+/// which holds the names of the columns; otherwise as pc_model_add_input_table. `time` is the name
+/// of the column of times, NULL for "t" or, without one, the first column. The path is relative to
+/// the working directory at the time of the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input_file(
     model: *mut pc_model,

@@ -1,4 +1,5 @@
-//! Bodies that hang on others by joints, points of them and loops, call by call.
+//! Bodies that are attached to others by joints, points of such bodies, and loops, specified call
+//! by call.
 
 use std::ffi::c_char;
 
@@ -11,11 +12,11 @@ use crate::ffi::pointer::{text, texts};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, quoted};
 
-/// Adds a body that hangs on another, or on the world if `parent` is null, by a joint of this
+/// Adds a body that is attached to another, or to the world if `parent` is null, by a joint of this
 /// kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. Its
-/// origin is the point of the joint. Inertia, force and torque are set as those of other bodies,
-/// start values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names that
-/// the joint gives: `NAME` and `NAME'` of a revolute one.
+/// origin is the point of the joint. Inertia, force and torque are set as for other bodies, start
+/// values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names that the joint
+/// gives, such as `NAME` and `NAME'` for a revolute one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_jointed_body(
     model: *mut pc_model,
@@ -39,7 +40,7 @@ pub unsafe extern "C" fn pc_model_add_jointed_body(
     unsafe { draft(model, error, "pc_model_add_jointed_body", write) }
 }
 
-/// Sets the mass of a body that hangs by a joint.
+/// Sets the mass of a body that is attached by a joint.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_mass(
     model: *mut pc_model,
@@ -54,7 +55,8 @@ pub unsafe extern "C" fn pc_model_set_body_mass(
     unsafe { draft(model, error, "pc_model_set_body_mass", write) }
 }
 
-/// Sets the mass centre of a body that hangs by a joint, in axes of the body from its origin.
+/// Sets the mass centre of a body that is attached by a joint, in axes of the body and relative to
+/// its origin.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_center(
     model: *mut pc_model,
@@ -70,7 +72,7 @@ pub unsafe extern "C" fn pc_model_set_body_center(
     unsafe { draft(model, error, "pc_model_set_body_center", write) }
 }
 
-/// Sets the point of a joint, in axes of the parent from its origin.
+/// Sets the point of a joint, in axes of the parent and relative to its origin.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_place(
     model: *mut pc_model,
@@ -149,8 +151,8 @@ pub unsafe extern "C" fn pc_model_set_joint_rotation(
     unsafe { draft(model, error, "pc_model_set_joint_rotation", write) }
 }
 
-/// Sets the same rotation by turns about axes: `axes` has a letter x, y or z for each of the
-/// `length` angles; each turn is about an axis that the turns before it have moved.
+/// Sets the same rotation as a sequence of turns about axes: `axes` has a letter x, y or z for each
+/// of the `length` angles; each turn is about an axis that the turns before it have moved.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_turns(
     model: *mut pc_model,
@@ -174,7 +176,7 @@ pub unsafe extern "C" fn pc_model_set_joint_turns(
     unsafe { draft(model, error, "pc_model_set_joint_turns", write) }
 }
 
-/// Gives the coordinates of a joint other names than those of its kind.
+/// Sets names for the coordinates of a joint, in place of the default names of its kind.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_name_joint_coordinates(
     model: *mut pc_model,
@@ -191,7 +193,7 @@ pub unsafe extern "C" fn pc_model_name_joint_coordinates(
     unsafe { draft(model, error, "pc_model_name_joint_coordinates", write) }
 }
 
-/// Gives the quasi-velocities of a joint other names than those of its kind.
+/// Sets names for the quasi-velocities of a joint, in place of the default names of its kind.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_name_joint_quasi_velocities(
     model: *mut pc_model,
@@ -209,8 +211,8 @@ pub unsafe extern "C" fn pc_model_name_joint_quasi_velocities(
     unsafe { draft(model, error, "pc_model_name_joint_quasi_velocities", write) }
 }
 
-/// Adds a point of a body that hangs by a joint, in axes of the body from its origin. In
-/// expressions its coordinates are `NAME_x`, `NAME_y`, `NAME_z`.
+/// Adds a point of a body that is attached by a joint, in axes of the body and relative to its
+/// origin. In expressions its coordinates are `NAME_x`, `NAME_y`, `NAME_z`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_point(
     model: *mut pc_model,
@@ -232,8 +234,9 @@ pub unsafe extern "C" fn pc_model_add_point(
     unsafe { draft(model, error, "pc_model_add_point", write) }
 }
 
-/// Closes a loop by joining two bodies that hang by joints: kind point, revolute or rod. `places`
-/// has 6 expressions: the point of the first body in its axes, then that of the second.
+/// Closes a loop by joining two bodies that are attached by joints; the kind is point, revolute or
+/// rod. `places` has 6 expressions: the point of the first body in its axes, then that of the
+/// second.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_loop(
     model: *mut pc_model,
@@ -261,7 +264,7 @@ pub unsafe extern "C" fn pc_model_add_loop(
     unsafe { draft(model, error, "pc_model_add_loop", write) }
 }
 
-/// Sets the axis of a revolute loop, in axes of the first body and in those of the second, of 3
+/// Sets the axis of a revolute loop, in axes of the first body and in those of the second, with 3
 /// numbers each.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_loop_axes(

@@ -19,11 +19,11 @@ use crate::machinery::system::{Inner, holding, pc_system};
 /// Free it with pc_kernel_free.
 ///
 /// It holds workspace, so each thread needs its own, and two calls at the same time are not
-/// safe; in return there are no locks.
+/// safe; in return it takes no locks.
 pub struct pc_kernel {
     dim: usize,
     direct: Option<Direct>,
-    /// Scratch of `direct`.
+    /// Scratch space for `direct`.
     room: Vec<f64>,
     motion: MotionField,
 }
@@ -47,14 +47,14 @@ pub unsafe extern "C" fn pc_kernel_new(
         // The clone below shares what is compiled before it.
         system.prepare_direct(inner);
         let made = Box::new(pc_kernel::new(inner.field.clone(), system.inventory.dim()));
-        // SAFETY: null or a place for a handle, as the preamble demands.
+        // SAFETY: null or memory for a handle, as the preamble demands.
         unsafe { write(kernel, Box::into_raw(made), "kernel") }
     };
     let checked = || {
         // SAFETY: as the preamble demands.
         unsafe { clear(kernel, "kernel") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     match unsafe { entry(error, checked) } {
         // SAFETY: as the preamble demands.
         pc_status::PC_OK => unsafe { holding(system, error, new) },
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
         }
         Ok(())
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, set) }
 }
 
@@ -130,9 +130,10 @@ pub unsafe extern "C" fn pc_kernel_jacobian(
     unsafe { evaluate(y, jacobian, kernel, |dim| dim * dim, |motion, y, j| motion.jacobian(t, y, j)) }
 }
 
-/// Writes f(t, y) of `count` states, which stand one after the other in `states`, to `rates`, in
-/// the same order. Otherwise as pc_kernel_rhs: 1 if some cannot be evaluated, whose rates are
-/// then NaN; −1 where no step helps, and the rates of the states after it are not written.
+/// Writes f(t, y) of `count` states, which are given one after the other in `states`, to `rates`,
+/// in the same order. Otherwise as pc_kernel_rhs: returns 1 if f cannot be evaluated at some
+/// states, whose rates are then NaN; −1 at a state where no step helps, and the rates of the states
+/// after it are not written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_rhs_many(
     t: f64,

@@ -1,4 +1,4 @@
-//! From quasi-velocities to momenta and back.
+//! Transforms between quasi-velocities and momenta.
 
 use pc_mech::{LegendreTransform, MechError};
 
@@ -9,7 +9,7 @@ use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 impl Inner {
-    /// Derives the transform of the state on first use.
+    /// Derives the Legendre transform of the state on first use.
     pub(crate) fn derive_legendre(&mut self, inventory: &Inventory) -> Result<(), CallError> {
         if self.legendre.is_none() {
             let mut transform = inventory.derive(|model| {
@@ -30,7 +30,7 @@ impl Inner {
 }
 
 /// Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call
-/// derives, as pc_system_new does.
+/// derives the transform, as pc_system_new derives equations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_to_momenta(
     system: *const pc_system,
@@ -46,8 +46,8 @@ pub unsafe extern "C" fn pc_system_to_momenta(
     unsafe { transformed(system, t, state, target, error, LegendreTransform::to_momenta_in) }
 }
 
-/// Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives,
-/// as pc_system_new does.
+/// Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives
+/// the transform, as pc_system_new derives equations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_to_quasi_velocities(
     system: *const pc_system,

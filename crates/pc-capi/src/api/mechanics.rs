@@ -12,7 +12,7 @@ use crate::machinery::motion_field::MotionField;
 use crate::machinery::system::{Inner, Inventory, Room, inside, pc_system};
 
 impl Inner {
-    /// The parts of the equations, derived on first use, with the motion.
+    /// The parts of the equations, derived on first use, together with the field of the motion.
     fn mechanics(
         &mut self,
         inventory: &Inventory,
@@ -47,8 +47,8 @@ impl Inner {
 
 /// Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state,
 /// so `length` is k*k; k is pc_system_dim less pc_system_coordinate_count and
-/// pc_system_state_count. Rows of multipliers are not part of it. The first call derives, as
-/// pc_system_new does.
+/// pc_system_state_count. Rows for multipliers are not part of it. The first call derives M, as
+/// pc_system_new derives equations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_mass_matrix(
     system: *const pc_system,
@@ -73,8 +73,8 @@ pub unsafe extern "C" fn pc_system_mass_matrix(
 }
 
 /// Writes the right-hand side r of M η̇ = r at (t, y), k numbers, with k and M as in
-/// pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions of
-/// multipliers. The first call derives, as pc_system_new does.
+/// pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions that multipliers
+/// represent. The first call derives r, as pc_system_new derives equations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_right_hand_side(
     system: *const pc_system,
@@ -102,9 +102,9 @@ pub unsafe extern "C" fn pc_system_right_hand_side(
     unsafe { inside(system, error, compute) }
 }
 
-/// Solves M w = v at (t, y), with M as in pc_system_mass_matrix, and writes w = M⁻¹ v; both
-/// have k numbers. The first call derives, as pc_system_new does. PC_EVALUATION where M is
-/// singular.
+/// Solves M w = v at (t, y), with M as in pc_system_mass_matrix, and writes w = M⁻¹ v; both have k
+/// numbers. The first call derives M, as pc_system_new derives equations. Returns PC_EVALUATION
+/// where M is singular.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_solve_mass_matrix(
     system: *const pc_system,
@@ -148,8 +148,8 @@ pub unsafe extern "C" fn pc_system_solve_mass_matrix(
 }
 
 /// Writes the number K of operators X_1 … X_K that have structure coefficients: one for each
-/// quasi-velocity of the state, then one for each that constraints make vanish. The first call
-/// derives, as pc_system_new does.
+/// quasi-velocity of the state, then one for each quasi-velocity that constraints make vanish. The
+/// first call derives them, as pc_system_new derives equations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_operator_count(
     system: *const pc_system,
@@ -158,7 +158,7 @@ pub unsafe extern "C" fn pc_system_operator_count(
 ) -> pc_status {
     let compute = |inventory: &Inventory, inner: &mut Inner| {
         let (mechanics, ..) = inner.mechanics(inventory)?;
-        // SAFETY: null or a place for a number, as the preamble demands.
+        // SAFETY: null or memory for a number, as the preamble demands.
         unsafe { write(operators, mechanics.operators, "operators") }
     };
     // SAFETY: as the preamble demands.
@@ -167,7 +167,7 @@ pub unsafe extern "C" fn pc_system_operator_count(
 
 /// Writes the structure coefficients of [X_r, X_s] = c_rs^m X_m, (5), at (t, y), for r, s = 0 …
 /// K, with 0 for time, and m = 1 … K: c[(r*(K + 1) + s)*K + m - 1], so `length` is (K + 1)*(K +
-/// 1)*K. The first call derives, as pc_system_new does.
+/// 1)*K. The first call derives them, as pc_system_new derives equations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_structure_coefficients(
     system: *const pc_system,
@@ -191,10 +191,10 @@ pub unsafe extern "C" fn pc_system_structure_coefficients(
     unsafe { inside(system, error, compute) }
 }
 
-/// Writes the residual of the equations for ydot, as codes for implicit equations F(t, y, ẏ) =
-/// 0 take it: ẋ − b η − b_0, then M η̇ − r, without dividing by M. With multipliers, whose
-/// reactions are eliminated, the second part is M times the error of η̇; in the canonical form
-/// the residual is ẏ − f. The first call derives, as pc_system_new does.
+/// Writes the residual of the equations for ydot in the form expected by codes for implicit
+/// equations F(t, y, ẏ) = 0: ẋ − b η − b_0, then M η̇ − r, without dividing by M. With multipliers,
+/// whose reactions are eliminated, the second part is M times the error of η̇; in the canonical
+/// form the residual is ẏ − f. The first call derives, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_residual(
     system: *const pc_system,

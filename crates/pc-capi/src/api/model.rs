@@ -1,4 +1,4 @@
-//! Models: a text, or built call by call.
+//! Models, given as a text or built call by call.
 
 use std::ffi::{CString, c_char, c_int};
 use std::sync::OnceLock;
@@ -31,7 +31,7 @@ pub(crate) struct Contents {
     /// Velocities chosen as independent.
     pub(crate) independent: Vec<String>,
     projects_start: bool,
-    /// Variables that keep their values where the start is projected.
+    /// Variables that keep their start values when the start is projected.
     held: Vec<String>,
     pub(crate) observes_reactions: bool,
     differentiates: bool,
@@ -113,7 +113,7 @@ pub unsafe extern "C" fn pc_model_parse(
         // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(document), "model") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, read) }
 }
 
@@ -135,7 +135,7 @@ pub unsafe extern "C" fn pc_model_from_file(
         // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(document), "model") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, read) }
 }
 
@@ -155,7 +155,7 @@ pub unsafe extern "C" fn pc_model_builtin(
         // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(builtin.document()?), "model") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, read) }
 }
 
@@ -188,7 +188,7 @@ pub unsafe extern "C" fn pc_model_clone(
         // SAFETY: as the preamble demands.
         unsafe { write(copy, cloned, "copy") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, clone) }
 }
 
@@ -202,10 +202,10 @@ pub unsafe extern "C" fn pc_model_free(model: *mut pc_model) {
     }
 }
 
-/// Calls `change` with what the model holds.
+/// Calls `change` with the content of the model.
 ///
 /// # Safety
-/// `model` is null or a live handle, `error` null or a place for a pointer.
+/// `model` is null or a live handle, `error` null or memory for a pointer.
 pub(crate) unsafe fn change(
     model: *mut pc_model,
     error: *mut *mut pc_error,
@@ -237,8 +237,8 @@ pub unsafe extern "C" fn pc_model_set(
     unsafe { change(model, error, set) }
 }
 
-/// Keeps this integral, or "energy", at its value at the start, by projection: after each step
-/// of a solver, and in pc_system_project. An unknown name is reported by pc_system_new.
+/// Makes projection keep this integral, or "energy", at its value at the start: after each step of
+/// a solver, and in pc_system_project. An unknown name is reported by pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_keep(
     model: *mut pc_model,
@@ -255,8 +255,8 @@ pub unsafe extern "C" fn pc_model_keep(
     unsafe { change(model, error, keep) }
 }
 
-/// Sets whether the start is moved onto the constraints (otherwise a start off them is refused).
-/// Any value but 0 means yes.
+/// Sets whether the start is moved onto the constraints (otherwise a start that violates them is
+/// refused). Any value but 0 means yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_project_start(
     model: *mut pc_model,
@@ -271,9 +271,9 @@ pub unsafe extern "C" fn pc_model_project_start(
     unsafe { change(model, error, project) }
 }
 
-/// Holds the start value of this coordinate or quasi-velocity fixed while the others move onto
-/// the constraints. Without pc_model_project_start it has no effect.
-/// An unknown name is reported by pc_system_new, with PC_NOT_FOUND.
+/// Holds the start value of this coordinate or quasi-velocity fixed while the others are moved to
+/// satisfy the constraints. Without pc_model_project_start it has no effect. An unknown name is
+/// reported by pc_system_new, with PC_NOT_FOUND.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_hold_start(
     model: *mut pc_model,
@@ -290,8 +290,8 @@ pub unsafe extern "C" fn pc_model_hold_start(
     unsafe { change(model, error, hold) }
 }
 
-/// Sets whether the reactions of the constraints are observed, each called `λ_` and the name of
-/// its constraint. Any value but 0 means yes.
+/// Sets whether the reactions of the constraints are observed; the name of each is `λ_` followed by
+/// that of its constraint. Any value but 0 means yes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_observe_reactions(
     model: *mut pc_model,
@@ -322,12 +322,12 @@ pub unsafe extern "C" fn pc_model_differentiate(
     unsafe { change(model, error, differentiate) }
 }
 
-/// Gives the text of the model, to be freed with pc_string_free. For a model built by calls it
-/// is the text that the calls wrote; errors refer to its lines and columns. Settings that the
-/// text format does not have are not in it: pc_model_set of parameters, pc_model_set_start of
-/// a model that was read, pc_model_keep, pc_model_project_start, pc_model_hold_start,
-/// pc_model_observe_reactions, pc_model_differentiate, pc_model_add_external_force,
-/// pc_model_give_quasi_velocity, pc_model_add_independent.
+/// Gives the text of the model, to be freed with pc_string_free. For a model built by calls it is
+/// the text that the calls wrote; errors refer to its lines and columns. Settings that cannot be
+/// expressed in the text format are omitted: parameters set by pc_model_set, a start set by
+/// pc_model_set_start for a model that was read, and the settings of pc_model_keep,
+/// pc_model_project_start, pc_model_hold_start, pc_model_observe_reactions, pc_model_differentiate,
+/// pc_model_add_external_force, pc_model_give_quasi_velocity, pc_model_add_independent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_text(
     model: *const pc_model,
@@ -346,6 +346,6 @@ pub unsafe extern "C" fn pc_model_text(
         // SAFETY: as the preamble demands.
         unsafe { write(text, give(&written), "text") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, write_text) }
 }

@@ -1,4 +1,4 @@
-//! Indices by names.
+//! Finding an index by a name.
 
 use std::ffi::{CString, c_char};
 
@@ -67,7 +67,7 @@ unsafe fn find(
             name: name.to_owned(),
             known: names.iter().map(|known| known.to_string_lossy().into_owned()).collect(),
         };
-        // SAFETY: null or a place for a number, as promised.
+        // SAFETY: null or memory for a number, as promised.
         unsafe { write(index, place.ok_or_else(unknown)?, "index") }
     };
     // SAFETY: as promised.

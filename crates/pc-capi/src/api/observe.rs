@@ -9,8 +9,8 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
 /// energy, the outputs.
 ///
-/// Where an observable has no value, the number is not finite; the same holds for one that contains
-/// accelerations where external forces cannot be computed.
+/// Where an observable has no value, the number is not finite; the same holds for an observable
+/// that contains accelerations where external forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
     system: *const pc_system,
@@ -33,7 +33,7 @@ pub unsafe extern "C" fn pc_system_observe(
     unsafe { inside(system, error, observe) }
 }
 
-/// An error unless all values are finite.
+/// Returns an error unless all values are finite.
 fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
     match values.iter().find(|value| !value.is_finite()) {
         Some(&value) => Err(CallError::NoValue { what, value }),
@@ -91,8 +91,8 @@ pub unsafe extern "C" fn pc_system_energy(
     unsafe { inside(system, error, observe) }
 }
 
-/// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: to
-/// the force Q_s each adds its value times the derivative of its constraint with respect to η_s.
+/// Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: each
+/// adds its value times the derivative of its constraint with respect to η_s to the force Q_s.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_reactions(
     system: *const pc_system,
@@ -124,7 +124,7 @@ pub unsafe extern "C" fn pc_system_reactions(
     unsafe { inside(system, error, observe) }
 }
 
-/// Writes the residual of each constraint that is kept by projection, as many as
+/// Writes the residual of each constraint that projection maintains, as many as
 /// pc_system_constraint_count.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_constraint_residuals(

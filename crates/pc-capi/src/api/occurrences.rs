@@ -17,9 +17,9 @@ use crate::machinery::engine::{Integration, Observer};
 use crate::machinery::event_set::Own;
 
 /// Receives each event where it occurs, by its number among the events of the solver, with the
-/// states before and after it, which are valid during the call. Among simultaneous events each
-/// has the state that it found and the one that it left. Returns 0 to continue; anything else
-/// ends the call with PC_STOPPED, or with PC_EVENT where the event is terminal. Otherwise as
+/// states before and after it, which are valid during the call. Among simultaneous events each has
+/// the state that it found and the state that it left. Returns 0 to continue; anything else ends
+/// the call with PC_STOPPED, or with PC_EVENT where the event is terminal. Otherwise as
 /// pc_observer.
 pub type pc_event_observer = Option<
     unsafe extern "C" fn(
@@ -34,8 +34,8 @@ pub type pc_event_observer = Option<
 
 /// Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else
 /// ends the integration with PC_INTEGRATION, as does a value that is not finite or not
-/// written. It should depend on nothing but its arguments and be smooth. It must return: no
-/// exceptions, no longjmp.
+/// written. It should depend only on its arguments and be smooth. It must return: no exceptions, no
+/// longjmp.
 pub type pc_event_function = Option<
     unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, value: *mut f64, user: *mut c_void) -> c_int,
 >;
@@ -44,9 +44,9 @@ pub type pc_event_function = Option<
 pub type pc_event_reset =
     Option<unsafe extern "C" fn(t: f64, y: *mut f64, y_length: usize, user: *mut c_void) -> c_int>;
 
-/// Sets the observer that is called for each event from now on, in place of the one before;
-/// NULL for none. `user` has to live until another observer is set or the solver is freed. It
-/// is called within the calls that integrate, on their thread.
+/// Sets the observer that is called for each event from now on, in place of the previous one; NULL
+/// for none. `user` has to live until another observer is set or the solver is freed. The observer
+/// is called during the calls that integrate, on their thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_observe_events(
     solver: *mut pc_solver,
@@ -58,9 +58,9 @@ pub unsafe extern "C" fn pc_solver_observe_events(
     unsafe { observe(solver, observer, User { data: user, destroy: None }, error) }
 }
 
-/// The same with a `user` that the solver owns: `destroy`, unless NULL, is called with it exactly
-/// once: by this call if it fails or `observer` is NULL, else when another observer takes its
-/// place or the solver is freed. It must not use the solver while the solver is being freed.
+/// The same, with a `user` that the solver owns: `destroy`, unless NULL, is called with it exactly
+/// once: by this call if it fails or `observer` is NULL, else when another observer takes its place
+/// or the solver is freed. It must not use the solver while the solver is being freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_set_event_observer(
     solver: *mut pc_solver,
@@ -93,11 +93,11 @@ unsafe fn observe(
     status
 }
 
-/// Follows an event of your program, after those of the model and those added before:
-/// `function` passes through zero in a direction, a pc_direction. There `reset`, unless NULL,
-/// changes the state, which is then projected onto the constraints; if `terminal` is not 0 the
-/// event ends the call with PC_EVENT. Must be called before the first step. `name` is for
-/// messages.
+/// Follows an event of your program, numbered after those of the model and those added before: it
+/// occurs where `function` passes through zero in the given direction, a pc_direction. There
+/// `reset`, unless NULL, changes the state, which is then projected onto the constraints; if
+/// `terminal` is not 0 the event ends the call with PC_EVENT. Must be called before the first step.
+/// `name` is for messages.
 ///
 /// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
 /// pc_solver_free. It must not use the solver.
@@ -146,7 +146,7 @@ pub extern "C" fn pc_solver_event_name(solver: Option<&pc_solver>, index: usize)
     solver.map_or(std::ptr::null(), |solver| nth(&names(solver), index))
 }
 
-/// Writes how often an event has occurred since the solver was made.
+/// Writes the number of times an event has occurred since the solver was made.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_event_occurrences(
     solver: *const pc_solver,
@@ -157,7 +157,7 @@ pub unsafe extern "C" fn pc_solver_event_occurrences(
     let read = |integration: &mut Integration, _: usize| {
         let counts = &integration.record.counts;
         let Some(&number) = counts.get(event) else { return Err(no_such(event, counts.len())) };
-        // SAFETY: null or a place for a number, as the preamble demands.
+        // SAFETY: null or memory for a number, as the preamble demands.
         unsafe { write(occurrences, number, "occurrences") }
     };
     // SAFETY: as the preamble demands.
@@ -168,9 +168,9 @@ fn no_such(event: usize, count: usize) -> CallError {
     CallError::Index { what: "the events", index: event, count }
 }
 
-/// Writes when an event last occurred, and the states before and after. PC_NOT_FOUND if it has
-/// not occurred. Only the last occurrence is kept; an observer sees all. `before` and `after` may
-/// be NULL, of length 0.
+/// Writes when an event last occurred, and the states before and after. Returns PC_NOT_FOUND if it
+/// has not occurred. Only the last occurrence is recorded; an observer sees all of them. `before`
+/// and `after` may be NULL, of length 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_last_occurrence(
     solver: *const pc_solver,
@@ -203,15 +203,15 @@ pub unsafe extern "C" fn pc_solver_last_occurrence(
         };
         before.copy_from_slice(&last.state_before[..before.len()]);
         after.copy_from_slice(&last.state_after[..after.len()]);
-        // SAFETY: null or a place for a number, as the preamble demands.
+        // SAFETY: null or memory for a number, as the preamble demands.
         unsafe { write(t, last.time, "t") }
     };
     // SAFETY: as the preamble demands.
     unsafe { integrate(solver, error, read) }
 }
 
-/// Writes the number of the terminal event that ended the last integrating call; PC_NOT_FOUND
-/// if none did.
+/// Writes the number of the terminal event that ended the last call that integrated; returns
+/// PC_NOT_FOUND if none did.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_terminal_event(
     solver: *const pc_solver,
@@ -220,7 +220,7 @@ pub unsafe extern "C" fn pc_solver_terminal_event(
 ) -> pc_status {
     let read = |integration: &mut Integration, _: usize| {
         let number = integration.record.terminal.ok_or(CallError::NotEnded)?;
-        // SAFETY: null or a place for a number, as the preamble demands.
+        // SAFETY: null or memory for a number, as the preamble demands.
         unsafe { write(event, number, "event") }
     };
     // SAFETY: as the preamble demands.

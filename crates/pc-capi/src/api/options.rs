@@ -12,28 +12,28 @@ use crate::api::cancel::pc_cancel;
 use crate::ffi::call_error::CallError;
 use crate::ffi::pointer::{aligned, numbers};
 
-/// Which equations of motion; values of pc_system_options.form.
+/// The form of the equations of motion; values of pc_system_options.form.
 #[repr(C)]
 pub enum pc_form {
-    /// Poincaré's, in quasi-velocities: independent ones if constraints make the others
-    /// vanish, all of them with multipliers otherwise.
+    /// Poincaré's equations, in quasi-velocities: in the independent ones if constraints make the
+    /// others vanish, otherwise in all of them, with multipliers.
     PC_POINCARE = 0,
     /// Chetaev's canonical equations, in momenta.
     PC_CANONICAL = 1,
-    /// Poincaré's without the coordinates that nothing depends on, Euler–Poincaré's where none is
-    /// left; the state has fewer coordinates. Where multipliers hold constraints, this form and
-    /// those below are PC_INCONSISTENT_MODEL, unless pc_model_add_independent says which
-    /// velocities are independent.
+    /// Poincaré's equations without the coordinates on which nothing depends, and Euler–Poincaré's
+    /// where no coordinate is left; the state has fewer coordinates. Where constraints are imposed
+    /// by multipliers, this form and those below give PC_INCONSISTENT_MODEL, unless
+    /// pc_model_add_independent says which velocities are independent.
     PC_REDUCED = 2,
     /// The same in momenta: Lie–Poisson equations.
     PC_LIE_POISSON = 3,
-    /// Poincaré's, in quasi-velocities that are orthonormal in the kinetic metric.
+    /// Poincaré's equations, in quasi-velocities that are orthonormal in the kinetic metric.
     PC_ORTHONORMAL = 4,
-    /// Hamel's, in the quasi-velocities of pc_model_give_quasi_velocity.
+    /// Hamel's equations, in the quasi-velocities of pc_model_give_quasi_velocity.
     PC_HAMEL = 5,
 }
 
-/// What to derive. Set it up with pc_system_options_init.
+/// Options for deriving a system. Set them up with pc_system_options_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct pc_system_options {
@@ -43,14 +43,14 @@ pub struct pc_system_options {
     pub form: c_int,
     /// Reserved; must be 0.
     pub reserved: c_int,
-    /// Most bytes that the expressions of a derivation may take, by estimate; 0, the default,
-    /// for 4 GiB. Beyond it, PC_LIMIT. It applies to pc_system_new and to each later call that
-    /// derives, separately; so do the next two.
+    /// Maximum number of bytes that the expressions of a derivation may take, by estimate; 0, the
+    /// default, for 4 GiB. Beyond it a call returns PC_LIMIT. The limit applies separately to
+    /// pc_system_new and to each later call that derives; so do the next two.
     pub memory_limit: u64,
-    /// Most seconds that a derivation may take, and each call of a solver or an ensemble of the
-    /// system, positive; 0, the default, for no limit.
+    /// Maximum time in seconds, positive, for a derivation and for each call of a solver or an
+    /// ensemble of the system; 0, the default, for no limit.
     pub time_limit: f64,
-    /// The handle by which derivations and integrations can be ended; NULL, the default, for
+    /// The handle with which derivations and integrations can be ended; NULL, the default, for
     /// none. It may be freed when pc_system_new has returned.
     pub cancel: *const pc_cancel,
 }
@@ -120,15 +120,15 @@ pub enum pc_method {
     /// Backward differentiation formulas of orders 1 to 5, for stiff systems.
     PC_BDF = 1,
     /// The explicit Runge–Kutta method of order 8 of Dormand and Prince, for systems that are
-    /// not stiff at tolerances of 1e-6 and below: the fastest where the equations are short. It
-    /// has no sensitivities, no iteration, no linear solver and no highest order to choose.
+    /// not stiff at tolerances of 1e-6 and below: the fastest where the equations are short. It has
+    /// no sensitivities, and no iteration, linear solver or highest order to choose.
     PC_DOP853 = 2,
     /// Taylor's method of adaptive order and step, for systems that are not stiff: the fastest at
-    /// tolerances of 1e-8 and below, and the one that follows a motion to rounding. It needs
-    /// equations that are solved in expressions, without tables and without forces from
+    /// tolerances of 1e-8 and below, and the one that follows a motion to within rounding errors.
+    /// It needs equations that are solved in expressions, without tables and without forces from
     /// functions of the program.
     PC_TAYLOR = 3,
-    /// PC_DOP853 where the motion is not stiff, PC_BDF where stiffness is seen. With
+    /// PC_DOP853 where the motion is not stiff, PC_BDF where stiffness is detected. With
     /// sensitivities it is PC_ADAMS.
     PC_AUTO = 4,
 }
@@ -136,7 +136,8 @@ pub enum pc_method {
 /// How the equation of a step is solved; values of pc_solver_options.iteration.
 #[repr(C)]
 pub enum pc_iteration {
-    /// Newton's for PC_BDF, also within PC_AUTO, the fixed-point iteration for PC_ADAMS.
+    /// Newton's iteration for PC_BDF, also within PC_AUTO, and the fixed-point iteration for
+    /// PC_ADAMS.
     PC_ITERATION_OF_METHOD = 0,
     /// Newton's iteration, with a linear solver.
     PC_NEWTON = 1,
@@ -158,7 +159,7 @@ pub enum pc_linear_solver {
     PC_LINEAR_KRYLOV = 3,
 }
 
-/// How to integrate. Set it up with pc_solver_options_init, then change what you like.
+/// Options for an integration. Set them up with pc_solver_options_init, then change what you like.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct pc_solver_options {
@@ -178,9 +179,9 @@ pub struct pc_solver_options {
     pub absolute_tolerance: f64,
     /// Absolute tolerances, one for each component, copied; NULL, the default, for the one above.
     pub absolute_tolerances: *const f64,
-    /// Their number, 0 with NULL.
+    /// The number of these tolerances; 0 with NULL.
     pub absolute_tolerances_length: usize,
-    /// Most steps from one output to the next; 500000 by default.
+    /// Maximum number of steps from one output to the next; 500000 by default.
     pub max_steps: u64,
     /// Length of the first step, positive in both directions of time; 0, the default, for an
     /// estimate.
@@ -191,10 +192,11 @@ pub struct pc_solver_options {
     pub max_step: f64,
     /// A time beyond which the equations are never evaluated; infinity, the default, for none.
     pub stop_time: f64,
-    /// Number of equal parts of each step, at least 1, at whose ends events are looked for that
-    /// are not expressions of the state alone (those of your program, and those read through
-    /// constraints, momenta or tables), and closer where the values leave doubt; 4 by default.
-    /// Between two such places an even number of zeros may be missed.
+    /// Number of equal parts of each step, at least 1, at whose ends the functions of events are
+    /// sampled that are not expressions in the state alone (those of your program, and those that
+    /// are read through constraints, momenta or tables); they are sampled more closely where the
+    /// values leave doubt; 4 by default. Between two such times an even number of zeros may be
+    /// missed.
     pub samples_per_step: u32,
     /// Reserved; must be 0.
     pub reserved: u32,
@@ -242,7 +244,7 @@ pub unsafe extern "C" fn pc_solver_options_init(options: *mut pc_solver_options,
     unsafe { give(options, pc_solver_options { size, ..Default::default() }, size) };
 }
 
-/// Writes as much of `value` as fits into `size` bytes, and zeros to the rest of them.
+/// Writes as much of `value` as fits into `size` bytes, and fills the rest of them with zeros.
 ///
 /// # Safety
 /// `place` is null, or has room for `size` bytes and is aligned as a `T`.
@@ -258,8 +260,8 @@ pub(crate) unsafe fn give<T: Copy>(place: *mut T, value: T, size: usize) {
     }
 }
 
-/// The options at `place`, with defaults for those that the caller's header does not have; all
-/// defaults if `place` is null.
+/// The options at `place`, with defaults for those that the caller's header does not have; if
+/// `place` is null, all are defaults.
 ///
 /// # Safety
 /// `T` is plain data for which any bytes are valid, and begins with a size; `place` is null or has

@@ -18,7 +18,7 @@ pub(crate) struct State {
     pub(crate) length: usize,
 }
 
-/// An array from C that is written.
+/// An array passed by C, to be written.
 #[derive(Clone, Copy)]
 pub(crate) struct Target {
     pub(crate) data: *mut f64,
@@ -30,7 +30,7 @@ pub(crate) struct Target {
 /// The state and the array as slices.
 ///
 /// # Safety
-/// Each is null or has the length it states.
+/// Both arrays are null or have the stated length.
 #[inline]
 pub(crate) unsafe fn slices<'a>(
     state: State,
@@ -47,7 +47,7 @@ pub(crate) unsafe fn slices<'a>(
     }
 }
 
-/// The same where a check fails or an array is empty.
+/// The same for the case that a check fails or an array is empty.
 ///
 /// # Safety
 /// As for [`slices`].
@@ -67,12 +67,12 @@ unsafe fn misfits<'a>(
 
 /// Writes the rate f(t, y) of the state to ydot.
 ///
-/// After the first call it takes no lock where f is one piece of machine code: where no function
-/// of the program computes forces, M is not factorised in numbers, and no velocities are solved
-/// for. Any number of threads may then call it at the same time; while another thread sets
-/// parameters, the rates are those of the parameters before or after. It returns PC_BUSY, with
-/// ydot undefined, only where parameters are set during its evaluation, and where it fails
-/// while the handle is in use.
+/// After the first call it takes no lock if f is a single piece of machine code, that is, if no
+/// function of the program computes forces, M is not factorised numerically, and no velocities are
+/// solved for. Any number of threads may then call it at the same time; while another thread sets
+/// parameters, the rates are those for the parameters before or after. It returns PC_BUSY, with
+/// ydot undefined, only if parameters are set during its evaluation, or if it fails while the
+/// handle is in use.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_rhs(
     system: *const pc_system,
@@ -102,11 +102,11 @@ pub unsafe extern "C" fn pc_system_rhs(
     }
 }
 
-/// Writes ydot by machine code alone; false if f is more than that, or fails, or the parameters
-/// change during the call.
+/// Writes ydot using machine code alone; returns false if f is more than that, or fails, or the
+/// parameters change during the call.
 ///
 /// # Safety
-/// Each array is null or has the length it states.
+/// Each array is null or has the stated length.
 #[inline]
 unsafe fn rates_without_lock(
     system: &pc_system,
@@ -175,7 +175,7 @@ pub unsafe extern "C" fn pc_system_jacobian_pattern(
         }
         Ok(())
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { crate::ffi::boundary::entry(error, get) }
 }
 
@@ -241,10 +241,10 @@ pub unsafe extern "C" fn pc_system_jvp(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their
-/// product: by each parameter with all others fixed, even those that are expressions in it; by
-/// the value of an input with a table. PC_UNSUPPORTED unless pc_model_differentiate was called,
-/// and with external forces.
+/// Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their product.
+/// Each derivative is taken with all other parameters fixed, even those that are expressions in
+/// this one; for an input with a table it is that with respect to the value of the input. Returns
+/// PC_UNSUPPORTED unless pc_model_differentiate was called, and with external forces.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_parameter_jacobian(
     system: *const pc_system,
@@ -272,8 +272,8 @@ pub unsafe extern "C" fn pc_system_parameter_jacobian(
 }
 
 /// Writes ∂f/∂t, which Rosenbrock's methods need; it has the length of the state. The first call
-/// derives, as pc_system_new does, unless f is free of t. PC_UNSUPPORTED with external forces,
-/// whose ∂/∂t is unknown, and with inputs that have tables.
+/// derives it, as pc_system_new derives equations, unless f is free of t. Returns PC_UNSUPPORTED
+/// with external forces, whose ∂/∂t is unknown, and with inputs that have tables.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_time_derivative(
     system: *const pc_system,
@@ -309,8 +309,9 @@ pub unsafe extern "C" fn pc_system_time_derivative(
 }
 
 /// Projects the state, in place: onto the constraints, along the shortest path in the kinetic
-/// metric, and to the values that the integrals of pc_model_keep have at the start of the model,
-/// or at the state of pc_system_keep_from. Without either the state stays as it is.
+/// metric, and to the values that the integrals of pc_model_keep have at the start of the model, or
+/// at the state of pc_system_keep_from. With neither constraints nor such integrals the state stays
+/// as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_project(
     system: *const pc_system,
@@ -336,7 +337,7 @@ pub unsafe extern "C" fn pc_system_project(
 }
 
 /// Makes pc_system_project keep the integrals of pc_model_keep at their values at (t, y),
-/// moved onto the constraints, also after parameters are set. Solvers keep the values at their
+/// moved onto the constraints, also after parameters are set. Solvers maintain the values at their
 /// own start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_keep_from(

@@ -103,8 +103,8 @@ pub unsafe extern "C" fn pc_model_set_start_time(
     unsafe { set_number(model, error, "pc_model_set_start_time", &[("t_start", t)]) }
 }
 
-/// Sets the time to which the program `pc` runs the model. It is written to the text, as are
-/// the next five; solvers take pc_solver_options instead.
+/// Sets the time to which the program `pc` runs the model. It is written to the text, as are the
+/// settings of the next five functions; solvers take pc_solver_options instead.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_end_time(
     model: *mut pc_model,
@@ -144,7 +144,7 @@ pub unsafe extern "C" fn pc_model_set_tolerances(
 }
 
 /// Sets the largest length of a step, positive, with which the program `pc` runs the model: an
-/// event whose function has passed through zero and back within a step is not seen.
+/// event whose function passes through zero and back within a step is missed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_max_step(
     model: *mut pc_model,
@@ -155,8 +155,8 @@ pub unsafe extern "C" fn pc_model_set_max_step(
     unsafe { set_number(model, error, "pc_model_set_max_step", &[("max_step", length)]) }
 }
 
-/// Sets how the program `pc` looks for zeros of event functions: at `samples_per_step` places
-/// of each step, at least 1; events whose intervals shrink until the time left is less than
+/// Sets how the program `pc` looks for zeros of event functions: at `samples_per_step` points in
+/// each step, at least 1; events whose intervals shrink until the time left is less than
 /// `accumulation` of the first interval count as accumulated.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_event_search(
@@ -198,7 +198,7 @@ pub unsafe extern "C" fn pc_model_set_form(
     unsafe { put(model, error, "pc_model_set_form", (Section::Simulation, "form"), form) }
 }
 
-/// Writes an entry that is a text; errors call it by its key.
+/// Writes an entry whose value is text; errors refer to it by its key.
 ///
 /// # Safety
 /// As the preamble demands.
@@ -218,7 +218,7 @@ unsafe fn put(
     unsafe { draft(model, error, what, write) }
 }
 
-/// Writes numbers of `[simulation]`.
+/// Writes numbers to the section `[simulation]`.
 ///
 /// # Safety
 /// As the preamble demands.

@@ -42,11 +42,11 @@ pub type pc_observer =
     Option<unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, user: *mut c_void) -> c_int>;
 
 /// Makes a solver that integrates the system from the state y at the time t, with its current
-/// parameters; from the start of the model if y is NULL, of length 0, and then t is ignored.
+/// parameters, or from the start of the model if y is NULL, of length 0; t is then ignored.
 /// `options` may be NULL. Projection after each step keeps states on the constraints, and the
-/// integrals of pc_model_keep at their values at this start. The events of the model are
-/// followed: where one occurs, the state is reset as the model says, and a terminal one ends
-/// the call with PC_EVENT.
+/// integrals of pc_model_keep at their values at this start. The events of the model are followed:
+/// where one occurs, the state is reset as the model says, and a terminal event ends the call with
+/// PC_EVENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_new(
     system: *const pc_system,
@@ -71,14 +71,14 @@ pub unsafe extern "C" fn pc_solver_new(
         let integration =
             Integration::new(inner.field.clone(), &Checkpoint::start(t, y), options, events.clone())?;
         let made = pc_solver::boxed(integration, &events, dim);
-        // SAFETY: null or a place for a handle, as the preamble demands.
+        // SAFETY: null or memory for a handle, as the preamble demands.
         unsafe { write(solver, made, "solver") }
     };
     let checked = || {
         // SAFETY: as the preamble demands.
         unsafe { clear(solver, "solver") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     match unsafe { entry(error, checked) } {
         // SAFETY: as the preamble demands.
         pc_status::PC_OK => unsafe { inside(system, error, new) },
@@ -100,7 +100,7 @@ pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
 /// Calls `body` with the integration and the length of its state.
 ///
 /// # Safety
-/// `solver` is null or a live handle, `error` null or a place for a pointer.
+/// `solver` is null or a live handle, `error` null or memory for a pointer.
 pub(crate) unsafe fn integrate(
     solver: *const pc_solver,
     error: *mut *mut pc_error,
@@ -117,7 +117,7 @@ pub(crate) unsafe fn integrate(
 
 /// Makes a solver continue with the current parameters and inputs of the system: it restarts
 /// at its current state, at order 1. This is how inputs change between two calls of
-/// pc_solver_advance. The system is that of the solver, or one of the same model.
+/// pc_solver_advance. The system must be that of the solver, or one of the same model. Returns
 /// PC_UNSUPPORTED with events of pc_solver_add_event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_take_parameters(
@@ -143,8 +143,8 @@ pub unsafe extern "C" fn pc_solver_take_parameters(
 /// Integrates to the time t, in the direction of the first step, and writes the state there.
 /// With PC_EVENT and PC_STOPPED it is the state where the integration ended, and
 /// pc_solver_time gives the time; the next call continues from there. After a failure
-/// pc_solver_time and pc_solver_state give what was reached. PC_LIMIT is such a failure, by
-/// the time limit or the pc_cancel of the system's options.
+/// pc_solver_time and pc_solver_state give what was reached. PC_LIMIT is such a failure; it is due
+/// to the time limit or the pc_cancel of the system's options.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_advance(
     solver: *mut pc_solver,
@@ -164,9 +164,9 @@ pub unsafe extern "C" fn pc_solver_advance(
     unsafe { integrate(solver, error, advance) }
 }
 
-/// Takes one internal step in the direction of `towards`, or the part of it before an event,
-/// and writes the time of its end, which may lie beyond `towards`, and the state there, also
-/// with PC_EVENT and PC_STOPPED.
+/// Takes one internal step in the direction of `towards`, or the part of it before an event, and
+/// writes the time at its end, which may lie beyond `towards`, and the state there; both are also
+/// written with PC_EVENT and PC_STOPPED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_step(
     solver: *mut pc_solver,
@@ -192,9 +192,10 @@ pub unsafe extern "C" fn pc_solver_step(
 }
 
 /// Integrates through the times, which increase or decrease throughout, and calls `observer`
-/// at each with the state, which is valid during the call, and with `user`. PC_STOPPED if the
-/// observer stops it. At the time of an event it receives the state after the event; a
-/// terminal event is the last call, at the time of the event, and PC_EVENT is returned.
+/// at each with the state, which is valid during the call, and with `user`. Returns PC_STOPPED if
+/// the observer stops it. At the time of an event the observer receives the state after the event;
+/// a terminal event brings the last call of the observer, at the time of the event, and PC_EVENT is
+/// returned.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run(
     solver: *mut pc_solver,

@@ -1,4 +1,4 @@
-//! The equations in print, and as C source.
+//! The equations as printed text, and as C source.
 
 use std::ffi::{c_char, c_int};
 
@@ -17,9 +17,9 @@ use crate::machinery::system::{Inventory, pc_system};
 /// The format in which equations are printed.
 #[repr(C)]
 pub enum pc_format {
-    /// As a book prints them, in UTF-8.
+    /// As they appear in a book, in UTF-8.
     PC_TEXT = 0,
-    /// Displays of LaTeX with amsmath.
+    /// LaTeX displays that use amsmath.
     PC_LATEX = 1,
     /// One JSON object, for programs.
     PC_JSON = 2,
@@ -27,9 +27,9 @@ pub enum pc_format {
 
 /// Derives and prints the equations, as `pc derive` does: constraints, kinematics, brackets,
 /// equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
-/// right-hand side. Where multipliers hold constraints, it shows the equations of independent
-/// velocities. `format` is a pc_format. Parameters have the values of the model. Free the text
-/// with pc_string_free.
+/// right-hand side. Where constraints are imposed by multipliers, it shows the equations in
+/// independent velocities. `format` is a pc_format. Parameters have the values of the model. Free
+/// the text with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_print(
     system: *const pc_system,
@@ -47,11 +47,11 @@ pub unsafe extern "C" fn pc_system_print(
         // SAFETY: as the preamble demands.
         unsafe { write(text, give(&printed), "text") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, print) }
 }
 
-/// How a pc_format is printed.
+/// The style of printing that a pc_format denotes.
 pub(crate) fn page(format: c_int) -> Result<Page, CallError> {
     match format {
         0 => Ok(Page::Text),
@@ -67,14 +67,15 @@ fn printed(inventory: &Inventory, model: &Model, page: Page) -> Result<String, C
 }
 
 /// Writes the equations as C source that does not depend on this library: the text of NAME.h
-/// and of NAME.c, where NAME is `name`, made an identifier: Greek letters by their names, runs
-/// of other characters as one `_`, none at the ends, `n_` before a leading digit, `_` after a
-/// keyword of C. The source has the right-hand side, its Jacobian, the mass matrix, the
-/// energy, the integrals and the outputs of independent quasi-velocities, or those of its momenta
-/// if the system has these, and explains its use at its head. External forces are parameters, after
-/// the others, called `Q_` and the name of their quasi-velocity, and zero until they are set. If
-/// `t_end` is finite, it can be compiled with -DNAME_MAIN (in capitals) to a program that
-/// integrates from the start of the model to that time. Free both texts with pc_string_free.
+/// and of NAME.c, where NAME is `name`, turned into an identifier: Greek letters become their
+/// names, runs of other characters one `_`, with none at the ends; `n_` precedes a leading digit,
+/// `_` follows a keyword of C. The source has the right-hand side, its Jacobian, the mass matrix,
+/// the energy, the integrals and the outputs in terms of independent quasi-velocities, or of
+/// momenta if these are in the state of the system, and explains its use at its head. External
+/// forces are parameters that come after the others; their names are `Q_` followed by that of their
+/// quasi-velocity, and they are zero until they are set. If `t_end` is finite, it can be compiled
+/// with -DNAME_MAIN (in capitals) to a program that integrates from the start of the model to that
+/// time. Free both texts with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_emit_c(
     system: *const pc_system,
@@ -99,7 +100,7 @@ pub unsafe extern "C" fn pc_system_emit_c(
             write(source, give(&written_source), "source")
         }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, emit) }
 }
 

@@ -10,18 +10,18 @@ use crate::ffi::error::pc_error;
 use crate::ffi::pointer::handle;
 use crate::ffi::status::pc_status;
 
-/// Counts since the start of an integration, and its last internal step. The structure may
-/// grow at the end.
+/// Counters since the start of an integration, and data of its last internal step. The structure
+/// may grow at the end.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct pc_statistics {
     /// Internal steps.
     pub steps: u64,
-    /// Evaluations of f, with those for difference quotients.
+    /// Evaluations of f, including those for difference quotients.
     pub rhs_evaluations: u64,
     /// Evaluations of ∂f/∂y.
     pub jacobian_evaluations: u64,
-    /// Steps tried again because the estimated error was too large.
+    /// Steps repeated because the estimated error was too large.
     pub error_test_failures: u64,
     /// Iterations of the nonlinear solver.
     pub nonlinear_iterations: u64,
@@ -42,11 +42,11 @@ pub struct pc_statistics {
     /// Steps shortened to end where the explicit dependence on time shows something that the
     /// motion so far gives no hint of: the beginning of a pulse, a jump.
     pub limited_steps: u64,
-    /// Steps that PC_AUTO made by PC_BDF.
+    /// Steps that PC_AUTO made with PC_BDF.
     pub implicit_steps: u64,
     /// How often PC_AUTO changed its method.
     pub changes: u64,
-    /// Time at which PC_DOP853 or PC_AUTO first found the motion stiff; NaN if never.
+    /// Time at which PC_DOP853 or PC_AUTO first found the motion to be stiff; NaN if never.
     pub stiff_from: f64,
 }
 
@@ -91,6 +91,6 @@ pub unsafe extern "C" fn pc_solver_statistics(
         unsafe { give(statistics, counts.into(), size) };
         Ok(())
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, read) }
 }

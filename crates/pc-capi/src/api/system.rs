@@ -39,13 +39,13 @@ pub unsafe extern "C" fn pc_system_new(
         // SAFETY: as the preamble demands.
         unsafe { write(system, Box::into_raw(Box::new(derived)), "system") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, new) }
 }
 
 /// Makes a copy for another thread, with the current parameters. It shares the machine code that
-/// exists: that of f, and that of each derivative which the original has evaluated before (its
-/// first evaluation compiles it).
+/// exists: that of f, and that of each derivative that the original has evaluated before (the first
+/// evaluation of a derivative compiles it).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_clone(
     system: *const pc_system,
@@ -61,7 +61,7 @@ pub unsafe extern "C" fn pc_system_clone(
         // SAFETY: as the preamble demands.
         unsafe { write(copy, Box::into_raw(Box::new(cloned)), "copy") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, clone) }
 }
 
@@ -107,14 +107,14 @@ pub extern "C" fn pc_system_observable_count(system: Option<&pc_system>) -> usiz
     count(system, |inventory| inventory.observables.len())
 }
 
-/// The number of observables that should stay constant, integrals and energy, which come
+/// The number of observables that should stay constant: the integrals and the energy, which come
 /// first; 0 for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_conserved_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.conserved)
 }
 
-/// The number of constraints that are kept by projection; 0 for NULL.
+/// The number of constraints that projection maintains; 0 for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_constraint_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.constraints.len())
@@ -144,13 +144,14 @@ pub extern "C" fn pc_system_observable_name(system: Option<&pc_system>, index: u
     name(system, index, |inventory| &inventory.observables)
 }
 
-/// The name of a constraint that is kept by projection, from 0; NULL beyond the last.
+/// The name of a constraint that projection maintains, from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_constraint_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.constraints)
 }
 
-/// The name of a reaction, `λ_` and that of its constraint, from 0; NULL beyond the last.
+/// The name of a reaction, `λ_` followed by the name of its constraint, from 0; NULL beyond the
+/// last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_reaction_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     let place = system.and_then(|system| system.inventory.reactions.get(index).copied());
@@ -174,14 +175,15 @@ pub unsafe extern "C" fn pc_system_start(
         // SAFETY: as the preamble demands.
         if t.is_null() { Ok(()) } else { unsafe { write(t, inventory.t_start, "t") } }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, start) }
 }
 
 /// Writes the absolute tolerance of each component of the state with which the program `pc` would
-/// run the system from its start to t_end: that of the text, else min(1e-12, relative·s) for a
-/// component of the scale s at the start, where f is evaluated once, but no less than rounding of
-/// the largest. pc_solver_options takes them as absolute_tolerances.
+/// run the system from its start to t_end: that of the text if it gives one, else min(1e-12,
+/// relative·s) for a component of scale s at the start, where f is evaluated once, but no less than
+/// the rounding error of the largest component. pc_solver_options takes them as
+/// absolute_tolerances.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_absolute_tolerances(
     system: *const pc_system,
@@ -227,9 +229,9 @@ pub unsafe extern "C" fn pc_system_parameters(
     unsafe { inside(system, error, get) }
 }
 
-/// Sets all parameters; cheap, since nothing is derived again. The start stays the same, and
-/// solvers and kernels made before keep their values. Inputs come after the parameters; one with
-/// a table follows its table whatever it is set to.
+/// Sets all parameters, which is cheap, since nothing is derived again. The start stays the same,
+/// and solvers and kernels made before keep the values they have. Inputs come after the parameters;
+/// an input with a table follows its table whatever it is set to.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_parameters(
     system: *mut pc_system,

@@ -1,4 +1,4 @@
-//! The analysis of motions without integrating them, printed.
+//! Printing the analysis of motions, made without integrating them.
 
 use std::ffi::{c_char, c_int};
 
@@ -14,17 +14,17 @@ use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
 use crate::machinery::system::pc_system;
 
-/// The largest degree in the velocities of integrals that are looked for.
+/// The largest degree in the velocities of the integrals that are sought.
 const MOST_DEGREE: usize = 6;
 
-/// Prints the analysis of the motions without integrating them, as `pc theory` does: momenta
-/// and their brackets, Casimirs, integrals, cyclic displacements, invariant measure, Chaplygin's
-/// multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each claim is
-/// marked proved, disproved or open. The integrals sought are polynomials of a `degree` from 1 to 6
-/// in the velocities, whose coefficients are polynomials in the coordinates times 1 or one of the
-/// `functions`, expressions of the model; the list may be empty. `format` is a pc_format.
-/// Parameters have the values of the model. Everything is derived again, which takes longer than
-/// pc_system_print. Free the text with pc_string_free.
+/// Prints an analysis of the motions that is made without integrating them, as `pc theory` does:
+/// momenta and their brackets, Casimirs, integrals, cyclic displacements, invariant measure,
+/// Chaplygin's multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each
+/// claim is marked proved, disproved or open. The integrals sought are polynomials of a `degree`
+/// from 1 to 6 in the velocities, whose coefficients are polynomials in the coordinates times 1 or
+/// one of the `functions`, expressions of the model; the list may be empty. `format` is a
+/// pc_format. Parameters have the values of the model. Everything is derived again, which takes
+/// longer than pc_system_print. Free the text with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_theory(
     system: *const pc_system,
@@ -52,7 +52,7 @@ pub unsafe extern "C" fn pc_system_theory(
         // SAFETY: as the preamble demands.
         unsafe { write(text, give(&printed), "text") }
     };
-    // SAFETY: `error` is null or a place for a pointer.
+    // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, print) }
 }
 

@@ -8,9 +8,10 @@ use crate::ffi::pointer::text;
 use crate::ffi::status::pc_status;
 
 /// Adds a quasi-velocity to those of the model, for systems of the form PC_HAMEL: a linear
-/// form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where fewer
-/// are given than there are independent ones, quasi-velocities of the model complete them.
-/// Each is an output too. Errors in it are reported by pc_model_check and pc_system_new.
+/// form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where fewer are
+/// given than there are independent quasi-velocities, the missing ones are taken from those of the
+/// model. Each is also an output. Errors in its definition are reported by pc_model_check and
+/// pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_give_quasi_velocity(
     model: *mut pc_model,
@@ -28,11 +29,11 @@ pub unsafe extern "C" fn pc_model_give_quasi_velocity(
     unsafe { change(model, error, give) }
 }
 
-/// Chooses a velocity as independent; there must be as many choices as the constraints leave
-/// velocities free. Where multipliers would hold the constraints, systems then have equations
-/// without multipliers. The name is that of a quasi-velocity, or x' where there are none. Without
-/// a choice, printed equations and source are in the velocities that make them shortest. A wrong
-/// choice is reported by pc_system_new.
+/// Chooses a velocity as independent; there must be as many choices as there are velocities that
+/// the constraints leave free. Where multipliers would impose the constraints, systems then have
+/// equations without multipliers. The name is that of a quasi-velocity, or x' where there are none.
+/// Without such choices, printed equations and source use the velocities that make them shortest. A
+/// wrong choice is reported by pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_independent(
     model: *mut pc_model,

@@ -12,14 +12,14 @@ use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Derives the model a second time, by a route that shares only its text with the first, and
-/// compares both at `states` random states on the constraints, for the parameters as they are
-/// now: velocities, accelerations or rates of momenta, reactions, the energy and its rate,
-/// integrals and outputs. 0 states mean 100. `text` says how closely they agree and what was
-/// not compared, in lines; it may be NULL, and is freed with pc_string_free. External forces
-/// are taken to be 0. PC_DISAGREEMENT, with the quantity and both its values, if the two
-/// differ, which is a defect of the library; PC_UNSUPPORTED if this model has no second
-/// derivation. It takes as long as pc_system_new.
+/// Derives the equations of the model a second time, by a route that shares only the text of the
+/// model with the first, and compares both at `states` random states on the constraints, for the
+/// current parameters: velocities, accelerations or rates of momenta, reactions, the energy and its
+/// rate of change, integrals and outputs. 0 states mean 100. `text` says how closely they agree and
+/// what was not compared, on separate lines; it may be NULL, and is freed with pc_string_free.
+/// External forces are taken to be 0. Returns PC_DISAGREEMENT, with the quantity and both its
+/// values, if the two differ, which is a defect of the library; PC_UNSUPPORTED if there is no
+/// second derivation for this model. The call takes as long as pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_verify(
     system: *const pc_system,

@@ -1,12 +1,12 @@
-//! The version of the library, and what holds for all of it.
+//! The version of the library, and the text that applies to all of it.
 
 use std::ffi::c_char;
 
-/// First number of the version of the header.
+/// First number of the header's version.
 pub const PC_VERSION_MAJOR: u32 = 0;
-/// Second number of the version of the header.
+/// Second number of the header's version.
 pub const PC_VERSION_MINOR: u32 = 1;
-/// Third number of the version of the header.
+/// Third number of the header's version.
 pub const PC_VERSION_PATCH: u32 = 0;
 /// Version of the binary interface, the number in the name libpc.so.N. A program runs with
 /// any library of the same number that is not older than its header.
@@ -19,13 +19,13 @@ pub extern "C" fn pc_version() -> *const c_char {
     VERSION.as_ptr().cast()
 }
 
-/// The PC_ABI_VERSION of the library that runs.
+/// The PC_ABI_VERSION of the library that is in use.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_abi_version() -> u32 {
     PC_ABI_VERSION
 }
 
-/// The head of the header: what is true of every function.
+/// The comment at the top of the header, which says what is true of every function.
 pub const PREAMBLE: &str = "\
 /*
  * pc: the Poincaré–Chetaev equations of a mechanical system, derived, compiled and integrated.

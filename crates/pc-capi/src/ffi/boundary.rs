@@ -8,10 +8,10 @@ use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::status::pc_status;
 
-/// Runs `body`, catching panics, and writes its fault to `*error`, or null.
+/// Runs `body`, catching panics, and writes its error to `*error`, or null if there is none.
 ///
 /// # Safety
-/// `error` is null or a place for a pointer.
+/// `error` is null or memory for a pointer.
 pub(crate) unsafe fn entry(
     error: *mut *mut pc_error,
     body: impl FnOnce() -> Result<(), CallError>,
@@ -28,7 +28,7 @@ pub(crate) unsafe fn entry(
         (fault.status(), Box::into_raw(Box::new(fault.into_error())))
     });
     if !error.is_null() {
-        // SAFETY: not null, and then a place for a pointer.
+        // SAFETY: not null, and then memory for a pointer.
         unsafe { error.write(written) };
     } else if !written.is_null() {
         // SAFETY: boxed just now.
@@ -40,11 +40,11 @@ pub(crate) unsafe fn entry(
 /// Writes null to `*error`.
 ///
 /// # Safety
-/// `error` is null or a place for a pointer.
+/// `error` is null or memory for a pointer.
 #[inline]
 pub(crate) unsafe fn succeeded(error: *mut *mut pc_error) -> pc_status {
     if !error.is_null() {
-        // SAFETY: not null, and then a place for a pointer.
+        // SAFETY: not null, and then memory for a pointer.
         unsafe { error.write(ptr::null_mut()) };
     }
     pc_status::PC_OK
@@ -70,10 +70,10 @@ mod tests {
     use crate::ffi::error::{pc_error_free, pc_error_message};
     use crate::machinery::exclusive::Exclusive;
 
-    /// Status and message of a call of `body`.
+    /// The status and the message of a call of `body`.
     fn called(body: impl FnOnce() -> Result<(), CallError>) -> (pc_status, String) {
         let mut error = ptr::null_mut();
-        // SAFETY: a place for a pointer; the error is freed once.
+        // SAFETY: memory for a pointer; the error is freed once.
         unsafe {
             let status = entry(&raw mut error, body);
             let message = CStr::from_ptr(pc_error_message(error.as_ref())).to_str().unwrap().to_owned();
@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn a_success_clears_the_place_of_the_error() {
         let mut error = ptr::dangling_mut();
-        // SAFETY: a place for a pointer, which is not looked at.
+        // SAFETY: memory for a pointer, which is not looked at.
         assert_eq!(unsafe { entry(&raw mut error, || Ok(())) }, pc_status::PC_OK);
         assert!(error.is_null());
     }

@@ -163,7 +163,7 @@ impl CallError {
         }
     }
 
-    /// The message, with its causes where it does not contain them.
+    /// The message, with the causes of the error where the message does not contain them.
     fn message(&self) -> String {
         let mut message = self.to_string();
         let mut cause = match self {
@@ -178,7 +178,7 @@ impl CallError {
         message
     }
 
-    /// Status and message.
+    /// The status and the message.
     pub(crate) fn told(&self) -> (pc_status, CString) {
         (self.status(), c_string(&self.message()))
     }

@@ -8,8 +8,8 @@ use crate::ffi::call_error::CallError;
 use crate::ffi::pointer::free;
 use crate::ffi::status::pc_status;
 
-/// Why a call failed: status, message and, for a model, the place in its text. Never changes;
-/// free it with pc_error_free.
+/// Why a call failed: the status, the message and, for a model, the position in its text. It never
+/// changes; free it with pc_error_free.
 pub struct pc_error {
     status: pc_status,
     message: CString,
@@ -18,7 +18,7 @@ pub struct pc_error {
     recoverable: bool,
 }
 
-/// A place in a model text; zeros where there is none.
+/// A position in a model text; zeros where there is none.
 #[derive(Clone, Copy, Default)]
 struct Place {
     line: usize,
@@ -57,8 +57,8 @@ pub extern "C" fn pc_error_status(error: Option<&pc_error>) -> pc_status {
     error.map_or(pc_status::PC_OK, |error| error.status)
 }
 
-/// The message, in UTF-8, never NULL; it lives as long as the error. For a model it shows the
-/// line at fault and what would be right, over several lines of text. Empty for NULL.
+/// The message, in UTF-8, never NULL; it lives as long as the error. For a model it shows the line
+/// at fault and what would be correct, in several lines of text. Empty for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_message(error: Option<&pc_error>) -> *const c_char {
     error.map_or(c"".as_ptr(), |error| error.message.as_ptr())
@@ -89,14 +89,14 @@ pub extern "C" fn pc_error_length(error: Option<&pc_error>) -> usize {
     place(error).length
 }
 
-/// The code that CVODES returned (cvodes.h), where it is the reason; else 0, and for NULL.
+/// The code that CVODES returned (cvodes.h), if that is the reason; 0 otherwise, and for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_integrator_code(error: Option<&pc_error>) -> c_int {
     error.map_or(0, |error| error.integrator_code)
 }
 
 /// 1 if the status is PC_EVALUATION and evaluation may succeed at a nearby state, so that an
-/// integrator should try a smaller step; else 0, and for NULL.
+/// integrator should try a smaller step; 0 otherwise, and for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_is_recoverable(error: Option<&pc_error>) -> c_int {
     error.map_or(0, |error| error.recoverable.into())

@@ -6,7 +6,7 @@ use std::slice;
 
 use crate::ffi::call_error::CallError;
 
-/// The object of a handle.
+/// The object to which a handle points.
 ///
 /// # Safety
 /// Null, or a live handle of that type.
@@ -15,7 +15,7 @@ pub(crate) unsafe fn handle<'a, T>(handle: *const T, what: &'static str) -> Resu
     unsafe { handle.as_ref() }.ok_or_else(|| CallError::Null { what })
 }
 
-/// `expected` numbers at `data`, of which the caller says there are `found`.
+/// The `expected` numbers at `data`, where according to the caller there are `found`.
 ///
 /// # Safety
 /// Null, or `found` numbers that nobody changes during the call.
@@ -33,8 +33,8 @@ pub(crate) unsafe fn numbers<'a>(
     Ok(unsafe { slice::from_raw_parts(data, expected) })
 }
 
-/// Room for `expected` numbers at `data`, all set to NaN; the caller says there is room for
-/// `found`.
+/// Memory for `expected` numbers at `data`, all set to NaN; according to the caller there is room
+/// for `found`.
 ///
 /// # Safety
 /// Null, or room for `found` numbers that nobody else uses during the call.
@@ -52,7 +52,7 @@ pub(crate) unsafe fn room<'a>(
     Ok(unsafe { fresh(data, expected) })
 }
 
-/// `len` numbers at `data`, all set to NaN.
+/// The `len` numbers at `data`, all set to NaN.
 ///
 /// # Safety
 /// Room for `len` numbers that nobody else uses during the call; it may still be uninitialised.
@@ -73,7 +73,7 @@ fn check(data: *const f64, found: usize, expected: usize, what: &'static str) ->
     possible(data, expected, what)
 }
 
-/// Refuses an array that cannot exist.
+/// Refuses an array whose address or length is impossible.
 fn possible<T>(data: *const T, len: usize, what: &'static str) -> Result<(), CallError> {
     if len == 0 {
         return Ok(());
@@ -93,7 +93,7 @@ pub(crate) fn aligned<T>(data: *const T, what: &'static str) -> Result<(), CallE
     if data.is_aligned() { Ok(()) } else { Err(CallError::Misaligned { what, alignment: align_of::<T>() }) }
 }
 
-/// Refuses arrays of input and output that share memory, before either is made a slice.
+/// Refuses input and output arrays that share memory, before either is made a slice.
 pub(crate) fn apart(
     first: (*const f64, usize, &'static str),
     second: (*const f64, usize, &'static str),
@@ -105,7 +105,7 @@ pub(crate) fn apart(
     }
 }
 
-/// Whether the pointers can be two arrays of numbers that share no memory.
+/// Whether the pointers can be those of two arrays of numbers that share no memory.
 #[inline]
 pub(crate) fn are_usable(first: (*const f64, usize), second: (*const f64, usize)) -> bool {
     let there = |data: *const f64| !data.is_null() && data.is_aligned();
@@ -156,7 +156,7 @@ pub(crate) unsafe fn bytes<'a>(
 /// Writes a result.
 ///
 /// # Safety
-/// Null, or a place for a `T`.
+/// Null, or a pointer to memory for a `T`.
 pub(crate) unsafe fn write<T>(place: *mut T, value: T, what: &'static str) -> Result<(), CallError> {
     if place.is_null() {
         return Err(CallError::Null { what });
@@ -166,11 +166,11 @@ pub(crate) unsafe fn write<T>(place: *mut T, value: T, what: &'static str) -> Re
     Ok(())
 }
 
-/// Refuses a null place for a result before any work is done, and writes null there in case the
-/// work fails.
+/// Refuses a null pointer for a result before any work is done; otherwise writes null to it in case
+/// the work fails.
 ///
 /// # Safety
-/// Null, or a place for a pointer.
+/// Null, or a pointer to memory for a pointer.
 pub(crate) unsafe fn clear<T>(place: *mut *mut T, what: &'static str) -> Result<(), CallError> {
     // SAFETY: as promised.
     unsafe { write(place, std::ptr::null_mut(), what) }

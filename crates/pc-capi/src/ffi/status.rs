@@ -16,7 +16,7 @@ pub enum pc_status {
     PC_INVALID_MODEL = 2,
     /// The model contradicts itself; the error says where.
     PC_INCONSISTENT_MODEL = 3,
-    /// The request cannot be met, or not for this system.
+    /// The request cannot be met, at least not for this system.
     PC_UNSUPPORTED = 4,
     /// Nothing has this name: no file, no component, no event.
     PC_NOT_FOUND = 5,
@@ -29,10 +29,10 @@ pub enum pc_status {
     PC_INTEGRATION = 8,
     /// An observer stopped the integration. This is not a failure, and there is no pc_error.
     PC_STOPPED = 9,
-    /// The handle is in use: by another thread, or by the call that called the observer or the
-    /// force function.
+    /// The handle is in use: by another thread, or by the call from which the observer or the force
+    /// function was called.
     PC_BUSY = 10,
-    /// A fault of the library, after which the handle can only be freed; or threads or memory
+    /// A fault of the library, after which the handle can only be freed; or else threads or memory
     /// for a solver are not available, and the handle is unchanged.
     PC_INTERNAL = 11,
     /// A terminal event ended the integration. This is not a failure, and there is no pc_error.

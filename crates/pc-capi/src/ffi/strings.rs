@@ -11,7 +11,7 @@ pub unsafe extern "C" fn pc_string_free(text: *mut c_char) {
     }
 }
 
-/// The text for C, with zero bytes, which would end it, replaced.
+/// The text for C; zero bytes, which would end it, are replaced.
 pub(crate) fn c_string(text: &str) -> CString {
     CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default()
 }

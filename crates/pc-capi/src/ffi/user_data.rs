@@ -2,10 +2,11 @@
 
 use std::ffi::c_void;
 
-/// Frees what the `user` of a function points to. It must return: no exceptions, no longjmp.
+/// Frees the data to which the `user` of a function points. It must return: no exceptions, no
+/// longjmp.
 pub type pc_destroy = Option<unsafe extern "C" fn(user: *mut c_void)>;
 
-/// The argument of functions of the program, destroyed with them.
+/// The argument of functions of the program, which is destroyed together with them.
 pub(crate) struct User {
     pub(crate) data: *mut c_void,
     pub(crate) destroy: pc_destroy,

@@ -31,7 +31,7 @@ unsafe impl Send for Shared {}
 // SAFETY: pc_system_set_force demands the same for several threads at a time.
 unsafe impl Sync for Shared {}
 
-/// Why there are no forces.
+/// Why the forces cannot be computed.
 #[derive(Clone, Copy, Debug, thiserror::Error)]
 enum NoForce {
     #[error("no function has been set for it; pc_system_set_force sets one")]
@@ -43,7 +43,7 @@ enum NoForce {
 }
 
 impl NoForce {
-    /// What the return value of a function means.
+    /// Converts the return value of a function to a result.
     fn read(code: c_int, fault: fn(c_int) -> NoForce) -> Result<(), Failure> {
         match code {
             0 => Ok(()),
@@ -54,7 +54,8 @@ impl NoForce {
 }
 
 impl Controller {
-    /// Forces by `function`; their derivatives by `jacobian`, or else by difference quotients.
+    /// Forces that `function` computes; their derivatives come from `jacobian`, or else from
+    /// difference quotients.
     pub(crate) fn new(function: Function, jacobian: Option<Function>, user: User) -> Controller {
         let callback = Callback { function, jacobian, user: Shared(user) };
         Controller { callback: Some(Arc::new(callback)), room: Vec::new() }

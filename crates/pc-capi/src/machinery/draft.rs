@@ -1,4 +1,5 @@
-//! A model built call by call, as a text: both ways to a model have the same meaning.
+//! A model built call by call, written as a text, so that both ways of making a model have the same
+//! meaning.
 
 use std::fmt::Write;
 
@@ -16,13 +17,13 @@ pub(crate) struct Draft {
 #[derive(Clone, Debug)]
 struct Entry {
     section: Section,
-    /// The key, followed by those inside its tables.
+    /// The key, followed by the keys inside its tables.
     keys: Vec<String>,
-    /// As written in the text.
+    /// The value as it is written in the text.
     value: String,
 }
 
-/// A section of the text, in the order of the text.
+/// A section of the text; the variants are in the order of the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Section {
     Heading,
@@ -149,7 +150,7 @@ impl Draft {
         self.entries.iter_mut().find(|entry| entry.section == section && entry.keys == keys)
     }
 
-    /// The first keys of a section, each once.
+    /// The first keys of the entries in a section, each once.
     fn names(&self, section: Section) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
         for name in self.entries.iter().filter(|entry| entry.section == section).map(|entry| &entry.keys[0]) {
@@ -160,7 +161,7 @@ impl Draft {
         names
     }
 
-    /// The text model.
+    /// The model as text.
     pub(crate) fn text(&self) -> String {
         let mut text = String::new();
         for (section, header) in SECTIONS {
@@ -177,13 +178,13 @@ impl Draft {
         text
     }
 
-    /// The model as read from the text.
+    /// The model read from the text.
     pub(crate) fn document(&self) -> Result<Document, ModelError> {
         Document::parse(Source::new(self.name.clone(), self.text()))
     }
 }
 
-/// A string of TOML on one line.
+/// A TOML string on one line.
 pub(crate) fn quoted(text: &str) -> String {
     let mut quoted = String::from("\"");
     for c in text.chars() {
@@ -199,19 +200,19 @@ pub(crate) fn quoted(text: &str) -> String {
     quoted
 }
 
-/// A list of strings of TOML.
+/// A TOML list of strings.
 pub(crate) fn list(texts: &[&str]) -> String {
     let texts: Vec<String> = texts.iter().map(|text| quoted(text)).collect();
     format!("[{}]", texts.join(", "))
 }
 
-/// A list of finite numbers of TOML.
+/// A TOML list of finite numbers.
 pub(crate) fn numbers(values: &[f64]) -> String {
     let values: Vec<String> = values.iter().map(|&value| number(value)).collect();
     format!("[{}]", values.join(", "))
 }
 
-/// A finite number of TOML that reads back as the same.
+/// A finite number in TOML that reads back as the same number.
 pub(crate) fn number(value: f64) -> String {
     format!("{value:?}")
 }

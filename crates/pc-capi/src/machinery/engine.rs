@@ -17,7 +17,8 @@ use crate::machinery::motion_field::MotionField;
 /// The integration, with its events.
 pub(crate) type Engine = Box<pc_solve::Integration<Chosen<MotionField>, Followed>>;
 
-/// Begins at a checkpoint, which may be a start; `field` keeps its integrals at their values there.
+/// Begins at a checkpoint, which may be the start of a motion; `field` keeps its integrals at their
+/// values there.
 pub(crate) fn engine(
     mut field: MotionField,
     from: &Checkpoint,
@@ -33,7 +34,7 @@ pub(crate) fn engine(
     Ok(Box::new(begun.with_events_of(events, from)?))
 }
 
-/// A solver's record of its events: the same amount however often they occur.
+/// A solver's record of its events; its size does not depend on how often they occur.
 #[derive(Default)]
 pub(crate) struct EventLog {
     /// How often each has occurred.
@@ -95,7 +96,7 @@ impl Integration {
         Ok(Integration { engine, events, options, sensitivities, earlier: Statistics::default(), record })
     }
 
-    /// Follows one more event; an error changes nothing.
+    /// Follows one more event; on an error nothing changes.
     pub(crate) fn add(&mut self, event: Event, own: Own) -> Result<(), CallError> {
         if self.statistics().steps > 0 {
             return Err(CallError::Begun { what: "an event" });
@@ -107,7 +108,7 @@ impl Integration {
         Ok(())
     }
 
-    /// Integrates one more column of sensitivities; an error changes nothing.
+    /// Integrates one more column of sensitivities; on an error nothing changes.
     pub(crate) fn differentiate(&mut self, parameter: usize, start: &[f64]) -> Result<(), CallError> {
         if self.statistics().steps > 0 {
             return Err(CallError::Begun { what: "a sensitivity" });
@@ -163,7 +164,7 @@ impl Integration {
         Ok(())
     }
 
-    /// A number that distinguishes its equations from others.
+    /// A number that distinguishes the equations from others.
     pub(crate) fn digest(&self) -> u64 {
         self.engine.field().digest()
     }
@@ -175,7 +176,7 @@ impl Integration {
         Ok(self.engine.checkpoint())
     }
 
-    /// Begins a call, which has the full time limit again.
+    /// Begins a call, for which the full time limit is available again.
     fn called(&mut self) {
         self.record.terminal = None;
         self.engine.renew_deadline();

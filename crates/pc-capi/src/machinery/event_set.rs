@@ -9,12 +9,12 @@ use pc_expr::{Event, Events, Failure, Program};
 
 use crate::ffi::user_data::User;
 
-/// g(t, y) of an event, a function of C.
+/// The function g(t, y) of an event, as a C function.
 pub(crate) type Function = unsafe extern "C" fn(f64, *const f64, usize, *mut f64, *mut c_void) -> c_int;
-/// Overwrites y⁻ by y⁺, a function of C.
+/// The reset of an event, as a C function that overwrites y⁻ with y⁺.
 pub(crate) type Reset = unsafe extern "C" fn(f64, *mut f64, usize, *mut c_void) -> c_int;
-/// The events of an integration. Copies share the functions of the program, and stay with one
-/// solver.
+/// The events of an integration. Copies share the functions of the program, and all belong to the
+/// same solver.
 #[derive(Clone)]
 pub(crate) struct Followed {
     list: Vec<Event>,
@@ -30,7 +30,7 @@ pub(crate) struct Own {
     pub(crate) user: User,
 }
 
-/// A function of the program failed.
+/// The error for a function of the program that failed.
 #[derive(Debug, thiserror::Error)]
 #[error("the {what} of the event {event} returned {code}")]
 struct Returned {
@@ -67,7 +67,7 @@ impl Followed {
         self.model.set_parameters(values);
     }
 
-    /// Whether there are events of the program.
+    /// Whether any events are computed by functions of the program.
     pub(crate) fn has_own(&self) -> bool {
         !self.own.is_empty()
     }

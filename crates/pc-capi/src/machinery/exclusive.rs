@@ -11,7 +11,7 @@ const FREE: u8 = 0;
 const IN_USE: u8 = 1;
 const BROKEN: u8 = 2;
 
-/// A value that one call at a time may use, and none after a panic in one.
+/// A value that one call at a time may use, and that no call may use after one has panicked.
 ///
 /// Like a mutex for which nobody waits; releasing it takes no atomic exchange, whose cost shows in
 /// an evaluation of a few nanoseconds.
@@ -23,7 +23,7 @@ pub(crate) struct Exclusive<T> {
 // SAFETY: the value goes from thread to thread, and only one has it at a time.
 unsafe impl<T: Send> Sync for Exclusive<T> {}
 
-/// The value, until this is dropped.
+/// Access to the value, until this is dropped.
 pub(crate) struct Use<'a, T>(&'a Exclusive<T>, PhantomData<&'a mut T>);
 
 impl<T> Exclusive<T> {
@@ -31,7 +31,7 @@ impl<T> Exclusive<T> {
         Exclusive { state: AtomicU8::new(FREE), value: UnsafeCell::new(value) }
     }
 
-    /// The value, if nobody else uses it.
+    /// Gives access to the value, if nobody else uses it.
     #[inline]
     pub(crate) fn take(&self) -> Result<Use<'_, T>, CallError> {
         match self.state.compare_exchange(FREE, IN_USE, Ordering::Acquire, Ordering::Relaxed) {
@@ -41,8 +41,8 @@ impl<T> Exclusive<T> {
         }
     }
 
-    /// Refuses all further use of the value, so that it can be dropped; false if a call uses it
-    /// now.
+    /// Refuses all further use of the value, so that it can be dropped; returns false if a call is
+    /// using it now.
     pub(crate) fn close(&self) -> bool {
         self.state.swap(IN_USE, Ordering::Acquire) != IN_USE
     }

@@ -1,4 +1,4 @@
-//! f(t, y) by machine code alone.
+//! f(t, y) computed by machine code alone.
 
 use std::mem::MaybeUninit;
 use std::slice;
@@ -8,16 +8,17 @@ use pc_mech::MachineCode;
 
 use crate::machinery::motion_field::MotionField;
 
-/// The machine code of f, and the parameters it is for.
+/// The machine code of f, and the parameters for which it is evaluated.
 ///
 /// An evaluation writes only to its own scratch, so it needs no lock. Like the reader of a seqlock,
 /// it notices when new parameters are published during an evaluation.
 pub(crate) struct Direct {
     code: MachineCode,
-    /// Even while the published numbers are complete; changed by every publication.
+    /// A version number, which is even while the published numbers are complete; every publication
+    /// changes it.
     version: AtomicU64,
-    /// The published numbers, all f64: pivots that depend on parameters alone, and the parameters
-    /// of the code.
+    /// The published numbers, stored as the bits of f64: pivots that depend on parameters alone,
+    /// and the parameters of the code.
     fixed_pivots: Box<[AtomicU64]>,
     parameters: Box<[AtomicU64]>,
     room: usize,
@@ -45,7 +46,7 @@ impl Direct {
         Some(direct)
     }
 
-    /// Takes over the parameters of the field; one call at a time.
+    /// Publishes the parameters of the field; only one call may do so at a time.
     pub(crate) fn publish(&self, field: &mut MotionField) {
         // Computed before the version turns odd and readers have to give up; below they are only
         // read.
@@ -71,15 +72,17 @@ impl Direct {
         self.code.rates_len()
     }
 
-    /// Length of its scratch, including its outputs where they are more than the rates.
+    /// Length of the scratch space, including the outputs where there are more of them than rates.
     pub(crate) fn room(&self) -> usize {
         self.room
     }
 
-    /// Writes ẏ. False if f fails or the parameters change during the call; ẏ is then undefined.
+    /// Writes ẏ. Returns false if f fails or the parameters change during the call; ẏ is then
+    /// undefined.
     ///
     /// # Safety
-    /// `y` and `ydot` have place for [`dim`](Direct::dim) numbers and share no memory; the field lives.
+    /// `y` and `ydot` have room for [`dim`](Direct::dim) numbers and share no memory; the field is
+    /// alive.
     #[inline]
     pub(crate) unsafe fn rates(&self, t: f64, y: *const f64, ydot: *mut f64) -> bool {
         let version = self.version.load(Ordering::Acquire);
@@ -98,10 +101,10 @@ impl Direct {
         right && version.is_multiple_of(2) && self.version.load(Ordering::Relaxed) == version
     }
 
-    /// The same where nothing is published during the call.
+    /// The same, provided that nothing is published during the call.
     ///
     /// # Safety
-    /// As for [`rates`](Direct::rates), with place for [`room`](Direct::room) numbers at `room`.
+    /// As for [`rates`](Direct::rates), with memory for [`room`](Direct::room) numbers at `room`.
     #[inline]
     pub(crate) unsafe fn rates_alone(&self, t: f64, y: *const f64, ydot: *mut f64, room: *mut f64) -> bool {
         let (dim, outputs) = (self.dim(), self.code.outputs_len());

@@ -6,17 +6,17 @@ use pc_mech::{Expr, MechError};
 
 use crate::ffi::call_error::CallError;
 
-/// The parts of M η̇ = r and of ẋ = b η + b_0, functions of t and (x, η).
+/// The parts of M η̇ = r and of ẋ = b η + b_0, as functions of t and (x, η).
 #[derive(Clone)]
 pub(crate) struct Mechanics {
     /// M, k × k.
     pub(crate) mass: Evaluator,
-    /// c_rs^m, the index m fastest, then s, then r.
+    /// The structure coefficients c_rs^m; the index m varies fastest, then s, then r.
     pub(crate) structure: Evaluator,
     pub(crate) operators: usize,
     /// b η + b_0, then r, then ż; the external forces are further inputs.
     pub(crate) right: Evaluator,
-    /// Whether the equations are M η̇ = r, without multipliers and momenta.
+    /// Whether M η̇ = r are all the equations, without multipliers and momenta.
     pub(crate) complete: bool,
 }
 

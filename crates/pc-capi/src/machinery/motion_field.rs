@@ -12,7 +12,8 @@ pub(crate) enum MotionField {
 }
 
 impl MotionField {
-    /// The motion under external forces on these quasi-velocities, whose function is still to be set.
+    /// The motion under external forces on these quasi-velocities; the function that computes the
+    /// forces is still to be set.
     pub(crate) fn new(motion: Motion, forces: Vec<String>) -> Result<MotionField, MechError> {
         match forces.as_slice() {
             [] => Ok(MotionField::Free(Box::new(motion))),
@@ -20,8 +21,8 @@ impl MotionField {
         }
     }
 
-    /// Sets the function of the forces and returns the former one; an error returns the new one,
-    /// for want of forces.
+    /// Sets the function that computes the forces and returns the former one; if there are no
+    /// external forces, returns the new one as an error.
     pub(crate) fn set_force(&mut self, controller: Controller) -> Result<Controller, Controller> {
         match self {
             MotionField::Free(_) => Err(controller),
@@ -29,7 +30,7 @@ impl MotionField {
         }
     }
 
-    /// A number that distinguishes it from fields of other equations or names.
+    /// A number that distinguishes the field from those with other equations or names.
     pub(crate) fn digest(&self) -> u64 {
         self.motion().digest()
     }
@@ -75,7 +76,7 @@ impl MotionField {
         self.dim() - self.coordinates() - self.motion().states()
     }
 
-    /// Names of the constraints that are kept by projection.
+    /// Names of the constraints that projection maintains.
     pub(crate) fn constraint_names(&self) -> &[String] {
         self.motion().constraint_names()
     }
@@ -120,7 +121,7 @@ impl MotionField {
         }
     }
 
-    /// Writes the observables without a call of the function of the forces; those that contain a force are not finite.
+    /// Writes the observables without calling the function of the forces; those that contain a force are not finite.
     pub(crate) fn observe_unforced(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         match self {
             MotionField::Free(motion) => motion.observe_to(t, y, values),

@@ -22,7 +22,7 @@ use crate::machinery::motion_field::MotionField;
 pub struct pc_system {
     /// Dropped first: a `destroy` of the program may read names.
     pub(crate) inner: Exclusive<Inner>,
-    /// The machine code of f, which needs a live field but no lock; known after the first
+    /// The machine code of f, which needs a live field but no lock; it is known after the first
     /// evaluation.
     direct: OnceLock<Option<Direct>>,
     pub(crate) inventory: Arc<Inventory>,
@@ -39,7 +39,7 @@ pub(crate) struct Inventory {
     pub(crate) observables: Vec<CString>,
     pub(crate) conserved: usize,
     pub(crate) constraints: Vec<CString>,
-    /// Places of the reactions among the observables, with their names.
+    /// The positions of the reactions among the observables, whose names they share.
     pub(crate) reactions: Vec<usize>,
     pub(crate) pattern: Option<Pattern>,
     /// The quasi-velocities on which external forces act.
@@ -63,7 +63,7 @@ impl Inventory {
         deep(|| work(model))
     }
 
-    /// The deadline of what begins now, by the limits of the first derivation.
+    /// The deadline for work that begins now, according to the limits of the first derivation.
     pub(crate) fn deadline(&self) -> Deadline {
         Deadline::new(self.model.budget().limits())
     }
@@ -79,16 +79,16 @@ pub(crate) struct Inner {
     pub(crate) field: MotionField,
     /// The values of the parameters, some of which are expressions in others.
     pub(crate) values: Parameters,
-    /// The time and state at which the integrals kept by projection have their values.
+    /// The time and state at which the integrals maintained by projection take their values.
     kept_at: (f64, Vec<f64>),
     /// The events of the model.
     pub(crate) events: FlowEvents,
     /// Derived on first use.
     pub(crate) mechanics: Option<Mechanics>,
     pub(crate) legendre: Option<LegendreTransform>,
-    /// The motion with its derivative with respect to time, or nothing if f does not contain time.
+    /// The motion with ∂f/∂t, or nothing if f does not contain time.
     by_time: Option<Option<Box<Motion>>>,
-    /// The factors of M, after the first solution with M.
+    /// The factors of M, once a system with M has been solved.
     pub(crate) factors: Option<MassFactors>,
     pub(crate) room: Room,
 }
@@ -208,7 +208,8 @@ impl pc_system {
 }
 
 impl Inner {
-    /// Takes `values` as the parameters; kept integrals then have their values for these.
+    /// Takes `values` as the parameters; the integrals to be kept then take the values for these
+    /// parameters.
     fn take_values(&mut self) {
         let values = self.values.values();
         self.field.parameters_mut().copy_from_slice(values);
@@ -249,10 +250,10 @@ impl Inner {
     }
 }
 
-/// Calls `body` with the inventory of the system, and with what one call may use at a time.
+/// Calls `body` with the inventory of the system and with the part that one call at a time may use.
 ///
 /// # Safety
-/// `system` is null or a live handle, `error` null or a place for a pointer.
+/// `system` is null or a live handle, `error` null or memory for a pointer.
 pub(crate) unsafe fn inside(
     system: *const pc_system,
     error: *mut *mut pc_error,
@@ -262,7 +263,7 @@ pub(crate) unsafe fn inside(
     unsafe { holding(system, error, |system, inner| body(&system.inventory, inner)) }
 }
 
-/// Calls `body` with the system, and with what one call may use at a time.
+/// Calls `body` with the system and with the part that one call at a time may use.
 ///
 /// # Safety
 /// As for [`inside`].
@@ -280,12 +281,12 @@ pub(crate) unsafe fn holding(
     unsafe { entry(error, body) }
 }
 
-/// A number of the inventory; 0 for null.
+/// A number from the inventory of a system; 0 for null.
 pub(crate) fn count(system: Option<&pc_system>, number: impl FnOnce(&Inventory) -> usize) -> usize {
     system.map_or(0, |system| number(&system.inventory))
 }
 
-/// A name of the inventory; null for null, and beyond the last.
+/// A name from the inventory of a system; null for a null system, and beyond the last name.
 pub(crate) fn name(
     system: Option<&pc_system>,
     index: usize,

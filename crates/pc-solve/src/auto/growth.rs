@@ -15,14 +15,15 @@ pub(super) struct Growth {
     direction: Vec<f64>,
     state: Vec<f64>,
     rates: [Vec<f64>; 2],
-    /// The last estimates, of which the largest is used.
+    /// The latest estimates; the largest of them is used.
     recent: [f64; RECENT],
     count: usize,
 }
 
-/// Number of estimates of which the largest is used: for a rotation they rise and fall.
+/// The number of estimates whose maximum is used: for a rotation the estimates rise and fall.
 const RECENT: usize = 6;
-/// The size of ε relative to that of the state: the square root of the rounding of f.
+/// The size of ε relative to that of the state: the square root of the relative rounding error of
+/// f.
 const RELATIVE: f64 = 1.5e-8;
 
 impl Growth {
@@ -52,8 +53,8 @@ impl Growth {
         }
     }
 
-    /// Makes one step of the iteration, with f evaluated by `look`, and returns ρ; none until there
-    /// are enough estimates, or if f fails.
+    /// Makes one step of the iteration, with f evaluated by `look`, and returns ρ, or none until
+    /// there are enough estimates or if f fails.
     pub(super) fn estimate(&mut self, mut look: impl FnMut(&[f64], &mut [f64]) -> bool) -> Option<f64> {
         let Growth { y, tolerances, direction, state, rates: [here, there], recent, count } = self;
         let norm = |v: &[f64]| {

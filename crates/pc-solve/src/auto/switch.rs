@@ -1,4 +1,4 @@
-//! The stepper that changes between two methods.
+//! The stepper that switches between two methods.
 
 use std::fmt;
 
@@ -14,30 +14,31 @@ use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::options::Options;
 
-/// A BDF step of length h with h ρ below this is not stiff. It takes about two evaluations of f and
-/// linear solves; an explicit step takes twelve evaluations and is stable up to 6.1/ρ, so that the
-/// explicit method costs no more, even where stability limits it.
+/// A BDF step of length h counts as non-stiff if h ρ is below this. Such a step takes about two
+/// evaluations of f and linear solves; an explicit step takes twelve evaluations and is stable up
+/// to 6.1/ρ, so that the explicit method costs no more, even where stability limits its steps.
 const STIFF: f64 = 1.0;
 /// One in this many BDF steps is examined …
 const EVERY: u64 = 4;
-/// … and this many examined in succession must be non-stiff; twice as many after each return.
+/// … and this many examined steps in succession must be non-stiff; the number doubles at each
+/// return.
 const CLEAR: u32 = 8;
-/// Number of returns after which that number grows no further.
+/// Number of returns after which that number stops doubling.
 const DOUBLINGS: u32 = 8;
 
-/// A method that is [`Dop853`] where the motion is not stiff and [`Cvode`] by BDF formulas where it
-/// is.
+/// A method that uses [`Dop853`] where the motion is not stiff, and [`Cvode`] with BDF formulas
+/// where it is.
 ///
 /// It begins explicitly. Where [stiffness](Dop853::stiff_from) is detected, CVODE continues from
-/// the end of that step at order 1; when for many steps the product of their length with an
-/// estimate of the largest eigenvalue of ∂f/∂y is below 1, it returns to the explicit method, which
-/// is stable up to 6.1. Each return doubles the number of steps needed for the next one, to prevent
+/// the end of that step at order 1; once the length of the steps times an estimate of the largest
+/// eigenvalue of ∂f/∂y has been below 1 for many steps, it returns to the explicit method, which is
+/// stable up to 6.1. Each return doubles the number of steps needed for the next one, to prevent
 /// oscillation between the methods. The motion alone decides: the same input gives the same steps.
-/// From a checkpoint it always begins explicitly.
+/// A motion resumed from a checkpoint always begins explicitly.
 pub struct Auto<F: VectorField> {
     /// None only while one method replaces the other.
     engine: Option<Engine<F>>,
-    /// Options of both methods, with [`Method::Bdf`].
+    /// The options of both methods; the method they name is [`Method::Bdf`].
     options: Options,
     growth: Growth,
     /// BDF steps since the last change, and successive examined steps that were non-stiff.

@@ -17,10 +17,10 @@
 //! assert_eq!(motion.state_at(4.0)?, later.state_at(4.0)?);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! With events it also keeps their status: the side of zero of each function, their last
-//! occurrences, and the events that are due. A quantity that a field conserves by projection, such
-//! as the energy, has the value with which the field was made, or after a
-//! [restart](crate::Integration::restart), for example by a reset, the value at the state of the
+//! With events it also keeps their status: on which side of zero each function is, when each event
+//! last occurred, and which events are due. A quantity that a field conserves by projection, such
+//! as the energy, keeps the value given to the field when it was made, or, after a
+//! [restart](crate::Integration::restart), for example by a reset, its value at the state of the
 //! checkpoint.
 
 use std::num::NonZeroU64;
@@ -40,10 +40,10 @@ pub struct Checkpoint {
     pub(crate) outputs: Trajectory,
     pub(crate) occurrences: Vec<Occurrence>,
     pub(crate) statistics: Statistics,
-    /// Steps since the last output, which are limited.
+    /// The number of steps since the last output, to which a limit applies.
     pub(crate) steps_since_output: u64,
-    /// Whether the motion has been restarted, by a reset for example: quantities that the field
-    /// conserves by projection then have their values at this state.
+    /// Whether the motion has been restarted, for example by a reset: quantities that the field
+    /// conserves by projection then keep the values they have at this state.
     pub(crate) jumped: bool,
     /// S, column-major; empty without sensitivities.
     pub(crate) sensitivities: Vec<f64>,
@@ -59,7 +59,8 @@ pub(crate) struct Past {
     /// The status of each event.
     pub(crate) events: Vec<EventPast>,
     /// The events at the time of the checkpoint that are still to be applied, each with the
-    /// magnitude above which its function then differs from zero, and the side it takes next.
+    /// magnitude above which its function then differs from zero, and the side of zero that it
+    /// takes next.
     pub(crate) due: Vec<(usize, f64, f64)>,
 }
 
@@ -75,10 +76,11 @@ pub(crate) struct EventPast {
 }
 
 impl Checkpoint {
-    /// Steps from one checkpoint to the next by default: many more than the few dozen short steps after a restart.
+    /// The default number of steps from one checkpoint to the next: many more than the few dozen
+    /// short steps that follow a restart.
     pub const EVERY: NonZeroU64 = NonZeroU64::new(1000).expect("not 0");
 
-    /// The start of a motion.
+    /// The checkpoint at the start of a motion.
     pub fn start(t0: f64, y0: &[f64]) -> Checkpoint {
         Checkpoint {
             time: t0,

@@ -22,11 +22,11 @@ use crate::integration::trajectory::Trajectory;
 const MAGIC: &[u8] = b"pc checkpoint ";
 const VERSION: u64 = 6;
 
-/// Why bytes are not a checkpoint.
+/// Why bytes cannot be read as a checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
-    /// The bytes are something else.
+    /// The bytes are not those of a checkpoint.
     #[error("it is not a checkpoint")]
     Foreign,
     /// A checkpoint of another version of the format.
@@ -41,7 +41,7 @@ pub enum CheckpointError {
 }
 
 impl Checkpoint {
-    /// The checkpoint as bytes. The `label` tells what it belongs to.
+    /// The checkpoint as bytes. The `label` says what the checkpoint belongs to.
     pub fn to_bytes(&self, label: &str) -> Vec<u8> {
         let mut bytes = [MAGIC, format!("{VERSION}\n").as_bytes()].concat();
         put_integer(&mut bytes, label.len() as u64);
@@ -251,7 +251,7 @@ fn numbers(bytes: &mut &[u8], count: usize) -> Option<Vec<f64>> {
     numbers.map(|number| Some(f64::from_le_bytes(number.try_into().ok()?))).collect()
 }
 
-/// A list, after its length.
+/// Reads a list that is preceded by its length.
 fn list<T>(bytes: &mut &[u8], mut one: impl FnMut(&mut &[u8]) -> Option<T>) -> Option<Vec<T>> {
     (0..integer(bytes)?).map(|_| one(bytes)).collect()
 }

@@ -20,7 +20,7 @@ use crate::solve::solution::Solution;
 /// A motion, and its sensitivities at the outputs, one matrix after the other.
 pub(crate) type Reached = (Solution, Vec<f64>);
 
-/// The same, by a method with sensitivities or without.
+/// Integrates a motion in legs, with a method that has sensitivities or none.
 pub(crate) fn follow<F: VectorField, E: Events>(
     method: &impl IntegrationMethod<F>,
     mut parts: impl FnMut() -> (F, E),
@@ -79,7 +79,8 @@ pub(crate) fn follow<F: VectorField, E: Events>(
     }
 }
 
-/// Gives a method begun at a checkpoint its sensitivities there; at a start it has those of the method.
+/// Gives a method that has begun at a checkpoint the sensitivities there; at the start of a motion
+/// the method keeps its own.
 ///
 /// # Errors
 /// [`InputError::Sensitivities`] if the method has another number of columns.
@@ -102,17 +103,17 @@ fn take_up<S: Stepper>(stepper: &mut S, stand: &Checkpoint) -> Result<(), SolveE
     stepper.restart(stand.time, &stand.state, &stand.sensitivities, None)
 }
 
-/// The motion up to a checkpoint, with this ending.
+/// The motion up to a checkpoint, which ended in this way.
 fn motion(stand: Checkpoint, ending: Option<Ending>) -> Reached {
     let Checkpoint { outputs: mut trajectory, occurrences, statistics, output_sensitivities, .. } = stand;
     trajectory.finish(ending == Some(Ending::Completed), statistics);
     (Solution { trajectory, occurrences, ending, slides: Vec::new() }, output_sensitivities)
 }
 
-/// What all legs share.
+/// The settings that all legs share.
 struct Plan<'a> {
     times: &'a [f64],
-    /// Steps of a leg.
+    /// The number of steps of a leg.
     every: u64,
     /// Maximum number of steps from one output to the next.
     limit: u64,
@@ -127,10 +128,10 @@ enum End {
 }
 
 impl Plan<'_> {
-    /// Integrates one leg, and adds its outputs and occurrences to the checkpoint `stand` where it
-    /// began; returns how the motion ends, if it does.
+    /// Integrates one leg, and adds its outputs and occurrences to `stand`, the checkpoint at which
+    /// it began; returns how the motion ends, if it ends in this leg.
     ///
-    /// A leg has `every` steps, or more while these do not advance the time.
+    /// A leg has `every` steps, or more if these have not advanced the time.
     fn leg<S: Stepper, E: Events>(
         &self,
         integration: &mut Integration<S, E>,
@@ -197,7 +198,7 @@ impl Plan<'_> {
     }
 }
 
-/// The error of too many steps before the output at `t`.
+/// The error for too many steps before the output at `t`.
 fn too_much_work<S: Stepper, E: Events>(integration: &Integration<S, E>, steps: u64, t: f64) -> SolveError {
     let reason = Reason::Steps { steps, t, last: integration.statistics().last_step.abs() };
     let (time, state) = (integration.time(), integration.state().to_vec());

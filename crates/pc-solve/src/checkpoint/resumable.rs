@@ -51,29 +51,30 @@ pub struct Resumable<P, M = Options> {
 }
 
 impl<P> Resumable<P> {
-    /// From this checkpoint, by the default [`Options`], with a checkpoint [every 1000 steps](Checkpoint::EVERY).
+    /// A motion from this checkpoint, with the default [`Options`] and a checkpoint [every 1000
+    /// steps](Checkpoint::EVERY).
     pub fn new(parts: P, from: Checkpoint) -> Resumable<P> {
         Resumable { parts, from, method: Options::default(), every: Checkpoint::EVERY }
     }
 }
 
 impl<P, M> Resumable<P, M> {
-    /// By this method: [`Options`] choose one of those built in.
+    /// Sets the method: [`Options`] choose one of those built in.
     pub fn method<N>(self, method: N) -> Resumable<P, N> {
         let Resumable { parts, from, every, .. } = self;
         Resumable { parts, from, method, every }
     }
 
-    /// With a checkpoint every so many steps.
+    /// Sets the number of steps from one checkpoint to the next.
     pub fn every(self, every: NonZeroU64) -> Resumable<P, M> {
         Resumable { every, ..self }
     }
 
     /// The states at `times`, the first of which are the outputs of the checkpoint, and the occurrences of events.
     ///
-    /// Each checkpoint, including the first, is passed to `save`, and the last one again with `true` if
-    /// the motion fails or `step`, which sees the end of each step, stops it. The outputs beyond it are returned, but the motion
-    /// resumes from the checkpoint.
+    /// Each checkpoint, including the first, is passed to `save`, and the last one again with
+    /// `true` if the motion fails or is stopped by `step`, which sees the end of each step. The
+    /// outputs beyond that checkpoint are returned, but the motion resumes from the checkpoint.
     ///
     /// # Errors
     /// As for [`Solve::run`](crate::Solve::run), and [`InputError::EventCount`](crate::InputError::EventCount);

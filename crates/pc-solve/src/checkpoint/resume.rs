@@ -1,4 +1,4 @@
-//! Checkpoints of an integration.
+//! Making checkpoints of an integration, and resuming from them.
 
 use pc_expr::{Events, VectorField};
 
@@ -12,7 +12,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// The current time, state, sensitivities and statistics of the integration, and the status of
     /// its events, for [`resume`](Integration::resume).
     ///
-    /// Events that are due where an observer has stopped it are applied after the checkpoint.
+    /// Events that are due where an observer has stopped the integration are applied after the
+    /// checkpoint.
     pub fn checkpoint(&self) -> Checkpoint {
         let at_front = self.time() == self.front.t;
         // Inside a step, `sides` belongs to the front, ahead of the checkpoint.
@@ -43,7 +44,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
 }
 
 impl<S: Stepper> Integration<S> {
-    /// Continues from a checkpoint with a method that has been begun there.
+    /// Continues from a checkpoint with a method that has begun there.
     ///
     /// If the motion was [restarted](Integration::restart) before the checkpoint, so is [the
     /// field](VectorField::restart), which then conserves the values at the checkpoint.
@@ -58,7 +59,7 @@ impl<S: Stepper> Integration<S> {
     ///
     /// # Errors
     /// As for [`with_events`](Integration::with_events); [`InputError::EventCount`] if the
-    /// checkpoint is of a motion with another number of events.
+    /// checkpoint belongs to a motion with another number of events.
     pub fn with_events_of<E: Events>(
         self,
         events: E,

@@ -1,4 +1,4 @@
-//! Resumption of an integration by the method of options.
+//! Resumption of an integration with the method that options choose.
 
 use pc_expr::VectorField;
 
@@ -11,12 +11,12 @@ use crate::integration::integration::Integration;
 use crate::settings::options::Options;
 
 impl<F: VectorField> Integration<Chosen<F>> {
-    /// Begins at a checkpoint, which may be a start, by the method of the options, without its
-    /// events: [`with_events_of`](Integration::with_events_of) adds them.
+    /// Begins at a checkpoint, which may be the start of a motion, with the method of the options
+    /// and without its events: [`with_events_of`](Integration::with_events_of) adds them.
     ///
     /// With sensitivities the method is one of CVODES, Adams for
-    /// [`Method::Auto`](crate::Method::Auto); their columns are those of the checkpoint, at a start
-    /// those of `sensitivities`.
+    /// [`Method::Auto`](crate::Method::Auto); the columns are those of the checkpoint, or at the
+    /// start of a motion those of `sensitivities`.
     ///
     /// # Errors
     /// As for [`Chosen::new`], and

@@ -1,4 +1,4 @@
-//! Resumption of an integration by CVODES.
+//! Resumption of an integration with CVODES.
 
 use pc_expr::VectorField;
 
@@ -11,7 +11,7 @@ use crate::integration::integration::Integration;
 use crate::settings::options::Options;
 
 impl<F: VectorField> Cvode<F> {
-    /// Begins at a checkpoint with its columns.
+    /// Begins at a checkpoint with its columns of sensitivities.
     ///
     /// # Errors
     /// As for [`with_sensitivities`](Cvode::with_sensitivities); [`InputError::Sensitivities`] if
@@ -40,8 +40,8 @@ impl<F: VectorField> Integration<Cvode<F>> {
     /// [`with_events_of`](Integration::with_events_of) adds them.
     ///
     /// The resumed motion equals the uninterrupted one to the last bit if `field`, events and
-    /// `options` are the same; fields and events that remember earlier evaluations must be as newly
-    /// made.
+    /// `options` are the same; fields and events that remember earlier evaluations must be in the
+    /// state in which they were made.
     ///
     /// # Errors
     /// As for [`new`](Integration::new); [`InputError::Sensitivities`] if the checkpoint has
@@ -54,7 +54,8 @@ impl<F: VectorField> Integration<Cvode<F>> {
     /// Their columns are specified by `sensitivities`, whose starts are ignored.
     ///
     /// # Errors
-    /// As there; [`InputError::Sensitivities`] if the checkpoint has another number of columns.
+    /// As for [`resume`](Integration::resume); [`InputError::Sensitivities`] if the checkpoint has
+    /// another number of columns.
     pub fn resume_with_sensitivities(
         field: F,
         checkpoint: &Checkpoint,

@@ -31,7 +31,7 @@ impl<F: VectorField> Cvode<F> {
         }
     }
 
-    /// Reinitialises CVODES at its current state, without telling the field.
+    /// Reinitialises CVODES at its current state, without notifying the field.
     fn begin_anew(&mut self) -> Result<(), SolveError> {
         let before = self.work_so_far();
         let work = self.sensitivity_statistics();

@@ -1,4 +1,4 @@
-//! Callbacks of CVODES to a [`VectorField`], with failures, panics and non-finite values.
+//! Callbacks from CVODES to a [`VectorField`], which handle failures, panics and non-finite values.
 
 use std::any::Any;
 use std::ffi::{c_int, c_void};
@@ -25,7 +25,7 @@ pub(crate) struct Callbacks<F> {
     pub(crate) field: F,
     pub(crate) dim: usize,
     pub(crate) linear: Work,
-    /// Converts vectors of CVODES to states.
+    /// Converts vectors of CVODES to states, if the field has a projection.
     offset: Option<Offset>,
     /// The last failure, until it is taken.
     failure: Option<Failure>,
@@ -55,8 +55,8 @@ impl<F: VectorField> Callbacks<F> {
         })
     }
 
-    /// Evaluates, keeps a failure or panic for the caller of CVODES, and returns the code that
-    /// CVODES expects.
+    /// Calls `evaluate`, keeps its failure or panic for the caller of CVODES, and returns the code
+    /// that CVODES expects.
     pub(crate) fn guard(
         &mut self,
         evaluate: impl FnOnce(&mut F, Option<&mut Offset>) -> Result<(), Failure>,
@@ -103,7 +103,7 @@ impl<F> UserData<F> {
         UserData(NonNull::from(Box::leak(Box::new(callbacks))))
     }
 
-    /// The address for `CVodeSetUserData`.
+    /// The address to pass to `CVodeSetUserData`.
     pub(crate) fn address(&self) -> *mut c_void {
         self.0.as_ptr().cast()
     }
@@ -234,7 +234,7 @@ pub(crate) unsafe extern "C" fn rhs<F: VectorField>(
     callbacks.rhs(t, y, ydot)
 }
 
-/// `len` numbers at `data` as a slice, all set to NaN to detect entries that the field leaves
+/// The `len` numbers at `data` as a slice, all set to NaN to detect entries that the field leaves
 /// unwritten.
 ///
 /// # Safety

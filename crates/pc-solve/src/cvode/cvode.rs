@@ -16,8 +16,8 @@ use crate::error::{InputError, IntegrationError, Reason, SolveError};
 use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
 
-/// The variable-order, variable-step multistep methods of CVODES as a [`Stepper`](crate::Stepper),
-/// owning the vector field.
+/// The variable-order, variable-step multistep methods of CVODES as a [`Stepper`](crate::Stepper)
+/// that owns the vector field.
 ///
 /// [`Integration`](crate::Integration) integrates with it; [`solve`](crate::solve()) does so in one
 /// call.
@@ -35,7 +35,7 @@ pub struct Cvode<F> {
     pub(crate) callbacks: UserData<F>,
     pub(crate) context: Context,
 
-    /// The current time, in the last step.
+    /// The current time, which lies in the last step.
     pub(crate) time: f64,
     /// The end of the last step of CVODES.
     pub(crate) step_time: f64,
@@ -47,13 +47,14 @@ pub struct Cvode<F> {
     /// Successive steps that did not advance the time, and the last failure overcome in them.
     pub(super) idle_steps: u32,
     pub(super) idle_failure: Option<Failure>,
-    /// The work before the last restart, and whether no step has been made since.
+    /// The work before the last restart, and whether no step has been made since then.
     pub(super) earlier: Statistics,
     pub(crate) restarted: bool,
     pub(super) foresight: crate::cvode::foresight::Foresight,
 }
 
-/// CVODE continues if t + h = t, since h may grow again; the limit on such steps.
+/// The limit on successive steps with t + h = t: CVODE continues after such a step, since h may
+/// grow again.
 const MAX_IDLE_STEPS: u32 = 1000;
 
 // SAFETY: the SUNDIALS objects are reached through this struct alone, share nothing with other
@@ -87,8 +88,8 @@ impl<F: VectorField> Cvode<F> {
         self.earlier.followed_by(&since)
     }
 
-    /// The linear solver of Newton's iteration, as chosen or by default for the field; none for the
-    /// fixed-point iteration.
+    /// The linear solver of Newton's iteration, either the chosen one or the default for the field;
+    /// none for the fixed-point iteration.
     pub fn linear_solver(&self) -> Option<&LinearSolver> {
         self.linear.as_ref().map(Linear::choice)
     }
@@ -138,7 +139,7 @@ impl<F: VectorField> Cvode<F> {
         }
     }
 
-    /// One step of CVODES.
+    /// Makes one step of CVODES.
     pub(crate) fn internal_step(&mut self, towards: f64) -> Result<(), SolveError> {
         if self.direction.is_none()
             && let Some(length) = self.initial_step
@@ -189,9 +190,9 @@ impl<F: VectorField> Cvode<F> {
         self.check_progress(before, failure)
     }
 
-    /// Fails if many successive steps have not advanced the time, the last from `before`.
+    /// Fails if many successive steps have not advanced the time; the last one began at `before`.
     ///
-    /// `failure` occurred in the last step and was overcome by a shorter one.
+    /// `failure` occurred in the last step and was overcome by shortening it.
     fn check_progress(&mut self, before: f64, failure: Option<Failure>) -> Result<(), SolveError> {
         if self.step_time != before {
             self.idle_steps = 0;
@@ -218,7 +219,7 @@ impl<F: VectorField> Cvode<F> {
         }
     }
 
-    /// The error of a failed step, after going to the end of the last successful one.
+    /// Moves to the end of the last successful step and returns the error of the failed one.
     pub(super) fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
         self.time = self.step_time;
         self.error(reason, failure)

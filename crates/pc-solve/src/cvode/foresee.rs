@@ -1,8 +1,8 @@
-//! The field, examined up to the end of the next step.
+//! Examination of the field up to the end of the next step.
 //!
 //! A multistep method evaluates f only at the ends of its steps. Before a step is tried, f is
-//! therefore evaluated at the [places](crate::foresight) where it may have a hidden feature, at the predicted state: with p the polynomial through the last steps, the
-//! defect
+//! therefore evaluated at the [times](crate::foresight) at which it may have a hidden feature, at
+//! the predicted state: with p the polynomial through the last steps, the defect
 //! ```text
 //! δ = p′(t) − f(t, p(t))
 //! ```
@@ -19,12 +19,12 @@ use crate::foresight::SURPRISE;
 use crate::foresight::places::{Ahead, Here, Places};
 use crate::foresight::scatter::scatters;
 
-/// Maximum first step in fractions of the whole interval, as estimated by CVODE.
+/// Maximum length of the first step as a fraction of the whole interval, as CVODE estimates it.
 const FIRST_STEP: f64 = 0.1;
 
 impl<F: VectorField> Cvode<F> {
-    /// A time in the next step towards `towards` at which the step has to end; none if it would
-    /// miss nothing.
+    /// The time at which the next step towards `towards` has to end, so as not to miss a feature of
+    /// the field; none if it would miss nothing.
     pub(super) fn foresee(&mut self, towards: f64) -> Result<Option<f64>, SolveError> {
         let Some(mut places) = self.foresight.places.take_if(|places| !places.are_absent()) else {
             return Ok(None);
@@ -83,7 +83,7 @@ impl<F: VectorField> Cvode<F> {
         }
     }
 
-    /// Reads the polynomial of the last step; before the first, the tangent.
+    /// Reads the polynomial of the last step, or the tangent before the first step.
     fn read_polynomial(&mut self) -> Result<(), SolveError> {
         let t = self.step_time;
         let Foresight { polynomial, state, rates, evaluations, .. } = &mut self.foresight;
@@ -119,7 +119,7 @@ impl<F: VectorField> Cvode<F> {
         Ok(())
     }
 
-    /// Whether f at this place differs from the prediction enough to matter for a step of this
+    /// Whether f at this time differs from the prediction by enough to matter in a step of this
     /// length.
     fn surprises_at(&mut self, place: f64, length: f64) -> bool {
         let since = place - self.step_time;

@@ -6,11 +6,11 @@ use crate::foresight::places::Places;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
-/// Approximate maximum ratio of a step's correction to its local error, at the orders at which
-/// steps grow.
+/// Approximate maximum ratio of a step's correction to its local error, at the orders at which the
+/// step length grows.
 const NEXT_TERM: f64 = 20.0;
 
-/// The places to examine, and the prediction there.
+/// The times to examine, and the prediction there.
 pub(super) struct Foresight {
     /// None while it is in use.
     pub(super) places: Option<Places>,
@@ -18,7 +18,7 @@ pub(super) struct Foresight {
     pub(super) absolute_tolerance: Tolerance,
     /// Evaluations since the last restart.
     pub(super) evaluations: u64,
-    /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, for k = 0, 1, …, each of the length of the state; and work space.
+    /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, for k = 0, 1, …, each as long as the state; and work space.
     pub(super) polynomial: Vec<f64>,
     pub(super) state: Vec<f64>,
     pub(super) slope: Vec<f64>,
@@ -66,7 +66,7 @@ impl Foresight {
         self.relative_tolerance * y.abs() + atol
     }
 
-    /// The smallest significant size of a component, by the tolerances.
+    /// The smallest significant size of a component, according to the tolerances.
     pub(super) fn least_size(&self) -> f64 {
         let atol = match &self.absolute_tolerance {
             Tolerance::Scalar(atol) => *atol,
@@ -75,7 +75,7 @@ impl Foresight {
         atol / self.relative_tolerance
     }
 
-    /// max |δᵢ|/(rtol |yᵢ| + atolᵢ) for the defect at the last place examined, `since` after the
+    /// max |δᵢ|/(rtol |yᵢ| + atolᵢ) for the defect at the last time examined, `since` after the
     /// last step.
     ///
     /// The part that the next term of the polynomial would explain is subtracted: a method that has

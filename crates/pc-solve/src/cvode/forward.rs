@@ -1,8 +1,9 @@
-//! Sensitivities, integrated along with the motion.
+//! Sensitivities that are integrated along with the motion.
 //!
 //! `sensitivities` specifies the derivatives; `variation` holds their equations, with ∂f/∂y from
-//! whatever the field offers (`linearisation`), called by CVODES through `equations`. `columns`
-//! belong to an integration, `forward` integrates them, `interpolation` gives them inside a step.
+//! whatever the field offers (`linearisation`); CVODES calls them through `equations`. `columns`
+//! are the data of an integration with sensitivities, `forward` integrates them, `interpolation`
+//! gives them inside a step.
 
 pub(crate) mod columns;
 pub(crate) mod equations;

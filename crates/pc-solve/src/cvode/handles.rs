@@ -32,12 +32,12 @@ impl Vector {
         Ok(vector)
     }
 
-    /// Makes the CVODES that starts from this vector repeat a step that violates an inequality with
-    /// at most half its length.
+    /// Makes an instance of CVODES that starts from this vector repeat a step that violates an
+    /// inequality, with at most half its length.
     ///
-    /// The new length is 0.9 times a quotient of vectors that is used for nothing else. CVODES
-    /// forms it with the prediction instead of the last state, so that it is infinite where the
-    /// prediction is exact.
+    /// CVODES takes 0.9 times a quotient of vectors, which it uses for nothing else, as the factor
+    /// of the length. It forms the quotient with the prediction instead of the last state, so that
+    /// it is infinite where the prediction is exact.
     pub(crate) fn halve_after_violations(&mut self) {
         // SAFETY: the vector is live and ours alone, and so is its table of operations, which
         // clones copy.
@@ -71,7 +71,7 @@ pub(crate) unsafe fn numbers_of(vector: sys::N_Vector) -> *mut f64 {
     unsafe { (*(*vector).content.cast::<sys::_N_VectorContent_Serial>()).data }
 }
 
-/// The least quotient of components, at most 0.5/0.9.
+/// The smallest quotient of corresponding components, but at most 0.5/0.9.
 unsafe extern "C" fn bounded_quotient(numerator: sys::N_Vector, denominator: sys::N_Vector) -> f64 {
     // SAFETY: both are live serial vectors of the same length.
     unsafe { sys::N_VMinQuotient_Serial(numerator, denominator) }.min(0.5 / 0.9)
@@ -133,7 +133,7 @@ impl Drop for NonlinearIteration {
     }
 }
 
-/// A type of plain values, not addresses.
+/// A type that CVODES takes by value and that is not an address.
 pub(crate) trait Number {}
 impl Number for f64 {}
 impl Number for c_int {}

@@ -16,7 +16,7 @@ pub(crate) type Integrands = Box<dyn FnMut(f64, &[f64], &mut [f64]) -> Result<()
 /// work of a force, the length of a path, a mean value.
 ///
 /// The method integrates them like further components of the state, outside its implicit equations.
-/// Steps also have to pass the error test of the integrals, unless that is [switched
+/// Steps also have to pass the error test of the integrals, unless that test is [switched
 /// off](Integrals::error_control).
 ///
 /// ```
@@ -71,8 +71,8 @@ impl Integrals {
         Integrals { error_control, ..self }
     }
 
-    /// Relative and absolute tolerance of the integrals, positive; by default those of the state,
-    /// with its smallest absolute tolerance.
+    /// Sets the relative and absolute tolerance of the integrals, positive; by default those of the
+    /// state, with its smallest absolute tolerance.
     pub fn tolerances(self, relative: f64, absolute: f64) -> Integrals {
         Integrals { tolerances: Some((relative, absolute)), ..self }
     }

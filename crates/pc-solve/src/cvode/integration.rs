@@ -1,4 +1,4 @@
-//! Integration by CVODES: constructors, and the functions that only this method has.
+//! Integration with CVODES: constructors, and the functions that only this method has.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -14,7 +14,7 @@ use crate::integration::observer::Observed;
 use crate::settings::options::Options;
 
 impl<F: VectorField> Integration<Cvode<F>> {
-    /// Starts at y(t0) = y0 by CVODES, by Adams' formulas unless the method is
+    /// Starts at y(t0) = y0 with CVODES, using Adams' formulas unless the method is
     /// [`Bdf`](crate::Method::Bdf); `y0` has one number per component.
     ///
     /// # Errors
@@ -26,12 +26,12 @@ impl<F: VectorField> Integration<Cvode<F>> {
 
 /// Data of the error control and the linear solver.
 impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
-    /// As [`Cvode::linear_solver`].
+    /// The same as [`Cvode::linear_solver`].
     pub fn linear_solver(&self) -> Option<&LinearSolver> {
         self.engine.linear_solver()
     }
 
-    /// As [`Cvode::error_weights`].
+    /// The same as [`Cvode::error_weights`].
     ///
     /// # Errors
     /// As there.
@@ -39,7 +39,7 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         self.engine.error_weights()
     }
 
-    /// As [`Cvode::local_errors`].
+    /// The same as [`Cvode::local_errors`].
     ///
     /// # Errors
     /// As there.
@@ -67,7 +67,7 @@ impl<F: VectorField> Integration<Cvode<F>> {
         Ok(Integration::of(Cvode::with_integrals(field, t0, y0, options, integrals)?))
     }
 
-    /// This integration, which has not begun, with integrals along the motion.
+    /// Adds integrals along the motion to this integration, which has not begun.
     ///
     /// # Errors
     /// As for [`Cvode::and_integrals`].
@@ -87,7 +87,8 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         self.engine.integrals_here()
     }
 
-    /// As [`run`](Integration::run), but passes each (t, y) with the integrals up to t to `output`.
+    /// Like [`run`](Integration::run), but passes each (t, y) with the integrals up to t to
+    /// `output`.
     ///
     /// # Errors
     /// As for [`run`](Integration::run) and [`integrals`](Integration::integrals).

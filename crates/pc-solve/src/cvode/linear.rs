@@ -2,9 +2,9 @@
 //!
 //! `solver` lists them, with `krylov` and its `preconditioner`; `choice` selects one, and `linear`
 //! attaches it to CVODES. Direct solvers are `dense`, `band` and `sparse` with `sparse_lu`
-//! (registered with SUNDIALS by `direct`); without a given Jacobian, `quotient_jacobian` computes
-//! it from `quotients`; `gmres` iterates. `work` is the data of the callbacks, `handles` owns the
-//! objects of SUNDIALS.
+//! (registered with SUNDIALS by `direct`); where no Jacobian is given, `quotient_jacobian` computes
+//! it from `quotients`; `gmres` is iterative. `work` is the data of the callbacks, `handles` owns
+//! the objects of SUNDIALS.
 
 pub(crate) mod band;
 pub(crate) mod choice;

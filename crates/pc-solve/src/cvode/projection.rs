@@ -2,14 +2,15 @@
 
 use pc_expr::{Failure, VectorField};
 
-/// The states are y = z + d with z integrated by CVODES. A projection changes d alone: the history
+/// The states are y = z + d, where CVODES integrates z. A projection changes d alone: the history
 /// of z, on which a multistep method relies, stays smooth, and f(t, z + d) changes by no more than
 /// the error of a step [Shampine, Comp. Maths. Appls. 12B (1986) 1287].
 ///
 /// The hook of CVODES, `CVodeSetProjFn`, works for BDF only. On a top with a unit quaternion and on
-/// pendulums in Cartesian coordinates, at four tolerances, it took the same number of steps within
-/// 3 % (once 10 % more), with similar errors and drift; its projection of the error estimate cost a
-/// second projection per step and saved no steps. So one method serves both families.
+/// pendulums in Cartesian coordinates, at four tolerances, it took the same number of steps to
+/// within 3 % (in one case 10 % more), with similar errors and drift; its projection of the error
+/// estimate cost a second projection per step and saved no steps. So one method serves both
+/// families.
 pub(crate) struct Offset {
     d: Vec<f64>,
     /// z + d
@@ -35,7 +36,7 @@ impl Offset {
         &self.state
     }
 
-    /// Replaces z at time t by the projection of y = z + d; at the end of a `step`, d keeps the
+    /// Replaces z at time t by the projection of y = z + d; at the end of a `step`, d retains the
     /// change.
     ///
     /// # Errors

@@ -33,11 +33,11 @@ impl<F: VectorField> Cvode<F> {
         Cvode::new(field, t0, y0, options)?.and_integrals(integrals, options)
     }
 
-    /// This integration, which has not begun, with integrals along the motion.
+    /// Adds integrals along the motion to this integration, which has not begun.
     ///
     /// # Errors
-    /// [`SolveError::Input`] if the request is invalid; [`InputError::NoIntegrals`] if it has
-    /// begun, or has integrals.
+    /// [`SolveError::Input`] if the request is invalid; [`InputError::NoIntegrals`] if the
+    /// integration has begun or already has integrals.
     pub fn and_integrals(mut self, integrals: Integrals, options: &Options) -> Result<Self, SolveError> {
         if self.direction.is_some() || self.quadrature.is_some() {
             return Err(InputError::NoIntegrals.into());
@@ -117,7 +117,7 @@ impl<F: VectorField> Cvode<F> {
         Ok(values.as_slice().to_vec())
     }
 
-    /// The integrals at the current time, if any, from which
+    /// The integrals at the current time, if there are any, from which
     /// [`begin_integrals_anew`](Cvode::begin_integrals_anew) continues.
     pub(super) fn integrals_to_keep(&self) -> Result<Option<Vec<f64>>, SolveError> {
         self.quadrature.as_ref().map(|_| self.integrals_at(self.time)).transpose()
@@ -156,7 +156,7 @@ unsafe extern "C" fn integrands<F: VectorField + Quadratures>(
     callbacks.guard(|field, _| field.integrands(t, y, rates))
 }
 
-/// The same, with the integrands given to the integration.
+/// The same, for the integrands given to the integration.
 ///
 /// # Safety
 /// As there.

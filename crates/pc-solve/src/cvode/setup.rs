@@ -32,7 +32,7 @@ impl<F: VectorField> Cvode<F> {
         Cvode::start(field, t0, y0, options).map_err(|(error, _)| error)
     }
 
-    /// The same, returning the field on failure.
+    /// The same, but returns the field on failure.
     pub(crate) fn start(
         mut field: F,
         t0: f64,
@@ -105,7 +105,7 @@ struct Parts {
 }
 
 impl Parts {
-    /// The objects that call back to `callbacks`, which must outlive them.
+    /// Makes the objects, which call back to `callbacks`, which must outlive them.
     fn new<F: VectorField>(
         callbacks: &mut UserData<F>,
         t0: f64,

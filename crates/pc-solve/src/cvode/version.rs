@@ -4,7 +4,7 @@ use std::ffi::CStr;
 
 use sundials_sys as sys;
 
-/// The version of SUNDIALS that is linked.
+/// The version of SUNDIALS with which the program is linked.
 pub fn sundials_version() -> String {
     CStr::from_bytes_until_nul(sys::SUNDIALS_VERSION)
         .map_or_else(|_| String::new(), |version| version.to_string_lossy().into_owned())

@@ -6,7 +6,7 @@
 
 use super::coefficients::{B, B3, E5};
 
-/// The length of a row for a state of this length.
+/// The length of a row that holds a state of length `dim`.
 pub(super) fn padded(dim: usize) -> usize {
     dim.next_multiple_of(2)
 }
@@ -47,7 +47,7 @@ pub(super) fn add_of<const LENGTH: usize, const TERMS: usize>(
 #[derive(Clone, Copy)]
 pub(super) struct Weights<'a> {
     pub(super) relative: f64,
-    /// For each component, padded to a row.
+    /// The absolute tolerance of each component, padded to a row.
     pub(super) absolute: &'a [f64],
 }
 

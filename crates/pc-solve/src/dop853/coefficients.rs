@@ -1,11 +1,12 @@
 //! The coefficients of the method, rounded to double precision.
 //!
-//! The nodes cᵢ, the matrix aᵢⱼ without its zeros, the weights bᵢ and those of the two error
-//! estimates, and, for dense output, three more stages and the weights dⱼᵢ of its last four terms.
-//! Stages are numbered from 1, as in the source; stage 13 is the rate at the end of the step.
-//! [Hairer, Nørsett, Wanner 1993], II.5 and II.6; the digits are those of their program `dop853.f`.
+//! These are the nodes cᵢ, the matrix aᵢⱼ without its zeros, the weights bᵢ and those of the two
+//! error estimates, and, for dense output, three more stages and the weights dⱼᵢ of its last four
+//! terms. Stages are numbered from 1, as in the source; stage 13 is the rate at the end of the
+//! step. [Hairer, Nørsett, Wanner 1993], II.5 and II.6; the digits are those of their program
+//! `dop853.f`.
 
-/// c₁ … c₁₂; the last is the end of the step.
+/// c₁ … c₁₂; the last node is the end of the step.
 pub(super) const C: [f64; 12] = [
     0.0,
     0.05260015195876773,
@@ -82,7 +83,7 @@ pub(super) const A12: [f64; 9] = [
     12.360567175794303,
     0.6433927460157636,
 ];
-/// The weights b of order 8, by stages 1, 6, 7, 8, 9, 10, 11, 12.
+/// The weights b of order 8, for stages 1, 6, 7, 8, 9, 10, 11, 12.
 pub(super) const B: [f64; 8] = [
     0.054293734116568765,
     4.450312892752409,
@@ -93,7 +94,7 @@ pub(super) const B: [f64; 8] = [
     0.20136540080403034,
     0.04471061572777259,
 ];
-/// The weights of the estimate of order 5, by the same stages.
+/// The weights of the estimate of order 5, for the same stages.
 pub(super) const E5: [f64; 8] = [
     0.01312004499419488,
     -1.2251564463762044,
@@ -104,7 +105,7 @@ pub(super) const E5: [f64; 8] = [
     0.08192320648511571,
     -0.022355307863886294,
 ];
-/// The weights b̂ of order 3, by stages 1, 9, 12; the other estimate is that of b − b̂.
+/// The weights b̂ of order 3, for stages 1, 9, 12; the other error estimate has the weights b − b̂.
 pub(super) const B3: [f64; 3] = [0.2440944881889764, 0.7338466882816118, 0.022058823529411766];
 /// c₁₄, c₁₅, c₁₆, of the stages of dense output.
 pub(super) const DENSE_C: [f64; 3] = [0.1, 0.2, 0.7777777777777778];
@@ -141,7 +142,7 @@ pub(super) const A16: [f64; 8] = [
     2.9475147891527724,
     -9.15095847217987,
 ];
-/// The weights of the terms 5 to 8 of dense output, by stages 1, 6, 7, 8, 9, 10, 11, 12, 13, 14,
+/// The weights of the terms 5 to 8 of dense output, for stages 1, 6, 7, 8, 9, 10, 11, 12, 13, 14,
 /// 15, 16.
 pub(super) const D: [[f64; 12]; 4] = [
     [

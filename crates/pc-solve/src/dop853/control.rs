@@ -1,10 +1,10 @@
 //! Step length control.
 //!
-//! The next length is 0.85 h err^(−1/8), between h/3 and 6 h. The source has 0.9, and optionally a
-//! power β of the previous error. Both affect how many steps are rejected, each of which costs
-//! eleven evaluations. For global errors of 1e-8 and 1e-10, 0.85 takes 5 to 15 % fewer evaluations
-//! than 0.9 for tops, pendulums and orbits; β = 0.02 saves nothing and β = 0.04 costs orbits 5 %
-//! with either factor, so β is left out.
+//! The next length is 0.85 h err^(−1/8), between h/3 and 6 h. The source has the factor 0.9, and
+//! optionally a power β of the previous error. Both affect how many steps are rejected, each of
+//! which costs eleven evaluations. For global errors of 1e-8 and 1e-10, 0.85 takes 5 to 15 % fewer
+//! evaluations than 0.9 for tops, pendulums and orbits; β = 0.02 saves nothing and β = 0.04 costs 5
+//! % for orbits with either factor, so β is left out.
 
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
@@ -20,7 +20,7 @@ pub(super) const SHRINKING: f64 = 1.0 / 3.0;
 #[derive(Debug, Clone)]
 pub(super) struct Control {
     pub(super) relative: f64,
-    /// For each component, padded to a row.
+    /// The absolute tolerance of each component, padded to a row.
     pub(super) absolute: Vec<f64>,
     pub(super) longest: f64,
     pub(super) shortest: f64,
@@ -31,7 +31,7 @@ pub(super) struct Control {
 }
 
 impl Control {
-    /// For states of `dim` components in rows of length `row`.
+    /// The control for states of `dim` components in rows of length `row`.
     pub(super) fn new(options: &Options, dim: usize, row: usize) -> Control {
         let mut absolute = match &options.absolute_tolerance {
             Tolerance::Scalar(tolerance) => vec![*tolerance; dim],
@@ -48,8 +48,8 @@ impl Control {
         }
     }
 
-    /// The error of a step of length h from the sums of its two estimates over n components; a step
-    /// is accepted if it is at most 1.
+    /// The error of a step of length h, computed from the sums of its two estimates over n
+    /// components; a step is accepted if it is at most 1.
     ///
     /// ```text
     /// |h| e₅² / √(n (e₅² + 0.01 e₃²))
@@ -62,12 +62,12 @@ impl Control {
         h.abs() * fifth / (n as f64 * both).sqrt()
     }
 
-    /// The factor of the length after an accepted step with this error.
+    /// The factor by which the length changes after an accepted step with this error.
     pub(super) fn accepted(error: f64) -> f64 {
         (SAFETY / eighth_root(error)).clamp(SHRINKING, GROWTH)
     }
 
-    /// The factor of the length after a rejected step with this error.
+    /// The factor by which the length changes after a rejected step with this error.
     pub(super) fn rejected(error: f64) -> f64 {
         // A NaN does not tell by how much the step was too long.
         if error.is_finite() { (SAFETY / eighth_root(error)).max(SHRINKING) } else { SHRINKING }
@@ -85,7 +85,8 @@ impl Control {
     }
 }
 
-/// x^(1/8), by correctly rounded square roots: the same bits on every machine.
+/// x^(1/8), computed with correctly rounded square roots, so that it has the same bits on every
+/// machine.
 fn eighth_root(x: f64) -> f64 {
     x.sqrt().sqrt().sqrt()
 }

@@ -1,11 +1,11 @@
-//! States inside a step, by a polynomial of degree 7.
+//! States inside a step, from a polynomial of degree 7.
 //!
 //! ```text
 //! u(s) = r₁ + s (r₂ + (1−s) (r₃ + s (r₄ + (1−s) (r₅ + s (r₆ + (1−s) (r₇ + s r₈))))))
 //! ```
-//! The first four terms are the cubic Hermite interpolant, the others combine the stages and three
-//! more, evaluated when a state inside the step is first needed [Hairer, Nørsett, Wanner 1993,
-//! II.6].
+//! The first four terms are the cubic Hermite interpolant, the others combine the stages with three
+//! further ones, which are evaluated when a state inside the step is first needed [Hairer, Nørsett,
+//! Wanner 1993, II.6].
 
 use pc_expr::{Failure, VectorField};
 
@@ -16,7 +16,7 @@ use super::stages::{Early, Node, Stages, evaluate};
 /// The degree of the polynomial.
 pub(super) const DEGREE: u32 = 7;
 
-/// The products of powers of s and 1−s in front of the terms, expanded in ascending powers of s.
+/// The products of powers of s and 1−s that multiply the terms, expanded in ascending powers of s.
 const BASIS: [[f64; 8]; 8] = [
     [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -78,7 +78,8 @@ impl Polynomial {
         Ok(())
     }
 
-    /// Writes the coefficients of the powers of the time since the start, each for `dim` components.
+    /// Writes the coefficients of the powers of the time since the start of the step, each for
+    /// `dim` components.
     pub(super) fn coefficients(&self, dim: usize, coefficients: &mut Vec<f64>) {
         coefficients.clear();
         let mut scale = 1.0;

@@ -2,8 +2,8 @@
 //!
 //! A step evaluates f at twelve times, and a pulse may lie between two of them. Before a step is
 //! accepted, its polynomial p is therefore inserted into the equations at the
-//! [places](crate::foresight) in it: where the defect p′ − f(t, p) exceeds what the error of the
-//! polynomial explains, the step is repeated so that it ends there.
+//! [times](crate::foresight) in the step that have to be examined: where the defect p′ − f(t, p)
+//! exceeds what the error of the polynomial explains, the step is repeated so as to end there.
 
 use pc_expr::{Failure, PolynomialMotion, VectorField};
 
@@ -20,8 +20,8 @@ use crate::integration::stepper::Stepper;
 const DEFECT: f64 = 100.0;
 
 impl<F: VectorField> Dop853<F> {
-    /// Finds the places in the step ahead; returns the one that the step must not pass, if there
-    /// are too many.
+    /// Finds the times to examine in the step ahead; if there are too many, returns the one that
+    /// the step must not pass.
     pub(super) fn look_ahead(
         &mut self,
         reach: f64,
@@ -59,8 +59,8 @@ impl<F: VectorField> Dop853<F> {
         Ok(self.places.crowded)
     }
 
-    /// Whether functions of the state may hide something in the trial step, by the cubic through the states and rates
-    /// at its ends.
+    /// Whether steep functions of the state may hide a feature of the field in the trial step,
+    /// judging by the cubic through the states and rates at its ends.
     fn hides_along_cubic(&mut self) -> bool {
         let Dop853 { field, end, trial, places, coefficients, .. } = self;
         let (dim, h) = (field.dim(), trial.t - end.t);
@@ -75,7 +75,7 @@ impl<F: VectorField> Dop853<F> {
         places.hide_along((end.t, trial.t), PolynomialMotion { start: end.t, coefficients })
     }
 
-    /// A place in the trial step at which the field does something that the polynomial does not
+    /// A time in the trial step at which the field does something that the polynomial does not
     /// show.
     ///
     /// # Errors

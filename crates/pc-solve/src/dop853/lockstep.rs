@@ -7,17 +7,17 @@
 //! **Reproducible.** A lane does the same operations with the same rounding as it would alone, and
 //! its decisions depend on its own values only. So a member's motion depends neither on the number
 //! of lanes or threads nor on its neighbours. It differs from that of [`Dop853`](crate::Dop853)
-//! within the tolerances: that sums without fused multiply-adds and computes errors to full
+//! within the tolerances: the latter sums without fused multiply-adds and computes errors to full
 //! precision.
 //!
 //! **Fallback.** Lanes give complete motions only. A member for which f fails, or whose steps are
-//! too short or too many, is integrated again from its start by itself, and that result or error
-//! counts; so is one that turns out to be stiff by [`Method::Auto`](crate::Method::Auto).
+//! too short or too many, is integrated again by itself from its start, and that result or error
+//! counts; so is a member that turns out to be stiff under [`Method::Auto`](crate::Method::Auto).
 //!
 //! `plan` holds what all members share, if lanes can integrate it; `field` evaluates f on a tape;
-//! `step`, `start` and `dense` are the tapes of a `problem`, which `kernels` compiles and a `shelf`
-//! caches; `stiffness` counts suspect steps. An `octet` steps eight lanes; a `block` alternates between two of them, and fills their
-//! lanes with members from `waiting`.
+//! `step`, `start` and `dense` make the tapes of a `problem`, which `kernels` compiles and a
+//! `shelf` caches; `stiffness` counts suspect steps. An `octet` steps eight lanes; a `block`
+//! alternates between two of them, and fills their lanes with members from `waiting`.
 
 pub(crate) mod block;
 mod dense;

@@ -15,7 +15,7 @@ use crate::integration::statistics::Statistics;
 use crate::settings::options::Options;
 
 /// The explicit Runge–Kutta method of order 8 of Dormand and Prince as a
-/// [`Stepper`](crate::Stepper), owning the vector field.
+/// [`Stepper`](crate::Stepper) that owns the vector field.
 ///
 /// ```text
 /// kᵢ = f(t + cᵢ h, y + h Σ_{j<i} aᵢⱼ kⱼ), i = 1 … 12;  y(t + h) ≈ y + h Σ bᵢ kᵢ
@@ -25,8 +25,8 @@ use crate::settings::options::Options;
 /// and below; stiffness is [detected](Dop853::stiff_from), but the steps then become as short as
 /// stability demands. States are [projected](VectorField::project) at the end of each step, and
 /// inside steps where they are read. A step in which the field fails recoverably, or that violates
-/// an inequality, is repeated with half its length. No step allocates, except where f depends on t
-/// explicitly and turns within the step.
+/// an inequality, is repeated with half its length. No step allocates memory, except where f
+/// depends on t explicitly and turns within the step.
 ///
 /// ```
 /// use pc_solve::{Dop853, Integration, Method, Options, from_fn};
@@ -58,7 +58,7 @@ pub struct Dop853<F> {
     pub(super) polynomial: Polynomial,
     /// Whether the polynomial is that of the last step.
     pub(super) has_polynomial: bool,
-    /// Room for the coefficients of a motion along a step.
+    /// Room for the polynomial coefficients of a motion along a step.
     pub(super) coefficients: Vec<f64>,
     /// Whether the rates at the end of the last step are known.
     pub(super) has_rates: bool,
@@ -67,7 +67,7 @@ pub struct Dop853<F> {
     /// Whether the length of the first step was given.
     pub(super) given: bool,
     pub(super) time: f64,
-    /// The length planned before the field changed to another piece.
+    /// The step length that was planned before the field changed to another piece.
     pub(super) last_length: Option<f64>,
     pub(super) statistics: Statistics,
 }
@@ -123,8 +123,8 @@ impl<F: VectorField> Dop853<F> {
         }
     }
 
-    /// When stiffness was first detected, if it was: from about then on stability rather than
-    /// accuracy limits the steps, and [`Method::Bdf`] takes longer ones.
+    /// The time at which stiffness was first detected, if it was: from about then on stability
+    /// rather than accuracy limits the steps, and [`Method::Bdf`] can take longer ones.
     pub fn stiff_from(&self) -> Option<f64> {
         self.stiffness.seen
     }

@@ -16,8 +16,8 @@ const LEFT: f64 = 0.01;
 /// First guess of the length of the first step if the state or its rates vanish.
 pub(super) const FIRST: f64 = 1e-6;
 
-/// On another piece of the field a step may be as long as the last one before, up to this many times the first length
-/// that its rates suggest.
+/// The first step on another piece of the field may be as long as the last step before it, but at
+/// most this many times the initial length that the new rates suggest.
 const LEAP: f64 = 30.0;
 
 /// The reason why a step is rejected.
@@ -146,7 +146,7 @@ impl<F: VectorField> Dop853<F> {
     }
 
     /// Sets components that violate their inequality by at most the tolerance to its boundary;
-    /// false if one violates it by more.
+    /// returns false if one violates it by more.
     fn satisfy_inequalities(&mut self) -> bool {
         for (i, inequality) in self.limits.inequalities.iter().enumerate() {
             let value = self.trial.y[i];
@@ -161,7 +161,7 @@ impl<F: VectorField> Dop853<F> {
         true
     }
 
-    /// Makes the trial step the last step.
+    /// Accepts the trial step, which becomes the last step.
     fn accept(&mut self, direction: f64, next: f64) {
         let dim = self.dim();
         let h = self.trial.t - self.end.t;
@@ -187,8 +187,8 @@ impl<F: VectorField> Dop853<F> {
         (work.last_step, work.current_step, work.current_time) = (h, next * direction, self.end.t);
     }
 
-    /// The length of the first step from the sizes of y, ẏ and a difference quotient for ÿ [Hairer,
-    /// Nørsett, Wanner 1993, II.4].
+    /// The length of the first step, estimated from the sizes of y, ẏ and a difference quotient for
+    /// ÿ [Hairer, Nørsett, Wanner 1993, II.4].
     fn first_length(&mut self, direction: f64, end: f64) -> f64 {
         let Dop853 { field, control, end: node, trial, argument, statistics, .. } = self;
         let dim = field.dim();
@@ -211,7 +211,7 @@ impl<F: VectorField> Dop853<F> {
         (100.0 * h).min(by_rates).min(farthest)
     }
 
-    /// The error when steps become too short, or none can be made, because of what `failed`.
+    /// The error for steps that become too short, or cannot be made, because of what `failed`.
     fn too_short(&mut self, failed: Option<(Reason, Failure)>) -> SolveError {
         if let Some((reason, failure)) = failed {
             return self.failed(reason, Some(failure));

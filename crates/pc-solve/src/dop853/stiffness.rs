@@ -1,6 +1,6 @@
-//! Detection that stability limits the steps.
+//! Detects when stability limits the steps.
 //!
-//! The last two evaluations of a step are at the same time and at nearby states, so that
+//! The last two evaluations of f in a step are made at the same time and at nearby states, so that
 //! ```text
 //! ρ = ‖f(t₁, y₁) − k₁₂‖ / ‖y₁ − g₁₂‖
 //! ```
@@ -10,7 +10,7 @@
 
 /// The boundary of stability on the negative real axis.
 pub(super) const BOUNDARY: f64 = 6.1;
-/// One in this many steps is examined while none is suspect.
+/// One in this many steps is examined as long as none is suspect.
 const EVERY: u64 = 20;
 /// Number of suspect steps that indicate stiffness …
 pub(super) const SUSPECT: u32 = 15;

@@ -1,4 +1,4 @@
-//! Many motions at once: initial states and parameter sets on all cores.
+//! Many motions at once: different initial states and parameter sets, integrated on all cores.
 //!
 //! Each member has its own vector field and its own solver. A consumer receives the results in the
 //! order of the members, so that nothing depends on the number of threads. The failure of a member
@@ -50,17 +50,18 @@ use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 use crate::solve::solve::Solve;
 
-/// Number of members, for each thread, that may be ahead of the one consumed next.
+/// The number of members per thread that may be ahead of the member to be consumed next.
 const WINDOW: usize = 64;
 
-/// Maximum number of threads: more do not help, and far more would exhaust memory and end the
-/// program.
+/// Maximum number of threads: more threads do not help, and far more would exhaust memory and end
+/// the program.
 const MOST_THREADS: usize = 1024;
 
-/// Stack of a thread in bytes, the usual size of the main one: making a member may recurse deeply.
+/// The stack size of a thread in bytes, the usual one of the main thread: making a member may
+/// recurse deeply.
 const STACK: usize = 8 << 20;
 
-/// Options of the computation of an ensemble.
+/// Options for the computation of an ensemble.
 ///
 /// It caches the machine code compiled for the steps of its last members, and shares it with its
 /// clones.
@@ -93,7 +94,7 @@ impl<'a> Ensemble<'a> {
     }
 
     /// The maximum number of members begun and not yet consumed, by default 64 for each thread. It
-    /// bounds memory: results that wait for an earlier one are held.
+    /// bounds the memory in use, since results that wait for an earlier one are held.
     pub fn window(self, members: NonZeroUsize) -> Self {
         Ensemble { window: Some(members), ..self }
     }
@@ -116,9 +117,10 @@ impl<'a> Ensemble<'a> {
     /// `make` returns the vector field of a member and its state at `t0`. It is called on the
     /// thread that integrates.
     ///
-    /// By [`Method::Auto`](crate::Method::Auto) and [`Method::Dop853`](crate::Method::Dop853),
-    /// members whose fields are [programs](VectorField::lanes) that do not read time are integrated
-    /// sixteen at a time, each in a lane of a vector, as described for [`map_in_lanes`](Ensemble::map_in_lanes).
+    /// With [`Method::Auto`](crate::Method::Auto) and [`Method::Dop853`](crate::Method::Dop853),
+    /// members whose fields are [programs](VectorField::lanes) that do not read the time are
+    /// integrated sixteen at a time, each in a lane of a vector, as described for
+    /// [`map_in_lanes`](Ensemble::map_in_lanes).
     ///
     /// # Errors
     /// [`EnsembleError`] if threads cannot be started. An error of a member is its result.
@@ -275,7 +277,7 @@ pub enum MemberError<E> {
     Panic {
         /// The message of the panic.
         message: String,
-        /// The end (t, y) of the last internal step, if there was one.
+        /// The state (t, y) at the end of the last internal step, if there was one.
         reached: Option<(f64, Vec<f64>)>,
     },
 }

@@ -1,4 +1,4 @@
-//! Members of an ensemble together, in the lanes of vectors.
+//! Integration of members of an ensemble together, in the lanes of vectors.
 
 use std::collections::VecDeque;
 use std::ops::{ControlFlow, Range};
@@ -18,14 +18,14 @@ use crate::integration::integration::Ending;
 use crate::integration::trajectory::Trajectory;
 use crate::settings::options::Options;
 
-/// Maximum number of members in a group, handed out at once to reduce the overhead.
+/// Maximum number of members in a group, which is handed out as a whole to reduce the overhead.
 const GROUP: u64 = 64;
 
 impl Ensemble<'_> {
     /// Integrates members together in vector lanes, where possible, and passes their results to
     /// `consume` in order.
     ///
-    /// `begin` returns any data of a member and, if lanes can integrate it, its
+    /// `begin` returns any data that belong to a member and, if lanes can integrate it, its
     /// [field](pc_expr::VectorField::lanes) and its state at t₀. `in_lane` turns its complete
     /// motion into its result. `alone` integrates members that lanes do not support, or whose
     /// motion was not completed there; it should check [`Stop`] regularly. All are called on the
@@ -33,14 +33,15 @@ impl Ensemble<'_> {
     ///
     /// Lanes are used with [`Method::Auto`](crate::Method::Auto) and
     /// [`Method::Dop853`](crate::Method::Dop853), for fields that do not read time, without
-    /// inequalities, a minimum step or a stop time. `begin` has to exclude events and breaks. Lanes use the method of [`Dop853`](crate::Dop853), but with fused multiply-adds, so
-    /// that the last digits differ. With `Auto` a member that turns out to be stiff is integrated
-    /// `alone`; `Dop853` does not look for stiffness here. Each lane does the same operations as it
-    /// would alone: results depend neither on the number of threads or lanes nor on the other
-    /// members.
+    /// inequalities, a minimum step or a stop time. `begin` has to exclude events and breaks. Lanes
+    /// use the method of [`Dop853`](crate::Dop853), but with fused multiply-adds, so that the last
+    /// digits differ. With `Auto` a member that turns out to be stiff is integrated `alone`;
+    /// `Dop853` does not look for stiffness here. Each lane does the same operations as it would
+    /// alone: results depend neither on the number of threads or lanes nor on the other members.
     ///
     /// # Errors
-    /// [`EnsembleError`] if threads cannot be started. A panic is the result of its member.
+    /// [`EnsembleError`] if threads cannot be started. If the work for a member panics, that is the
+    /// result of the member.
     pub fn map_in_lanes<C, T: Send>(
         &self,
         members: Range<u64>,
@@ -108,7 +109,7 @@ struct Open<T> {
     missing: usize,
 }
 
-/// Members for the lanes of a thread.
+/// The supply of members for the lanes of a thread.
 struct Supply<'a, 'q, 's, C, T, G, B, L, A> {
     queue: &'a Queue<'q, Group<T>>,
     stop: &'a Stop<'s>,
@@ -120,7 +121,7 @@ struct Supply<'a, 'q, 's, C, T, G, B, L, A> {
     begin: &'a B,
     in_lane: &'a L,
     alone: &'a A,
-    /// Groups in progress; only the last may have members to begin.
+    /// Groups in progress; only the last may have members that have not begun.
     open: VecDeque<Open<T>>,
     /// A member that was begun and waits for a block of its program.
     held: Option<Begun<C>>,

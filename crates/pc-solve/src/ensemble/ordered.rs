@@ -9,15 +9,15 @@ use std::thread;
 use crate::ensemble::stop::Stop;
 
 /// Hands members out in order, receives their results in any order, and delivers these in order.
-/// Members begun are less than `window` ahead of the one delivered next.
+/// Members that have begun are less than `window` ahead of the one to be delivered next.
 pub(super) struct Queue<'a, T> {
     end: u64,
     window: u64,
     stop: &'a Stop<'a>,
     state: Mutex<State<T>>,
-    /// A result has come, or a thread has ended.
+    /// Signals that a result has come, or that a thread has ended.
     finished: Condvar,
-    /// A result was taken, or no more will be.
+    /// Signals that a result was taken, or that no more will be taken.
     taken: Condvar,
 }
 
@@ -28,7 +28,7 @@ struct State<T> {
     wanted: u64,
     /// Results that wait for an earlier one.
     results: BTreeMap<u64, T>,
-    /// A worker panicked: what it had begun will not come.
+    /// Whether a worker panicked: the results of what it had begun will not come.
     broken: bool,
 }
 
@@ -51,7 +51,7 @@ impl<'a, T> Queue<'a, T> {
         self.hand_out(&mut state)
     }
 
-    /// The same without waiting; none if the window has no room.
+    /// The same without waiting: also none if the window has no room.
     pub(super) fn begin_if_room(&self) -> Option<u64> {
         let mut state = self.state();
         if state.next < self.end && state.next - state.wanted >= self.window {
@@ -98,12 +98,12 @@ impl<'a, T> Queue<'a, T> {
         }
     }
 
-    /// Stops everything when dropped.
+    /// A guard that stops everything when it is dropped.
     pub(super) fn closing(&self) -> Closing<'_, 'a, T> {
         Closing(self)
     }
 
-    /// Stops everything if a panic of this worker thread drops it.
+    /// A guard that stops everything if it is dropped by a panic of this worker thread.
     pub(super) fn breaking(&self) -> Breaking<'_, 'a, T> {
         Breaking(self)
     }

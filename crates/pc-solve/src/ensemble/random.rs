@@ -1,10 +1,10 @@
-//! Random numbers that depend only on a seed and the number of a member.
+//! Random numbers that depend only on a seed and on the index of a member.
 
 use rand_chacha::ChaCha12Rng;
 use rand_chacha::rand_core::SeedableRng;
 
-/// The random numbers of a member: its own stream of ChaCha with 12 rounds [Bernstein 2008], keyed
-/// by the seed.
+/// The random numbers of a member: a stream of its own from ChaCha with 12 rounds [Bernstein 2008],
+/// keyed by the seed.
 ///
 /// Streams of different members, and of different seeds, do not overlap. The numbers of a member
 /// depend neither on the thread nor on the number of members.

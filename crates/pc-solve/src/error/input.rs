@@ -23,7 +23,7 @@ pub enum InputError {
         found: usize,
     },
 
-    /// A checkpoint of a motion with another number of events.
+    /// A checkpoint belongs to a motion with another number of events.
     #[error("the checkpoint belongs to another motion: its number of events is {found}, not {expected}")]
     EventCount {
         /// Number of events of the motion.
@@ -70,7 +70,7 @@ pub enum InputError {
         what: &'static str,
     },
 
-    /// A feature of CVODES only, such as sensitivities, is requested from another method.
+    /// A feature that only CVODES has, such as sensitivities, is requested from another method.
     #[error(
         "sensitivities, adjoint gradients and integrals along a motion are computed by CVODES, and {method} is not one of its methods: choose Adams, BDF or auto"
     )]
@@ -79,7 +79,7 @@ pub enum InputError {
         method: Method,
     },
 
-    /// A method of CVODES, in a build without it.
+    /// A method of CVODES is chosen in a build without CVODES.
     #[error("{method} needs CVODES, which this build does not contain: choose DOP853 or Taylor")]
     NoCvode {
         /// The method.
@@ -95,18 +95,18 @@ pub enum InputError {
         max: f64,
     },
 
-    /// A checkpoint of an integration with another number of sensitivities.
+    /// A checkpoint belongs to an integration with another number of sensitivities.
     #[error(
         "the checkpoint has {found} columns of sensitivities, but {expected} are requested: resume with the sensitivities that it was written with"
     )]
     Sensitivities {
         /// Columns requested.
         expected: usize,
-        /// Columns of the checkpoint.
+        /// Number of columns in the checkpoint.
         found: usize,
     },
 
-    /// No functional to differentiate.
+    /// No functional is given to differentiate.
     #[error("no functional is given: a gradient needs at least one")]
     NoFunctional,
 
@@ -118,8 +118,8 @@ pub enum InputError {
     #[error("the integration was begun without sensitivities")]
     NoSensitivities,
 
-    /// Derivatives are requested of a motion whose rates jump where it passes a surface, at a time that depends on
-    /// the variable of differentiation.
+    /// Derivatives are requested of a motion whose rates jump where it crosses a surface, at a time
+    /// that depends on the variable of differentiation.
     #[error(
         "{0}: the derivatives of the motion jump with it, and would not show this. Make the jump an event that switches a \
          state, or smooth it, as tanh does"
@@ -137,7 +137,7 @@ pub enum InputError {
     #[error("the number of samples per step must be at least 1")]
     SamplesPerStep,
 
-    /// The fraction of an interval at which events count as accumulated is out of range.
+    /// The fraction of an interval below which events count as accumulated is out of range.
     #[error(
         "the fraction of an interval within which events accumulate is {within}, but must be at least 0 and less than 1"
     )]
@@ -150,7 +150,7 @@ pub enum InputError {
     #[error("the maximum number of steps must be at least 1")]
     MaxSteps,
 
-    /// A linear solver is chosen, and the fixed-point iteration uses none.
+    /// A linear solver is chosen together with the fixed-point iteration, which uses none.
     #[error(
         "a linear solver is chosen, but the fixed-point iteration solves no linear systems: choose Newton's iteration, or no linear solver"
     )]
@@ -173,7 +173,7 @@ pub enum InputError {
         expected: usize,
     },
 
-    /// A band matrix has diagonals beyond its corners.
+    /// A band matrix is given more diagonals than fit into its corners.
     #[error(
         "a band of {lower} diagonals below the main one and {upper} above is too wide for a Jacobian of {components} × {components}"
     )]
@@ -213,7 +213,8 @@ pub enum InputError {
         value: f64,
     },
 
-    /// Inequalities are given for a field with a projection, which would move the states again.
+    /// Inequalities are given for a field with a projection, which could move states so that they
+    /// violate them again.
     #[error(
         "inequalities cannot be imposed on a vector field that projects its states: the projection could violate them"
     )]
@@ -228,11 +229,11 @@ pub enum InputError {
         "output times must increase throughout or decrease throughout: {time} (number {index} from 0) follows {previous}"
     )]
     TimesNotMonotonic {
-        /// Place in the list.
+        /// Position in the list.
         index: usize,
         /// The time before it.
         previous: f64,
-        /// The time that repeats or reverses.
+        /// The time that repeats the one before or reverses the direction.
         time: f64,
     },
 
@@ -243,7 +244,7 @@ pub enum InputError {
         t: f64,
     },
 
-    /// A time lies against the direction of integration.
+    /// A time lies in the direction opposite to that of the integration.
     #[error("t = {requested} has already been passed: the integration has reached t = {current}")]
     Behind {
         /// The time requested.
@@ -261,7 +262,7 @@ pub enum InputError {
         stop_time: f64,
     },
 
-    /// A time outside the span of a dense output.
+    /// A time lies outside the span of a dense output.
     #[error("t = {requested} lies outside the dense output, which covers t = {start} to {end}")]
     OutsideSpan {
         /// The time requested.
@@ -272,7 +273,7 @@ pub enum InputError {
         end: f64,
     },
 
-    /// A time outside the last internal step, or beyond the next event in it.
+    /// A time lies outside the last internal step, or beyond the next event in it.
     #[error("t = {requested} lies outside the last step, which covers t = {start} to {end}")]
     OutsideStep {
         /// The time requested.
@@ -283,7 +284,7 @@ pub enum InputError {
         end: f64,
     },
 
-    /// A derivative beyond the degree of the polynomial of the last step.
+    /// A derivative is requested whose order exceeds the degree of the polynomial of the last step.
     #[error(
         "the derivative of order {order} is requested, but within the last step derivatives are known up to order {highest}"
     )]
@@ -327,13 +328,13 @@ pub enum InputError {
         dim: usize,
     },
 
-    /// A restart of an integration with sensitivities, without the derivatives of the new state.
+    /// An integration with sensitivities is restarted without the derivatives of the new state.
     #[error(
         "an integration with sensitivities can be restarted only with the sensitivities of the new state"
     )]
     Restart,
 
-    /// Interpolation before the first step.
+    /// Interpolation is requested before the first step.
     #[error("there is nothing to interpolate: no step has been made")]
     NoStep,
 }

@@ -1,7 +1,7 @@
 //! Numbers that are not finite.
 
-/// A number that is not finite, written by a vector field that reported no failure, or never
-/// written.
+/// A number that is not finite: a vector field that reported no failure wrote it, or failed to
+/// write it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NonFinite {
@@ -92,7 +92,7 @@ pub enum NonFinite {
         t: f64,
     },
 
-    /// The function of an event.
+    /// The value of an event function.
     #[error("the function of the event {event} is {value} at t = {t}")]
     Event {
         /// Its name.

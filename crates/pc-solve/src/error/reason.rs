@@ -18,7 +18,7 @@ pub enum Reason {
         message: String,
     },
 
-    /// The limit of steps from one output to the next was reached.
+    /// The limit on the number of steps from one output to the next was reached.
     Steps {
         /// The number of steps made.
         steps: u64,
@@ -28,13 +28,13 @@ pub enum Reason {
         last: f64,
     },
 
-    /// Many steps together have advanced by almost none of the time that is left.
+    /// Many steps together have covered almost none of the time that is left.
     Crawls {
         /// The number of these steps.
         steps: u64,
         /// The time they have advanced.
         by: f64,
-        /// What makes them short.
+        /// The cause of their being short.
         cause: Shrinks,
     },
 
@@ -56,8 +56,8 @@ pub enum Reason {
         t: f64,
     },
 
-    /// Within one interval a tangent vector became a combination of those before it, up to
-    /// rounding.
+    /// Within one interval a tangent vector became a linear combination of those before it, up to
+    /// rounding error.
     Collapsed {
         /// Its number.
         vector: usize,
@@ -73,8 +73,8 @@ pub enum Reason {
         t: f64,
     },
 
-    /// The state could not be [projected](pc_expr::VectorField::project) to the surface it belongs
-    /// to.
+    /// The state could not be [projected](pc_expr::VectorField::project) onto the surface to which
+    /// it belongs.
     Projection {
         /// Time of that state.
         t: f64,
@@ -84,7 +84,7 @@ pub enum Reason {
     /// further step fails.
     Stalled,
 
-    /// The explicit dependence of the field on time turns faster than floating-point times can
+    /// The explicit dependence of the field on time varies faster than floating-point times can
     /// resolve, by more than the tolerances.
     Unresolved {
         /// Where it was detected.
@@ -106,7 +106,8 @@ pub enum Reason {
         t: f64,
     },
 
-    /// The motion reaches surfaces on which the field changes, and no way on is consistent with the rates there.
+    /// The motion reaches surfaces on which the field changes, and no continuation is consistent
+    /// with the rates there.
     Undecided {
         /// The functions that vanish on them.
         surfaces: Vec<String>,
@@ -156,7 +157,8 @@ pub enum Reason {
         t: f64,
     },
 
-    /// The rates before or after a reset, by which sensitivities jump, cannot be evaluated.
+    /// The rates before or after a reset, which determine the jump of sensitivities, cannot be
+    /// evaluated.
     Saltation {
         /// When it occurred.
         t: f64,
@@ -173,13 +175,13 @@ pub enum Reason {
     },
 }
 
-/// What keeps steps short.
+/// The cause that keeps steps short.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Shrinks {
-    /// Turns of the explicit dependence of the field on time.
+    /// Rapid changes in the explicit dependence of the field on time.
     Time,
-    /// The component of this name, whose rate is the largest by the tolerances.
+    /// The component of this name, whose rate is the largest relative to the tolerances.
     Component(String),
 }
 
@@ -195,7 +197,7 @@ impl fmt::Display for Shrinks {
 }
 
 impl Reason {
-    /// The same where its times are counted from `origin`.
+    /// The same reason, with its times counted from `origin`.
     pub(crate) fn since(mut self, origin: f64) -> Reason {
         match &mut self {
             Reason::Adjoint(reason) => **reason = (**reason).clone().since(origin),
@@ -261,7 +263,7 @@ impl Reason {
         }
     }
 
-    /// The message, after reaching `time`.
+    /// Writes the message about an integration that reached `time`.
     pub(super) fn write(&self, time: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Reason::Cvode { code, message } => write!(f, "{code} after reaching t = {time}: {message}"),

@@ -17,8 +17,8 @@ pub enum SolveError {
     #[error(transparent)]
     Input(#[from] InputError),
 
-    /// SUNDIALS could not create or set up one of its objects: with valid input, because memory ran
-    /// out.
+    /// SUNDIALS could not create or set up one of its objects; with valid input, this means that
+    /// memory ran out.
     #[error("{function} failed with code {code}: {message}")]
     Setup {
         /// The function of SUNDIALS.
@@ -72,8 +72,8 @@ pub struct IntegrationError {
     pub time: f64,
     /// The state at [`time`](IntegrationError::time), one number per component of the field.
     pub state: Vec<f64>,
-    /// The last failure of the vector field there: its own, or [`NonFinite`](crate::NonFinite) for
-    /// a number that is not finite.
+    /// The last failure of the vector field there: one that it reported itself, or
+    /// [`NonFinite`](crate::NonFinite) for a number that is not finite.
     pub failure: Option<Failure>,
 }
 

@@ -6,38 +6,43 @@ use crate::integration::statistics::Statistics;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
-/// The tolerance of a companion by a method of the same kind, relative to that of the motion.
+/// The tolerance of a companion that uses a method of the same kind, relative to that of the
+/// motion.
 const FINER: f64 = 1e-3;
-/// The tolerance of a companion by Taylor's method, whose error then is rounding.
+/// The tolerance of a companion that uses Taylor's method; its error then is rounding error.
 const BY_SERIES: f64 = 1e-16;
-/// The least tolerance of a companion by other methods: below it, steps add more rounding than they save.
+/// The least tolerance of a companion that uses another method: below it, further steps add more
+/// rounding error than they remove truncation error.
 const LEAST: f64 = 1e-15;
-/// A motion at a tolerance up to this is as good as rounding allows, and so is one at [`COARSE`].
+/// A motion at a tolerance up to this is as accurate as rounding allows, and so is one at
+/// [`COARSE`].
 const ROUNDING: f64 = 4e-15;
 const COARSE: f64 = 1e-14;
-/// The most steps of a companion for each step of the motion.
+/// The maximum number of steps of a companion for each step of the motion.
 const MORE_STEPS: u64 = 20;
 
-/// How a motion is integrated a second time, so that the distance of both is the error of the first.
+/// How a motion is integrated a second time, so that the distance between the two is the error of
+/// the first.
 ///
-/// With y of the motion, ỹ of the companion and the true y*, |y − ỹ| = |y − y*| (1 + O(|ỹ − y*|/|y − y*|)):
-/// the companion has to be more accurate by more than a few times.
-/// - A motion that is not stiff, and whose field has a [series](VectorField::series), has one by
-///   [`Method::Taylor`] at rtol 10⁻¹⁶, or at a thousandth of the tolerance where that is less: its states carry
-///   their rounding along. If the motion itself is by Taylor's method at such a tolerance, the errors of both
-///   are rounding, along different steps, and the distance has their size.
-/// - Any other has one at a thousandth of its tolerance, at least 10⁻¹⁵, by [`Method::Auto`], or by
-///   [`Method::Bdf`] if the motion uses that. For a motion at rtol below 4·10⁻¹⁵ the companion is no
-///   better: at 10⁻¹⁴ both have errors of rounding.
+/// With the state y of the motion, ỹ of the companion and the true state y*, |y − ỹ| = |y − y*|
+/// (1 + O(|ỹ − y*|/|y − y*|)): the companion has to be several times more accurate.
+/// - A motion that is not stiff, and whose field has a [series](VectorField::series), has a
+///   companion by [`Method::Taylor`] at rtol 10⁻¹⁶, or at a thousandth of the tolerance where that
+///   is less: its states carry their rounding errors along. If the motion itself uses Taylor's
+///   method at such a tolerance, the errors of both are rounding errors, along different steps, and
+///   the distance is of their size.
+/// - Any other motion has a companion at a thousandth of its tolerance, at least 10⁻¹⁵, by
+///   [`Method::Auto`], or by [`Method::Bdf`] if the motion uses that. For a motion at rtol below
+///   4·10⁻¹⁵ the companion is no better: at 10⁻¹⁴ the errors of both are rounding errors.
 ///
-/// Absolute tolerances change in the same ratio.
+/// Absolute tolerances are reduced in the same ratio.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Companion {
     options: Options,
 }
 
 impl Companion {
-    /// The companion of a motion of `field` by these options, which took `work`.
+    /// The companion of a motion of `field` that was integrated with these options and took `work`.
     pub fn of<F: VectorField>(field: &mut F, options: &Options, work: &Statistics) -> Companion {
         let is_stiff = options.method == Method::Bdf || work.stiff_from.is_some() || work.implicit_steps > 0;
         let rtol = options.relative_tolerance;
@@ -88,7 +93,7 @@ impl Companion {
     }
 }
 
-/// The method of a companion at a finer tolerance of a motion that may be stiff.
+/// The method used, at a finer tolerance, for the companion of a motion that may be stiff.
 #[cfg(feature = "cvode")]
 fn implicit(method: Method) -> Method {
     if method == Method::Bdf { Method::Bdf } else { Method::Auto }

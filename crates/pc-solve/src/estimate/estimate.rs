@@ -1,4 +1,4 @@
-//! The distance of a motion from its companion.
+//! The distance between a motion and its companion.
 
 use std::ops::ControlFlow;
 
@@ -13,7 +13,8 @@ use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 use crate::solve::solve::Solve;
 
-/// The global error of a value y whose companion is ỹ: |y − ỹ|, at least the rounding ε|y|/2 of y.
+/// The global error of a value y whose companion is ỹ: |y − ỹ|, but at least the rounding error
+/// ε|y|/2 of y.
 pub fn error_of(value: f64, beside: f64) -> f64 {
     let distance = (value - beside).abs();
     // f64::max would lose a NaN
@@ -45,8 +46,9 @@ pub struct ErrorEstimate {
 }
 
 impl ErrorEstimate {
-    /// The errors of `motion`, which was integrated from y(t0) = y0 with these events and options; the field
-    /// and the events are as they were before it, and `times` are those requested.
+    /// The errors of `motion`, which was integrated from y(t0) = y0 with these events and options;
+    /// the field and the events are in the state in which they were before that integration, and
+    /// `times` are those requested.
     pub fn of<F: VectorField>(
         motion: &Solution,
         start: (F, f64, &[f64]),
@@ -57,8 +59,8 @@ impl ErrorEstimate {
         ErrorEstimate::observed(motion, start, events, times, options, |_, _| ControlFlow::Continue(()))
     }
 
-    /// As [`of`](ErrorEstimate::of), but passes the end (t, ỹ⁻) of each step of the companion to `step`, to
-    /// show progress or to stop it.
+    /// Like [`of`](ErrorEstimate::of), but passes the end (t, ỹ⁻) of each step of the companion to
+    /// `step`, to show progress or to stop it.
     pub fn observed<F: VectorField>(
         motion: &Solution,
         (mut field, t0, y0): (F, f64, &[f64]),
@@ -86,8 +88,8 @@ impl ErrorEstimate {
         &self.beside.trajectory
     }
 
-    /// The number of outputs whose errors are known: all of the motion, unless the companion failed, was
-    /// stopped or had another terminal event.
+    /// The number of outputs whose errors are known: all outputs of the motion, unless the
+    /// companion failed, was stopped or had another terminal event.
     pub fn len(&self) -> usize {
         self.len
     }
@@ -104,8 +106,8 @@ impl ErrorEstimate {
         state.iter().zip(beside).map(|(value, beside)| error_of(*value, *beside)).collect()
     }
 
-    /// The outputs before which more events occurred in one of the motions than in the other: their errors
-    /// include the changes by events.
+    /// The outputs before which more events occurred in one of the motions than in the other: their
+    /// errors include the changes made by events.
     pub fn beyond_events(&self, motion: &Solution) -> Vec<usize> {
         let direction = motion.trajectory.statistics().first_step.signum();
         let before = |solution: &Solution, i: usize| {

@@ -1,8 +1,8 @@
 //! Jumps and poles at which functions change their signs.
 //!
-//! A place where a function changes its sign is bracketed to rounding. At the distances d, 8 d, …
-//! from there a continuous function grows, one that jumps stays nearly constant, and at a pole of
-//! order p it falls by 8ᵖ from each distance to the next, on both sides.
+//! A time at which a function changes its sign is bracketed to rounding error. At the distances d,
+//! 8 d, … from there a continuous function grows, one that jumps stays nearly constant, and one
+//! with a pole of order p falls by a factor of 8ᵖ from each distance to the next, on both sides.
 
 use crate::events::samples::{Look, Sample};
 
@@ -21,17 +21,17 @@ pub(crate) enum Break {
 const RATIO: f64 = 8.0;
 /// Number of distances on each side.
 const DISTANCES: i32 = 4;
-/// A function falls by at least this factor from one distance to the next at a pole.
+/// Near a pole a function falls by at least this factor from one distance to the next.
 const FALL: f64 = 1.5;
-/// A function that jumps varies on each side by at most this fraction of its jump.
+/// A function counts as jumping if on each side it varies by at most this fraction of its jump.
 const STEADY: f64 = 1e-3;
-/// A jump is larger than this fraction of the function along the step, below which it may be
-/// rounding.
+/// A jump is larger than this fraction of the function's largest value in the step; anything
+/// smaller may be rounding error.
 const RESOLVED: f64 = 1e-6;
 
-/// How each function changes its sign between `a` and `b`, close to each other, from the values at
-/// the distances, in multiples of `rounding`: on both sides, or on one if the others lie before the
-/// step or a function fails there.
+/// How each function changes its sign between `a` and `b`, which are close to each other, judging
+/// by its values at the distances, in multiples of `rounding`: on both sides, or on one side only
+/// if the other lies before the step or a function fails there.
 pub(crate) fn breaks<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     a: &Sample,
     b: &Sample,
@@ -57,8 +57,8 @@ pub(crate) fn breaks<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     kinds
 }
 
-/// The same from the values at the bracket and at growing distances on each side of it, or on one;
-/// if both are empty, nothing is known.
+/// The same for one function, from its values at the bracket and at growing distances on each side
+/// of it, or on one side; if both lists are empty, nothing is known.
 fn kind((a, before): (f64, &[f64]), (b, after): (f64, &[f64]), largest: f64) -> Break {
     if before.is_empty() && after.is_empty() {
         return Break::None;

@@ -1,9 +1,9 @@
 //! Refinement of the samples of functions along a step.
 //!
-//! Between two samples a and b of a function g, h apart in time, g differs from their chord by g[a,
-//! b, c] (t − t_a)(t − t_b), the remainder of Newton's interpolation with the divided difference
-//! through a third sample c. As far as the samples tell, a function of one sign at a and b keeps it
-//! in between, and one that changes sign passes through zero once, if
+//! Between two samples a and b of a function g, which are h apart in time, g differs from their
+//! chord by g[a, b, c] (t − t_a)(t − t_b), the remainder of Newton's interpolation with the divided
+//! difference through a third sample c. As far as the samples tell, a function with the same sign
+//! at a and b keeps that sign in between, and one that changes sign passes through zero once, if
 //! ```text
 //! (√|a| + √|b|)² > |g[a, b, c]| h²   and   |b − a| > |g[a, b, c]| h².
 //! ```
@@ -11,13 +11,13 @@
 
 use crate::events::samples::{Look, Sample};
 
-/// Safety factor of the remainder, since its divided difference is only an estimate.
+/// Safety factor for the remainder, since its divided difference is only an estimate.
 const SAFETY: f64 = 3.0;
-/// Maximum number of samples of a search.
+/// Maximum number of samples in a search.
 const MOST: usize = 256;
 /// Intervals shorter than this fraction of the whole are not halved.
 const SHORTEST: f64 = 1.0 / 4096.0;
-/// An interval in whose middle the functions fail is divided at this fraction.
+/// An interval is divided at this fraction if the functions fail in its middle.
 const BESIDE: f64 = 0.4375;
 
 /// Adds samples between `left` and the last of `samples` where a function may have more roots than

@@ -1,19 +1,19 @@
-//! Where functions have no value along a step: at a pole that is met exactly, and beyond an edge of
-//! their domain.
+//! Sampling where functions have no value along a step: at a pole that is met exactly, and beyond
+//! an edge of their domain.
 //!
 //! Functions may have passed through zero before such an edge, √(1 − t) − 0.2 at t = 0.96 for
 //! example, although the next sample lies beyond it: samples are therefore taken up to the edge.
 
 use crate::events::samples::{Look, SAME, Sample};
 
-/// Distances from a place without a value, in multiples of the rounding of the time, at which
-/// functions are evaluated on both sides of it.
+/// The distance from a time at which functions have no value, in multiples of the rounding error of
+/// the time, at which they are evaluated on both sides of it.
 const BESIDE: f64 = 1.0;
 
-/// Continues the samples after `left` where the functions have failed at a time: by samples on both
-/// sides of it, as for a pole, if these have values; else by samples up to the edge, with the
-/// failure beyond it. At the end of the search, `to`, the values just before it stand for those
-/// there.
+/// Extends the samples after `left` where the functions have failed at a time: with samples on both
+/// sides of it, as for a pole, if the functions have values there; else with samples up to the
+/// edge, and returns the failure beyond it. At the end of the search, `to`, the values just before
+/// it are used as those there.
 pub(super) fn approach<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     left: &Sample,
     samples: &mut Vec<Sample>,
@@ -37,7 +37,7 @@ pub(super) fn approach<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
 }
 
 /// Adds samples between the last one, or `left`, and the time at which the functions have failed,
-/// ever nearer to the edge beyond which they fail; returns the failure nearest to it.
+/// ever nearer to the edge beyond which they fail; returns the failure nearest to the edge.
 pub(super) fn edge<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     left: &Sample,
     samples: &mut Vec<Sample>,

@@ -46,7 +46,7 @@ impl<'a> FnEvents<'a> {
         FnEvents::default()
     }
 
-    /// Adds an event where `function` of (t, y) passes through zero.
+    /// Adds an event that occurs where `function` of (t, y) passes through zero.
     pub fn with(
         mut self,
         event: Event,
@@ -58,7 +58,7 @@ impl<'a> FnEvents<'a> {
         self
     }
 
-    /// Adds an event with the reset that turns y⁻ into y⁺.
+    /// Adds an event with a reset that turns y⁻ into y⁺.
     pub fn with_reset(
         mut self,
         event: Event,
@@ -148,14 +148,14 @@ impl Events for FnEvents<'_> {
 /// one left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Occurrence {
-    /// Its number among the [events](Events::events), from 0.
+    /// Its index among the [events](Events::events), from 0.
     pub event: usize,
     /// The time.
     pub time: f64,
     /// y⁻
     pub state_before: Vec<f64>,
-    /// y⁺, projected where the field [projects](pc_expr::VectorField::has_projection) its states;
-    /// y⁻ without a reset.
+    /// y⁺, projected if the field [projects](pc_expr::VectorField::has_projection) its states; y⁻
+    /// if there is no reset.
     pub state_after: Vec<f64>,
 }
 
@@ -163,13 +163,13 @@ pub struct Occurrence {
 /// rest: an integration from event to event cannot pass that time.
 ///
 /// They do if their last intervals shrink steadily and, continued as a geometric series, sum to
-/// less than a small fraction of the first of the shrinking intervals; or if rounding barely
-/// separates them: the last times lie within 1e-12 |t|. Neither depends on the length of the
-/// integration. An event whose function stays below the absolute tolerance of the state between two
-/// occurrences is not resolved, and may be missed.
+/// less than a small fraction of the first of the shrinking intervals; or if they are barely
+/// distinct from each other in view of rounding: the last times lie within 1e-12 |t|. Neither
+/// depends on the length of the integration. An event whose function stays below the absolute
+/// tolerance of the state between two occurrences is not resolved, and may be missed.
 ///
 /// A regular motion whose intervals shrink that far before they grow again needs a smaller
-/// fraction; with 0 only rounding counts.
+/// fraction; with 0 only the test for rounding applies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accumulation {
     /// The number of consecutive occurrences of one event considered, at least 4.
@@ -188,18 +188,18 @@ impl Default for Accumulation {
 /// Relative difference below which times are barely resolved.
 const UNRESOLVED: f64 = 1e-12;
 
-/// The latest times of one event, and its number of occurrences.
+/// The latest times of one event, and how often it has occurred.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct History {
     pub(crate) times: VecDeque<f64>,
     pub(crate) occurrences: u64,
-    /// The interval since which each has been shorter than the one before.
+    /// The interval after which each interval has been shorter than the one before.
     pub(crate) longest: f64,
 }
 
 impl History {
-    /// Notes an occurrence at `t`. If the last ones accumulate, returns their limit, by the sum of
-    /// a geometric series [Aitken 1926].
+    /// Notes an occurrence at `t`. If the last occurrences accumulate, returns their limit,
+    /// computed as the sum of a geometric series [Aitken 1926].
     pub(crate) fn note(&mut self, t: f64, limit: Accumulation) -> Option<f64> {
         let kept = limit.occurrences.max(4);
         self.occurrences += 1;

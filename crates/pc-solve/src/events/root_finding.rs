@@ -1,4 +1,4 @@
-//! The first passage of functions through zero along a step.
+//! Search for the first passage of functions through zero along a step.
 
 use pc_expr::Direction;
 
@@ -7,12 +7,13 @@ use crate::events::closer::look_closer;
 use crate::events::edges::{approach, edge};
 use crate::events::samples::{Look, SAME, Sample};
 
-/// A passage is bracketed by two times with this relative difference.
+/// A passage is bracketed by two times whose relative difference is at most this.
 const LOCATED: f64 = 4.0 * f64::EPSILON;
-/// In intervals of this many times that width, functions without a value have a pole.
+/// A function that has no value inside an interval of at most this many times that width is taken
+/// to have a pole there.
 const NARROW: f64 = 64.0;
 
-/// The side of zero on which each function is.
+/// On which side of zero each function is.
 #[derive(Debug)]
 pub(crate) struct Sides {
     directions: Vec<Direction>,
@@ -47,9 +48,9 @@ pub(crate) enum Passage {
 pub(crate) struct Crossing {
     /// Just after the first passage.
     pub(crate) at: Sample,
-    /// The numbers of these functions, ascending.
+    /// The indices of these functions, ascending.
     pub(crate) events: Vec<usize>,
-    /// The magnitude above which each function differs from zero there.
+    /// The magnitude above which each function counts as different from zero there.
     pub(crate) noise: Vec<f64>,
     /// The side of each of them just afterwards; 0 where it stays at zero.
     pub(crate) beyond: Vec<f64>,
@@ -58,7 +59,7 @@ pub(crate) struct Crossing {
 /// The result of locating a passage.
 enum Located {
     Crossing(Crossing),
-    /// No event up to this sample: functions are back on their sides, or have passed poles.
+    /// No event occurs up to this sample: functions are back on their sides, or have passed poles.
     Clear(Sample),
 }
 
@@ -75,12 +76,13 @@ impl Sides {
         Sides { directions, sides: vec![0.0; n], noise: vec![0.0; n] }
     }
 
-    /// The side of each function, and the magnitude it must exceed to have left zero.
+    /// The side of each function, and the magnitude that it must exceed to count as having left
+    /// zero.
     pub(crate) fn known(&self) -> impl Iterator<Item = (f64, f64)> {
         self.sides.iter().copied().zip(self.noise.iter().copied())
     }
 
-    /// The inverse of [`known`](Sides::known).
+    /// Restores the sides from what [`known`](Sides::known) returns.
     pub(crate) fn from_known(
         directions: Vec<Direction>,
         known: impl IntoIterator<Item = (f64, f64)>,
@@ -90,8 +92,8 @@ impl Sides {
     }
 
     /// Notes that the functions `events` are at zero, where they have just been located: until a
-    /// reset moves them away by more than `noise`, they are on neither side. Those without noise
-    /// have jumped to the sides `beyond`.
+    /// reset moves them away by more than `noise`, they are on neither side. Functions whose
+    /// `noise` is 0 have jumped to the sides `beyond`.
     pub(crate) fn arrive(&mut self, events: &[usize], noise: &[f64], beyond: &[f64]) {
         for (&i, &side) in events.iter().zip(beyond) {
             self.sides[i] = if noise[i] > 0.0 { 0.0 } else { side };
@@ -158,9 +160,9 @@ impl Sides {
     /// Searches for the first passage after `from`.
     ///
     /// The functions are sampled at `times`, the last of which ends the search, and near `from`
-    /// while one of them is at zero. If the times do not separate the roots, they are also sampled
-    /// [where there is doubt](look_closer). The vertex of a parabola through three successive
-    /// values is sampled where it suggests that a function passes through zero twice.
+    /// while one of them is at zero. If the times do not separate the roots, the functions are also
+    /// sampled [where there is doubt](look_closer). The vertex of a parabola through three
+    /// successive values is sampled where it suggests that a function passes through zero twice.
     pub(crate) fn first<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         from: Sample,
@@ -225,8 +227,8 @@ impl Sides {
         }
     }
 
-    /// Moves `left` forward until no function is at zero, at most by a small fraction of the way to
-    /// `to`.
+    /// Moves `left` forward until no function is at zero, but at most by a small fraction of the
+    /// way to `to`.
     fn leave<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         left: &mut Sample,
@@ -262,7 +264,7 @@ impl Sides {
         Ok(None)
     }
 
-    /// Moves `left` to `right` unless there is a passage in between.
+    /// Moves `left` to `right`, unless there is a passage in between.
     fn between<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         left: &mut Sample,
@@ -340,10 +342,9 @@ impl Sides {
         found
     }
 
-    /// Locates the first passage, touch or pole between `a`, before it, and `b`, after it: by the
-    /// Illinois method with the earliest secant of the functions, and by bisection where that is
-    /// slow. Also returns the functions that change sign there at a pole, with their sides
-    /// beyond it.
+    /// Locates the first passage, touch or pole, which lies between `a` and `b`, by the Illinois
+    /// method with the earliest secant of the functions, and by bisection where that is slow. Also
+    /// returns the functions that change sign there at a pole, with their sides beyond it.
     fn locate<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &self,
         mut a: Sample,

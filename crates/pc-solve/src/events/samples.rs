@@ -1,6 +1,7 @@
 //! Values of event functions along a step.
 
-/// Times within this relative difference are the same: events between them are simultaneous.
+/// Times that differ by less than this relative difference count as equal: events between them are
+/// simultaneous.
 pub(super) const SAME: f64 = 64.0 * f64::EPSILON;
 
 /// The values of all functions at a time.
@@ -35,7 +36,7 @@ pub(crate) struct Room {
 const ROOM: usize = 64;
 
 impl Room {
-    /// Room for values of `functions` functions.
+    /// Room for the values of `functions` functions.
     pub(crate) fn new(functions: usize) -> Room {
         let samples = if functions == 0 { 0 } else { ROOM };
         let values = (0..samples).map(|_| Vec::with_capacity(functions)).collect();

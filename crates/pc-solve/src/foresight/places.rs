@@ -1,17 +1,17 @@
-//! The places in the next step at which the field may do something that the method does not see.
+//! The times in the next step at which the field may do something that the method does not see.
 
 use pc_expr::{PolynomialMotion, SteepFunctions, Surprises, TimeDependence, VectorField};
 
 use crate::error::SolveError;
 
-/// Number of places, from start to end, at which a field with unknown time dependence is examined.
+/// Number of times, from start to end, at which a field with unknown time dependence is examined.
 const SAMPLES: f64 = 64.0;
-/// Maximum number of places of fast oscillations examined in one step.
+/// Maximum number of times that are examined in one step because of fast oscillations.
 const MOST: usize = 16;
-/// Each previous step without surprises doubles the number of places allowed in a step, up to this
-/// many times.
+/// The number of times that may be examined in a step doubles after each step without surprises, up
+/// to this many doublings.
 const DOUBLINGS: u32 = 20;
-/// After this many such steps an oscillation is considered too small to matter.
+/// After this many steps without surprises an oscillation is considered too small to matter.
 const ENOUGH: u32 = 200;
 
 /// The step ahead.
@@ -22,7 +22,7 @@ pub(crate) struct Ahead {
     pub(crate) reach: f64,
     /// The end of the integration.
     pub(crate) end: f64,
-    /// Whether it is the first one, with a given length, which is trusted.
+    /// Whether it is the first step, and its length was given; such a length is trusted.
     pub(crate) given: bool,
 }
 
@@ -33,28 +33,28 @@ impl Ahead {
     }
 }
 
-/// The places to examine, and the work this has taken.
+/// The times to examine, and the work this has taken.
 #[derive(Debug)]
 pub(crate) struct Places {
     dependence: TimeDependence,
-    /// The functions of the state that a step may pass over.
+    /// The functions of the state whose features a step may miss.
     steep: Option<SteepFunctions>,
     /// The start of the integration.
     begin: f64,
     /// The minimum step, or 0.
     min_step: f64,
-    /// Successive steps crowded with places, all without surprises.
+    /// The number of successive steps that had too many times to examine and no surprises.
     unsurprising: u32,
     /// Evaluations and shortened steps since the last restart.
     pub(crate) evaluations: u64,
     pub(crate) limited: u64,
-    /// The places in the step ahead, in its direction.
+    /// The times to examine in the step ahead, ordered in its direction.
     pub(crate) found: Vec<f64>,
-    /// Those of them along the motion of a step that has been tried.
+    /// Those of them that come from the motion along a step that has been tried.
     along: Vec<f64>,
-    /// A place beyond which there are too many for one step.
+    /// A time beyond which there are too many to examine in one step.
     pub(crate) crowded: Option<f64>,
-    /// Places of fast oscillations, and their number.
+    /// The times of fast oscillations, and their number.
     many: Vec<f64>,
     crowd: usize,
     unknown: bool,
@@ -68,10 +68,10 @@ pub(crate) trait Here {
     /// [`SolveError`] if the method fails.
     fn prediction(&mut self) -> Result<Option<PolynomialMotion<'_>>, SolveError>;
 
-    /// Whether f is noise between there and a nearby place.
+    /// Checks that f is not mere noise between there and a nearby time.
     ///
     /// # Errors
-    /// [`SolveError::Integration`] with [`Reason::Unresolved`](crate::Reason::Unresolved) if so.
+    /// [`SolveError::Integration`] with [`Reason::Unresolved`](crate::Reason::Unresolved) if it is.
     fn resolve(&mut self, near: f64, length: f64) -> Result<(), SolveError>;
 }
 
@@ -96,12 +96,12 @@ impl Places {
         }
     }
 
-    /// Whether there are never any places.
+    /// Whether there is never a time to examine.
     pub(crate) fn are_absent(&self) -> bool {
         matches!(self.dependence, TimeDependence::Absent) && self.steep.is_none()
     }
 
-    /// Whether there may be some along the motion.
+    /// Whether the times to examine may depend on the states along the motion.
     pub(crate) fn follow_states(&self) -> bool {
         self.steep.is_some()
     }
@@ -111,7 +111,7 @@ impl Places {
         (self.unsurprising, self.evaluations, self.limited) = (0, 0, 0);
     }
 
-    /// Finds the places in the step ahead; returns whether there are any.
+    /// Finds the times to examine in the step ahead; returns whether there are any.
     ///
     /// # Errors
     /// The errors of [`Here`].
@@ -173,12 +173,13 @@ impl Places {
         Ok(true)
     }
 
-    /// Whether functions of the state may hide something along the motion of a step that has been tried.
+    /// Whether steep functions of the state may hide a feature along the motion in a step that has
+    /// been tried.
     pub(crate) fn hide_along(&mut self, between: (f64, f64), motion: PolynomialMotion<'_>) -> bool {
         self.steep.as_mut().is_some_and(|steep| steep.hide(between, motion))
     }
 
-    /// Replaces the places along the motion of the step tried last by those of this one.
+    /// Replaces the times that came from the motion in the step tried before by those of this one.
     pub(crate) fn look_along(&mut self, (t, reach): (f64, f64), motion: PolynomialMotion<'_>) {
         let Places { found, along, .. } = self;
         found.retain(|place| !along.contains(place));
@@ -195,12 +196,13 @@ impl Places {
         self.found.sort_unstable_by(|a, b| ((a - b) * (reach - t)).total_cmp(&0.0));
     }
 
-    /// Methods cannot resolve times closer than this.
+    /// The smallest difference of times that methods can resolve.
     fn least(&self, t: f64, reach: f64) -> f64 {
         (1e-13 * t.abs().max(reach.abs())).max(self.min_step)
     }
 
-    /// Notes the places along a motion; returns the time up to which they are known, if it is before `reach`.
+    /// Notes the times to examine along a motion; returns the time up to which these are known, if
+    /// it is before `reach`.
     fn follow(&mut self, (t, reach): (f64, f64), motion: PolynomialMotion<'_>) -> Option<f64> {
         let enough = self.unsurprising > ENOUGH;
         let Surprises { few, many, until, .. } = self.steep.as_mut()?.surprises((t, reach), motion, enough);
@@ -209,20 +211,20 @@ impl Places {
         *until
     }
 
-    /// Notes a surprise at a place, where the step ends.
+    /// Notes that a time examined was a surprise, at which the step ends.
     pub(crate) fn surprised(&mut self) {
         self.unsurprising = 0;
         self.limited += 1;
     }
 
-    /// Notes that no place examined was a surprise.
+    /// Notes that no time examined was a surprise.
     pub(crate) fn as_expected(&mut self) {
         self.unsurprising =
             if self.crowd > MOST || self.unknown { self.unsurprising.saturating_add(1) } else { 0 };
         self.limited += u64::from(self.crowded.is_some());
     }
 
-    /// Adds those places of the next step that are evenly spaced over the integration.
+    /// Adds those times in the next step that are evenly spaced over the integration.
     fn sample(&mut self, Ahead { t, reach, end, .. }: Ahead) {
         let begin = self.begin;
         let spacing = (end - begin).abs().max((reach - begin).abs()) / SAMPLES;
@@ -239,7 +241,7 @@ impl Places {
     }
 }
 
-/// The nearer of two places ahead of `t`.
+/// The nearer of two times ahead of `t`.
 fn nearer(t: f64, a: Option<f64>, b: Option<f64>) -> Option<f64> {
     match (a, b) {
         (Some(a), Some(b)) => Some(if (b - t).abs() < (a - t).abs() { b } else { a }),

@@ -5,12 +5,12 @@ use crate::foresight::SURPRISE;
 /// Number of intervals between evaluations of the field.
 const PLACES: usize = 16;
 
-/// Whether f scatters between a time and a nearby one, enough to affect a step of this `length`:
+/// Whether f scatters between a time and a nearby one, by enough to affect a step of this `length`:
 /// its second differences are large, while those of a smooth function vanish at so small a
 /// distance.
 ///
-/// `rates` writes f at a fraction of the way, and the tolerances of the state there; false if f
-/// fails, which is left to the method.
+/// `rates` writes f at a fraction of the way, and the tolerances of the state there; it returns
+/// false if f fails, which is left to the method to handle.
 pub(crate) fn scatters(
     dim: usize,
     length: f64,

@@ -3,17 +3,18 @@
 /// Relative difference below which two times count as equal: twice that of CVODES.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
-/// Whether two times are equal up to rounding.
+/// Whether two times are equal up to rounding error.
 fn are_close(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDINGS * a.abs().max(b.abs())
 }
 
-/// The break at t, up to rounding.
+/// The break at t, up to rounding error, if there is one.
 pub(crate) fn break_at(breaks: &[f64], t: f64) -> Option<f64> {
     breaks.iter().copied().find(|&time| are_close(time, t))
 }
 
-/// The first break strictly between t and the end, in the direction of the end; `breaks` ascend.
+/// The first break strictly between t and the end, in the direction of the end; `breaks` are in
+/// ascending order.
 fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
     let next = if end >= t {
         breaks.get(breaks.partition_point(|&time| time <= t)).copied().filter(|&time| time < end)
@@ -24,10 +25,11 @@ fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
     next.filter(|&time| end.is_infinite() || !are_close(time, end))
 }
 
-/// The time after which breaks lie ahead, t or a break close to it, and the first of them before
-/// the end.
+/// The time from which breaks count as being ahead, t or a break close to it, and the first of
+/// those that lie before the end.
 ///
-/// A break within rounding of t, as after an event, is too close for a step and counts as reached.
+/// A break that differs from t by rounding error only, as after an event, is too close for a step
+/// and counts as reached.
 pub(crate) fn next_break(breaks: &[f64], mut t: f64, end: f64) -> (f64, Option<f64>) {
     let mut next = following(breaks, t, end);
     while let Some(time) = next.filter(|&time| are_close(time, t)) {

@@ -8,9 +8,9 @@ use crate::error::InputError;
 /// With s = (t − centre)/(end − start), it is y = Σ_k c_k sᵏ with c_k = y⁽ᵏ⁾(centre)
 /// (end − start)ᵏ/k! from the method's own polynomial for k ≤ q. The centre is the end of the step;
 /// for a Taylor polynomial, which loses digits elsewhere, its start. Where states are projected
-/// after a step, the method's polynomial misses the end opposite the centre by the error of a step;
-/// the term of degree q + 1 corrects this. So the segments of a motion join to rounding, and have
-/// the order of the method.
+/// after a step, the method's polynomial misses the state at the end opposite the centre by the
+/// error of a step; the term of degree q + 1 corrects this. So the segments of a motion join up to
+/// rounding error, and have the order of the method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
     start: f64,
@@ -22,7 +22,7 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// The constant segment, to which [`push`](Segment::push) adds derivatives at the centre.
+    /// A constant segment, to which [`push`](Segment::push) adds the derivatives at the centre.
     pub(crate) fn new((start, end): (f64, f64), centre: f64, state: &[f64]) -> Segment {
         Segment { start, end, centre, dim: state.len(), coefficients: state.to_vec() }
     }

@@ -9,7 +9,7 @@ type WriteProduct = fn(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>;
 /// A function of t that changes y.
 type Change = fn(f64, &mut [f64]) -> Result<(), Failure>;
 
-/// A vector field given by closures; made by [`from_fn`].
+/// A vector field given by closures; it is made by [`from_fn`].
 ///
 /// ```
 /// use pc_solve::{Options, Pattern, from_fn, solve};
@@ -55,7 +55,7 @@ pub struct FnField<R, J = Write, S = Write, V = WriteProduct, P = Write, C = Cha
     vjp: Option<W>,
 }
 
-/// The data other than closures.
+/// The data that are not closures.
 #[derive(Debug, Clone, Default)]
 struct Shape {
     dim: usize,
@@ -85,7 +85,7 @@ where
     }
 }
 
-/// The field with one closure replaced by one of another type.
+/// The field with one closure replaced by a closure of another type.
 macro_rules! with {
     ($field:expr, $name:ident = $closure:expr, $($kept:ident),*) => {{
         let field = $field;
@@ -105,7 +105,7 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
         with!(self, jacobian = jacobian, sparse_jacobian, jvp, parameter_jacobian, projection, vjp)
     }
 
-    /// The same field, whose ∂fᵢ/∂yⱼ vanish outside `pattern`, dim × dim.
+    /// The same field, declared to have ∂fᵢ/∂yⱼ that vanish outside `pattern`, dim × dim.
     pub fn with_sparsity(self, pattern: Pattern) -> Self {
         FnField { shape: Shape { pattern: Some(pattern), ..self.shape }, ..self }
     }
@@ -113,8 +113,8 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
     /// The same field with a closure that writes the ∂fᵢ/∂yⱼ of the
     /// [pattern](FnField::with_sparsity), in its order, to its last argument.
     ///
-    /// Every entry must be written. It also provides the dense Jacobian, unless that has its own
-    /// closure.
+    /// Every entry must be written. The closure also provides the dense Jacobian, unless that has a
+    /// closure of its own.
     pub fn with_sparse_jacobian<K>(self, sparse_jacobian: K) -> FnField<R, J, K, V, P, C, W>
     where
         K: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
@@ -285,7 +285,7 @@ where
     }
 }
 
-/// A closure or pattern that the vector field lacks.
+/// The error for a closure or pattern that the vector field lacks.
 #[derive(Debug, thiserror::Error)]
 #[error("this vector field was given no {0}")]
 struct Missing(&'static str);

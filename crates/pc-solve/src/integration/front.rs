@@ -12,7 +12,8 @@ use crate::integration::held_sides::write_functions;
 use crate::integration::integration::Integration;
 use crate::integration::stepper::Stepper;
 
-/// While the motion slides along surfaces, steps are searched in this many times as many parts.
+/// While the motion slides along surfaces, steps are divided into this many times as many parts for
+/// the search.
 const ALONG_SURFACES: u32 = 16;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
@@ -113,8 +114,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// earlier time at which the search ends. Returns whether they separate all roots.
     ///
     /// Where the functions are a program, the times separate their roots along the polynomial of
-    /// the step; for closures, and where states are read through constraints or as momenta, they
-    /// divide the step into equal parts.
+    /// the step; for closures, and where states are read through constraints or as momenta, the
+    /// times divide the step into equal parts.
     fn look_at(&mut self, mut to: f64, times: &mut Vec<f64>) -> Result<bool, SolveError> {
         times.clear();
         let from = self.front.t;
@@ -181,7 +182,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(separated)
     }
 
-    /// Whether the end is too close to a restart for a step; the integration is then moved there.
+    /// Whether the end is so close to a restart that no step is possible; the integration is then
+    /// moved to the end.
     fn arrives(&mut self, towards: f64) -> Result<bool, SolveError> {
         let target = self.engine.stop_time().unwrap_or(towards);
         let rounding = 4.0 * f64::EPSILON * target.abs().max(self.front.t.abs());
@@ -209,7 +211,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// The error of an event function that failed.
+    /// The error for an event function that failed.
     pub(crate) fn event_error(&mut self, event: usize, t: f64, failure: Failure) -> SolveError {
         let reason = Reason::Event { event: self.name(event), t };
         self.failed(reason, Some(failure))
@@ -220,7 +222,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         own.get(event).map_or_else(String::new, |event| event.name().to_owned())
     }
 
-    /// The error of a failure beyond the front; the integration stays at the front.
+    /// The error for a failure beyond the front; the integration stays at the front.
     pub(crate) fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
         let error = self.engine.failed(reason, failure);
         self.stay(error)
@@ -242,8 +244,8 @@ enum SearchFailure {
     Event(f64, Failure),
 }
 
-/// Writes the event functions at a state to `values`, initially NaN; `blamed` becomes the first
-/// that is not finite or was not written before a failure.
+/// Writes the event functions at a state to `values`, which are initially NaN; `blamed` becomes the
+/// first function that is not finite or was not written before a failure.
 fn values_at(
     events: &mut impl Events,
     t: f64,

@@ -1,4 +1,4 @@
-//! On which sides of its surfaces a field of several pieces is held, and what is known of their changes.
+//! The sides of its surfaces on which a field of several pieces is held, and the changes of side so far.
 
 use pc_expr::{Failure, RootSeparation, Sliding, VectorField};
 
@@ -6,22 +6,22 @@ use pc_expr::{Failure, RootSeparation, Sliding, VectorField};
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HeldSides {
     pub(crate) sides: Vec<f64>,
-    /// Whether they are those of the motion at the front.
+    /// Whether these sides are known to be those of the motion at the front.
     pub(crate) are_known: bool,
     /// Whether the functions depend on time alone.
     of_time: bool,
     /// Room for a state.
     pub(crate) place: Vec<f64>,
-    /// Separates the roots of the functions.
+    /// What separates the roots of the functions.
     pub(crate) separation: Option<RootSeparation>,
-    /// The motions along surfaces so far.
+    /// The parts of the motion so far that slid along surfaces.
     pub(crate) slides: Vec<Slide>,
-    /// All changes of sides, where they are to be kept.
+    /// All changes of side, if they are to be recorded.
     pub(crate) passages: Option<Vec<Passage>>,
 }
 
 impl HeldSides {
-    /// The sides of a field at a start, not yet known.
+    /// The sides of a field at a start, where they are not yet known.
     pub(crate) fn of(field: &mut impl VectorField) -> HeldSides {
         let dim = field.dim();
         match field.switching() {
@@ -35,7 +35,7 @@ impl HeldSides {
         }
     }
 
-    /// Whether the functions can be evaluated without states along a step.
+    /// Whether the functions can be evaluated along a step without knowing the states.
     pub(crate) fn need_no_states(&self) -> bool {
         self.of_time && !self.sides.contains(&0.0)
     }
@@ -57,14 +57,14 @@ pub struct Slide {
     pub until: Option<f64>,
 }
 
-/// The sides of all surfaces from a time on.
+/// The sides of all surfaces from this time on.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Passage {
     /// The surfaces reached; none at a start.
     pub(crate) surfaces: Vec<usize>,
     pub(crate) time: f64,
     pub(crate) state: Vec<f64>,
-    /// The sides before, if surfaces were reached, and after.
+    /// The sides before this time, if surfaces were reached, and after it.
     pub(crate) before: Vec<f64>,
     pub(crate) after: Vec<f64>,
 }

@@ -1,4 +1,4 @@
-//! An integration by any method, which events may interrupt.
+//! An integration by any method; events may interrupt it.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -18,39 +18,41 @@ use crate::integration::stepper::Stepper;
 /// An integration of ẏ = f(t, y) by a [method](Stepper), with [`Events`] or without.
 ///
 /// It is at a [`time`](Integration::time) with a [`state`](Integration::state). The method may be
-/// up to one step ahead; outputs in between are interpolated by its polynomial, so that further
-/// outputs change no step. The first step fixes the direction of time. After an error or a panic of
-/// the field the integration is at the last state it reached.
+/// up to one step ahead; outputs in between are interpolated by its polynomial, so that additional
+/// outputs do not change the steps. The first step fixes the direction of time. After an error or a
+/// panic of the field the integration is at the last state it reached.
 ///
 /// # Events
 ///
 /// Along each step the event functions are evaluated at states on the polynomial of the method,
 /// [projected](VectorField::project) where the field does so. Functions given as [a
 /// program](Events::program) of the state are sampled at times [between
-/// which](pc_expr::RootSeparation) each has at most one root along that polynomial: none is missed.
-/// Others are sampled at the ends of [`samples_per_step`](crate::Options::samples_per_step) equal
-/// parts of the step, again between two of these where divided differences leave doubt, and where
-/// three successive values suggest that a function passes through zero twice. Between two samples
-/// an even number of passages of such a function may be missed; if the number is odd, one is found,
-/// so that its sign is always known. After a passage the rest of the step is searched anew.
+/// which](pc_expr::RootSeparation) each has at most one root along that polynomial, so that no root
+/// is missed. Others are sampled at the ends of
+/// [`samples_per_step`](crate::Options::samples_per_step) equal parts of the step, and further
+/// between two of these where divided differences leave doubt, or where three successive values
+/// suggest that a function passes through zero twice. Between two samples an even number of
+/// passages of such a function may be missed; if the number is odd, one is found, so that its sign
+/// is always known. After a passage the rest of the step is searched anew.
 ///
 /// A passage is located to 1e-15 max(|t|, h/1000) in a step of length h, and functions that pass
-/// through zero within 16 times that of each other do so simultaneously: their resets are applied
-/// one after the other, in the order of the events. After a reset the integration
-/// [restarts](Integration::restart) with the same options.
+/// through zero within 16 times that distance of each other count as doing so simultaneously: their
+/// resets are applied one after the other, in the order of the events. After a reset the
+/// integration [restarts](Integration::restart) with the same options.
 ///
 /// A function that reaches or crosses zero and is back on its side within that time only touches
 /// zero: no event occurs. For one that reaches zero and stays there the event occurs on arrival,
-/// not on departure. This holds for the function as computed, with its rounding.
+/// not on departure. This holds for the function as computed, with its rounding errors.
 ///
-/// An event whose function changes its sign in its direction by the reset of another event occurs at
-/// the same time, on the state after that reset, and so on until no further event is set off; more
-/// than 100 occurrences of one event at one time are an
-/// [error](crate::Reason::Cascade). Its own reset does not make an event occur again.
+/// If the reset of one event makes the function of another change its sign in its direction, that
+/// other event occurs at the same time, from the state after the reset, and so on until no further
+/// event is set off; more than 100 occurrences of one event at one time are an
+/// [error](crate::Reason::Cascade). The reset of an event does not make the event itself occur
+/// again.
 ///
 /// After a reset the functions of the events that caused it have to leave zero before these events
-/// can occur again: a function within the tolerances of zero counts as being on the side it moves
-/// to.
+/// can occur again: a function within the tolerances of zero counts as being on the side to which
+/// it moves.
 ///
 /// The root finding of CVODES is not used: it ignores projections and resets, reports at most one
 /// of two roots in a step, and may report a root again after a restart.
@@ -68,7 +70,7 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) front: Sample,
     pub(crate) front_state: Vec<f64>,
     pub(crate) sides: Sides,
-    /// The sides before the front's last move, and room for those after the next step.
+    /// The sides before the last move of the front, and room for those after the next step.
     pub(crate) sides_before: Sides,
     pub(crate) sides_after: Sides,
     /// Room for samples along a step.
@@ -78,22 +80,23 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) noise: Vec<f64>,
     /// The sign that each of the `due` functions takes next.
     pub(crate) beyond: Vec<f64>,
-    /// y(`time`), unless `time` is the front.
+    /// y(`time`), unless `time` is that of the front.
     pub(crate) output: Vec<f64>,
     /// Room for the end of a step.
     pub(crate) ahead: Vec<f64>,
     /// Room for the times at which event functions are evaluated, and for the polynomial of a step.
     pub(crate) times: Vec<f64>,
     pub(crate) coefficients: Vec<f64>,
-    /// Separates the roots of event functions given as a program.
+    /// What separates the roots of event functions given as a program.
     pub(crate) separation: Option<RootSeparation>,
-    /// The sides of the surfaces of the field, whose functions follow those of the events.
+    /// The sides of the surfaces of the field; the functions of the surfaces follow those of the
+    /// events.
     pub(crate) held: HeldSides,
-    /// The time derivatives of each occurrence so far, if there are columns.
+    /// The derivatives of the time of each occurrence so far, if there are columns.
     pub(crate) time_derivatives: Vec<Vec<f64>>,
     /// Whether no step has been made since a restart.
     pub(crate) restarted: bool,
-    /// Whether the motion has been restarted, by a reset for example.
+    /// Whether the motion has been restarted, for example by a reset.
     pub(crate) jumped: bool,
     /// Its pace.
     pub(crate) pace: Pace,
@@ -108,7 +111,7 @@ pub enum Ending {
     Stopped,
     /// A terminal event.
     Event {
-        /// Its number among the events.
+        /// Its index among the events.
         event: usize,
     },
 }
@@ -158,7 +161,7 @@ impl<S: Stepper> Integration<S> {
         }
     }
 
-    /// This integration, with events from its current time on.
+    /// Adds events to this integration, from its current time on.
     ///
     /// Its [sensitivities](crate::Cvode::with_sensitivities), if any, are those of the motion with
     /// its events: they jump at resets. For this, resets are also applied to nearby states, and
@@ -242,7 +245,7 @@ pub(crate) fn directions(events: &impl Events, held: &HeldSides) -> Vec<Directio
 
 impl<S: Stepper, E: Events> Integration<S, E> {
     /// Sets when occurrences of an event count as accumulated, which is an error; the default is
-    /// that of the [options](crate::Options::accumulation).
+    /// the setting of the [options](crate::Options::accumulation).
     pub fn accumulation(mut self, accumulation: Accumulation) -> Self {
         self.engine.limits_mut().accumulation = accumulation;
         self
@@ -280,7 +283,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.into_field()
     }
 
-    /// Returns the field to the sides given by its own functions.
+    /// Releases the field, which then takes the sides given by its own functions.
     pub(crate) fn release(&mut self) {
         if let Some(field) = self.engine.field_mut().switching() {
             field.hold(None);
@@ -322,9 +325,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
 
     /// Restarts from y(t) = y, for example after a jump of the state.
     ///
-    /// Options and stop time stay, and the [statistics](Integration::statistics) continue. A
-    /// multistep method begins at order 1; the next step may go either way. The signs of the event
-    /// functions are those at the new state.
+    /// The options and the stop time stay the same, and the [statistics](Integration::statistics)
+    /// continue. A multistep method begins at order 1; the next step may go either way. The signs
+    /// of the event functions are those at the new state.
     ///
     /// # Errors
     /// [`SolveError::Input`] if a value is not finite or a length is wrong, or if there are
@@ -368,7 +371,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// [`time`](Integration::time) is discarded.
     ///
     /// # Errors
-    /// As for [`restart`](Integration::restart); the field is changed nevertheless.
+    /// As for [`restart`](Integration::restart); the field remains changed nevertheless.
     pub fn change(&mut self, change: impl FnOnce(&mut S::Field)) -> Result<(), SolveError> {
         let (t, state) = (self.time(), self.state().to_vec());
         change(self.engine.field_mut());

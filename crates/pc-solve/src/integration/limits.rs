@@ -11,11 +11,12 @@ use crate::settings::inequality::Inequality;
 pub struct Limits {
     /// Maximum number of steps from one output to the next.
     pub max_steps: u64,
-    /// The number of parts of each step that are searched for events.
+    /// The number of parts into which each step is divided for the search for events.
     pub samples_per_step: u32,
     /// When occurrences of an event count as accumulated.
     pub accumulation: Accumulation,
-    /// Inequalities that components keep, one for each component; empty if there are none.
+    /// The inequalities that components have to satisfy, one for each component; empty if there are
+    /// none.
     pub inequalities: Vec<Inequality>,
     /// The time after which no further step begins, if there is one.
     pub deadline: Option<Deadline>,

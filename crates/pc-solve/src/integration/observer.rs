@@ -1,18 +1,18 @@
-//! Observers of a motion as it is integrated.
+//! Observers of a motion during its integration.
 
 use std::ops::ControlFlow;
 
 use crate::events::events::Occurrence;
 
-/// An observer of a motion as it is integrated, which may stop it.
+/// An observer of a motion during its integration, which it may stop.
 ///
 /// [`Observed`] makes one from closures.
 pub trait Observer {
     /// An output.
     fn output(&mut self, t: f64, y: &[f64]) -> ControlFlow<()>;
 
-    /// An event that occurred. All simultaneous ones are reported, even where one of them stops the
-    /// motion.
+    /// An event that occurred. All simultaneous events are reported, even if the observer stops the
+    /// motion at one of them.
     fn occurred(&mut self, _occurrence: &Occurrence) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }

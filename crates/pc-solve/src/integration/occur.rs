@@ -12,19 +12,19 @@ use crate::integration::checks::check_inequalities;
 use crate::integration::integration::{Ending, Integration};
 use crate::integration::stepper::Stepper;
 
-/// After a reset a function is near zero if it is at most this many times its change by the
-/// tolerances of the state.
+/// After a reset a function counts as near zero if it is at most this many times the change that
+/// the tolerances of the state can make in it.
 const TOLERANCES: f64 = 10.0;
 
-/// An event that occurs more often than this at one time does so without end.
+/// An event that occurs more often than this at one time is taken to do so without end.
 const MOST_AT_ONCE: usize = 100;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
     /// Applies the events at the front and reports them to `occurred`. Returns how the integration
-    /// ends, if it does: by the first terminal event, else because `occurred` stops it.
+    /// ends, if it does: at the first terminal event, or else because `occurred` stops it.
     ///
-    /// An event whose function is carried through zero, in its direction, by the reset of another
-    /// one occurs at the same time, after those that are due already.
+    /// If the reset of one event carries the function of another through zero in its direction,
+    /// that other event occurs at the same time, after those that are already due.
     pub(crate) fn occur(
         &mut self,
         occurred: &mut dyn FnMut(&Occurrence) -> ControlFlow<()>,
@@ -122,8 +122,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(ending)
     }
 
-    /// S⁻ at the front if a reset changes it; empty otherwise. An error for simultaneous resets,
-    /// where S⁺ is not defined.
+    /// S⁻ at the front if a reset changes it; empty otherwise. Simultaneous resets are an error,
+    /// since S⁺ is not defined there.
     fn sensitivities_before(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
         let events = self.events.events();
         let resets = self.due.iter().filter(|&&event| events.get(event).is_some_and(Event::resets)).count();
@@ -138,8 +138,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.columns()
     }
 
-    /// An error if `event` has occurred too often at one time: resets that set each other off go on
-    /// for ever.
+    /// Returns an error if `event` has occurred too often at one time, since resets that set each
+    /// other off go on for ever.
     fn check_cascade(&mut self, event: usize, t: f64, occurrences: &[Occurrence]) -> Result<(), SolveError> {
         let count = occurrences.iter().filter(|occurrence| occurrence.event == event).count();
         if count < MOST_AT_ONCE {
@@ -151,7 +151,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// Whether a function that a reset has carried through zero, or to zero exactly, does not
     /// return to its side at once: along the motion from there, to first order in time.
     ///
-    /// An error where sensitivities would need to know whether nearby motions arrive at zero, too.
+    /// It is an error if sensitivities would require knowing whether nearby motions arrive at zero,
+    /// too.
     fn stays_beyond(
         &mut self,
         event: usize,
@@ -222,7 +223,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         noise
     }
 
-    /// Replaces y⁻ by y⁺ of one event.
+    /// Replaces y⁻ by the y⁺ of one event.
     pub(crate) fn reset(&mut self, event: usize, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
         self.reset_alone(event, t, state)?;
         if !self.field().has_projection() {

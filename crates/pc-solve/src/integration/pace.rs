@@ -1,15 +1,15 @@
 //! Whether an integration makes progress.
 //!
 //! Steps may become so short, without any of them failing, that a motion would take years. This
-//! shows long before the limit of steps is reached: [`STEPS`] steps that advance by less than
-//! [`LEAST`] of what is left would have to be followed by 10¹³ steps like them.
+//! becomes apparent long before the limit on steps is reached: [`STEPS`] steps that cover less than
+//! [`LEAST`] of the remaining time would have to be followed by 10¹³ steps like them.
 
 /// The number of steps that are judged together.
 const STEPS: u64 = 10_000;
 /// The least fraction of the remaining time by which they must advance.
 const LEAST: f64 = 1e-9;
 
-/// The steps since a mark.
+/// The steps since a certain time, the mark.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Pace {
     steps: u64,
@@ -19,7 +19,7 @@ pub(crate) struct Pace {
     is_known: bool,
 }
 
-/// Steps that have hardly advanced.
+/// A number of steps that have hardly advanced the time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Crawl {
     pub(crate) steps: u64,
@@ -30,8 +30,8 @@ pub(crate) struct Crawl {
 }
 
 impl Pace {
-    /// Notes a step to `t` towards `end`, with the number of shortened steps so far; returns the last ones if they have
-    /// hardly advanced.
+    /// Notes a step to `t` towards `end`, with the number of shortened steps so far; returns the
+    /// last steps if they have hardly advanced the time.
     pub(crate) fn note(&mut self, t: f64, end: f64, limited: impl FnOnce() -> u64) -> Option<Crawl> {
         self.steps += 1;
         if self.steps < STEPS {

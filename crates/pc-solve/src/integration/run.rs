@@ -34,7 +34,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// Integrates through `times`, monotonic from the current time, and passes each (t, y) to
     /// `output`, which may stop it.
     ///
-    /// The first may be the current time, the last may not. The output at an event is y⁺; a
+    /// The first may be the current time, but the last may not. The output at an event is y⁺; a
     /// terminal event gives the last output.
     ///
     /// # Errors
@@ -48,7 +48,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.run_observed(times, Observed::new(output))
     }
 
-    /// As [`run`](Integration::run), but reports to an [`Observer`].
+    /// Like [`run`](Integration::run), but reports to an [`Observer`].
     ///
     /// # Errors
     /// As for [`run`](Integration::run).
@@ -56,7 +56,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.run_through(times, &mut observer, &mut |_| Ok(()))
     }
 
-    /// The same, calling `arrived` before each output.
+    /// The same, but calls `arrived` before each output.
     pub(crate) fn run_through(
         &mut self,
         times: &[f64],
@@ -95,7 +95,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// Notes a step towards `end`.
     ///
     /// # Errors
-    /// [`Reason::Crawls`] if the last ones have hardly advanced.
+    /// [`Reason::Crawls`] if the last steps have hardly advanced the time.
     fn note_pace(&mut self, end: f64) -> Result<(), SolveError> {
         let engine = &self.engine;
         match self.pace.note(self.front.t, end, || engine.statistics().limited_steps) {
@@ -107,7 +107,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// The component whose rate is the largest by the tolerances.
+    /// The component whose rate is the largest relative to the tolerances.
     fn fastest(&mut self) -> String {
         let (t, state) = (self.front.t, self.front_state.clone());
         let mut rates = vec![f64::NAN; state.len()];
@@ -126,7 +126,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// Advances to `t`, which has been checked, by steps towards `end`.
+    /// Advances to `t`, which has been checked, with steps towards `end`.
     fn advance(
         &mut self,
         t: f64,

@@ -1,4 +1,4 @@
-//! How a reset changes the derivatives of a motion.
+//! The change that a reset makes in the derivatives of a motion.
 
 use pc_expr::{Events, VectorField};
 
@@ -7,19 +7,21 @@ use crate::integration::integration::Integration;
 use crate::integration::stepper::Stepper;
 
 /// A projection that moves the result of a reset by at most this, absolutely or relatively,
-/// whichever is larger, only changes rounding.
+/// whichever is larger, changes it by rounding errors only.
 const OFF: f64 = 1e-8;
 
 /// A function whose rate along the motion is smaller than this fraction of the sum of its terms
 /// only touches zero.
 const GRAZING: f64 = 1e-9;
 
-/// Rates that differ by less than this fraction are those of a corner.
+/// Rates that differ by less than this fraction count as equal: the field has a corner there and
+/// does not jump.
 const SAME_RATES: f64 = 1e-12;
-/// The times of surfaces reached together change alike if they agree within this.
+/// The derivatives of the times at which surfaces are reached together count as equal if they
+/// differ by less than this.
 const SAME_SHIFTS: f64 = 1e-9;
 
-/// The slopes of a surface.
+/// The slopes of the function of a surface.
 struct Slopes {
     by_time: f64,
     by_state: Vec<f64>,
@@ -28,17 +30,18 @@ struct Slopes {
 }
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// S⁺ from S⁻ at an event at time t with the function g and the reset y⁺ = R(t, y⁻),
+    /// Computes S⁺ from S⁻ at an event at time t with the function g and the reset y⁺ = R(t, y⁻),
     /// ```text
     /// s⁺ = R_y s⁻ + R_p + (R_t + R_y f⁻ − f⁺) τ,    τ = ∂tₑ/∂p = −(g_y s⁻ + g_p)/(g_t + g_y f⁻)
     /// ```
     /// with f⁻ = f(t, y⁻) and f⁺ = f(t, y⁺) [Hiskens, Pai, IEEE Trans. Circuits Syst. I 47 (2000)
-    /// 204, eqs. (37)–(43)]. The derivatives with respect to parameters are those of the events; so
-    /// are those by (t, y) if the events [have them](Events::has_derivatives), else they are
-    /// central difference quotients along the columns and along the motion.
+    /// 204, eqs. (37)–(43)]. The derivatives with respect to parameters are those that the events
+    /// provide; so are the derivatives with respect to (t, y) if the events [have
+    /// them](Events::has_derivatives), else these are central difference quotients along the
+    /// columns and along the motion.
     ///
     /// An event that the reset of another one sets off occurs when that one does: `shifts`, once
-    /// known, are the τ of all resets at t, and S⁺ of each is S⁻ of the next.
+    /// known, are the τ of all resets at t, and the S⁺ of each is the S⁻ of the next.
     pub(crate) fn jump_of_sensitivities(
         &mut self,
         event: usize,
@@ -81,8 +84,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(jumped)
     }
 
-    /// Continues at the front where these surfaces of the field are reached; the derivatives jump as at an event
-    /// that resets nothing,
+    /// Continues from the front, where these surfaces of the field are reached; the derivatives
+    /// jump as at an event that resets nothing,
     /// ```text
     /// s⁺ = s⁻ + (f⁻ − f⁺) τ,    τ = −(g_y s⁻ + g_p)/(g_t + g_y f⁻)
     /// ```
@@ -163,7 +166,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(all)
     }
 
-    /// The derivative of the function of an event along (1, v) or (0, v) of time and state, and the size of its terms.
+    /// The derivative of the function of an event along the direction (1, v) or (0, v) in time and
+    /// state, and the size of its terms.
     fn function_along(
         &mut self,
         event: usize,
@@ -193,7 +197,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(((values[0] - values[1]) / (2.0 * step), size))
     }
 
-    /// For each of these surfaces its gradient (g_t, g_y), and g_y s⁻ + g_p for each column.
+    /// The gradient (g_t, g_y) of each of these surfaces, and its g_y s⁻ + g_p for each column.
     fn slopes_of(
         &mut self,
         due: &[usize],
@@ -220,7 +224,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(all)
     }
 
-    /// τ of each column, the same for all surfaces reached.
+    /// The τ of each column, which must be the same for all surfaces reached.
     fn common_shifts(
         &mut self,
         due: &[usize],
@@ -245,18 +249,18 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(common.unwrap_or_default())
     }
 
-    /// The text of a surface.
+    /// The function of a surface, as text.
     fn surface(&mut self, surface: usize) -> String {
         let field = self.engine.field_mut().switching();
         field.and_then(|field| field.surfaces().get(surface).cloned()).unwrap_or_default()
     }
 
-    /// λ⁻, and the increment of ∂G/∂p for each parameter p, from λ⁺ at such an event,
+    /// Computes λ⁻, and the increment of ∂G/∂p for each parameter p, from λ⁺ at such an event,
     /// ```text
     /// λ⁻ = R_yᵀ λ⁺ − κ g_y,    R_pᵀ λ⁺ − κ g_p,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + δ)/(g_t + g_y f⁻)
     /// ```
-    /// where the density of G is larger by δ before the event than after it: S⁺ above, multiplied
-    /// by λ⁺ from the left.
+    /// where the density of G is larger by δ before the event than after it. This is S⁺ above,
+    /// multiplied by λ⁺ from the left.
     #[cfg(feature = "cvode")] // for the adjoint equations
     pub(crate) fn transposed_jump(
         &mut self,
@@ -298,8 +302,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// Whether the [projection](VectorField::project) of the field moves the result of the reset.
-    /// If not, it is not part of R: derivatives with respect to parameters that move the surface
-    /// point out of it, and must not be projected to it.
+    /// If not, the projection is not part of R: derivatives with respect to parameters that move
+    /// the surface point out of the surface, and must not be projected onto it.
     fn is_projected(
         &mut self,
         event: usize,
@@ -337,8 +341,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// The derivative of g along (1, v) or (0, v) of time and state, its size |g_t| + Σ |g_yᵢ vᵢ|
-    /// or an estimate of it, and the derivative of R, with the projection of the field or without.
+    /// The derivative of g along the direction (1, v) or (0, v) in time and state, its size |g_t| +
+    /// Σ |g_yᵢ vᵢ| or an estimate of it, and the derivative of R along that direction, with or
+    /// without the projection of the field.
     fn derivative_along(
         &mut self,
         event: usize,
@@ -397,7 +402,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 }
 
-/// λ⁻, and the increment of ∂G/∂p for each parameter p, from λ⁺ where f jumps on surfaces that are reached together.
+/// Computes λ⁻, and the increment of ∂G/∂p for each parameter p, from λ⁺ where f jumps on surfaces
+/// that are reached together.
 #[cfg(feature = "cvode")] // for the adjoint equations
 pub(crate) fn transposed_passage<F: VectorField>(
     field: &mut F,
@@ -453,18 +459,18 @@ pub(crate) fn transposed_passage<F: VectorField>(
     Ok((jumped, by_parameters.iter().map(|slope| -step * slope).collect()))
 }
 
-/// Whether rates jump, beyond rounding.
+/// Whether rates jump by more than rounding error.
 fn jumps(before: &[f64], after: &[f64]) -> bool {
     before.iter().zip(after).any(|(a, b)| (a - b).abs() > SAME_RATES * a.abs().max(b.abs()))
 }
 
-/// dg/dt along rates, and the sum of the sizes of its terms.
+/// The derivative dg/dt for these rates, and the sum of the magnitudes of its terms.
 fn rate_along(by_time: f64, slopes: &[f64], rates: &[f64]) -> (f64, f64) {
     let terms = slopes.iter().zip(rates).map(|(slope, rate)| slope * rate);
     terms.fold((by_time, by_time.abs()), |(sum, size), term| (sum + term, size + term.abs()))
 }
 
-/// Whether two lists of derivatives of times differ.
+/// Whether two lists of derivatives of event times differ.
 fn differ(known: &[f64], other: &[f64]) -> bool {
     known.iter().zip(other).any(|(a, b)| (a - b).abs() > SAME_SHIFTS * a.abs().max(b.abs()).max(1.0))
 }

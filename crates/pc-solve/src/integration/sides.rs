@@ -2,9 +2,10 @@
 //!
 //! During a step the field is smooth: it is [held](pc_expr::Switching) on one side of each surface. Where a surface is
 //! reached the step ends, and the motion continues in the first of these ways that is consistent: across the surface, if
-//! f on the other side leads away from it; along it, if f leads back from both sides; or back, where it only touches.
-//! Where several surfaces are reached at once, or the motion slides along others already, all combinations are tried,
-//! those with fewer surfaces that slide first.
+//! f on the other side leads away from it; along it, if f leads back from both sides; or back to
+//! the side it came from, where it only touches the surface. Where several surfaces are reached at
+//! once, or the motion already slides along others, all combinations are tried, those in which it
+//! slides along fewer surfaces first.
 
 use pc_expr::{Events, Failure, Sliding, SlidingError, Switching, VectorField};
 
@@ -20,13 +21,14 @@ use crate::integration::integration::Integration;
 use crate::integration::integration::directions;
 use crate::integration::stepper::Stepper;
 
-/// A function below this many roundings of its terms is at zero.
+/// A function counts as being at zero if it is less than this fraction of the sum of its terms.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
-/// A rate of a function below this fraction of its terms counts as zero.
+/// The rate of a function counts as zero if it is less than this fraction of the sum of its terms.
 const FLAT: f64 = 1e-11;
 /// |σ| may exceed 1 by this where a motion begins to slide.
 const BEYOND: f64 = 1e-9;
-/// Up to this number of surfaces all combinations are tried; more are decided one after the other.
+/// Up to this number of surfaces, all combinations are tried; if there are more, the sides are
+/// decided one after the other.
 const MOST_COMBINED: usize = 3;
 /// Fractions of the time scale of the motion at which a function that begins flat is evaluated.
 const AHEAD: [f64; 3] = [1e-5, 1e-3, 1e-2];
@@ -34,7 +36,7 @@ const AHEAD: [f64; 3] = [1e-5, 1e-3, 1e-2];
 /// Surfaces at zero, each with the sides to be tried in turn.
 type Open = Vec<(usize, [f64; 3])>;
 
-/// A field at a place, with the direction of time.
+/// A field at a time and state, with the direction of time.
 struct Place<'a> {
     field: &'a mut dyn Switching,
     t: f64,
@@ -44,7 +46,7 @@ struct Place<'a> {
     least: f64,
     /// The longest time that matters.
     span: f64,
-    /// The functions of the surfaces there, on the sides before.
+    /// The functions of the surfaces there, with the field held on the sides before.
     before: Vec<f64>,
 }
 
@@ -56,7 +58,7 @@ enum Verdict {
 }
 
 impl Place<'_> {
-    /// The functions and their rounding.
+    /// The functions and their rounding errors.
     fn functions(&mut self, sides: &[f64]) -> (Vec<f64>, Vec<f64>) {
         self.field.hold(Some(sides));
         let mut values = vec![f64::NAN; sides.len()];
@@ -91,7 +93,8 @@ impl Place<'_> {
         }
     }
 
-    /// The rates on these sides; none if the surfaces do not determine how the motion slides.
+    /// The rates when the field is held on these sides; none if the surfaces do not determine how
+    /// the motion slides.
     fn rates(&mut self, sides: &[f64]) -> Result<Option<Sliding>, Failure> {
         self.field.hold(Some(sides));
         if sides.contains(&0.0) {
@@ -122,7 +125,7 @@ impl Place<'_> {
         ROUNDINGS * largest(self.y).max(largest(rates))
     }
 
-    /// dg/dt along rates and the sum of its terms.
+    /// The derivative dg/dt for these rates, and the sum of the magnitudes of its terms.
     fn rate_of(&mut self, surface: usize, rates: &[f64]) -> (f64, f64) {
         let mut slopes = vec![0.0; self.y.len()];
         let by_time = self.field.gradient(surface, self.t, self.y, &mut slopes);
@@ -130,7 +133,7 @@ impl Place<'_> {
         terms.fold((by_time, by_time.abs()), |(sum, size), term| (sum + term, size + term.abs()))
     }
 
-    /// Whether the motion on these sides stays on them.
+    /// Whether the motion with the field held on these sides stays on them.
     fn judge(&mut self, sides: &[f64], open: &[(usize, [f64; 3])]) -> Result<Verdict, Failure> {
         let Some(sliding) = self.rates(sides)? else {
             let first = open.iter().position(|&(surface, _)| sides[surface] == 0.0).unwrap_or(0);
@@ -178,7 +181,7 @@ impl Place<'_> {
         Ok(Verdict::Consistent)
     }
 
-    /// Whether a function that begins flat grows to its side, along steps of Runge and Kutta.
+    /// Whether a function that begins flat grows towards its side, judging by Runge–Kutta steps.
     fn leads_ahead(&mut self, surface: usize, sides: &[f64], rates: &[f64]) -> Result<bool, Failure> {
         let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
         let length = largest(rates);
@@ -201,7 +204,7 @@ impl Place<'_> {
         Ok(true) // it stays in the surface, on either side
     }
 
-    /// The state after a step of the classical method.
+    /// The state after a step of the classical Runge–Kutta method.
     fn runge_kutta(&mut self, sides: &[f64], h: f64, first: &[f64]) -> Result<Vec<f64>, Failure> {
         let (t, y) = (self.t, self.y);
         let mut sum = first.to_vec();
@@ -243,8 +246,9 @@ impl Place<'_> {
         Ok(None)
     }
 
-    /// The same for many surfaces: the first one that the motion leaves goes to the side to which the motion leaves it
-    /// [Murty 1974]. This ends if each surface acts on its own function more than the others do.
+    /// The same for many surfaces: the first surface that the motion leaves is assigned the side to
+    /// which the motion leaves it [Murty 1974]. The procedure ends if each surface acts on its own
+    /// function more than the others do.
     fn decide_in_turn(&mut self, sides: &[f64], open: &Open) -> Result<Option<Vec<f64>>, Failure> {
         let mut tried = sides.to_vec();
         open.iter().for_each(|&(surface, _)| tried[surface] = 0.0);
@@ -347,8 +351,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         noise.is_some_and(|noise| *noise == 0.0)
     }
 
-    /// Decides anew at a break of a table while the motion slides. The function of a surface may jump away from zero there:
-    /// the motion continues beside this surface. Along others the rates jump, as those of the table do.
+    /// Decides the sides anew at a break of a table while the motion slides. The function of a
+    /// surface may jump away from zero there, and the motion then continues beside this surface.
+    /// Along the other surfaces the rates jump, as those of the table do.
     pub(crate) fn leave_what_jumps(&mut self, towards: f64) -> Result<(), SolveError> {
         if !self.held.sides.contains(&0.0) {
             return Ok(());
@@ -385,7 +390,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(())
     }
 
-    /// Finds the sides at the front, and notes them.
+    /// Finds the sides at the front, and records them.
     pub(crate) fn begin_on_sides(&mut self, direction: f64) -> Result<(), SolveError> {
         if self.held.are_known || self.held.len() == 0 {
             return Ok(());
@@ -426,7 +431,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         &self.held.slides
     }
 
-    /// Holds the field on these sides permanently: no surface is looked for.
+    /// Holds the field on these sides permanently: no surface is looked for any more.
     #[cfg(feature = "cvode")] // for the adjoint equations
     pub(crate) fn stay_on(&mut self, sides: &[f64]) {
         self.hold_on(sides);
@@ -438,7 +443,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.sides_before = self.sides.clone();
     }
 
-    /// The time to the end, or some of the last steps.
+    /// The span of time of interest: up to the end, or of many steps like the last one.
     fn span_of_interest(&self) -> f64 {
         let last = self.engine.last_step();
         match (self.engine.stop_time(), last.degree) {
@@ -492,5 +497,5 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 }
 
-/// An open function that is larger than this has jumped.
+/// The function of an open surface has jumped if it is larger than this.
 const NEAR: f64 = 1e-6;

@@ -12,13 +12,13 @@ pub struct Statistics {
     pub rhs_evaluations: u64,
     /// Evaluations of ∂f/∂y, by the field or by difference quotients.
     pub jacobian_evaluations: u64,
-    /// Steps tried again because the estimated error was too large.
+    /// Steps repeated because the estimated error was too large.
     pub error_test_failures: u64,
     /// Iterations of the nonlinear solver.
     pub nonlinear_iterations: u64,
-    /// Failures of the nonlinear solver, including those recovered by a new Jacobian.
+    /// Failures of the nonlinear solver, including those remedied by a new Jacobian.
     pub nonlinear_failures: u64,
-    /// Steps tried again because the nonlinear solver failed.
+    /// Steps repeated because the nonlinear solver failed.
     pub step_failures: u64,
     /// Set-ups of the linear solver: factorisations, or renewals of the preconditioner.
     pub linear_setups: u64,
@@ -29,21 +29,21 @@ pub struct Statistics {
     pub linear_failures: u64,
     /// Products (∂f/∂y) v, by the field or by difference quotients.
     pub jacobian_products: u64,
-    /// Times the preconditioner took a new ∂f/∂y.
+    /// How often the preconditioner was given a new ∂f/∂y.
     pub preconditioner_evaluations: u64,
     /// Systems solved with the preconditioner.
     pub preconditioner_solves: u64,
     /// Steps shortened to end where the explicit dependence on time has a feature that the motion
     /// so far does not reveal: the beginning of a pulse, a jump.
     pub limited_steps: u64,
-    /// Steps by the stiff formulas of [`Auto`](crate::Method::Auto).
+    /// Steps made with the stiff formulas of [`Auto`](crate::Method::Auto).
     pub implicit_steps: u64,
     /// Steps made in vector lanes together with other members of an [ensemble](crate::Ensemble).
     pub lane_steps: u64,
     /// Changes between the two methods of [`Auto`](crate::Method::Auto).
     pub changes: u64,
-    /// When an explicit method first detected that stability rather than accuracy limits its steps,
-    /// if it did.
+    /// The time at which an explicit method first detected that stability rather than accuracy
+    /// limits its steps, if it did.
     pub stiff_from: Option<f64>,
     /// Order of the last step, 0 before the first.
     pub last_order: u32,
@@ -60,7 +60,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// The sum of these and those of an integration that continued after them.
+    /// The sum of these statistics and those of an integration that continued from there.
     pub fn followed_by(&self, later: &Statistics) -> Statistics {
         Statistics {
             steps: self.steps.saturating_add(later.steps),

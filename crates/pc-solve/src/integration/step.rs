@@ -1,4 +1,4 @@
-//! Single steps, states inside them, and motions as their polynomials.
+//! Single steps, the states inside them, and motions given by the polynomials of the steps.
 
 use std::ops::ControlFlow;
 
@@ -19,7 +19,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// Takes one step towards `towards`, possibly beyond it, or the part of a step before the next
     /// event, and reports events at its end to `occurred`.
     ///
-    /// From inside such a step, moves to its end instead. The state is then y⁺.
+    /// If the integration is inside such a step, it moves to the end of that step instead. The
+    /// state is then y⁺.
     ///
     /// # Errors
     /// As for [`advance_to`](Integration::advance_to); [`InputError::EndIsStart`] if `towards` is
@@ -43,7 +44,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(self.occur(&mut occurred)?.unwrap_or(Ending::Completed))
     }
 
-    /// The derivative of y of the given order at `t` in the last step, by the polynomial of the
+    /// The derivative of y of the given order at `t` in the last step, from the polynomial of the
     /// method, up to the front of the search for events.
     ///
     /// Order 0 is y itself, [projected](pc_expr::VectorField::project) where the field does so. The
@@ -61,7 +62,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// Integrates to `end`, passes the motion to `segment`, one [`Segment`] for each step or part
     /// of it between events, and reports events to `occurred` after the segment that ends there.
     ///
-    /// Only the last step is kept.
+    /// Only the last step is held in memory.
     ///
     /// # Errors
     /// As for [`run`](Integration::run); segments before the failure have been passed on.
@@ -110,7 +111,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// The part of the last step between two of its states.
+    /// The motion in the last step between two of its states.
     pub(crate) fn segment(
         &mut self,
         (start, from): (f64, &[f64]),

@@ -10,8 +10,8 @@ use crate::integration::statistics::Statistics;
 /// A method that makes steps: the interface to [`Integration`](crate::Integration).
 ///
 /// A stepper knows the states along its last step and is at a [`time`](Stepper::time) in it. From
-/// these functions `Integration` makes outputs, events and their resets, dense output and
-/// checkpoints, alike for every method.
+/// these functions `Integration` builds outputs, events and their resets, dense output and
+/// checkpoints in the same way for every method.
 ///
 /// ```
 /// use pc_solve::{FixedStep, Integration, RungeKutta4, from_fn};
@@ -56,7 +56,8 @@ pub trait Stepper {
     /// The current time, in the last step.
     fn time(&self) -> f64;
 
-    /// Moves to a time in the last step, at which derivatives and integrals, if any, are read next.
+    /// Moves to a time in the last step, at which derivatives and integrals, if there are any, will
+    /// be read.
     fn stand_at(&mut self, t: f64);
 
     /// Makes a step from the end of the last one in the direction of `towards`, possibly beyond it,
@@ -74,8 +75,8 @@ pub trait Stepper {
     /// [`SolveError::Integration`]
     fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError>;
 
-    /// The time in the last step about which its polynomial is expanded; its derivatives there are
-    /// the coefficients up to factorials.
+    /// The time in the last step about which its polynomial is expanded; the derivatives there are
+    /// the coefficients, up to factorials.
     fn centre(&self) -> f64 {
         self.last_step().end
     }
@@ -83,7 +84,8 @@ pub trait Stepper {
     /// Restarts from y(t) = y, validated by the caller, with these [columns](Stepper::columns);
     /// statistics continue.
     ///
-    /// If a direction is given it stays; otherwise the next step may go either way.
+    /// If a direction is given, the next step must go in that direction; otherwise it may go either
+    /// way.
     ///
     /// # Errors
     /// [`SolveError`] if this is not possible; the stepper is then unchanged.
@@ -113,7 +115,7 @@ pub trait Stepper {
     /// A time beyond which the field is never evaluated.
     fn stop_time(&self) -> Option<f64>;
 
-    /// Sets that time, validated by the caller, or removes it.
+    /// Sets the stop time, which the caller has validated, or removes it.
     ///
     /// # Errors
     /// [`SolveError`] if the method cannot do so.
@@ -122,10 +124,11 @@ pub trait Stepper {
     /// The work so far.
     fn statistics(&self) -> Statistics;
 
-    /// The tolerance of component `i` where its value is y.
+    /// The tolerance of component `i` when its value is y.
     fn tolerance(&self, i: usize, y: f64) -> f64;
 
-    /// The smallest significant size of a component: values below the tolerances carry no scale.
+    /// The smallest significant size of a component: values below the tolerances say nothing about
+    /// its scale.
     fn least_size(&self) -> f64;
 
     /// The derivatives integrated with the motion, at the current time, column-major; empty if
@@ -137,7 +140,7 @@ pub trait Stepper {
         Ok(Vec::new())
     }
 
-    /// For each column the number of its parameter, if it is a derivative with respect to one.
+    /// The index of the parameter of each column that is a derivative with respect to a parameter.
     fn column_parameters(&self) -> &[Option<usize>] {
         &[]
     }
@@ -158,7 +161,7 @@ pub trait Stepper {
         Ok(PolynomialMotion { start: centre, coefficients: room })
     }
 
-    /// The error of a failure beyond the end of the last step; the stepper moves to that end.
+    /// The error for a failure beyond the end of the last step; the stepper moves to that end.
     fn failed(&mut self, reason: Reason, failure: Option<Failure>) -> SolveError {
         let (time, state) = (self.end_time(), self.end_state().to_vec());
         self.stand_at(time);
@@ -179,7 +182,8 @@ pub struct LastStep {
 
 impl LastStep {
     /// Checks that `t` lies between the start of the step and `end`, and that its polynomial has a
-    /// derivative of that order. As in CVODE, `t` may lie outside by rounding, 100 ε of the time.
+    /// derivative of that order. As in CVODE, `t` may lie outside by rounding errors, up to 100 ε
+    /// times the time.
     pub(crate) fn check_inside(&self, t: f64, order: u32, end: f64) -> Result<(), InputError> {
         finite("the time", t)?;
         let Some(highest) = self.degree else { return Err(InputError::NoStep) };

@@ -24,7 +24,7 @@ impl Trajectory {
         }
     }
 
-    /// With room for `outputs` outputs.
+    /// An empty trajectory with room for `outputs` outputs.
     #[cfg(feature = "cvode")] // for the members of an ensemble
     pub(crate) fn with_capacity(dim: usize, outputs: usize) -> Self {
         let (times, states) = (Vec::with_capacity(outputs), Vec::with_capacity(dim * outputs));

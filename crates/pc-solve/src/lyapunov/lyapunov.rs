@@ -19,7 +19,8 @@ pub struct LyapunovOptions {
 }
 
 impl LyapunovOptions {
-    /// The `count` largest exponents, from `intervals` intervals of time of length `interval`.
+    /// Options for the `count` largest exponents, computed over `intervals` intervals of time of
+    /// length `interval`.
     ///
     /// The vectors are orthonormalised after each interval, which should be short enough for them
     /// to stay distinct: the difference of the largest and the smallest exponent times `interval`
@@ -28,8 +29,8 @@ impl LyapunovOptions {
         LyapunovOptions { count, interval, intervals, transient: 0 }
     }
 
-    /// Initial intervals that do not count, in which the motion approaches its attractor and the
-    /// vectors their directions; none by default.
+    /// Sets the number of initial intervals that do not count, in which the motion approaches its
+    /// attractor and the vectors their directions; none by default.
     pub fn transient(self, intervals: u32) -> Self {
         LyapunovOptions { transient: intervals, ..self }
     }
@@ -60,9 +61,9 @@ pub struct Lyapunov {
 
 /// The largest Lyapunov exponents of the motion from y(t0) = y0, forward in time.
 ///
-/// Tangent vectors v̇ = (∂f/∂y) v are integrated along the motion over an interval τ, from
-/// orthonormal ones, and orthonormalised again, V = QR. Then [Benettin, Galgani, Giorgilli,
-/// Strelcyn, Meccanica 15 (1980) 9]
+/// Tangent vectors v̇ = (∂f/∂y) v are integrated along the motion over an interval τ, starting from
+/// orthonormal ones, and are then orthonormalised again, V = QR. Then [Benettin, Galgani,
+/// Giorgilli, Strelcyn, Meccanica 15 (1980) 9]
 /// ```text
 /// λ_j = lim 1/(kτ) (ln R_jj⁽¹⁾ + … + ln R_jj⁽ᵏ⁾).
 /// ```
@@ -70,9 +71,9 @@ pub struct Lyapunov {
 /// exponents of a flow is its mean divergence. The mean over a finite time converges no faster than
 /// 1/t.
 ///
-/// Products with ∂f/∂y are as for [`Sensitivities`]; the vectors have to pass the error test with
-/// the tolerances of the state. The method restarts at each interval. The initial vectors are
-/// fixed, in generic directions.
+/// Products with ∂f/∂y are computed as for [`Sensitivities`]; the vectors have to pass the error
+/// test with the tolerances of the state. The method restarts at each interval. The initial vectors
+/// are fixed, in generic directions.
 ///
 /// ```
 /// use pc_solve::{LyapunovOptions, Options, from_fn, lyapunov_exponents};

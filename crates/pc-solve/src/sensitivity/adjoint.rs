@@ -19,19 +19,20 @@ use crate::sensitivity::functional::{Functional, Gradient};
 /// Petzold, Serban, SIAM J. Sci. Comput. 24 (2003) 1076]. The motion is integrated to t₁ and,
 /// during the backward integration, once again from each checkpoint to the next; states are read
 /// from the polynomials of the method. Each evaluation of λ̇ takes a [product](VectorField::vjp)
-/// with (∂f/∂y)ᵀ if the field has these, else its Jacobian, [sparse](VectorField::sparse_jacobian)
-/// if its [pattern](VectorField::sparsity) is known. A missing Jacobian is assembled from
-/// [products](VectorField::jvp), or pairs of evaluations of f, one for each colour of the pattern,
-/// or for each component.
+/// with (∂f/∂y)ᵀ if the field computes these, else its Jacobian,
+/// [sparse](VectorField::sparse_jacobian) if its [pattern](VectorField::sparsity) is known. A
+/// missing Jacobian is assembled from [products](VectorField::jvp) or from pairs of evaluations of
+/// f, one for each colour of the pattern or for each component.
 ///
 /// Memory is needed for the states at checkpoints, and for up to 13 vectors for each step of one
-/// [interval](AdjointOptions::checkpoint_interval) between them: large systems need less with short
-/// intervals.
+/// [interval](AdjointOptions::checkpoint_interval) between them: for large systems, short intervals
+/// save memory.
 ///
 /// Where states lie on a surface, λ follows the [projected](VectorField::project) motion, but is
 /// not projected itself: ∂G/∂y₀ is the gradient for starts in the whole space; its part tangent to
 /// the surface applies to starts on it. Where motions off the surface drift away from it, λ grows
-/// large across the surface, and its errors with it: choose smaller tolerances.
+/// large in the directions across the surface, and its errors grow with it: choose smaller
+/// tolerances there.
 ///
 /// ```
 /// use pc_solve::{AdjointOptions, Failure, Functional, Options, adjoint_gradient, from_fn};
@@ -71,12 +72,13 @@ pub fn adjoint_gradient<F: VectorField, G: Functional>(
     first.ok_or_else(|| InputError::NoFunctional.into())
 }
 
-/// As [`adjoint_gradient`], for several functionals, [boxed](Box) if of several types: they share
-/// the forward motion, the checkpoints, and the motion between checkpoints, along which each has
-/// its own adjoint equations. Each gradient is the same as for its functional alone.
+/// Like [`adjoint_gradient`], but for several functionals, [boxed](Box) if they are of several
+/// types: they share the forward motion, the checkpoints, and the motion between checkpoints, along
+/// which each has its own adjoint equations. Each gradient is the same as if its functional were
+/// the only one.
 ///
 /// # Errors
-/// As there; [`InputError::NoFunctional`]
+/// As for [`adjoint_gradient`]; [`InputError::NoFunctional`]
 pub fn adjoint_gradients<F: VectorField, G: Functional>(
     field: F,
     functionals: impl IntoIterator<Item = G>,
@@ -88,20 +90,20 @@ pub fn adjoint_gradients<F: VectorField, G: Functional>(
     adjoint_gradients_with_events(field, FnEvents::new(), functionals, t0, y0, t1, options)
 }
 
-/// As [`adjoint_gradients`], for a motion with events. At a reset y⁺ = R(t, y⁻) where the function
-/// γ of an event vanishes, λ changes backwards by the transposed saltation matrix,
+/// Like [`adjoint_gradients`], but for a motion with events. At a reset y⁺ = R(t, y⁻), where the
+/// function γ of an event vanishes, the transposed saltation matrix acts on λ backwards in time,
 /// ```text
 /// λ⁻ = R_yᵀ λ⁺ − κ γ_y,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + g⁻ − g⁺)/(γ_t + γ_y f⁻),
 /// ```
 /// and ∂G/∂p changes by R_pᵀ λ⁺ − κ γ_p: the transpose of the rule for
-/// [sensitivities](crate::Sensitivities). The [derivatives](Events::by_parameter) of the events by
-/// parameters are needed if the field has derivatives with respect to parameters.
+/// [sensitivities](crate::Sensitivities). The [derivatives](Events::by_parameter) of the events
+/// with respect to parameters are needed if the field has such derivatives.
 ///
 /// # Errors
-/// As there; [`Reason::EndsEarly`](crate::Reason::EndsEarly) at a terminal event before t1,
-/// [`Reason::Together`](crate::Reason::Together) where several events reset the state at once,
-/// [`Reason::Grazing`](crate::Reason::Grazing) where an event function only touches zero, and
-/// [`InputError::EventParameters`].
+/// As for [`adjoint_gradients`]; [`Reason::EndsEarly`](crate::Reason::EndsEarly) at a terminal
+/// event before t1, [`Reason::Together`](crate::Reason::Together) where several events reset the
+/// state at once, [`Reason::Grazing`](crate::Reason::Grazing) where an event function only touches
+/// zero, and [`InputError::EventParameters`].
 pub fn adjoint_gradients_with_events<F: VectorField, E: Events, G: Functional>(
     field: F,
     events: E,

@@ -13,10 +13,10 @@ use crate::sensitivity::motion_record::MotionRecord;
 use crate::sensitivity::transpose::Transpose;
 use crate::settings::options::Options;
 
-/// What the adjoint equations of all functionals of a motion share.
+/// The data that the adjoint equations of all functionals of a motion share.
 pub(crate) struct Path<F> {
     pub(crate) field: F,
-    /// For derivatives with respect to parameters.
+    /// Computes ∂f/∂p for the derivatives with respect to parameters.
     linearisation: Linearisation,
     transpose: Transpose,
     motion: MotionRecord,
@@ -29,12 +29,13 @@ impl<F: VectorField> Path<F> {
         Path { field, linearisation, transpose, motion: MotionRecord::default() }
     }
 
-    /// Whether the field provides products with (∂f/∂y)ᵀ, but no entries.
+    /// Whether the field provides products with (∂f/∂y)ᵀ, but no entries of ∂f/∂y.
     pub(crate) fn has_products_only(&self) -> bool {
         !self.transpose.has_entries(&self.field)
     }
 
-    /// Records the motion from y(t0) = y0 to `t1`, on these sides of the surfaces of the field.
+    /// Records the motion from y(t0) = y0 to `t1`, with the field held on these sides of its
+    /// surfaces.
     pub(crate) fn record(
         &mut self,
         t0: f64,
@@ -91,7 +92,7 @@ impl<F: VectorField, G: Functional> AdjointField<F, G> {
         }
     }
 
-    /// y(t) of the recorded motion.
+    /// The state y(t) of the recorded motion.
     pub(crate) fn motion(&mut self, t: f64) -> &[f64] {
         self.path.borrow().motion.state(t, &mut self.state);
         &self.state
@@ -198,7 +199,8 @@ impl<F: VectorField, G: Functional> VectorField for AdjointField<F, G> {
     }
 }
 
-/// Integrals from zero at the end to ∫ (∂g/∂p + (∂f/∂p)ᵀ λ) dt, and ∫ g dt, at the start.
+/// The integrals, which are zero at the end of the motion and become ∫ (∂g/∂p + (∂f/∂p)ᵀ λ) dt and
+/// ∫ g dt at its start.
 impl<F: VectorField, G: Functional> Quadratures for AdjointField<F, G> {
     fn count(&self) -> usize {
         self.by_parameters.len() + 1

@@ -22,8 +22,8 @@ pub struct AdjointOptions {
 }
 
 impl AdjointOptions {
-    /// These options for the motion; the adjoint equations by the same method, with the same
-    /// tolerances (the smallest of the absolute ones) and limit of steps; a checkpoint every 200
+    /// These options for the motion; for the adjoint equations the same method, the same tolerances
+    /// (the smallest of the absolute ones) and the same limit on steps; a checkpoint every 200
     /// steps.
     pub fn new(motion: Options) -> Self {
         let absolute_tolerance = match &motion.absolute_tolerance {
@@ -40,22 +40,22 @@ impl AdjointOptions {
         }
     }
 
-    /// Relative and absolute tolerance of λ, of the integrals over g and of those of ∂G/∂p,
-    /// positive.
+    /// Sets the relative and absolute tolerance of λ, of the integrals of g and of the integrals in
+    /// ∂G/∂p, positive.
     pub fn tolerances(self, relative: f64, absolute: f64) -> Self {
         AdjointOptions { relative_tolerance: relative, absolute_tolerance: absolute, ..self }
     }
 
-    /// Steps from one checkpoint to the next, at least 1.
+    /// Sets the number of steps from one checkpoint to the next, at least 1.
     ///
-    /// Memory holds the states at checkpoints and, of one interval at a time, all steps with their
-    /// derivatives, at most 13 vectors per step. The method restarts at each checkpoint, so an
-    /// interval should be longer than its starting phase.
+    /// The states at all checkpoints are held in memory and, for one interval at a time, all steps
+    /// with their derivatives, at most 13 vectors per step. The method restarts at each checkpoint,
+    /// so an interval should be longer than the starting phase of the method.
     pub fn checkpoint_interval(self, steps: u32) -> Self {
         AdjointOptions { checkpoint_interval: steps, ..self }
     }
 
-    /// How the linear systems of the adjoint equations are solved, whose matrices are the
+    /// Sets how the linear systems of the adjoint equations are solved, whose matrices are the
     /// transposes of those of the motion; by default the [usual](LinearSolver) solver for the
     /// field, or [Krylov's method](LinearSolver::Krylov) if it offers only
     /// [products](pc_expr::VectorField::vjp).

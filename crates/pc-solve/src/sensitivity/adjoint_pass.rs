@@ -1,4 +1,4 @@
-//! The forward motion, and the adjoint equations backwards.
+//! The forward integration of the motion, and the backward integration of the adjoint equations.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -25,7 +25,7 @@ struct Mark {
     t: f64,
     y: Vec<f64>,
     jump: Option<Jump>,
-    /// The sides of the surfaces of the field from there on.
+    /// The sides of its surfaces on which the field is held from there on.
     sides: Vec<f64>,
 }
 
@@ -33,7 +33,7 @@ struct Mark {
 enum Jump {
     /// A reset: the event and the state before it.
     Reset(usize, Vec<f64>),
-    /// Surfaces on which f jumps, and the sides before.
+    /// Surfaces on which f jumps: these and the sides before.
     Surfaces(Vec<usize>, Vec<f64>),
 }
 
@@ -113,7 +113,7 @@ pub(crate) fn gradients<F: VectorField, E: Events, G: Functional>(
     ways.into_iter().map(|way| way.arrive((t0, y0), there.statistics)).collect()
 }
 
-/// The parts of the forward motion that are kept.
+/// The parts of the forward motion that are recorded.
 struct There {
     marks: Vec<Mark>,
     has_jumps: bool,
@@ -121,7 +121,7 @@ struct There {
     statistics: Statistics,
 }
 
-/// Integrates the motion to `t1`; keeps the start, every `interval`th step, and the states after
+/// Integrates the motion to `t1`; records the start, every `interval`th step, and the states after
 /// resets.
 fn there<F: VectorField, E: Events>(
     field: &mut F,
@@ -195,7 +195,7 @@ fn there<F: VectorField, E: Events>(
     Ok(There { marks, has_jumps, end, statistics })
 }
 
-/// Adds marks where surfaces are passed, and the sides from each mark on.
+/// Adds marks where surfaces are crossed, and the sides from each mark on.
 fn with_passages(marks: &mut Vec<Mark>, passages: Vec<Passage>, direction: f64) {
     for Passage { surfaces, time, state, before, after } in passages {
         let place = marks.partition_point(|mark| (mark.t - time) * direction < 0.0);
@@ -220,7 +220,7 @@ struct Way<F, G> {
     back: Option<Integration<Cvode<AdjointField<F, G>>>>,
     options: Options,
     tolerances: (f64, f64),
-    /// h, and the integrals beyond the last jump.
+    /// The end term h, and the integrals beyond the last jump.
     value: f64,
     by_parameters: Vec<f64>,
 }

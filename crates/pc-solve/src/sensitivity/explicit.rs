@@ -1,6 +1,7 @@
-//! Derivatives of a motion integrated with it by an explicit method.
+//! Derivatives of a motion that an explicit method integrates with it.
 //!
-//! The state of the method is (y, s₁, s₂, …), with the equations of variation for the columns; outside it is y.
+//! The state of the method is (y, s₁, s₂, …), with the equations of variation for the columns; from
+//! outside, the state is y alone.
 
 use pc_expr::{
     Failure, Method, PolynomialMotion, SteepFunctions, Switching, TaylorSeries, TimeDependence, VectorField,
@@ -26,7 +27,7 @@ use crate::taylor::stepper::Taylor;
 /// The absolute tolerance of components whose error is not controlled.
 const ANY: f64 = 1e300;
 
-/// A field with the equations of variation of its columns, ṡ = (∂f/∂y) s + ∂f/∂p.
+/// A field together with the equations of variation of its columns, ṡ = (∂f/∂y) s + ∂f/∂p.
 #[derive(Debug)]
 pub(crate) struct WithVariation<F> {
     field: F,
@@ -97,7 +98,7 @@ impl<F: VectorField> VectorField for WithVariation<F> {
     }
 }
 
-/// An explicit method with derivatives of the motion, as parts of the state.
+/// An explicit method with the derivatives of the motion as part of its state.
 #[derive(Debug)]
 pub(crate) struct Explicit<S> {
     method: S,
@@ -105,7 +106,7 @@ pub(crate) struct Explicit<S> {
     parameters: Vec<Option<usize>>,
     dim: usize,
     relative_tolerance: f64,
-    /// The time at which states of the last step are read, and the columns there.
+    /// The state at the time inside the last step that is being read, and the columns there.
     state: Vec<f64>,
     inside: Option<Vec<f64>>,
     /// The columns at the start of the last step.
@@ -113,8 +114,8 @@ pub(crate) struct Explicit<S> {
 }
 
 impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
-    /// Starts at y(t0) = y0 with derivatives of the motion, with the method that `begin` makes from the field, the
-    /// start and the options.
+    /// Starts an integration at y(t0) = y0 that also computes derivatives of the motion, using the
+    /// method that `begin` constructs from the field, the start and the options.
     ///
     /// # Errors
     /// As for `begin`; [`SolveError::Input`] if a column needs a derivative that the field does not have.
@@ -158,7 +159,7 @@ impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
         Ok(Explicit { method, parameters, dim, relative_tolerance, state: all, inside: None, start: columns })
     }
 
-    /// Reads the columns at the current time, if that is inside the last step.
+    /// Reads the columns at the current time, if that lies inside the last step.
     fn read_columns(&mut self, t: f64) {
         let LastStep { start, end, degree } = self.method.last_step();
         self.inside = None;
@@ -307,7 +308,7 @@ impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Stepper for Explicit<
 }
 
 impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
-    /// The error with the state of the motion alone.
+    /// The same error, reduced to the state of the motion alone.
     fn of_state(&self, error: SolveError) -> SolveError {
         match error {
             SolveError::Integration(mut error) => {
@@ -322,7 +323,7 @@ impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
 /// The method that options choose for a motion with its derivatives.
 #[derive(Debug)]
 pub(crate) enum Differentiated<F: VectorField> {
-    /// [`Method::Adams`], [`Method::Bdf`], and Adams for [`Method::Auto`].
+    /// For [`Method::Adams`] and [`Method::Bdf`]; also for [`Method::Auto`], with Adams' formulas.
     Cvode(Box<Cvode<F>>),
     /// [`Method::Dop853`].
     Dop853(Box<Explicit<Dop853<WithVariation<F>>>>),

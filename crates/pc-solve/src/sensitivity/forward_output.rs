@@ -31,7 +31,7 @@ impl<F: VectorField> Integration<Cvode<F>> {
     }
 }
 
-/// Derivatives of methods that have them.
+/// Access to the derivatives, for methods that have them.
 impl<S: Stepper, E: Events> Integration<S, E> {
     /// S at [`time`](Integration::time), S⁺ at an event: entry `i + j * dim` is the derivative of
     /// component i for column j.
@@ -66,7 +66,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.restart_with_columns(t, y, matrix)
     }
 
-    /// As [`run`](Integration::run), but passes each (t, y, S) to `output`, y⁺ and S⁺ at an event.
+    /// Like [`run`](Integration::run), but passes each (t, y, S) to `output`, with y⁺ and S⁺ at an
+    /// event.
     ///
     /// # Errors
     /// As for [`run`](Integration::run) and [`sensitivities`](Integration::sensitivities).
@@ -85,7 +86,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 }
 
-/// What CVODES alone has.
+/// Access to what only CVODES has.
 impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
     /// The work for the sensitivities so far.
     pub fn sensitivity_statistics(&self) -> SensitivityStatistics {
@@ -102,8 +103,8 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
         self.engine.sensitivities_by_time(t, order)?.ok_or_else(|| InputError::NoSensitivities.into())
     }
 
-    /// As [`run_dense`](Integration::run_dense), also with the segment of S on the same span, from
-    /// S⁺ to S⁻; its components are the entries of S, column-major.
+    /// Like [`run_dense`](Integration::run_dense), but also passes on the segment of S on the same
+    /// span, from S⁺ to S⁻, whose components are the entries of S, column-major.
     ///
     /// # Errors
     /// As there; [`InputError::NoSensitivities`] if there are none.

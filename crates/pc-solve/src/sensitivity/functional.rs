@@ -7,9 +7,9 @@ use crate::integration::statistics::Statistics;
 /// A functional G = ∫ g(t, y, p) dt + h(t₁, y(t₁), p) of a motion from t₀ to t₁, with its
 /// derivatives.
 ///
-/// Both terms write their derivatives with respect to the state and the parameters of the field,
-/// the latter empty if it has no [derivatives](pc_expr::VectorField::parameter_jacobian) by them.
-/// Every entry must be written, zeros too. A term not implemented is zero.
+/// Both terms write their derivatives with respect to the state and the parameters of the field;
+/// the latter are empty if the field has no [derivatives](pc_expr::VectorField::parameter_jacobian)
+/// with respect to them. Every entry must be written, zeros too. A term not implemented is zero.
 pub trait Functional {
     /// g(t, y), with ∂g/∂y and ∂g/∂p.
     ///
@@ -65,7 +65,7 @@ impl<G: Functional + ?Sized> Functional for Box<G> {
     }
 }
 
-/// A functional and its derivatives.
+/// The value of a functional and its derivatives.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Gradient {
@@ -78,6 +78,6 @@ pub struct Gradient {
     ///
     /// If the start does depend on p, add (∂y₀/∂p)ᵀ ∂G/∂y₀.
     pub by_parameters: Vec<f64>,
-    /// The work of the forward motion to t₁ only.
+    /// The work of the forward integration to t₁ only.
     pub statistics: Statistics,
 }

@@ -14,14 +14,15 @@ pub(crate) struct MotionRecord {
     direction: f64,
     /// The end of each step.
     ends: Vec<f64>,
-    /// Where the coefficients of each step begin.
+    /// The index at which the coefficients of each step begin.
     first: Vec<usize>,
     /// y⁽ᵏ⁾(end)/k! of each step, for k from 0 to the order of the step.
     coefficients: Vec<f64>,
 }
 
 impl MotionRecord {
-    /// Integrates from y(t0) = y0 to `t1`, without evaluations beyond, on these sides of the surfaces of the field.
+    /// Integrates from y(t0) = y0 to `t1`, without evaluating the field beyond it, with the field
+    /// held on these sides of its surfaces.
     pub(crate) fn of(
         field: &mut impl VectorField,
         t0: f64,

@@ -19,7 +19,7 @@ use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solve::Solve;
 
-/// A motion to be integrated with its derivatives, as [`Solve::sensitivities`] makes it.
+/// A motion to be integrated with its derivatives; [`Solve::sensitivities`] makes it.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct SolveSensitivities<'a, F, E> {
@@ -32,7 +32,8 @@ pub struct SolveSensitivities<'a, F, E> {
 }
 
 impl<'a, F: VectorField, M: Borrow<Options>, E: Events> Solve<'a, F, M, E> {
-    /// With S = ∂y/∂(p, y₀), which jumps at resets, by [their derivatives](Events::by_parameter).
+    /// Adds the integration of S = ∂y/∂(p, y₀), which jumps at resets as [their
+    /// derivatives](Events::by_parameter) require.
     ///
     /// ```
     /// use pc_solve::{Sensitivities, Solve, from_fn};
@@ -58,7 +59,8 @@ impl<F: VectorField, E: Events> SolveSensitivities<'_, F, E> {
         self.run_observed(times, |_, _| ControlFlow::Continue(()))
     }
 
-    /// As [`run`](SolveSensitivities::run), but passes each output (t, y) to `output`, to show progress or to stop.
+    /// Like [`run`](SolveSensitivities::run), but passes each output (t, y) to `output`, to show
+    /// progress or to stop.
     ///
     /// # Errors
     /// As for [`run`](SolveSensitivities::run).
@@ -97,7 +99,7 @@ impl<F: VectorField, E: Events> SolveSensitivities<'_, F, E> {
         }
     }
 
-    /// The motion to `end` and S, as functions of time, the entries of S column-major.
+    /// The motion to `end` and S as functions of time; the entries of S are column-major.
     ///
     /// # Errors
     /// As for [`Integration::run_dense_with_sensitivities`], which also gives what was reached.
@@ -120,7 +122,7 @@ impl<F: VectorField, E: Events> SolveSensitivities<'_, F, E> {
         result.map(|_| (motion, matrix))
     }
 
-    /// The integration at its start.
+    /// The integration at its start, before any step.
     fn towards(self, end: Option<f64>) -> Result<Integration<Differentiated<F>, E>, SolveError> {
         let SolveSensitivities { field, t0, y0, options, events, sensitivities } = self;
         let method = Differentiated::new(field, t0, y0, &towards(options, end), sensitivities)?;
@@ -134,7 +136,8 @@ fn towards(mut options: Options, end: Option<f64>) -> Options {
     options
 }
 
-/// A motion with its derivatives in legs from checkpoint to checkpoint, as [`Resumable::sensitivities`] makes it.
+/// A motion to be integrated with its derivatives from checkpoint to checkpoint;
+/// [`Resumable::sensitivities`] makes it.
 #[derive(Debug)]
 #[must_use]
 pub struct ResumableSensitivities<'a, P> {
@@ -143,7 +146,8 @@ pub struct ResumableSensitivities<'a, P> {
 }
 
 impl<P, M: Borrow<Options>> Resumable<P, M> {
-    /// With S = ∂y/∂(p, y₀): that of a checkpoint, and of the outputs before it, is in it.
+    /// Adds the integration of S = ∂y/∂(p, y₀). A checkpoint contains the S at its time and at the
+    /// outputs before it.
     pub fn sensitivities(self, sensitivities: &Sensitivities) -> ResumableSensitivities<'_, P> {
         let options = self.method.borrow().clone();
         ResumableSensitivities { motion: self.method(options), sensitivities }
@@ -151,7 +155,7 @@ impl<P, M: Borrow<Options>> Resumable<P, M> {
 }
 
 impl<P> ResumableSensitivities<'_, P> {
-    /// As [`Resumable::run`]. Derivatives of the times of events are not kept.
+    /// Like [`Resumable::run`]. Derivatives of the times of events are not recorded.
     ///
     /// # Errors
     /// As there; [`InputError::Sensitivities`](crate::InputError::Sensitivities) if the checkpoint has another number of

@@ -20,7 +20,7 @@ impl SensitivityTrajectory {
         SensitivityTrajectory { motion: Trajectory::new(dim), columns, matrices: Vec::new() }
     }
 
-    /// Of a motion, with one matrix after the other.
+    /// The trajectory of this motion, with one matrix after the other.
     pub(super) fn of(motion: Trajectory, columns: usize, matrices: Vec<f64>) -> Self {
         SensitivityTrajectory { motion, columns, matrices }
     }
@@ -78,8 +78,8 @@ pub struct SensitivitySolution {
     pub trajectory: SensitivityTrajectory,
     /// The occurrences, in order.
     pub occurrences: Vec<Occurrence>,
-    /// For each occurrence the [derivatives of its time](Integration::time_derivatives), one for each column; none are
-    /// kept with checkpoints.
+    /// For each occurrence the [derivatives of its time](Integration::time_derivatives), one for
+    /// each column; not recorded for motions with checkpoints.
     pub time_derivatives: Vec<Vec<f64>>,
     /// How it ended; none if it failed.
     pub ending: Option<Ending>,

@@ -6,8 +6,8 @@ use crate::cvode::forward::linearisation::Linearisation;
 use crate::error::NonFinite;
 use crate::settings::options::Options;
 
-/// (∂f/∂y)ᵀ of a field: by its own products, else by its sparse Jacobian, which may be assembled
-/// from products by the colours of its pattern, else by its dense one.
+/// (∂f/∂y)ᵀ of a field, from the products that the field computes, else from its sparse Jacobian,
+/// which may be assembled from products for the colours of its pattern, else from its dense one.
 #[derive(Debug)]
 pub(crate) struct Transpose {
     linearisation: Linearisation,
@@ -15,14 +15,14 @@ pub(crate) struct Transpose {
     sparse: Option<Sparse>,
 }
 
-/// ∂f/∂y of a known pattern.
+/// The entries of a ∂f/∂y whose pattern is known.
 #[derive(Debug)]
 struct Sparse {
     pattern: Pattern,
-    /// For a field that does not write the entries.
+    /// The colours, for a field that does not write the entries.
     colouring: Option<Colouring>,
     entries: Vec<f64>,
-    /// The pattern of the transposed matrix, and the place of each of its entries in `entries`.
+    /// The pattern of the transposed matrix, and the position of each of its entries in `entries`.
     transposed: Pattern,
     places: Vec<usize>,
 }
@@ -101,7 +101,7 @@ impl Transpose {
         self.sparse.as_ref().map(|sparse| &sparse.transposed)
     }
 
-    /// Whether entries cost no more than products.
+    /// Whether computing the entries costs no more than a product.
     pub(crate) fn has_entries(&self, field: &impl VectorField) -> bool {
         !self.has_products || self.sparse.is_some() || field.has_jacobian()
     }

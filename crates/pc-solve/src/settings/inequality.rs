@@ -1,14 +1,14 @@
-//! Components that keep their sign.
+//! Inequalities that components have to satisfy.
 
 use std::fmt;
 
 /// A condition on a component of y at the end of every step, so that f is not evaluated far outside
 /// its domain.
 ///
-/// A step whose end violates it is corrected if the violation is small, else repeated with a
-/// shorter length. Inside a step the polynomial of the method may violate it by the tolerance.
-/// Where the motion itself leads out, the steps become ever shorter, until the limit of steps or
-/// the minimum step ends the integration.
+/// If the end of a step violates it, the state is corrected if the violation is small; otherwise
+/// the step is repeated with a shorter length. Inside a step the polynomial of the method may
+/// violate it by the tolerance. Where the motion itself leaves the allowed region, the steps become
+/// ever shorter, until the limit of steps or the minimum step ends the integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Inequality {
     /// No condition.

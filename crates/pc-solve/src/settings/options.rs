@@ -16,8 +16,8 @@ use crate::settings::tolerance::Tolerance;
 ///
 /// A step is accepted if the root mean square of eᵢ/(rtol |yᵢ| + atolᵢ) over the components is at
 /// most 1, where e is the estimated local error. [`Method::Taylor`] chooses its step beforehand, so
-/// that the largest of these quotients for the terms left out of its series is about 1. Values are
-/// checked when an integration starts.
+/// that the largest of these quotients, taken for the terms left out of its series, is about 1.
+/// Values are checked when an integration starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     pub(crate) method: Method,
@@ -85,15 +85,15 @@ impl Options {
 
     /// Inequalities to satisfy, one for each component; none by default.
     ///
-    /// They exclude a field [with a projection](pc_expr::VectorField::has_projection), which would
-    /// move the states again.
+    /// They cannot be combined with a field [with a
+    /// projection](pc_expr::VectorField::has_projection), which would move the states again.
     pub fn inequalities(self, inequalities: Vec<Inequality>) -> Self {
         Options { inequalities, ..self }
     }
 
     /// Relative tolerance, positive. Below ε = 2.2e-16 it is taken as ε, or 2 ε for Adams' and BDF
-    /// formulas; only Taylor's method, which carries the rounding of the state along, can have
-    /// smaller ones.
+    /// formulas; only Taylor's method, which carries the rounding error of the state along,
+    /// supports smaller tolerances.
     pub fn relative_tolerance(self, relative_tolerance: f64) -> Self {
         Options { relative_tolerance, ..self }
     }
@@ -103,8 +103,8 @@ impl Options {
         Options { absolute_tolerance: absolute_tolerance.into(), ..self }
     }
 
-    /// Maximum number of internal steps from one output to the next, at least 1; more are the error
-    /// [`Code::TooMuchWork`](crate::Code::TooMuchWork).
+    /// Maximum number of internal steps from one output to the next, at least 1; exceeding it is
+    /// the error [`Code::TooMuchWork`](crate::Code::TooMuchWork).
     pub fn max_steps(self, max_steps: u64) -> Self {
         Options { max_steps, ..self }
     }
@@ -134,9 +134,9 @@ impl Options {
         Options { stop_time: Some(t), ..self }
     }
 
-    /// The number of equal parts of each internal step at whose ends those event functions are
-    /// sampled that are not programs of the state; at least 1, by default 4. Between two samples
-    /// [an even number](crate::Integration) of their zeros may be missed.
+    /// The number of equal parts of each internal step at whose ends event functions are sampled,
+    /// if they are not programs of the state; at least 1, by default 4. Between two samples [an
+    /// even number](crate::Integration) of their zeros may be missed.
     pub fn samples_per_step(self, parts: u32) -> Self {
         Options { samples_per_step: parts, ..self }
     }
@@ -151,7 +151,7 @@ impl Options {
         Options { deadline: Some(deadline), ..self }
     }
 
-    /// The same options for a method of CVODES: Adams for [`Method::Auto`].
+    /// The same options for a method of CVODES, with Adams in place of [`Method::Auto`].
     ///
     /// # Errors
     /// [`InputError::NotCvode`] if another method was chosen.
@@ -167,7 +167,7 @@ impl Options {
         }
     }
 
-    /// How the implicit equation of a step is solved, as chosen or by default.
+    /// How the implicit equation of a step is solved: as chosen, or by default.
     #[cfg(feature = "cvode")]
     pub(crate) fn iteration(&self) -> NonlinearSolver {
         self.nonlinear_solver.unwrap_or(match self.method {
@@ -193,8 +193,9 @@ impl Options {
         refused.map_or(Ok(()), |what| Err(InputError::Explicit { method: self.method, what }))
     }
 
-    /// The relative tolerance for methods whose states are rounded: at least ε, since an error below
-    /// that is not seen, and steps shortened for it only add rounding. CVODES needs twice that.
+    /// The relative tolerance for methods whose states are rounded: at least ε, since a smaller
+    /// error does not show, and steps shortened to reach it only add rounding errors. CVODES needs
+    /// twice that.
     pub(crate) fn resolved_tolerance(&self) -> f64 {
         let least = match self.method {
             Method::Adams | Method::Bdf => 2.0 * f64::EPSILON,

@@ -1,6 +1,6 @@
 //! Absolute tolerances.
 
-/// Absolute tolerance: one for all components, or one for each.
+/// Absolute tolerance: a single one for all components, or one for each.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Tolerance {
     /// The same for all components.
@@ -10,7 +10,7 @@ pub enum Tolerance {
 }
 
 impl Tolerance {
-    /// One for each component; the same for all where they are equal.
+    /// The tolerances of the components, reduced to a single one if they are all equal.
     pub fn each(tolerances: Vec<f64>) -> Tolerance {
         match tolerances.split_first() {
             Some((first, rest)) if rest.iter().all(|other| other == first) => Tolerance::Scalar(*first),

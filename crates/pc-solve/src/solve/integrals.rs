@@ -13,7 +13,7 @@ use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solve::Solve;
 
-/// A motion to be integrated with integrals along it, as [`Solve::integrals`] makes it.
+/// A motion to be integrated with integrals along it; [`Solve::integrals`] makes it.
 #[derive(Debug)]
 #[must_use]
 pub struct SolveIntegrals<'a, F> {
@@ -25,7 +25,7 @@ pub struct SolveIntegrals<'a, F> {
 }
 
 impl<'a, F: VectorField, M: Borrow<Options>> Solve<'a, F, M, NoEvents> {
-    /// With integrals from t0 to each output time.
+    /// Adds integrals along the motion, from t0 to each output time.
     pub fn integrals(self, integrals: Integrals) -> SolveIntegrals<'a, F> {
         let Solve { field, t0, y0, method, .. } = self;
         SolveIntegrals { field, t0, y0, options: method.borrow().clone(), integrals }

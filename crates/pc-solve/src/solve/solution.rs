@@ -14,7 +14,8 @@ pub struct Solution {
     pub occurrences: Vec<Occurrence>,
     /// How it ended; none if it failed.
     pub ending: Option<Ending>,
-    /// The parts that slide along surfaces on which the field jumps; none are kept with checkpoints.
+    /// The parts that slide along surfaces on which the field jumps; not recorded for motions with
+    /// checkpoints.
     pub slides: Vec<Slide>,
 }
 

@@ -15,7 +15,7 @@ use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 
-/// Integrates ẏ = f(t, y) from y(t0) = y0 by the method of the options and returns the states at
+/// Integrates ẏ = f(t, y) from y(t0) = y0 with the method of the options and returns the states at
 /// `times`; [`Solve`] offers more choices.
 ///
 /// `y0` has one number per component. The times are monotonic, forwards or backwards; the
@@ -71,13 +71,13 @@ impl<'a, F: VectorField> Solve<'a, F> {
 }
 
 impl<'a, F: VectorField, M, E> Solve<'a, F, M, E> {
-    /// By this method: [`Options`] choose one of those built in.
+    /// Sets the method: [`Options`] choose one of those built in.
     pub fn method<N: IntegrationMethod<F>>(self, method: N) -> Solve<'a, F, N, E> {
         let Solve { field, t0, y0, events, .. } = self;
         Solve { field, t0, y0, method, events }
     }
 
-    /// With these events.
+    /// Adds these events.
     pub fn events<D: Events>(self, events: D) -> Solve<'a, F, M, D> {
         let Solve { field, t0, y0, method, .. } = self;
         Solve { field, t0, y0, method, events }
@@ -85,7 +85,7 @@ impl<'a, F: VectorField, M, E> Solve<'a, F, M, E> {
 }
 
 impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
-    /// The integration at its start, to be advanced step by step.
+    /// Begins the integration and returns it at its start, to be advanced step by step.
     ///
     /// # Errors
     /// As for [`IntegrationMethod::begin`] and [`Integration::with_events`].
@@ -109,8 +109,8 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         self.run_observed(times, |_, _| ControlFlow::Continue(()))
     }
 
-    /// As [`run`](Solve::run), but passes the end (t, y⁻) of each step, or of the part of it before
-    /// an event, to `step`, to show progress or to stop.
+    /// Like [`run`](Solve::run), but passes the end (t, y⁻) of each step, or of the part of it
+    /// before an event, to `step`, to show progress or to stop.
     ///
     /// If stopped, the solution has the outputs before that step and is not
     /// [complete](Trajectory::is_complete).
@@ -139,8 +139,8 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         }
     }
 
-    /// As [`run_observed`](Solve::run_observed): the motion as far as it can be computed, and the
-    /// error that stopped it, if any.
+    /// Like [`run_observed`](Solve::run_observed), but returns the motion as far as it can be
+    /// computed, and the error that stopped it, if there was one.
     pub fn follow(
         self,
         times: &[f64],
@@ -149,8 +149,8 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
         SolveFailure::split(self.run_observed(times, step))
     }
 
-    /// As [`run_observed`](Solve::run_observed), but passes each (t, y) to `output`, which may stop
-    /// it, instead of keeping it: the trajectory of the solution has only the statistics.
+    /// Like [`run_observed`](Solve::run_observed), but passes each (t, y) to `output`, which may
+    /// stop it, instead of keeping it: the trajectory of the solution contains only the statistics.
     ///
     /// # Errors
     /// As for [`run`](Solve::run).

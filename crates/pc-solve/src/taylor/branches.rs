@@ -1,4 +1,5 @@
-//! Corners and jumps of a field: the branch of a series, given by the signs of branch functions.
+//! Corners and jumps of a field: the branch on which a series holds, given by the signs of branch
+//! functions.
 
 use pc_expr::VectorField;
 
@@ -12,7 +13,8 @@ use crate::taylor::stepper::Taylor;
 const TOGETHER: f64 = 1e-12;
 
 impl<F: VectorField> Taylor<F> {
-    /// Expands at the end of the last step, on the sides that the motion enters from there.
+    /// Expands the motion in a series at the end of the last step, on the sides that it enters from
+    /// there.
     pub(super) fn expand_at_end(&mut self, direction: f64) -> Result<(), SolveError> {
         self.direction = direction;
         self.sides.fill(0.0);
@@ -43,7 +45,7 @@ impl<F: VectorField> Taylor<F> {
         leading.map_or(0.0, f64::signum)
     }
 
-    /// Where branch functions first change sign within h, and which of them do.
+    /// The time within h at which branch functions first change sign, and which of them do.
     pub(super) fn corner(&self, h: f64) -> Option<(f64, Vec<usize>)> {
         let mut first = None::<f64>;
         let mut exits = Vec::new();

@@ -1,7 +1,8 @@
-//! The field further ahead, which a series does not show.
+//! Examination of the field further ahead, which a series does not show.
 //!
 //! The coefficients of the series of exp(−((t − 5)/0.2)²) at t = 0 are indistinguishable from 0. At
-//! the [places](crate::foresight) in the next step where the field may turn or jump, the rates of the field are therefore compared with those of the polynomial.
+//! the [times](crate::foresight) in the next step at which the field may turn or jump, the rates of
+//! the field are therefore compared with those of the polynomial.
 
 use pc_expr::{PolynomialMotion, VectorField};
 
@@ -12,7 +13,7 @@ use crate::integration::stepper::Stepper;
 use crate::taylor::stepper::Taylor;
 
 impl<F: VectorField> Taylor<F> {
-    /// A shorter length for the step, if f has a feature in it that the series does not show.
+    /// A shorter length for the step, if f has a feature in the step that the series does not show.
     pub(super) fn foreseen(&mut self, h: f64, end: f64) -> Result<Option<f64>, SolveError> {
         let t = self.start;
         let ahead = Ahead { t, reach: t + h, end, given: false };
@@ -55,7 +56,7 @@ impl<F: VectorField> Taylor<F> {
         Ok(crowded.filter(|crowded| crowded.abs() < h.abs()))
     }
 
-    /// Whether f at a place in the step differs from the prediction of the polynomial.
+    /// Whether f at a time in the step differs from the prediction of the polynomial.
     fn surprises_at(&mut self, place: f64, h: f64) -> bool {
         let s = (place - self.start) - self.start_low;
         self.series.change(s, &mut self.state, &mut self.slope);

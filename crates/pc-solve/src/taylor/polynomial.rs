@@ -1,6 +1,7 @@
 //! The polynomial of a step.
 
-/// y(t₀ + s) = Σ_k c_k sᵏ, c_0 first, each of the length of the state.
+/// The polynomial y(t₀ + s) = Σ_k c_k sᵏ; the coefficients are stored with c_0 first, each as long
+/// as the state.
 #[derive(Debug, Clone)]
 pub(super) struct Polynomial {
     pub(super) coefficients: Vec<f64>,

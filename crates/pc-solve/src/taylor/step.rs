@@ -9,7 +9,8 @@ use crate::taylor::stepper::Taylor;
 
 /// A step that would end less than this fraction of its length before a stop time or a break ends there.
 const NEAR: f64 = 1e-9;
-/// A step is at most this many times as long as the previous step or the time to its target, whichever is longer.
+/// A step is at most this many times as long as the previous step or as the time to its target,
+/// whichever is longer.
 const FARTHEST: f64 = 1e3;
 
 /// Why a step is rejected.
@@ -57,8 +58,8 @@ impl<F: VectorField> Taylor<F> {
         Ok(if length.is_infinite() { wanted } else { length.min(FARTHEST * known) })
     }
 
-    /// Makes a step along the series; returns the time at its end, as the sum of a number and its
-    /// rounding error.
+    /// Makes a step along the series; returns the time at its end as a number and its rounding
+    /// error, to be added to it.
     pub(super) fn find_step(
         &mut self,
         towards: f64,
@@ -201,7 +202,7 @@ impl<F: VectorField> Taylor<F> {
         if self.ahead.is_finite() { Ok(()) } else { Err(refused(self.blame(t))) }
     }
 
-    /// The failure for a series that is not finite.
+    /// The failure to report for a series that is not finite.
     #[cold]
     pub(super) fn blame(&mut self, t: f64) -> Failure {
         if let Err(failure) = self.field.rhs(t, self.ahead.of_order(0), &mut self.rates) {

@@ -1,17 +1,19 @@
-//! Order and step from tolerance and coefficients [Jorba, Zou 2005, section 3].
+//! The choice of order and step length from the tolerance and the coefficients [Jorba, Zou 2005,
+//! section 3].
 
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 use crate::taylor::polynomial::Polynomial;
 
-/// Orders chosen automatically.
+/// The range of orders that are chosen automatically.
 const ORDERS: std::ops::RangeInclusive<usize> = 6..=40;
-/// A smaller tolerance gains nothing.
+/// The smallest useful tolerance: a smaller one gains nothing.
 const TIGHTEST: f64 = 1e-20;
-/// Changes of the state over a step below this fraction of it are rounding.
+/// Changes of the state over a step that are below this fraction of the state are treated as
+/// rounding errors.
 const ROUNDING: f64 = 1e-15;
-/// So are differences of rates below this fraction of them: cancellation in f leaves some hundred
-/// roundings.
+/// So are differences of rates that are below this fraction of the rates: cancellation in f leaves
+/// an error of some hundred roundings.
 const ROUNDING_OF_RATES: f64 = 1e-13;
 /// The rates at the end of a step may differ from those of the polynomial by this many times the
 /// contribution of the first neglected term: coefficients scatter, and tolerances hold only in
@@ -81,8 +83,8 @@ impl Tolerances {
         (*ORDERS.start()..=highest).min_by(|&p, &q| work(p).total_cmp(&work(q))).unwrap_or(highest)
     }
 
-    /// The length on which the series holds to the tolerance, from its last two terms; infinite if
-    /// both are 0.
+    /// The length over which the series is accurate to the tolerance, estimated from its last two
+    /// terms; infinite if both are 0.
     pub(super) fn length(&self, series: &Polynomial) -> f64 {
         let (p, y) = (series.order(), series.of_order(0));
         // Logarithms of the radius of convergence, of the factor for the tolerance, and of Jorba
@@ -93,7 +95,7 @@ impl Tolerances {
         (radius[0].min(radius[1]) + tolerance - 1.01 / (order - 1.0)).exp2()
     }
 
-    /// Whether the difference of `rates` and `slope` matters over a step of this length.
+    /// Whether the difference between `rates` and `slope` matters over a step of this length.
     pub(super) fn feels(&self, rates: &[f64], slope: &[f64], y: &[f64], length: f64, order: usize) -> bool {
         let allowed = DEFECT * (order + 1) as f64 * self.relative.max(ROUNDING) / length.abs();
         // Written so that a NaN counts as large.

@@ -31,11 +31,11 @@ pub struct Taylor<F> {
     pub(super) min_step: f64,
     pub(super) max_step: f64,
     pub(super) stop_time: Option<f64>,
-    /// The start of the last step, with the rounding error of its time, and the series there.
+    /// The time at the start of the last step, with its rounding error, and the series there.
     pub(super) start: f64,
     pub(super) start_low: f64,
     pub(super) series: Polynomial,
-    /// The end of the last step, likewise.
+    /// The same at the end of the last step.
     pub(super) end: f64,
     pub(super) end_low: f64,
     pub(super) ahead: Polynomial,

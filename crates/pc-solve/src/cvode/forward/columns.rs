@@ -7,7 +7,7 @@ use crate::cvode::handles::{NonlinearIteration, Vector};
 
 /// The data of the sensitivities of an integration.
 pub(crate) struct Forward {
-    /// Referred to by CVODES.
+    /// Kept alive because CVODES refers to it.
     pub(super) _nonlinear_iteration: NonlinearIteration,
     /// Room for the columns, written by CVODES.
     pub(crate) columns: Vec<Vector>,
@@ -19,7 +19,7 @@ pub(crate) struct Forward {
 }
 
 impl Forward {
-    /// The columns in the form that CVODES takes.
+    /// The columns in the form that CVODES expects.
     pub(crate) fn raw(&self) -> Vec<sys::N_Vector> {
         self.columns.iter().map(Vector::raw).collect()
     }

@@ -34,7 +34,7 @@ impl<F: VectorField> Cvode<F> {
         Cvode::new(field, t0, y0, options)?.and_sensitivities(sensitivities, options, start)
     }
 
-    /// This integration, which has not begun, with columns that begin at `start`.
+    /// Adds columns that begin at `start` to this integration, which has not begun.
     pub(crate) fn and_sensitivities(
         mut self,
         sensitivities: &Sensitivities,
@@ -135,7 +135,8 @@ impl<F: VectorField> Cvode<F> {
         self.begin_columns_anew(matrix, work)
     }
 
-    /// Reinitialises the columns of S, if there are any, after the state; `work` is the work before.
+    /// Reinitialises the columns of S, if there are any, once the state has been reinitialised;
+    /// `work` is the work done before.
     pub(crate) fn begin_columns_anew(
         &mut self,
         matrix: &[f64],

@@ -33,8 +33,9 @@ impl<F: VectorField> Cvode<F> {
         Ok(Some(forward.columns.iter().flat_map(Vector::as_slice).copied().collect()))
     }
 
-    /// S along the last internal step, between two of its times. S is not projected after a step,
-    /// so that the polynomials of successive steps join to rounding.
+    /// S as a function of time, between two times in the last internal step. S is not projected
+    /// after a step, so that the polynomials of successive steps agree where they meet, up to
+    /// rounding error.
     pub(crate) fn segment_of_sensitivities(&self, start: f64, end: f64) -> Result<Segment, SolveError> {
         let at = |k: u32| -> Result<Vec<f64>, SolveError> {
             self.sensitivities_by_time(end, k)?.ok_or_else(|| InputError::NoSensitivities.into())

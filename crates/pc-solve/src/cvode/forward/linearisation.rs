@@ -6,12 +6,12 @@ use crate::error::NonFinite;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
-/// Where products (∂f/∂y) v come from.
+/// How products (∂f/∂y) v are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Products {
-    /// The field writes them.
+    /// The field computes them.
     Field,
-    /// The field writes ∂f/∂y.
+    /// They are formed with the ∂f/∂y that the field writes.
     Jacobian,
     /// (f(t, y + σv) − f(t, y − σv))/2σ
     #[default]
@@ -20,10 +20,10 @@ enum Products {
 
 /// ∂f/∂y and ∂f/∂p of a field, and products with them.
 ///
-/// Products are the field's own if it has them, else by its Jacobian, else central difference
+/// Products are computed by the field if it can, else with its Jacobian, else as central difference
 /// quotients. The relative error of a quotient is about ε^(2/3) = 4e-11 if σ|v| is ε^(1/3) times
-/// the size of the state, where truncation and rounding errors are alike. That size is max |yᵢ|, at
-/// least atol/rtol, the smallest significant size.
+/// the size of the state, where truncation and rounding errors are about equal. That size is max
+/// |yᵢ|, but at least atol/rtol, the smallest significant size.
 #[derive(Debug, Default)]
 pub(crate) struct Linearisation {
     products: Products,
@@ -138,7 +138,8 @@ impl Linearisation {
         field.rhs(t, &self.moved, rate)
     }
 
-    /// ∂f/∂y, column-major; column by column from products if the field does not write it.
+    /// ∂f/∂y, column-major; assembled column by column from products if the field does not write
+    /// it.
     pub(crate) fn jacobian(
         &mut self,
         field: &mut impl VectorField,

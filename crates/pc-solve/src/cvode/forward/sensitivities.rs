@@ -13,14 +13,14 @@ use crate::integration::checks::{check_length, finite, positive};
 /// ```text
 /// ṡ = (∂f/∂y) s + ∂f/∂pⱼ,    s(t₀) = ∂y₀/∂pⱼ.
 /// ```
-/// Columns are in the order in which they are added. Products with ∂f/∂y are the field's
-/// [own](VectorField::jvp) if it has them, else by its [Jacobian](VectorField::jacobian), else
+/// Columns are in the order in which they are added. Products with ∂f/∂y are [computed by the
+/// field](VectorField::jvp) if it can, else with its [Jacobian](VectorField::jacobian), else as
 /// difference quotients, accurate to about ten digits. Derivatives with respect to parameters need
 /// the field's [`parameter_jacobian`](VectorField::parameter_jacobian).
 ///
 /// If the states lie on a surface that depends on the parameters, so does y₀: its derivatives are
 /// given by [`by_parameter_from`](Sensitivities::by_parameter_from). Columns that begin tangent to
-/// the surface stay so up to the tolerances; they are integrated along the
+/// the surface stay tangent to it within the tolerances; they are integrated along the
 /// [projected](VectorField::project) states, but not projected themselves.
 ///
 /// ```
@@ -52,7 +52,7 @@ struct Column {
     start: Start,
 }
 
-/// A column at the start.
+/// The value of a column at the start.
 #[derive(Debug, Clone, PartialEq)]
 enum Start {
     Zero,
@@ -76,8 +76,8 @@ impl Default for Sensitivities {
 }
 
 impl Sensitivities {
-    /// No columns yet; staggered correction, and an error test of the columns with the tolerances
-    /// of the state.
+    /// An empty list of columns, with staggered correction and an error test of the columns with
+    /// the tolerances of the state.
     pub fn new() -> Self {
         Sensitivities {
             columns: Vec::new(),
@@ -130,25 +130,25 @@ impl Sensitivities {
 
     /// Whether steps also have to pass the error test of the columns.
     ///
-    /// If not, with staggered correction the steps are those without sensitivities, unless the
-    /// iteration for a column does not converge.
+    /// If not, and with staggered correction, the steps are the same as without sensitivities,
+    /// unless the iteration for a column does not converge.
     pub fn error_control(self, error_control: bool) -> Self {
         Sensitivities { error_control, ..self }
     }
 
-    /// Scales p̄ of the parameters or start values of the columns, positive, one for each column:
-    /// p̄ s has the unit of the state, and the absolute tolerance of the column s is that of the
-    /// state over p̄.
+    /// Sets the scales p̄ of the parameters or start values to which the columns refer, positive,
+    /// one for each column: p̄ s has the unit of the state, and the absolute tolerance of the
+    /// column s is that of the state divided by p̄.
     ///
     /// By default, p̄ is the [size of a parameter](VectorField::parameter_size), or if that is
-    /// unknown the one for which p̄ ∂f/∂p at the start is as large as f; for a component of the
-    /// start it is its magnitude; each is at least 1.
+    /// unknown, the value for which p̄ ∂f/∂p at the start is as large as f; for a component of the
+    /// start it is the magnitude of the component; each scale is at least 1.
     pub fn scales(self, scales: impl Into<Vec<f64>>) -> Self {
         Sensitivities { scales: Some(scales.into()), ..self }
     }
 
-    /// Relative and absolute tolerance of the columns, positive; by default those of the state,
-    /// [scaled](Sensitivities::scales).
+    /// Sets the relative and absolute tolerance of the columns, positive; by default those of the
+    /// state, [scaled](Sensitivities::scales).
     pub fn tolerances(self, relative: f64, absolute: f64) -> Self {
         Sensitivities { tolerances: Some((relative, absolute)), ..self }
     }
@@ -262,7 +262,8 @@ impl Sensitivities {
     }
 }
 
-/// Checks that the rates jump nowhere at a time that moves with a parameter or, for none, with the start.
+/// Checks that the rates do not jump at any time that depends on the parameter or, if none is
+/// given, on the start.
 ///
 /// # Errors
 /// [`InputError::RateJump`]
@@ -277,11 +278,12 @@ pub(crate) fn check_passages(field: &impl VectorField, parameter: Option<usize>)
 pub struct SensitivityStatistics {
     /// Evaluations of the equations of variation, for all columns at once.
     pub evaluations: u64,
-    /// Steps tried again because the estimated error of a column was too large.
+    /// Steps repeated because the estimated error of a column was too large.
     pub error_test_failures: u64,
     /// Iterations of the nonlinear solver for the columns alone; 0 if the correction is
     /// simultaneous.
     pub nonlinear_iterations: u64,
-    /// Failures of that solver to converge, including those recovered by a new Jacobian.
+    /// The number of times that solver failed to converge, including failures remedied by a new
+    /// Jacobian.
     pub nonlinear_failures: u64,
 }

@@ -9,7 +9,7 @@ use sundials_sys as sys;
 use crate::cvode::callback::Callbacks;
 use crate::cvode::handles::numbers_of;
 
-/// `CVLsJacFn`, from the field's sparse Jacobian.
+/// A `CVLsJacFn` that writes the field's sparse Jacobian.
 ///
 /// # Safety
 /// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a

@@ -7,7 +7,7 @@ use crate::error::InputError;
 use crate::settings::nonlinear_solver::NonlinearSolver;
 use crate::settings::options::Options;
 
-/// Number of components from which sparse factors are worth their overhead …
+/// The number of components from which sparse factorisation is worth its overhead …
 const SPARSE_FROM: usize = 60;
 /// … if at most one entry in this many is nonzero.
 const SPARSE_DENSITY: usize = 8;

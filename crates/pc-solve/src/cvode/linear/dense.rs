@@ -17,9 +17,10 @@ use crate::cvode::context::Context;
 use crate::cvode::handles::{Vector, numbers_of};
 use crate::error::{NonFinite, SolveError};
 
-/// Number of components from which the blocked factorisation is used. In interleaved measurements
-/// it takes 1/4 of the time of that of SUNDIALS at 64 components, 1/5 at 100, 1/8 at 200 and 1/25
-/// at 400, a solve 1/1.4, 1/1.7, 1/2 and 1/3; below some 20 components that of SUNDIALS is faster.
+/// The number of components from which the blocked factorisation is used. In interleaved
+/// measurements it takes 1/4 of the time that SUNDIALS takes at 64 components, 1/5 at 100, 1/8 at
+/// 200 and 1/25 at 400; a solve takes 1/1.4, 1/1.7, 1/2 and 1/3; below some 20 components that of
+/// SUNDIALS is faster.
 const BLOCKED_FROM: usize = 64;
 
 /// The solver for a dense `matrix`.
@@ -34,7 +35,7 @@ pub(super) fn solver(context: &mut Context, y: &Vector, matrix: &Matrix) -> Resu
     direct::solver(context, matrix, blocked)
 }
 
-/// P A = L U in place, by blocks of columns.
+/// Factorises P A = L U in place, in blocks of columns.
 struct Blocked {
     rows: Vec<usize>,
     rows_inverse: Vec<usize>,

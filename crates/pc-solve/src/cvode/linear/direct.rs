@@ -1,4 +1,4 @@
-//! Our direct linear solvers, as `SUNLinearSolver`.
+//! Our direct linear solvers, wrapped as a `SUNLinearSolver`.
 
 use std::ffi::c_int;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -22,22 +22,23 @@ const FATAL: c_int = -1;
 #[derive(Debug)]
 pub(super) struct Singular;
 
-/// Factors of the matrices at one address.
+/// Factors of a matrix whose entries change while its address stays the same.
 pub(super) trait Factors {
     /// Factorises `matrix`, in place or not.
     ///
     /// # Safety
-    /// `matrix` is the one the factors were made for, and nobody else uses it.
+    /// `matrix` is the one for which the factors were made, and nobody else uses it.
     unsafe fn factorise(&mut self, matrix: sys::SUNMatrix) -> Result<(), Singular>;
 
     /// Replaces b by x with A x = b.
     ///
     /// # Safety
-    /// As for [`factorise`](Factors::factorise), which has succeeded; `matrix` is as it left it.
+    /// As for [`factorise`](Factors::factorise), which has succeeded; `matrix` has not changed
+    /// since.
     unsafe fn solve(&mut self, matrix: sys::SUNMatrix, b: &mut [f64]) -> Result<(), Singular>;
 }
 
-/// A solver with `factors`, for `matrix` only.
+/// A solver that uses `factors`, for `matrix` only.
 pub(super) fn solver<S: Factors>(
     context: &mut Context,
     _matrix: &Matrix,

@@ -31,8 +31,8 @@ pub(super) fn solver(krylov: &Krylov, context: &mut Context, y: &Vector) -> Resu
     Ok(solver)
 }
 
-/// Sets the tolerance and the callbacks of CVODES, whose linear solver is set; returns the
-/// preconditioner for the callbacks.
+/// Sets the tolerance and the callbacks of CVODES, whose linear solver has already been set;
+/// returns the preconditioner for the callbacks.
 pub(super) fn attach<F: VectorField>(
     krylov: &Krylov,
     memory: &Memory,
@@ -73,7 +73,7 @@ impl<F: VectorField> Callbacks<F> {
         })
     }
 
-    /// As `guard`, with the preconditioner.
+    /// Like `guard`, but also passes the preconditioner to `evaluate`.
     fn with_preconditioner(
         &mut self,
         evaluate: impl FnOnce(&mut dyn Preconditioner, &mut F, &[f64]) -> Result<(), Failure>,
@@ -117,7 +117,7 @@ unsafe extern "C" fn product<F: VectorField>(
 /// `CVLsPrecSetupFn`.
 ///
 /// # Safety
-/// As for [`product`]; `is_current` is a place for the result.
+/// As for [`product`]; `is_current` points to memory for the result.
 unsafe extern "C" fn set_up<F: VectorField>(
     t: f64,
     y: sys::N_Vector,

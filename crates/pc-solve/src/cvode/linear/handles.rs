@@ -21,7 +21,7 @@ impl Matrix {
         context.check_new("SUNDenseMatrix", raw).map(Matrix)
     }
 
-    /// With `lower` < n diagonals below the main one and `upper` < n above.
+    /// A band matrix with `lower` < n diagonals below the main one and `upper` < n above it.
     pub(super) fn band(
         context: &mut Context,
         n: usize,
@@ -34,7 +34,7 @@ impl Matrix {
         context.check_new("SUNBandMatrix", raw).map(Matrix)
     }
 
-    /// A matrix of another kind, owned from now on.
+    /// Takes ownership of a matrix of another kind.
     pub(super) fn from_raw(raw: NonNull<sys::_generic_SUNMatrix>) -> Self {
         Matrix(raw)
     }
@@ -69,7 +69,7 @@ impl Solver {
         context.check_new("SUNLinSol_Band", raw).map(Solver)
     }
 
-    /// A solver of another kind, owned from now on.
+    /// Takes ownership of a solver of another kind.
     pub(super) fn from_raw(raw: NonNull<sys::_generic_SUNLinearSolver>) -> Self {
         Solver(raw)
     }

@@ -27,30 +27,31 @@ pub struct Krylov {
 }
 
 impl Default for Krylov {
-    /// A space of dimension 5.
+    /// A method that searches spaces of dimension 5.
     fn default() -> Self {
         Krylov::new(5)
     }
 }
 
 impl Krylov {
-    /// Searches spaces spanned by b, A b, A² b, … of the given dimension, at least 1; without
-    /// restarts or preconditioner, with tolerance 0.05.
+    /// A method that searches spaces spanned by b, A b, A² b, … of the given dimension, at least 1;
+    /// without restarts or preconditioner, with tolerance 0.05.
     pub fn new(dimension: u32) -> Self {
         Krylov { dimension, restarts: 0, tolerance: 0.05, preconditioner: None }
     }
 
-    /// How often to restart from the residual with a new space if the first does not suffice.
+    /// Sets how often the method restarts from the residual with a new space if the first does not
+    /// suffice.
     pub fn restarts(self, restarts: u32) -> Self {
         Krylov { restarts, ..self }
     }
 
-    /// The tolerance of the residual, relative to that of Newton's iteration; positive.
+    /// Sets the tolerance of the residual, relative to that of Newton's iteration; positive.
     pub fn tolerance(self, tolerance: f64) -> Self {
         Krylov { tolerance, ..self }
     }
 
-    /// With a preconditioner: `make` makes one for each integration.
+    /// Adds a preconditioner: `make` makes one for each integration.
     pub fn preconditioner<P: Preconditioner + Send + 'static>(
         self,
         side: Side,
@@ -66,7 +67,7 @@ impl Krylov {
     }
 }
 
-/// Makes preconditioners. Two are equal if they are clones of the same one.
+/// Makes preconditioners. Two makers are equal if they are clones of the same one.
 #[derive(Clone)]
 pub(super) struct Maker(pub(super) Arc<dyn Fn() -> Box<dyn Preconditioner + Send> + Send + Sync>);
 

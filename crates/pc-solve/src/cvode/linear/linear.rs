@@ -1,6 +1,6 @@
 //! The linear systems (I − γ ∂f/∂y) x = b of Newton's iteration, and their solvers.
 //!
-//! γ is the step times a coefficient of the method. A solver has three stages, in order of
+//! γ is the step length times a coefficient of the method. A solver has three stages, in order of
 //! increasing frequency: ∂f/∂y is renewed, I − γ ∂f/∂y is factorised, a system is solved.
 
 use std::borrow::Cow;

@@ -1,8 +1,8 @@
-//! Preconditioners, which make GMRES converge fast.
+//! Preconditioners, which make GMRES converge faster.
 
 use pc_expr::{Failure, VectorField};
 
-/// A matrix P close to I − γ ∂f/∂y, with which systems are easier to solve.
+/// A matrix P close to I − γ ∂f/∂y whose linear systems are easier to solve.
 ///
 /// GMRES is then applied to P⁻¹ A or A P⁻¹ instead of A = I − γ ∂f/∂y, and converges faster the
 /// closer these are to I.
@@ -53,7 +53,8 @@ use pc_expr::{Failure, VectorField};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Preconditioner {
-    /// Computes what it needs of ∂f/∂y at (t, y); called first, and again when that is out of date.
+    /// Computes the parts of ∂f/∂y at (t, y) that it needs; called first, and again whenever they
+    /// are out of date.
     ///
     /// # Errors
     /// [`Failure`]; a recoverable one lets the integrator try a smaller step.

@@ -1,4 +1,4 @@
-//! Sparse Jacobians by difference quotients.
+//! Sparse Jacobians from difference quotients.
 
 use std::ffi::{c_int, c_void};
 use std::slice;
@@ -11,8 +11,8 @@ use crate::cvode::handles::numbers_of;
 use crate::cvode::linear::quotients::Quotients;
 use crate::cvode::linear::sparse;
 
-/// The smallest increment times the error weight for which the change of f exceeds its rounding:
-/// 1000 |γ| ε n ‖f‖ in the norm of the error test, or 1 if f is 0.
+/// The smallest increment, times the error weight, for which the change of f exceeds its rounding
+/// error: 1000 |γ| ε n ‖f‖ in the norm of the error test, or 1 if f is 0.
 fn least_increment(gamma: f64, f: &[f64], weights: &[f64]) -> f64 {
     let n = f.len() as f64;
     let norm = (f.iter().zip(weights).map(|(f, w)| (f * w).powi(2)).sum::<f64>() / n).sqrt();
@@ -20,7 +20,7 @@ fn least_increment(gamma: f64, f: &[f64], weights: &[f64]) -> f64 {
     if least > 0.0 { least } else { 1.0 }
 }
 
-/// `CVLsJacFn`, by difference quotients.
+/// A `CVLsJacFn` that uses difference quotients.
 ///
 /// # Safety
 /// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData),

@@ -9,7 +9,8 @@ use crate::cvode::linear::krylov::Krylov;
 /// and at most one nonzero entry in eight, else [`Dense`](LinearSolver::Dense).
 #[derive(Debug, Clone, PartialEq)]
 pub enum LinearSolver {
-    /// LU factors of the whole matrix, by SUNDIALS, or from 64 components on by the crate `faer`.
+    /// LU factors of the whole matrix, computed by SUNDIALS, or by the crate `faer` from 64
+    /// components on.
     ///
     /// ∂f/∂y is the field's [Jacobian](pc_expr::VectorField::jacobian), or else difference
     /// quotients, with one evaluation of f for each component.
@@ -27,7 +28,7 @@ pub enum LinearSolver {
         upper: usize,
     },
 
-    /// Sparse LU factors, by the crate `faer`; the order of elimination is found once.
+    /// Sparse LU factors, computed by the crate `faer`; the order of elimination is found once.
     ///
     /// Needs the field's [zero pattern](pc_expr::VectorField::sparsity). ∂f/∂y is the field's
     /// [sparse Jacobian](pc_expr::VectorField::sparse_jacobian), or else difference quotients, with

@@ -15,7 +15,7 @@ use crate::error::{NonFinite, SolveError};
 
 const SUCCESS: c_int = 0;
 
-/// The pattern of I − γ ∂f/∂y, and the places in it of the entries of ∂f/∂y and of the diagonal.
+/// The pattern of I − γ ∂f/∂y, and the positions in it of the entries of ∂f/∂y and of the diagonal.
 #[derive(Clone)]
 pub(super) struct Places {
     pattern: Arc<Pattern>,
@@ -24,7 +24,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// For a square `jacobian`.
+    /// The positions for a square `jacobian`.
     pub(super) fn new(jacobian: &Pattern) -> Places {
         let n = jacobian.columns();
         let with_diagonal = (0..n).map(|j| jacobian.column(j).iter().copied().chain([j]));
@@ -58,7 +58,7 @@ impl Compressed {
         &self.values
     }
 
-    /// Sets entry `k`, counted in the order of the field's pattern.
+    /// Sets entry `k` of ∂f/∂y, counted in the order of the field's pattern.
     pub(super) fn set(&mut self, k: usize, value: f64) {
         self.values[self.places.entries[k]] = value;
     }
@@ -97,7 +97,8 @@ unsafe fn new(context: sys::SUNContext, places: &Places) -> sys::SUNMatrix {
 /// The content of `matrix`.
 ///
 /// # Safety
-/// `matrix` was made by [`matrix`] or a clone of such, and nobody else uses it during `'a`.
+/// `matrix` was made by [`matrix`] or is a clone of such a matrix, and nobody else uses it during
+/// `'a`.
 pub(super) unsafe fn content<'a>(matrix: sys::SUNMatrix) -> &'a mut Compressed {
     // SAFETY: as promised.
     unsafe { &mut *(*matrix).content.cast::<Compressed>() }
@@ -148,8 +149,8 @@ unsafe extern "C" fn scale_add_identity(c: f64, matrix: sys::SUNMatrix) -> sys::
 }
 
 impl<F: VectorField> Callbacks<F> {
-    /// Evaluates the sparse Jacobian and passes row and column, value and place in the field's
-    /// order of each entry to `write`.
+    /// Evaluates the sparse Jacobian and passes the row, column, value and position (in the field's
+    /// order) of each entry to `write`.
     pub(super) fn entries(
         &mut self,
         t: f64,
@@ -176,11 +177,11 @@ impl<F: VectorField> Callbacks<F> {
     }
 }
 
-/// `CVLsJacFn`, from the field's sparse Jacobian.
+/// A `CVLsJacFn` that writes the field's sparse Jacobian.
 ///
 /// # Safety
 /// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a
-/// vector of its dimension and a [`matrix`] of its places.
+/// vector of its dimension and a [`matrix`] of its pattern.
 pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     t: f64,
     y: sys::N_Vector,

@@ -28,7 +28,8 @@ pub(super) fn solver(
 }
 
 /// P A Q = L U. The order Q of the columns, which keeps L and U sparse for every P, is found once,
-/// from the pattern; the order P of the rows for each matrix, by the largest pivot in each column.
+/// from the pattern; the order P of the rows is found for each matrix, from the largest pivot in
+/// each column.
 struct SparseLu {
     symbolic: SymbolicLu<usize>,
     numeric: NumericLu<usize, f64>,
@@ -125,8 +126,8 @@ mod tests {
             ..ProptestConfig::default()
         })]
 
-        /// The matrices are diagonally dominant, so well conditioned: errors are a few roundings of
-        /// n operations.
+        /// The matrices are diagonally dominant, so well conditioned: errors amount to a few
+        /// rounding errors of n operations.
         #[test]
         fn sparse_factors_are_the_dense_ones((pattern, first, second) in matrices()) {
             let n = pattern.rows();

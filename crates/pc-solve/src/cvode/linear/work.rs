@@ -20,7 +20,7 @@ impl Work {
         }
     }
 
-    /// Evaluations of f for our difference quotients, which CVODES does not count.
+    /// The number of evaluations of f for our difference quotients, which CVODES does not count.
     pub(crate) fn quotient_evaluations(&self) -> u64 {
         self.quotients.as_ref().map_or(0, Quotients::evaluations)
     }

@@ -8,15 +8,15 @@ use super::octet::Octet;
 use super::plan::Plan;
 use super::waiting::Waiting;
 
-/// Number of vectors that alternate: a step ends with a chain of dependent operations, during which
-/// the processor begins the step of the other vector.
+/// The number of vectors whose steps alternate: a step ends with a chain of dependent operations,
+/// during which the processor begins the step of the other vector.
 const OCTETS: usize = 2;
 /// Maximum number of members in a block.
 pub(crate) const WIDTH: usize = OCTETS * LANES;
-/// Number of steps between checks whether to go on.
+/// The number of steps between two checks of whether to go on.
 const UNWATCHED: usize = 64;
 
-/// Lanes with members of one program.
+/// Lanes that integrate members of one program.
 pub(crate) struct Block<'a, N> {
     octets: Vec<Octet<'a, N>>,
     waiting: Waiting<'a, N>,

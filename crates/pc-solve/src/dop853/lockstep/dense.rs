@@ -1,4 +1,5 @@
-//! The tapes of states inside a step: its [polynomial](super::super::dense), and a value of it.
+//! The tapes that compute states inside a step: one its [polynomial](super::super::dense), the
+//! other a value of the polynomial.
 
 use pc_expr::{Fused, LaneTape, LaneValue};
 
@@ -6,11 +7,11 @@ use super::super::coefficients::{A14, A15, A16, D};
 use super::field::{Health, advanced, normalise, sum};
 use super::problem::Problem;
 
-/// Terms of the polynomial.
+/// The number of terms of the polynomial.
 pub(super) const TERMS: usize = 8;
 
-/// Reads the step's length with its sign, y, ẏ and stages 6 to 12, then y and ẏ at the end, then a
-/// member's constants; writes the terms, and all bits set where they are valid.
+/// The tape that reads the step's length with its sign, y, ẏ and stages 6 to 12, then y and ẏ at
+/// the end, then a member's constants; it writes the terms, and all bits set where they are valid.
 pub(super) fn polynomial(problem: &Problem<'_>) -> LaneTape {
     let tape = &mut LaneTape::new();
     let h = tape.input();
@@ -54,7 +55,7 @@ pub(super) fn polynomial(problem: &Problem<'_>) -> LaneTape {
     std::mem::take(tape)
 }
 
-/// Reads the terms and the fraction s of the step; writes y there.
+/// The tape that reads the terms and the fraction s of the step, and writes y there.
 pub(super) fn value(problem: &Problem<'_>) -> LaneTape {
     let tape = &mut LaneTape::new();
     let dim = problem.dim();

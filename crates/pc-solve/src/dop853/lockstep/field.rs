@@ -5,20 +5,21 @@ use pc_expr::{Binary, LaneTape, LaneValue, Program};
 /// f with its inputs other than the state: the constants of a member, computed from its parameters.
 pub(super) struct Field<'a> {
     pub(super) program: &'a Program,
-    /// Number of pivots watched, and the ratio to the sizes below which a pivot vanishes.
+    /// The number of pivots that are watched, and the ratio to the largest size below which a pivot
+    /// counts as zero.
     pub(super) pivots: usize,
     pub(super) vanishing: f64,
-    /// The inputs of the program in the place of parameters.
+    /// The values that the program reads as its parameters.
     pub(super) numbers: Vec<LaneValue>,
     /// The smallest of the constant pivots, and the largest of the constant sizes.
     pub(super) fixed: [LaneValue; 2],
 }
 
-/// Rows of the frame taken by `fixed`.
+/// The number of rows of the frame that `fixed` occupies.
 pub(super) const FIXED: usize = 2;
 
-/// Number of components from which computing the products h aⱼ pays off: a step has 50 of them, and
-/// saves a product per component in each of 11 stages.
+/// The number of components from which it pays to compute the products h aⱼ: there are 50 of them
+/// in a step, and they save a product per component in each of 11 stages.
 const MANY: usize = 5;
 
 /// The validity of the lanes: a mask, and a sum that is 0 as long as all values checked are finite.
@@ -64,7 +65,7 @@ impl Health {
         Health { regular: tape.bits(u64::MAX), finite: tape.constant(0.0) }
     }
 
-    /// Checks that these values are finite, by their sum.
+    /// Checks that these values are finite, using their sum.
     pub(super) fn look(&mut self, tape: &mut LaneTape, values: &[LaneValue]) {
         let zero = tape.constant(0.0);
         let sum = values.iter().copied().reduce(|sum, value| tape.add(sum, value));
@@ -117,8 +118,8 @@ pub(super) fn sums(tape: &mut LaneTape, a: [&[f64]; 2], k: &[&[LaneValue]]) -> [
 
 /// y + h Σ aⱼ kⱼ
 ///
-/// For many components as y + Σ (h aⱼ) kⱼ, which takes fewer operations, of which fewer wait for
-/// the last k.
+/// If there are many components it is computed as y + Σ (h aⱼ) kⱼ, which takes fewer operations, of
+/// which fewer wait for the last k.
 pub(super) fn advanced(
     tape: &mut LaneTape,
     y: &[LaneValue],
@@ -141,7 +142,7 @@ pub(super) fn advanced(
     sums
 }
 
-/// q/|q| for the quaternions at these places of a state.
+/// Normalises the quaternions q at these positions in a state to q/|q|.
 pub(super) fn normalise(tape: &mut LaneTape, quaternions: &[[usize; 4]], y: &mut [LaneValue]) {
     for places in quaternions {
         let mut square = tape.constant(0.0);

@@ -11,7 +11,7 @@ use super::problem::Problem;
 use super::start::start;
 use super::step::step;
 
-/// Maximum number of operations of a step: longer code is slow to compile, and to fetch.
+/// Maximum number of operations of a step: longer code is slow to compile and slow to fetch.
 const LONGEST: usize = 20_000;
 
 /// The kernels of a program, for members with any parameters.
@@ -24,11 +24,11 @@ pub(crate) struct Kernels {
     pub(super) numbers: usize,
     pub(super) start: LaneKernel,
     pub(super) step: LaneKernel,
-    /// For states inside steps, if needed.
+    /// The kernels for states inside steps, if needed.
     pub(super) inside: Option<Inside>,
 }
 
-/// The polynomial of a step, and a value of it.
+/// The kernels for the polynomial of a step and for a value of the polynomial.
 #[derive(Debug, Clone)]
 pub(super) struct Inside {
     pub(super) polynomial: LaneKernel,
@@ -36,7 +36,8 @@ pub(super) struct Inside {
 }
 
 impl Kernels {
-    /// None if the program reads time, or its steps would be too long.
+    /// The kernels of a field; none if its program reads time, or if the code of a step would be
+    /// too long.
     pub(crate) fn new(field: &LaneField, plan: &Plan, set: Option<InstructionSet>) -> Option<Kernels> {
         let program = &field.program;
         let dim = program.state_len();
@@ -82,7 +83,7 @@ impl Kernels {
         })
     }
 
-    /// Whether these are the kernels of a field.
+    /// Whether these are the kernels of this field.
     pub(crate) fn are_of(&self, field: &LaneField) -> bool {
         self.key.is_of(field)
     }

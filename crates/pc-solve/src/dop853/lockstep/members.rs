@@ -9,14 +9,14 @@ pub(crate) trait Members {
     /// Identifies a member.
     type Name;
 
-    /// The next member, with its start and its field, to which the kernels of the block apply;
-    /// none if the source has none.
+    /// The next member, with its field, to which the kernels of the block apply, and its start;
+    /// none if the source has no member.
     fn next(&mut self, from: Source) -> Option<(Self::Name, LaneField, Vec<f64>)>;
 
-    /// Receives the complete motion of a member; none if it has to be integrated alone.
+    /// Receives the complete motion of a member, or none if the member has to be integrated alone.
     fn end(&mut self, name: Self::Name, motion: Option<Trajectory>);
 
-    /// Whether to stop now.
+    /// Whether the block has to stop now.
     fn is_stopped(&self) -> bool;
 }
 
@@ -25,7 +25,7 @@ pub(crate) trait Members {
 pub(crate) enum Source {
     /// Members that this thread already has.
     AtHand,
-    /// These, and those it can get at once.
+    /// These members, and those that the thread can get at once.
     Available,
     /// Any member, waiting for it if necessary.
     Awaited,

@@ -11,7 +11,7 @@ use super::waiting::{Ready, Waiting};
 use crate::integration::statistics::Statistics;
 use crate::integration::trajectory::Trajectory;
 
-/// A member in its lane.
+/// A member that occupies a lane.
 struct Occupant<N> {
     name: N,
     motion: Trajectory,
@@ -142,7 +142,7 @@ impl<'a, N> Octet<'a, N> {
         self.value[..terms.len()].copy_from_slice(terms);
     }
 
-    /// Records the outputs in the last step of a lane, if it still has a member.
+    /// Records the outputs that lie in the last step of a lane, if the lane still has a member.
     fn put_out(&mut self, lane: usize, (from, to): (f64, f64), members: &mut impl Members<Name = N>) {
         let plan = self.plan;
         loop {

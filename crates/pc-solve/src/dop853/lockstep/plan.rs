@@ -1,11 +1,11 @@
-//! What all members share.
+//! The settings that all members share.
 
 use pc_expr::{Deadline, Method};
 
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
-/// A start farther from 0 than this many spans is not one for lanes.
+/// Lanes do not support a start that is farther from 0 than this many times the span of the motion.
 const FARTHEST: f64 = 1e4;
 
 /// Times, tolerances and limits, as far as lanes support them.
@@ -27,8 +27,9 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// None if the input is invalid, which each member then reports alone, or if lanes do not
-    /// support it: another method, inequalities, a minimum step, a stop time.
+    /// The plan; none if the input is invalid, which each member then reports by itself, or if
+    /// lanes do not support it because of another method, inequalities, a minimum step or a stop
+    /// time.
     pub(crate) fn new(start: f64, times: &[f64], options: &Options) -> Option<Plan> {
         let more = !matches!(options.method, Method::Auto | Method::Dop853)
             || !options.inequalities.is_empty()
@@ -64,14 +65,15 @@ impl Plan {
             })
     }
 
-    /// Whether both plans have the same tapes.
+    /// Whether the tapes of both plans are the same.
     pub(super) fn is_like(&self, other: &Plan) -> bool {
         let limits = |plan: &Plan| (plan.start, plan.end(), plan.direction, plan.relative, plan.max_steps);
         let lengths = |plan: &Plan| (plan.longest, plan.first, plan.has_inside(), plan.watches_stiffness);
         limits(self) == limits(other) && lengths(self) == lengths(other) && self.absolute == other.absolute
     }
 
-    /// Whether there are output times other than the start and the end: states inside a step.
+    /// Whether there are output times other than the start and the end, so that states inside a
+    /// step are needed.
     pub(super) fn has_inside(&self) -> bool {
         self.times.iter().any(|&t| t != self.start && t != self.end())
     }

@@ -5,7 +5,7 @@ use pc_expr::{LaneTape, LaneValue, Program};
 use super::field::Field;
 use super::plan::Plan;
 
-/// f and the plan.
+/// The function f and the plan, from which the tapes are made.
 pub(super) struct Problem<'a> {
     pub(super) plan: &'a Plan,
     /// Computes a member's constants from its parameters; `program` computes f from these.
@@ -22,13 +22,13 @@ impl<'a> Problem<'a> {
         self.program.state_len()
     }
 
-    /// f, with a member's constants in the next rows.
+    /// f, where the next rows of the tape hold a member's constants.
     pub(super) fn field(&self, tape: &mut LaneTape) -> Field<'a> {
         let numbers = tape.inputs(self.program.parameters_len());
         self.field_of(tape, numbers)
     }
 
-    /// f, with a member's parameters in the next rows.
+    /// f, where the next rows of the tape hold a member's parameters.
     pub(super) fn field_of_parameters(&self, tape: &mut LaneTape) -> Field<'a> {
         let parameters = tape.inputs(self.numbers.parameters_len());
         let none = tape.constant(0.0);

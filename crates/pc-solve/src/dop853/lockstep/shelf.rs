@@ -8,7 +8,7 @@ use pc_expr::LaneField;
 use super::kernels::{Kernels, Key};
 use super::plan::Plan;
 
-/// Number of pairs of program and plan whose kernels are kept.
+/// The number of pairs of program and plan whose kernels are cached.
 const KEPT: usize = 8;
 
 /// The latest kernels, for all threads; clones share them.

@@ -1,8 +1,8 @@
 //! The tape of a step.
 //!
 //! The step and its errors are those of [`stages`](super::super::stages), its length that of
-//! [`control`](super::super::control), with roots and weights to a few digits only, which suffice
-//! for a length.
+//! [`control`](super::super::control), but with roots and weights computed to a few digits only,
+//! which suffice for a length.
 
 use pc_expr::{Binary, Fused, LaneTape, LaneValue};
 
@@ -31,16 +31,16 @@ pub(super) enum Row {
     Tries,
     /// The length of the first step with its sign; 0 before it.
     First,
-    /// Steps that seem to be limited by stability, where that is watched.
+    /// The number of steps that seem to be limited by stability, if stiffness is watched for.
     Suspect,
-    /// Successive steps since the last of them.
+    /// The number of successive steps since the last such step.
     Clear,
 }
 
 /// The number of these rows.
 pub(super) const ROWS: usize = 10;
 
-/// The results in separate rows.
+/// The results that are written to rows of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Output {
     /// All bits set where an accepted step has reached `Due`, or the integration cannot go on.
@@ -49,7 +49,8 @@ pub(super) enum Output {
     Broken,
     /// The start of the step.
     From,
-    /// Its length, with its sign; followed, for states inside the step, by y, ẏ and stages 6 to 12.
+    /// The length of the step, with its sign; followed, for states inside the step, by y, ẏ and
+    /// stages 6 to 12.
     Signed,
 }
 

@@ -7,7 +7,8 @@ use pc_expr::{LANES, LaneField, Lanes};
 use super::kernels::Kernels;
 use super::members::{Members, Source};
 
-/// Members with their initial rates and step lengths, computed for eight at once.
+/// Waiting members with their initial rates and step lengths, which are computed for eight members
+/// at once.
 pub(super) struct Waiting<'a, N> {
     kernels: &'a Kernels,
     names: [Option<N>; LANES],
@@ -15,7 +16,7 @@ pub(super) struct Waiting<'a, N> {
     frame: Vec<Lanes>,
 }
 
-/// A member that can begin, with the lane of its start.
+/// A member that can begin, and the lane that holds its start.
 pub(super) struct Ready<N> {
     pub(super) name: N,
     pub(super) lane: usize,
@@ -26,9 +27,9 @@ impl<'a, N> Waiting<'a, N> {
         Waiting { kernels, names: std::array::from_fn(|_| None), frame: kernels.start.frame() }
     }
 
-    /// The next waiting member, or a new one. New members are taken from any source while lanes are
-    /// free, beyond that only from those this thread already has, so as not to take work from other
-    /// threads.
+    /// The next waiting member, or a new one. While lanes are free, new members are taken from any
+    /// source; otherwise only from those that this thread already has, so as not to take work from
+    /// other threads.
     pub(super) fn next(
         &mut self,
         free: usize,
@@ -78,7 +79,7 @@ impl<'a, N> Waiting<'a, N> {
         true
     }
 
-    /// Whether a member fits the kernels and can begin.
+    /// Whether the kernels apply to a member and it can begin.
     fn accepts(&self, field: &LaneField, y: &[f64]) -> bool {
         let watched = &field.watched;
         y.len() == self.kernels.dim
@@ -86,7 +87,8 @@ impl<'a, N> Waiting<'a, N> {
             && watched.smallest > watched.vanishing * watched.largest
     }
 
-    /// Writes state and parameters of a member to a lane; the first member fills all lanes.
+    /// Writes the state and the parameters of a member to a lane; those of the first member are
+    /// written to all lanes.
     fn place(&mut self, lane: usize, field: &LaneField, y: &[f64]) {
         let watched = [field.watched.smallest, field.watched.largest];
         let numbers = y.iter().chain(&field.parameters).chain(&watched);
