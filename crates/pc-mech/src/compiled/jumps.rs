@@ -7,8 +7,8 @@ use crate::compiled::first_order::FirstOrder;
 
 impl<'g> FirstOrder<'g> {
     /// The [jumps](discontinuities) of r − M w or r − p and of the rates g through which the state or the time
-    /// passes. A state whose rate is zero changes by events alone, which have their own rule, and passes through
-    /// none.
+    /// passes. A state whose rate is zero changes only at events, which are handled separately, and so passes
+    /// through no jump.
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`] for a symbol that is neither state nor declared parameter.
