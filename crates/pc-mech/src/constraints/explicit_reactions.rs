@@ -1,4 +1,5 @@
-//! Reactions as functions of the state: constraints of any kind in the equations of all velocities.
+//! Reactions as functions of the state, with which constraints of any kind enter the equations for all
+//! velocities.
 
 use pc_algebra::Matrix;
 use pc_expr::Expr;
@@ -35,7 +36,7 @@ impl<'g> Multipliers<'g> {
     ///
     ///   (C M⁻¹ Cᵀ) λ = −ċ − C M⁻¹ r,   ċ = (∂g/∂x) ẋ + ∂g/∂t,
     ///
-    /// length m, in terms of (t, x, η). They keep g constant, whatever its value.
+    /// m of them, in terms of (t, x, η). They keep g constant, whatever its value.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System};

@@ -1,4 +1,4 @@
-//! From quasi-velocities to velocities and back.
+//! The conversion of quasi-velocities to velocities and back.
 
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 
@@ -66,7 +66,7 @@ impl System<'_> {
 }
 
 impl VelocityTransform {
-    /// (x, ẋ), of length 2n, of the state (x, η), of length n + k.
+    /// The state (x, ẋ), of length 2n, that corresponds to (x, η), of length n + k.
     ///
     /// # Panics
     /// If the state has another length.
@@ -76,7 +76,7 @@ impl VelocityTransform {
         result
     }
 
-    /// (x, η), of length n + k, of the state (x, ẋ), of length 2n.
+    /// The state (x, η), of length n + k, that corresponds to (x, ẋ), of length 2n.
     ///
     /// # Panics
     /// If the state has another length.

@@ -1,4 +1,4 @@
-//! Velocities on constraints, of which some keep their values as far as the constraints allow.
+//! Velocities that satisfy the constraints, some of which keep their values as far as the constraints allow.
 
 use pc_algebra::Matrix;
 
@@ -10,7 +10,7 @@ use crate::compiled::projection::nearest::{Coefficients, dot};
 use crate::error::MechError;
 use crate::numeric::least_squares::LeastSquares;
 
-/// A step this short relative to the velocities is rounding.
+/// A step this short relative to the velocities is treated as rounding error.
 const SHORT: f64 = 1e-14;
 
 impl Surface {
@@ -52,7 +52,8 @@ impl Surface {
     ///
     ///   N C_H δ_H = −N g,   C_F δ_F = −g − C_H δ_H,
     ///
-    /// where N is the projection to what C_F does not reach: the conditions on held velocities alone.
+    /// where N is the projection to the combinations of constraints that C_F does not affect: the conditions on
+    /// held velocities alone.
     fn least_change(
         &mut self,
         Coefficients { mass, constraints }: &Coefficients,
@@ -105,11 +106,11 @@ impl Surface {
     }
 }
 
-/// Among the δ that solve A δ = α best, the one with the least ½ δᵀ M δ − pᵀ δ,
+/// Among the δ that come closest to solving A δ = α, the one with the least ½ δᵀ M δ − pᵀ δ,
 ///
 ///   M δ + Aᵀ μ = p,   A δ = α,
 ///
-/// with the rows of A taken as of length one.
+/// with the rows of A scaled to length one.
 fn shortest(
     mass: &Matrix<f64>,
     pull: &[f64],
