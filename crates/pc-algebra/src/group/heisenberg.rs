@@ -71,7 +71,7 @@ impl LieGroup for HeisenbergGroup {
         DMatrix::identity(g.len(), g.len()) + self.ad(g)
     }
 
-    /// 1 ± ½ ad x, minus on the left.
+    /// The matrix 1 ± ½ ad x, with minus on the left.
     fn dexp(&self, side: Side, x: &[f64]) -> DMatrix<f64> {
         exponential::dexp(side, &self.ad(x), 0.0)
     }
