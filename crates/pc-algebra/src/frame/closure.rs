@@ -245,7 +245,7 @@ impl<'g> Frame<'g> {
         near: &Neighbourhood<'g>,
     ) -> f64 {
         let difference = |(i, terms): (usize, &[Expr<'g>; N])| -> Vec<Expr<'g>> {
-            // There are fewer c^m than operators if some of these are combinations of others.
+            // There are fewer c^m than operators if some operators are combinations of others.
             let combination = self.b().nonzero(i).filter_map(|(s, b)| Some(-(b * *c.get(s)?)));
             terms.iter().copied().chain(combination).filter(|term| !term.is_zero()).collect()
         };

@@ -214,7 +214,8 @@ impl<'g> Frame<'g> {
             .map(|target| {
                 let right: DVector<f64> = stacked.column(k + target).clone_owned();
                 let solution = svd.solve(&right, 0.0).ok()?;
-                // The columns have length 1 now, so a share is small against 1, in any units, where the coefficient is 0.
+                // The columns have length 1 now, so where a coefficient is 0 its share is small compared with 1, in any
+                // units.
                 let coefficient = |(&share, size): (&f64, &f64)| match share.abs() < ROUNDED {
                     true => Expr::ZERO,
                     false => nearest_fraction(share * sizes[k + target] / size).into(),

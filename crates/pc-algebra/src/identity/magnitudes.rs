@@ -26,7 +26,8 @@ pub(crate) fn magnitudes<'g>(
     let mut terms = Terms::new(graph, expressions, symbols, numbers)?;
     let given: Vec<f64> = symbols.iter().map(|&(_, value)| value).collect();
     let mut best = (terms.disorder(&given), given.clone());
-    // Each time the one step that brings most order, so that the symbol that is out of order moves, not those beside it.
+    // Each time the single step that reduces the disorder most, so that the symbol that is out of order moves, not those
+    // beside it.
     for _ in 0..=2 * given.len() {
         let (before, from) = best.clone();
         if before == 0.0 {

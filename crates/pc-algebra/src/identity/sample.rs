@@ -156,7 +156,7 @@ impl<'g> Neighbourhood<'g> {
             return expression.is_zero();
         }
         let samples = self.weighed(graph, &[expression], TRIALS);
-        // A function of several pieces may be 0 on this piece only.
+        // A piecewise function may be 0 on this piece only.
         let is_zero = |value: &Weighed| value.value == 0.0 && in_pieces(graph, &[expression]);
         let is_rounding = |value: &Weighed| value.rest() <= HIDDEN && !is_zero(value);
         let vanish = |samples: &[Vec<Weighed>]| samples.iter().flatten().all(is_rounding);

@@ -33,7 +33,7 @@ pub(crate) fn check_jacobi(k: usize, nonzero: &[(usize, usize, usize, Number)]) 
             *size = *size + Weighed::constant(first) * Weighed::constant(second);
         }
     }
-    // Rational constants give an exact 0; constants rounded to f64 a few units of rounding.
+    // Rational constants give an exact 0; constants rounded to f64 leave a few units of rounding error.
     let vanishes = |defect: Number, size: &Weighed| defect.to_f64().abs() <= 1e-12 * size.size();
     match defects.into_iter().find(|(_, (defect, size))| !vanishes(*defect, size)) {
         None => Ok(()),

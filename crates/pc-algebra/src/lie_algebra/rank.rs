@@ -14,7 +14,7 @@ impl LieAlgebra {
     /// x for almost all x.
     ///
     /// That multiplicity is k − rank (ad x)^p for any p ≥ k. It is computed modulo the prime 2⁶¹ − 1 at two
-    /// fixed pseudo-random points x; without rounding. At a special point or modulo a prime the rank of a
+    /// fixed pseudo-random points x, without rounding. At a special point or modulo a prime the rank of a
     /// matrix can only be lower, so the result is never too small. By Schwartz and Zippel it is too large
     /// with a probability below 2k²/2⁶¹ at each point, unless the prime divides all coefficients of a minor
     /// of (ad x)^p.

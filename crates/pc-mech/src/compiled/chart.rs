@@ -23,11 +23,10 @@ const VANISHES: f64 = 1e-6;
 const SECTIONS: usize = 45;
 
 /// The matrix a of η = a ẋ + a_0 along a motion.
-///
-/// Where det a = 0 the state (x, η) leaves ẋ undetermined along ker a: motions with different ẋ share that
-/// state, and rounding decides how they continue. Where det a is infinite, η is undetermined in the same way.
-/// Between the ends of a step, states are taken on the straight line between them, which crosses each surface
-/// that separates them.
+///  Where det a = 0 the state (x, η) leaves ẋ undetermined along ker a: motions with different ẋ share that
+/// state, and rounding errors decide how they continue. Where det a is infinite, η is undetermined in the
+/// same way. Between the ends of a step, states are taken on the straight line between them, which crosses
+/// each surface that separates them.
 ///
 /// Quasi-velocities defined by b are not watched: the determinant of b would cost as much as a step of a
 /// small system.
@@ -184,7 +183,8 @@ impl Chart {
             let there = along(low).abs().max(along(high).abs());
             return Some(if there < most { Passage::Zero } else { Passage::Pole });
         }
-        // With one sign at both ends, the question is whether it approaches zero, or infinity, and returns.
+        // With the same sign at both ends, the question is whether it approaches zero, or infinity, and
+        // returns.
         let slope = along(SLOPE).abs() - start.abs();
         let comes_back = |slope: f64, before: f64| slope * (end.abs() - before.abs()) < 0.0;
         if slope == 0.0 || !comes_back(slope, along(1.0 - SLOPE)) {

@@ -232,7 +232,7 @@ impl InMomenta {
     }
 
     pub(crate) fn restart(&mut self, t: f64, y: &[f64]) {
-        // If momenta determine no quasi-velocities, the next evaluation reports it.
+        // If the momenta do not determine quasi-velocities, the next evaluation reports it.
         if self.read(t, y).is_ok() {
             self.inner.restart(t, &self.state);
         }
@@ -267,7 +267,7 @@ impl InMomenta {
             slopes.by_symbol.extend_from_slice(&self.of_inner[place(q) * dim..(place(q) + 1) * dim]);
         }
         self.change(slopes, t)?;
-        // The columns by x and z come first.
+        // The columns for x and z come first.
         let places = (0..slopes.symbols).map(place).chain(moving.clone());
         for (place, column) in places.zip(slopes.columns.chunks_exact(dim)) {
             entries[place * dim..(place + 1) * dim].copy_from_slice(column);

@@ -49,7 +49,7 @@ pub struct Motion {
     pub(super) watch: Watch,
     /// Where f jumps, if derivatives were compiled.
     pub(super) jumps: Vec<RateJump>,
-    /// The motion held on one side of each surface, if f is piecewise.
+    /// The motion held on one side of each surface between pieces, if f is piecewise.
     pub(super) switches: Option<Box<Switches>>,
 }
 
@@ -491,7 +491,7 @@ impl Motion {
         y: &[f64],
         mut factor: impl FnMut() -> f64,
     ) -> Result<(Vec<f64>, Vec<f64>), MechError> {
-        // Constraints mix velocities: the remainder of one velocity may be rounding of the largest.
+        // Constraints mix velocities: the remainder of one velocity may be a rounding error of the largest.
         let moving = self.coordinates()..y.len() - self.states();
         let fastest = y[moving.clone()].iter().fold(0.0f64, |fastest, eta| fastest.max(eta.abs()));
         let least = |i: usize| if moving.contains(&i) { fastest } else { 0.0 };

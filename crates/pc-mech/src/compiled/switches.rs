@@ -119,7 +119,7 @@ impl<'g> FirstOrder<'g> {
         if !contains(graph, &held.values, &moved) {
             return Ok(None);
         }
-        // What only observables pass has the side of its sign.
+        // On surfaces that occur in observables alone, the side is given by the sign.
         let mut own: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
         for surface in &held.surfaces[surfaces.len()..] {
             let function = graph.substitute(&[surface.function], &own)[0];
@@ -408,7 +408,7 @@ impl Switches {
             });
         }
         let above: Vec<f64> = sides.iter().map(|side| if *side < 0.0 { -1.0 } else { 1.0 }).collect();
-        // What is left of forces that cancel is measured by these.
+        // The remainder of forces that cancel is compared with these.
         let mut beside = vec![f64::NAN; y.len()];
         self.rates(&above, t, y, &mut beside)?;
         let Some(Along { program, series, .. }) = &mut self.along else {

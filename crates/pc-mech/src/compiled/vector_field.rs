@@ -23,7 +23,7 @@ impl Motion {
         self.quaternions.normalise(y);
         if let Some(surface) = &mut self.surface {
             surface.project(t, y, &self.parameters)?;
-            // A step along the constraints leaves the unit sphere by its square.
+            // A step along the constraints leaves the unit sphere by a distance of the order of its square.
             for _ in 0..MOST_RETURNS {
                 if !self.quaternions.normalise(y) {
                     break;
@@ -100,7 +100,7 @@ impl VectorField for Motion {
         }
         if let Some(switches) = self.holding() {
             let written = switches.rhs(t, y, ydot);
-            // What overflows grows on from the surface: a shorter step ends before it does.
+            // A state that overflows moves away from the surface: a shorter step ends before it does.
             if is_written(&written) || ydot.iter().any(|rate| rate.is_infinite()) {
                 return written;
             }

@@ -375,7 +375,7 @@ impl<'g> Canonical<'g> {
     /// Integrals, energy and outputs in terms of (t, x, y, η).
     fn observables(&self) -> Result<Vec<(String, Expr<'g>)>, MechError> {
         let (system, graph) = (&self.system, self.system.graph());
-        // An error of η changes y_s η_s − L in second order only.
+        // An error in η changes y_s η_s − L only to second order.
         let energy = if self.is_closed() { system.energy() } else { self.hamiltonian };
         let energy = ("energy".to_owned(), energy);
         let mut observables: Vec<_> =

@@ -215,7 +215,7 @@ pub struct Signals {
     list: Vec<Signal>,
     /// The times of all tables, in ascending order.
     breaks: Arc<[f64]>,
-    /// The interval between breaks in which evaluations take place; `None` until an integrator enters one.
+    /// The interval between two breaks in which evaluations take place; `None` until an integrator enters one.
     between: Option<(f64, f64)>,
 }
 

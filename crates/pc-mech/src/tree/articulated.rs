@@ -168,7 +168,7 @@ struct Direction<'g> {
     pitch: Expr<'g>,
 }
 
-/// A remainder this small relative to its terms may be rounding.
+/// A remainder this small relative to its terms may be a rounding error.
 const ROUNDING: f64 = 1e-12;
 
 impl<'g> Direction<'g> {

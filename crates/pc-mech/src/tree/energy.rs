@@ -22,7 +22,7 @@ impl<'g> Motions<'_, 'g> {
     pub(crate) fn share(&self, gravity: &Vector<'g>, eta: &[Expr<'g>]) -> TreeShare<'g> {
         let graph = self.tree.graph;
         let (mut kinetic, mut weight, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
-        // F and N may depend on η: symbols stand for them where the power is differentiated, Q_s = ∂(F·v + N·ω)/∂η_s.
+        // F and N may depend on η: symbols represent them where the power is differentiated, Q_s = ∂(F·v + N·ω)/∂η_s.
         let (mut power, mut values) = (Vec::new(), Vec::new());
         for (body, stand) in self.tree.bodies.iter().zip(&self.tree.stands) {
             let motion = self.of_stand(stand);

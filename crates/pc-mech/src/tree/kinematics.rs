@@ -143,7 +143,7 @@ impl<'g> Motions<'_, 'g> {
         })
     }
 
-    /// The matrix from the axes of a body to those of the world, 3 × 3.
+    /// The 3 × 3 matrix from the axes of a body to those of the world.
     pub fn rotation(&self, body: &str) -> Option<Matrix<Expr<'g>>> {
         self.of_body(body)
             .map(|(motion, stand)| matrix_of(&product(self.tree.graph, &motion.rotation, &stand.rotation)))

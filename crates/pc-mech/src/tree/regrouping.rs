@@ -34,8 +34,8 @@ impl<'g> Tree<'g> {
                 },
                 Hinge::Turn { .. } | Hinge::Free { .. } => continue,
             };
-            // Masses moved to the world are at rest. The axes of a sliding inertia are the same at each
-            // place.
+            // Masses moved to the world are at rest. The axes of a sliding inertia are the same at every
+            // position.
             if let Some(parent) = link.parent {
                 let moved = moved.seen(self, &link.place, &link.rotation);
                 masses[parent].add(&moved);

@@ -146,7 +146,7 @@ impl<'g> Tree<'g> {
         let mut eta = velocities.iter().map(|name| graph.symbol(name));
         let mut x = || x.next().unwrap_or(Expr::ZERO); // the kind determines their number
         let mut eta = || eta.next().unwrap_or(Expr::ZERO);
-        // The place of the joint on the link of the parent.
+        // The position of the joint on the link of the parent.
         let place = add(&parent.place, &apply(graph, &parent.rotation, place));
         let rotation = product(graph, &parent.rotation, rotation);
         let align = |axis: &[f64; 3]| {
@@ -350,7 +350,7 @@ fn from_root_to_tip(bodies: &[TreeBody<'_>]) -> Result<Vec<(usize, Option<usize>
     let mut order = Vec::with_capacity(bodies.len());
     let mut hung = vec![false; bodies.len()];
     for body in 0..bodies.len() {
-        // The body and those of its ancestors that are not yet placed.
+        // The body and those of its ancestors that are not yet in the list.
         let mut line = vec![body];
         while let Some(parent) = parents[line[line.len() - 1]].filter(|&parent| !hung[parent]) {
             if line.contains(&parent) {

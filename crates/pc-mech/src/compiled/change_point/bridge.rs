@@ -216,7 +216,7 @@ impl Motion {
         let mut before = start.clone();
         for part in 1..=PARTS {
             let next = at(self, motion.start + (motion.end - motion.start) * part as f64 / PARTS as f64);
-            // At the place itself there is no such space.
+            // At the loss of rank itself there is no such space.
             if next.is_none() && part < PARTS {
                 continue;
             }

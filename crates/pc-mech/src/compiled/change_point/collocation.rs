@@ -9,8 +9,8 @@ use crate::numeric::least_squares::LeastSquares;
 /// The number of terms of the rates.
 const TERMS: usize = 8;
 
-/// The nodes on either side of the middle: the zeros of Legendre's P_5 from 0 to 1, mapped to the outer part of
-/// each half.
+/// The nodes on either side of the middle: the zeros of Legendre's P_5, shifted to the interval from 0 to 1 and
+/// mapped to the outer part of each half.
 const NODES: [f64; 5] = [0.046910077030668, 0.2307653449471585, 0.5, 0.7692346550528415, 0.953089922969332];
 
 /// The fraction of the interval, around its middle, that contains no node, since rates lose digits there.
@@ -74,13 +74,13 @@ impl Collocation {
             let before = motion.state(end);
             motion.series = series;
             let change = motion.distance(&before, &motion.state(end));
-            // Until it consists of rounding.
+            // Until the change is only rounding error.
             if change <= f64::EPSILON || change <= tolerance && 2.0 * change >= last {
                 let ends = |j: usize| {
                     let term: Vec<f64> = motion.series[j].iter().map(|g| length * g).collect();
                     motion.distance(&term, &vec![0.0; y.len()]) <= tolerance
                 };
-                // Of an even or odd motion every second term vanishes.
+                // In an even or odd motion every second term vanishes.
                 let is_smooth = ends(TERMS - 2) && ends(TERMS - 1);
                 return (is_smooth && moved <= tolerance).then_some(motion);
             }

@@ -6,7 +6,7 @@ use crate::compiled::elimination::saddle_point::{Independence, Pivot};
 /// A state this near to a bridge, as a fraction of its components, is taken to lie on it.
 const ON_BRIDGE: f64 = 1e-2;
 
-/// The rank at the end of the last step, and the motion across the place where it is lost.
+/// The rank at the end of the last step, and the motion across the state where it is lost.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Watch {
     pub(super) last: Option<Box<Seen>>,

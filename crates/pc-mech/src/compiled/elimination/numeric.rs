@@ -194,7 +194,8 @@ impl Staged {
             state.copy_from_slice(y);
             unknowns.fill(f64::NAN);
         } else if self.solver.takes_spare() {
-            // The reactions of spare constraints and those they replace are not determined separately.
+            // The reactions of spare constraints and of those that they replace are not determined
+            // separately.
             let multipliers = self.known.len() - self.multipliers;
             self.known[multipliers..].fill(f64::NAN);
         }

@@ -296,8 +296,8 @@ impl Surface {
             start.clear();
             start.extend_from_slice(&y[range.clone()]);
             self.move_by(part, Point { t, y, p }, change);
-            // Constraints that depend on the active ones hold within the rounding of those, not within their
-            // own.
+            // Constraints that depend on the active ones hold within the rounding errors of the latter, not
+            // within their own.
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
             let has_spare = self.rank < self.velocities.values().len();
             if has_spare && largest(change) <= ROUNDING * largest(start) {

@@ -48,9 +48,9 @@ impl Surface {
         Ok(true)
     }
 
-    /// Whether the space spanned by the independent constraints has the opposite orientation at the later state.
-    /// Unless rank is lost in between, it turns by less than a right angle from one state to the other, and det C C'ᵀ
-    /// > 0.
+    /// Whether the space spanned by the independent constraints has the opposite orientation at the later state. The
+    /// space turns by less than a right angle between the two states, so that det C C'ᵀ > 0, unless rank is lost in
+    /// between.
     pub(crate) fn is_reversed(
         &mut self,
         (before, from): (&Independence, Point<'_>),

@@ -97,7 +97,7 @@ impl<'g> FirstOrder<'g> {
     /// states. The energy of a Lagrangian that does not jump is tested at the surfaces where it changes pieces; other
     /// integrals must have no such surfaces.
     fn check_without_jumps(&self, name: &str, integral: Expr<'g>) -> Result<(), MechError> {
-        // A state whose rate is zero changes by events alone, which begin the motion anew with the values after them.
+        // A state whose rate is zero changes only at events, which restart the motion with the values after them.
         let flowing = self.state.iter().zip(&self.rates).filter(|(_, rate)| !rate.is_zero());
         let flowing: Vec<Expr<'g>> = flowing.map(|(&symbol, _)| symbol).collect();
         let changing = [&[self.time], &self.varying[..], &self.unknowns[..], &flowing[..]].concat();

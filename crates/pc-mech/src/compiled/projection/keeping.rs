@@ -122,14 +122,14 @@ impl Motion {
     fn try_to_keep(&mut self, integrals: &mut KeptIntegrals, t: f64, y: &[f64]) -> Result<(), MechError> {
         let rates = self.rates(t, y)?;
         self.check(integrals, t, y, &rates)?;
-        // At rest many quantities that change have no rate yet: a few short steps show it.
+        // At rest many quantities that will change have no rate yet; a few short steps show that they change.
         let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
         let (mut now, mut state) = (t, y.to_vec());
         let mut step = FIRST_STEP * largest(y).max(1.0) / largest(&rates).max(1.0);
         for _ in 0..STEPS {
             let Ok(next) = self.runge_kutta(now, &state, step) else { break };
             (now, state) = (now + step, next);
-            // Off the constraints, reactions do work.
+            // Where the constraints do not hold, reactions do work.
             if self.project(now, &mut state).is_err() {
                 break;
             }

@@ -38,7 +38,7 @@ impl Surface {
             let step = self.least_change(&coefficients, held)?;
             let eta = &mut y[moving.clone()];
             eta.iter_mut().zip(&step).for_each(|(eta, step)| *eta += step);
-            // Where g is affine one step leads there, and those after it correct its rounding.
+            // Where g is affine one step leads there, and further steps correct its rounding errors.
             let length = largest(&step);
             if length <= SHORT * largest(eta) || (self.affine && length >= last) {
                 return Ok(());
@@ -76,11 +76,11 @@ impl Surface {
             Matrix::from_fn(rows.len(), columns.len(), entry)
         };
 
-        // Rows of C have length one, so that such entries are rounding.
+        // Rows of C have length one, so such entries are rounding errors.
         let beside = |entry: f64| if entry.abs() <= DEPENDENT { 0.0 } else { entry };
         let of_free = Matrix::from_fn(m, free.len(), |a, f| beside(of(a, free[f])));
         let reached = LeastSquares::of(&of_free).map_err(failed)?;
-        // N v, without its rounding.
+        // N v, without its rounding errors.
         let beyond = |v: &[f64], size: f64| -> Vec<f64> {
             let nearest = reached.shortest(v, tolerance);
             let rest = v.iter().enumerate().map(|(a, v)| v - dot(&of_free.row(a), &nearest));

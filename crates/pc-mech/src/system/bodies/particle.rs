@@ -120,7 +120,7 @@ impl<'g> Particle<'g> {
             return None;
         }
         let product = graph.dot(force.iter().copied(), self.position.iter().copied());
-        // For a uniform force this needs no test, which rounding in the frame could fail.
+        // A uniform force needs no such test, which could fail because of rounding errors in the frame.
         if !force.iter().any(|f| moving.frame.coordinates().iter().any(|&x| f.depends_on(x))) {
             return Some(product);
         }
